@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<Assignment>,
     /// Save a screenshot of the window as a PNG file and exit.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
@@ -47,6 +50,8 @@ pub(crate) enum Task {
     Convert(Convert),
     /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
     Farm(Farm),
+    /// Lists every setting of a project: name, label, range, default, and what it changes.
+    Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
     Assemble(Assemble),
 }
@@ -68,6 +73,18 @@ pub(crate) struct SourceArguments {
     /// Motion file (BVH) to use instead of the project's motion.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
+    /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<Assignment>,
+}
+
+/// A setting with a new value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Assignment {
+    /// The path of the setting.
+    pub(crate) name: String,
+    /// The new value as text.
+    pub(crate) value: String,
 }
 
 /// Size and rate of images.
@@ -225,6 +242,15 @@ pub(crate) struct Bench {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct SettingsTask {
+    /// Only settings whose names begin with this, such as simulation.wind.
+    pub(crate) section: Option<String>,
+    /// Print tables in Markdown, as in the documents.
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) markdown: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Info {
     /// The file.
     pub(crate) file: PathBuf,
@@ -277,6 +303,14 @@ fn frames(text: &str) -> Result<Range<u64>, String> {
     let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());
     let range = number(start)?..number(end)?;
     if range.is_empty() { Err(wanted()) } else { Ok(range) }
+}
+
+/// `NAME=VALUE`.
+fn assignment(text: &str) -> Result<Assignment, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("found `{text}`; must be NAME=VALUE, such as simulation.wind.speed=3"))?;
+    Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
 }
 
 /// `WxH`, pixels.

@@ -41,8 +41,8 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
 /// The largest integer: no range can end after it.
 fn one_frame(frame: u64) -> Result<Range<u64>, ProjectError> {
     let end = frame.checked_add(1);
-    let end = end
-        .ok_or_else(|| ProjectError::option(format!("--frame: found {frame}; must be inside the clip")))?;
+    let end =
+        end.ok_or_else(|| ProjectError::option(format!("--frame: found {frame}; must be inside the clip")))?;
     Ok(frame..end)
 }
 

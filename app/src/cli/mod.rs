@@ -9,14 +9,16 @@ mod farm;
 mod info;
 mod output;
 mod record;
+mod settings;
 mod source;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
-pub(crate) use args::{Arguments, Task};
+pub(crate) use args::{Arguments, Assignment, Task};
 use output::Output;
+pub(crate) use source::apply;
 
 /// Runs the command, or opens the window if there is none.
 pub(crate) fn run() -> ExitCode {
@@ -34,17 +36,20 @@ pub(crate) fn run() -> ExitCode {
     };
     let output = Output { json: arguments.json };
     if let (Some(project), Some(_)) = (&arguments.project, &arguments.task) {
-        return output
-            .refuse(&format!("{}: found before the command; must be after it", project.display()));
+        return output.refuse(&format!("{}: found before the command; must be after it", project.display()));
+    }
+    if let (Some(first), Some(_)) = (arguments.set.first(), &arguments.task) {
+        return output.refuse(&format!("--set {}: found before the command; must be after it", first.name));
     }
     let result = match arguments.task {
         None => {
             let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
-            crate::window::open(arguments.project.as_deref(), arguments.panes, screenshot)
+            crate::window::open(arguments.project.as_deref(), &arguments.set, arguments.panes, screenshot)
         }
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Compare(task)) => compare::run(&task, output),
         Some(Task::Bench(task)) => bench::run(&task, output),
+        Some(Task::Settings(task)) => settings::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),
         Some(Task::Convert(task)) => convert::run(&task, output),
         Some(Task::Farm(task)) => farm::run(&task, output),

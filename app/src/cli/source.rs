@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use lovelock_base::settings::Settings;
 use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
 use lovelock_panes::sheet::Sheet;
@@ -13,7 +14,7 @@ use lovelock_project::project::{CompareSection, Contender, load_project_with};
 use lovelock_session::progress::Progress;
 use lovelock_session::take::project_of_take;
 
-use super::args::SourceArguments;
+use super::args::{Assignment, SourceArguments};
 use super::bar::Bar;
 
 /// A project with the changes of the command line.
@@ -41,9 +42,10 @@ impl Source {
             }
             None => (Project::default(), Vec::new()),
         };
-        tell(&problems);
+        print_problems(&problems);
         if let Some(take) = project.take.file.clone() {
             allow(task, &project, &take.path, &mut access)?;
+            apply(&task.set, &mut project)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
             return Ok(Self { project, access, name, named: Vec::new() });
         }
@@ -61,7 +63,10 @@ impl Source {
             let Some(path) = path else { continue };
             // A file that is named on the command line is required.
             if !path.is_file() {
-                return Err(ProjectError::input(path, format!("{}: not found; must be a file", path.display())));
+                return Err(ProjectError::input(
+                    path,
+                    format!("{}: not found; must be a file", path.display()),
+                ));
             }
             access.pick(path);
             names.push(file_name(path));
@@ -76,6 +81,7 @@ impl Source {
         if let Some(path) = &task.motion {
             project.set_motion_file(path);
         }
+        apply(&task.set, &mut project)?;
         Ok(Self { project, access, name: names.join(", "), named })
     }
 
@@ -84,7 +90,9 @@ impl Source {
         let most = CompareSection::MOST_PANES - 1;
         if takes.len() > most {
             let found = takes.len();
-            return Err(ProjectError::option(format!("--beside: found {found} takes; must be at most {most}")));
+            return Err(ProjectError::option(format!(
+                "--beside: found {found} takes; must be at most {most}"
+            )));
         }
         let own = Contender::of(&self.project);
         let mut panes = vec![own.clone()];
@@ -163,18 +171,39 @@ fn allow(
     Ok(())
 }
 
+/// Changes settings of a project.
+///
+/// # Errors
+/// A name without a setting, a value that it does not take, or a setting of something that a take has recorded.
+pub(crate) fn apply(set: &[Assignment], project: &mut Project) -> Result<(), ProjectError> {
+    for Assignment { name, value } in set {
+        let section = name.split('.').next().unwrap_or_default();
+        if project.take.file.is_some() && RECORDED.contains(&section) {
+            let message = format!(
+                "--set {name}: a take plays as recorded; must be a setting of another section than {section}"
+            );
+            return Err(ProjectError::option(message));
+        }
+        project.set(name, value).map_err(|error| ProjectError::option(format!("--set {error}")))?;
+    }
+    if !set.is_empty() {
+        *project = project.clamped();
+    }
+    Ok(())
+}
+
+/// The sections that a take has recorded.
+const RECORDED: [&str; 4] = ["body", "motion", "hair", "simulation"];
+
 fn preset(id: &str) -> Result<Preset, ProjectError> {
     Preset::from_id(id).ok_or_else(|| {
         let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
-        ProjectError::option(format!(
-            "--preset: found `{id}`; must be one of {}",
-            known.join(", ")
-        ))
+        ProjectError::option(format!("--preset: found `{id}`; must be one of {}", known.join(", ")))
     })
 }
 
 /// Prints the problems in the project's text. The loader reports missing files and their replacements.
-fn tell(problems: &[Problem]) {
+fn print_problems(problems: &[Problem]) {
     for problem in problems.iter().filter(|problem| !problem.is_failure()) {
         eprintln!("lovelock: {}", problem.message);
     }

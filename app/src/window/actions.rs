@@ -12,12 +12,14 @@ use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
 use lovelock_session::take::project_of_take;
 
+use crate::cli::Assignment;
+
 use super::command::Command;
 use super::path_dialog::Purpose;
 use super::{Pending, Window, copy, notices};
 
 /// A project to start with.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Opened {
     pub(super) project: Project,
     pub(super) project_path: Option<PathBuf>,
@@ -25,16 +27,16 @@ pub(super) struct Opened {
     pub(super) problems: Vec<Problem>,
 }
 
-/// Opens the file that is named on the command line.
-pub(super) fn open_for_start(path: &Path) -> Result<Opened, ProjectError> {
-    let kind = FileKind::of(path)?;
-    let mut opened = Opened {
-        project: Project::default(),
-        project_path: None,
-        picked: vec![path.to_owned()],
-        problems: Vec::new(),
-    };
-    match kind {
+/// Opens the file that is named on the command line, or the default project, and changes settings of it.
+pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
+    let mut opened = path.map_or_else(|| Ok(Opened::default()), open_file)?;
+    crate::cli::apply(set, &mut opened.project)?;
+    Ok(opened)
+}
+
+fn open_file(path: &Path) -> Result<Opened, ProjectError> {
+    let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
+    match FileKind::of(path)? {
         FileKind::Project => {
             (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
             opened.project_path = Some(path.to_owned());
@@ -96,9 +98,9 @@ impl Window {
             Command::AddMarker => self.add_marker(),
             Command::MarkIn | Command::MarkOut => self.mark_end(command == Command::MarkIn),
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
-            Command::Record => self.ask(Purpose::Film),
-            Command::SavePicture => self.ask(Purpose::Picture),
-            Command::ExportCurves => self.ask(Purpose::Curves),
+            Command::Record => self.open_path_dialog(Purpose::Film),
+            Command::SavePicture => self.open_path_dialog(Purpose::Picture),
+            Command::ExportCurves => self.open_path_dialog(Purpose::Curves),
             Command::FrameHair => self.frame_hair(ctx),
             Command::ToggleFollow => self.change_seen(ctx, |project| {
                 project.camera.mode = match project.camera.mode {
@@ -118,19 +120,19 @@ impl Window {
                 self.history.redo();
             }
             Command::NewProject => self.unless_modified(Pending::New, ctx),
-            Command::Open => self.ask(Purpose::Open),
+            Command::Open => self.open_path_dialog(Purpose::Open),
             Command::Save => match self.project_path.clone() {
                 Some(path) => self.save_to(&path),
-                None => self.ask(Purpose::SaveProject),
+                None => self.open_path_dialog(Purpose::SaveProject),
             },
-            Command::SaveAs => self.ask(Purpose::SaveProject),
+            Command::SaveAs => self.open_path_dialog(Purpose::SaveProject),
             Command::PresetSmooth => self.change_seen(ctx, |project| project.set_preset(Preset::Smooth)),
             Command::PresetCurly => self.change_seen(ctx, |project| project.set_preset(Preset::Curly)),
             Command::PresetLong => self.change_seen(ctx, |project| project.set_preset(Preset::Long)),
             Command::PresetPonytail => self.change_seen(ctx, |project| project.set_preset(Preset::Ponytail)),
             Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
             Command::Palette => self.palette.toggle(),
-            Command::CompareTakes => self.ask(Purpose::Beside),
+            Command::CompareTakes => self.open_path_dialog(Purpose::Beside),
             Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
@@ -170,7 +172,7 @@ impl Window {
                 self.session.set_playing(true);
                 self.session.worker().record_take(path);
             }
-            Err(error) => self.tell([error]),
+            Err(error) => self.warn([error]),
         }
     }
 
@@ -235,9 +237,9 @@ impl Window {
                 let picture = &painted.picture;
                 match recording::write_png(path, picture.width, picture.height, &picture.rgba) {
                     Ok(()) => {
-                        self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display()));
+                        self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
                     }
-                    Err(error) => self.tell([error.to_string()]),
+                    Err(error) => self.warn([error.to_string()]),
                 }
             }
         }
@@ -268,7 +270,7 @@ impl Window {
     }
 
     /// Asks for confirmation before unsaved changes are lost.
-    pub(super) fn ask_before_losing(&mut self, ctx: &egui::Context) {
+    pub(super) fn confirm_loss(&mut self, ctx: &egui::Context) {
         let Some(pending) = self.pending.clone() else { return };
         let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
             ui.heading("The project has unsaved changes.");
@@ -290,7 +292,7 @@ impl Window {
                         self.go_on(pending, ctx);
                     }
                 }
-                None => self.ask(Purpose::SaveProject),
+                None => self.open_path_dialog(Purpose::SaveProject),
             }
         } else if lose {
             self.pending = None;
@@ -316,8 +318,9 @@ fn new_take(project: Option<&Path>) -> Result<PathBuf, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         (path.parent().unwrap_or_else(|| Path::new(".")).to_owned(), name)
     } else {
-        let folder = eframe::storage_dir("lovelock")
-            .ok_or("there is no folder for takes: save the project first, so that they can be stored beside it")?;
+        let folder = eframe::storage_dir("lovelock").ok_or(
+            "there is no folder for takes: save the project first, so that they can be stored beside it",
+        )?;
         (folder, "take".to_owned())
     };
     let folder = folder.join("takes");

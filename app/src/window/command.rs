@@ -1,63 +1,63 @@
-//! What the user can ask for by key, menu, button or palette: one table.
+//! The commands that keys, menus, buttons and the palette run, in one table.
 
 mod table;
 
 pub use table::COMMANDS;
 
-/// An action of the interface. [`COMMANDS`] says everything else about it.
+/// A command of the interface. [`COMMANDS`] has its names, keys and menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Command {
-    /// Plays or pauses the dance.
+    /// Starts or pauses playback.
     PlayPause,
-    /// One frame on.
+    /// Moves one frame forward.
     StepForward,
-    /// One frame back.
+    /// Moves one frame back.
     StepBack,
-    /// To the first frame.
+    /// Seeks to the first frame.
     JumpToStart,
-    /// To the last frame.
+    /// Seeks to the last frame.
     JumpToEnd,
-    /// Whether the dance starts again at its end.
+    /// Switches looping.
     ToggleLoop,
-    /// Lets the hair fall into place again.
+    /// Resets the hair to its style and lets it settle.
     SettleHair,
-    /// Takes the scissors, or puts them away.
+    /// Switches the scissors.
     Scissors,
-    /// Shows or hides what hair collides with.
+    /// Shows or hides the colliders.
     ShowColliders,
     /// Starts or ends the recording of a take.
     RecordTake,
-    /// Starts or cancels the recording of a film or of pictures.
+    /// Starts or cancels the recording of a film or of images.
     Record,
-    /// Plays the take that was recorded last.
+    /// Plays the latest take.
     PlayTake,
-    /// Simulates again in place of the take that plays.
+    /// Returns from a take to the simulation.
     LeaveTake,
-    /// Whether a take plays from its end to its start.
+    /// Switches backward playback of a take.
     PlayBackwards,
-    /// Whether controls that are moved while the dance plays write tracks.
+    /// Switches the recording of tracks by controls that are moved during playback.
     WriteTracks,
-    /// A named time where the dance is.
+    /// Adds a marker at the current time.
     AddMarker,
-    /// Recordings begin where the dance is.
+    /// Sets the in point of recordings to the current frame.
     MarkIn,
-    /// Recordings end where the dance is.
+    /// Sets the out point of recordings to the current frame.
     MarkOut,
-    /// Saves the picture in the viewport as a PNG file.
+    /// Saves the image in the viewport as a PNG file.
     SavePicture,
-    /// Writes the hair and the body as curves that move, for other programs.
+    /// Exports hair as animated curves, with the body, for other programs.
     ExportCurves,
-    /// Moves the camera until the hair fills the picture.
+    /// Moves the camera until the hair fills the image.
     FrameHair,
-    /// Whether the camera follows the head.
+    /// Switches whether the camera follows the head.
     ToggleFollow,
-    /// The default camera.
+    /// Restores the default camera.
     ResetCamera,
-    /// Takes back the last change.
+    /// Undoes the last change.
     Undo,
-    /// Does it again.
+    /// Redoes the change that was undone last.
     Redo,
-    /// The default project.
+    /// Starts from the default project.
     NewProject,
     /// Opens a project, hairstyle, character or motion.
     Open,
@@ -65,31 +65,31 @@ pub enum Command {
     Save,
     /// Saves the project under another name.
     SaveAs,
-    /// The shipped smooth hairstyle.
+    /// Loads the shipped smooth bob.
     PresetSmooth,
-    /// The shipped curls.
+    /// Loads the shipped curls.
     PresetCurly,
-    /// The shipped long hair.
+    /// Loads the shipped long hair.
     PresetLong,
-    /// The shipped ponytail.
+    /// Loads the shipped ponytail.
     PresetPonytail,
-    /// The shipped bun.
+    /// Loads the shipped bun.
     PresetBun,
-    /// The command palette.
+    /// Opens the command palette.
     Palette,
-    /// Several ways to draw the hair beside each other, or one picture.
+    /// Shows or closes the comparison.
     Compare,
-    /// What is shown beside a take of one's choice.
+    /// Adds a pane with a take that the user picks.
     CompareTakes,
-    /// Hides or shows all panels.
+    /// Hides or shows the panels.
     TogglePanels,
-    /// The list of keys.
+    /// Shows the list of keys.
     ShowKeys,
-    /// Leaves the program.
+    /// Quits the program.
     Quit,
 }
 
-/// Where a command stands in menus and in the list of keys.
+/// The menu of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CommandGroup {
     /// Time.
@@ -123,7 +123,7 @@ impl CommandGroup {
     }
 }
 
-/// Everything that the interface says about a command.
+/// Names, keys and menu of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommandInfo {
     /// Which command.
@@ -132,18 +132,18 @@ pub struct CommandInfo {
     pub id: &'static str,
     /// The name on buttons, in menus and in the palette.
     pub label: &'static str,
-    /// What it does, in a sentence.
+    /// A sentence that says what it does.
     pub tooltip: &'static str,
     /// Keys, the first one shown in menus, such as `Ctrl+Shift+Z`. `Ctrl` is the command key on a Mac.
     pub shortcuts: &'static [&'static str],
-    /// Where it stands.
+    /// Its menu.
     pub group: CommandGroup,
     /// Whether the palette lists it.
     pub in_palette: bool,
 }
 
 impl Command {
-    /// Everything that the interface says about it.
+    /// Its names, keys and menu.
     pub fn info(self) -> &'static CommandInfo {
         // The table is in the order of the enum, which a test checks.
         &COMMANDS[self as usize]
@@ -164,7 +164,7 @@ pub struct Shortcut<'a> {
 }
 
 impl<'a> Shortcut<'a> {
-    /// Reads `Ctrl+Shift+Z`; none for an unknown modifier or no key.
+    /// Reads a shortcut such as `Ctrl+Shift+Z`; `None` if a modifier is unknown or the key is missing.
     pub fn parse(text: &'a str) -> Option<Self> {
         let mut parts = text.split('+').rev();
         let key = parts.next().filter(|key| !key.is_empty())?;

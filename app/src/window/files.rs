@@ -34,7 +34,7 @@ impl Window {
                 let project = self.history.project().clone();
                 self.session.reload(&project);
             }
-            Err(error) => self.tell([error.to_string()]),
+            Err(error) => self.warn([error.to_string()]),
         }
     }
 
@@ -46,9 +46,9 @@ impl Window {
                 self.change("take", |project| *project = take);
                 let project = self.history.project().clone();
                 self.session.reload(&project);
-                self.tell(problems.into_iter().map(|problem| problem.message));
+                self.warn(problems.into_iter().map(|problem| problem.message));
             }
-            Err(error) => self.tell([error.to_string()]),
+            Err(error) => self.warn([error.to_string()]),
         }
     }
 
@@ -66,9 +66,9 @@ impl Window {
                 self.layout.compare.shown = true;
             }
             Ok(kind) => {
-                self.tell([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);
+                self.warn([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);
             }
-            Err(error) => self.tell([error.to_string()]),
+            Err(error) => self.warn([error.to_string()]),
         }
     }
 
@@ -82,9 +82,9 @@ impl Window {
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());
                 remember(&mut self.layout.recent, path);
-                self.tell(problems.into_iter().map(|problem| problem.message));
+                self.warn(problems.into_iter().map(|problem| problem.message));
             }
-            Err(error) => self.tell([error.to_string()]),
+            Err(error) => self.warn([error.to_string()]),
         }
     }
 
@@ -95,9 +95,9 @@ impl Window {
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());
                 remember(&mut self.layout.recent, path);
-                self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display()));
+                self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
             }
-            Err(error) => self.tell([error.to_string()]),
+            Err(error) => self.warn([error.to_string()]),
         }
     }
 }

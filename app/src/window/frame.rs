@@ -20,23 +20,23 @@ impl Window {
         let ctx = ui.ctx().clone();
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
         let said = self.session.update();
-        self.tell(said);
+        self.warn(said);
         for done in std::mem::take(&mut self.session.done) {
-            self.notices.tell(notices::Kind::Done, done);
+            self.notices.push(notices::Kind::Done, done);
         }
         let said = self.compare.update(self.session.live());
-        self.tell(said);
-        self.tell_saved();
+        self.warn(said);
+        self.report_saved();
         if let Some(end) = self.recorder.update() {
             match end {
                 panels::recording::State::Done(what) => {
-                    self.notices.tell(notices::Kind::Done, format!("Recorded: {what}"));
+                    self.notices.push(notices::Kind::Done, format!("Recorded: {what}"));
                 }
                 panels::recording::State::Failed(why) => {
-                    self.notices.tell(notices::Kind::Failed, format!("Recording: {why}"));
+                    self.notices.push(notices::Kind::Failed, format!("Recording: {why}"));
                 }
                 panels::recording::State::Cancelled => {
-                    self.notices.tell(notices::Kind::Done, panels::recording::CANCELLED);
+                    self.notices.push(notices::Kind::Done, panels::recording::CANCELLED);
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
@@ -65,12 +65,12 @@ impl Window {
         self.take_edit(&seen, project, &ctx);
         if let Some(ask) = playback {
             match ask {
-                timeline::Ask::Run(command) => self.run(command, &ctx),
-                timeline::Ask::Seek(time_secs) => self.session.worker().seek(time_secs),
-                timeline::Ask::Rate(rate) => self.session.set_rate(rate),
-                timeline::Ask::Trim => self.change("trim", Project::trim_to_points),
-                timeline::Ask::Untrim => self.change("trim", Project::trim_nothing),
-                timeline::Ask::PickMotion => self.ask(Purpose::Open),
+                timeline::TimelineRequest::Run(command) => self.run(command, &ctx),
+                timeline::TimelineRequest::Seek(time_secs) => self.session.worker().seek(time_secs),
+                timeline::TimelineRequest::Rate(rate) => self.session.set_rate(rate),
+                timeline::TimelineRequest::Trim => self.change("trim", Project::trim_to_points),
+                timeline::TimelineRequest::Untrim => self.change("trim", Project::trim_nothing),
+                timeline::TimelineRequest::PickMotion => self.open_path_dialog(Purpose::Open),
             }
         }
         let mut palette = std::mem::take(&mut self.palette);
@@ -119,12 +119,9 @@ impl Window {
                             }
                         });
                         ui.menu_button("Picture size", |ui| {
-                            for (scale, name) in [
-                                (0.0, "Automatic"),
-                                (1.0, "Every pixel"),
-                                (0.5, "Half"),
-                                (0.25, "Quarter"),
-                            ] {
+                            for (scale, name) in
+                                [(0.0, "Automatic"), (1.0, "Every pixel"), (0.5, "Half"), (0.25, "Quarter")]
+                            {
                                 ui.radio_value(&mut self.layout.view_scale, scale, name);
                             }
                         });
@@ -147,7 +144,7 @@ impl Window {
         }
     }
 
-    fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<timeline::Ask> {
+    fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<timeline::TimelineRequest> {
         let session = &self.session;
         let frame = session.frame.as_ref();
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
@@ -217,7 +214,7 @@ impl Window {
             let mut row = 0;
             if let Some((fraction, text)) = self.recorder.state().progress() {
                 let tip = "Stops the recording. An unfinished film is removed.";
-                if over_picture(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
+                if progress_overlay(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
                     self.recorder.cancel();
                 }
                 row += 1;
@@ -231,7 +228,7 @@ impl Window {
             }
             if let Some(progress) = loading.filter(|_| self.session.load_is_seen) {
                 let tip = "Stops loading. The scene stays unchanged.";
-                if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
+                if progress_overlay(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
                 }
                 row += 1;
@@ -242,7 +239,7 @@ impl Window {
                 let tip = "Continues immediately, with hair that has not settled.";
                 let fraction = settling.done as f32 / settling.total.max(1) as f32;
                 let text = format!("Settling the hair at {:.2} s", settling.to_secs);
-                if over_picture(ui, rect, row, fraction, &text, tip) {
+                if progress_overlay(ui, rect, row, fraction, &text, tip) {
                     self.session.worker().cancel_settle();
                 }
             }
@@ -276,11 +273,11 @@ impl Window {
             });
             self.keys_shown = !modal.should_close();
         }
-        self.ask_before_losing(ctx);
+        self.confirm_loss(ctx);
     }
 
     /// Opens the dialog for a path.
-    pub(super) fn ask(&mut self, purpose: Purpose) {
+    pub(super) fn open_path_dialog(&mut self, purpose: Purpose) {
         let folder = self
             .project_path
             .as_deref()
@@ -332,7 +329,7 @@ impl Window {
 
 /// Shows a progress bar in the corner of the image, `row` from the top, and a button that stops the work. Returns whether the
 /// button was clicked.
-fn over_picture(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
+fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
     let button_width = 60.0;
     let width = (picture.width() - button_width - 26.0).clamp(60.0, 300.0);
     let corner = picture.left_top() + vec2(10.0, 10.0 + 26.0 * f32::from(row));

@@ -9,6 +9,7 @@ mod control;
 mod files;
 mod frame;
 mod gesture;
+mod health_view;
 mod keys;
 mod light_sphere;
 mod notices;
@@ -20,8 +21,8 @@ mod ramp;
 mod recorder;
 mod screenshot;
 mod session;
-mod sides;
-mod state_of_hair;
+mod side_panels;
+
 #[cfg(test)]
 mod testing;
 mod theme;
@@ -32,6 +33,7 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::cli::Assignment;
 use command::Command;
 use compare::{Compare, CompareLayout};
 use gesture::Gestures;
@@ -100,7 +102,7 @@ pub(crate) struct Window {
     keys_shown: bool,
     selected_light: usize,
     /// The gauge whose place is marked in the image, with its values when the mark was requested.
-    pointed: Option<Gauge>,
+    marked_gauge: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
@@ -118,11 +120,12 @@ pub(crate) struct Window {
 /// Opens the window with the file at `path`, if there is one; with the panes of a comparison if `panes`.
 pub(crate) fn open(
     path: Option<&Path>,
+    set: &[Assignment],
     panes: bool,
     screenshot: Option<(PathBuf, f64)>,
 ) -> Result<(), ProjectError> {
     // A file that cannot be opened is an error of the command line, reported without opening the window.
-    let opened = path.map(actions::open_for_start).transpose()?;
+    let opened = actions::open_for_start(path, set)?;
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Lovelock")
@@ -154,7 +157,7 @@ pub(crate) fn open(
 impl Window {
     fn new(
         creation: &eframe::CreationContext,
-        opened: Option<actions::Opened>,
+        opened: actions::Opened,
         picture: Option<(PathBuf, f64)>,
     ) -> Result<Self, ProjectError> {
         let ctx = &creation.egui_ctx;
@@ -168,22 +171,13 @@ impl Window {
     }
 
     /// Starts the session behind the window.
-    fn start(
-        ctx: &egui::Context,
-        layout: Layout,
-        opened: Option<actions::Opened>,
-    ) -> Result<Self, ProjectError> {
+    fn start(ctx: &egui::Context, layout: Layout, opened: actions::Opened) -> Result<Self, ProjectError> {
+        let actions::Opened { project, project_path, picked, problems } = opened;
         let mut access = Access::new();
-        let (project, project_path, problems) = match opened {
-            Some(opened) => {
-                for path in &opened.picked {
-                    access.pick(path);
-                }
-                access.set_project(opened.project_path.as_deref());
-                (opened.project, opened.project_path, opened.problems)
-            }
-            None => (Project::default(), None, Vec::new()),
-        };
+        for path in &picked {
+            access.pick(path);
+        }
+        access.set_project(project_path.as_deref());
         let history = History::new(project);
         let session = Session::start(history.project(), access, ctx)?;
         let mut window = Self {
@@ -200,7 +194,7 @@ impl Window {
             notices: Notices::default(),
             keys_shown: false,
             selected_light: 0,
-            pointed: None,
+            marked_gauge: None,
             colliders: panels::colliders::Shown::default(),
             selected_tie: 0,
             ties_shown: false,
@@ -212,15 +206,15 @@ impl Window {
             quitting: false,
             screenshot: None,
         };
-        window.tell(problems.iter().map(|problem| problem.message.clone()));
+        window.warn(problems.iter().map(|problem| problem.message.clone()));
         Ok(window)
     }
 
     /// Shows messages to the user.
-    fn tell(&mut self, sentences: impl IntoIterator<Item = String>) {
+    fn warn(&mut self, sentences: impl IntoIterator<Item = String>) {
         for sentence in sentences {
             tracing::warn!("{sentence}");
-            self.notices.tell(notices::Kind::Warning, sentence);
+            self.notices.push(notices::Kind::Warning, sentence);
         }
     }
 
@@ -262,7 +256,7 @@ impl Window {
         let project = self.overdub.edit(self.history.project(), seen, edited, now);
         self.edit(label, project);
         if let Some(control) = self.overdub.take_refused() {
-            self.tell([format!(
+            self.warn([format!(
                 "{control} follows its track while the dance plays. Pause to set a key, press W to write the track anew, \
                  or mute it on the timeline."
             )]);

@@ -53,7 +53,7 @@ pub(crate) struct Notices {
 
 impl Notices {
     /// Adds a message. One that is already visible stays longer instead of appearing twice.
-    pub(crate) fn tell(&mut self, kind: Kind, text: impl Into<String>) {
+    pub(crate) fn push(&mut self, kind: Kind, text: impl Into<String>) {
         let text = text.into();
         self.list.retain(|notice| notice.text != text);
         if self.list.len() == MOST {

@@ -34,8 +34,8 @@ pub(crate) struct Session {
     pub(crate) frame: Option<Arc<FrameSnapshot>>,
     pub(crate) painted: Option<Arc<RenderedImage>>,
     pub(crate) problems: Vec<Problem>,
-    pub(crate) hair: hair::Loaded,
-    pub(crate) body: body::Loaded,
+    pub(crate) hair: hair::LoadedHair,
+    pub(crate) body: body::LoadedBody,
     pub(crate) stages: StageHistory,
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
@@ -62,11 +62,13 @@ impl Session {
         ctx: &egui::Context,
     ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
-        let painter = RenderThread::start(move || wake.request_repaint())
-            .map_err(|error| ProjectError::work(format!("the render thread could not be started: {error}")))?;
+        let painter = RenderThread::start(move || wake.request_repaint()).map_err(|error| {
+            ProjectError::work(format!("the render thread could not be started: {error}"))
+        })?;
         let wake = ctx.clone();
-        let live = Live::start(move || wake.request_repaint())
-            .map_err(|error| ProjectError::work(format!("the comparison thread could not be started: {error}")))?;
+        let live = Live::start(move || wake.request_repaint()).map_err(|error| {
+            ProjectError::work(format!("the comparison thread could not be started: {error}"))
+        })?;
         // While an image is rendered, its end repaints the window anyway. A repaint per step of the simulation would slow down
         // rendering.
         let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
@@ -89,8 +91,8 @@ impl Session {
             frame: None,
             painted: None,
             problems: Vec::new(),
-            hair: hair::Loaded::default(),
-            body: body::Loaded::default(),
+            hair: hair::LoadedHair::default(),
+            body: body::LoadedBody::default(),
             stages: StageHistory::new(PLOTTED_FRAMES),
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
@@ -264,13 +266,13 @@ impl Session {
                 (low, high)
             },
         );
-        self.hair = hair::Loaded {
+        self.hair = hair::LoadedHair {
             counts: [style.wisps.len(), style.strands.count(), style.strands.segments()],
             size_m: std::array::from_fn(|axis| (high[axis] - low[axis]).max(0.0)),
             notes: notes(&[Place::Hair]),
         };
         let joints = lovelock_motion::joint_paths(&scene.body.skeleton);
-        self.body = body::Loaded {
+        self.body = body::LoadedBody {
             clips: scene.clips.iter().map(|clip| clip.name.clone()).collect(),
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
             joints,

@@ -21,7 +21,7 @@ impl Window {
             return true;
         };
         self.colliders_over(ui, response, view, &painted.snapshot, project);
-        self.paint_pointed(ui, view, painted);
+        self.paint_marked_gauge(ui, view, painted);
         if project.take.file.is_some() {
             return true;
         }
@@ -45,7 +45,7 @@ impl Window {
     fn cut(&mut self, view: View, painted: &RenderedImage, line: [egui::Pos2; 2], project: &mut Project) {
         match overlay::scissors::cut(view, &painted.snapshot, line) {
             Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
-            None => self.notices.tell(notices::Kind::Warning, "The line crosses no hair.".to_owned()),
+            None => self.notices.push(notices::Kind::Warning, "The line crosses no hair.".to_owned()),
         }
     }
 

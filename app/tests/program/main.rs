@@ -7,4 +7,5 @@ mod info;
 mod projects;
 mod record;
 mod refusals;
+mod settings;
 mod tool;

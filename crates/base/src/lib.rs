@@ -4,5 +4,6 @@ pub mod clock;
 pub mod glb;
 pub mod numbers;
 pub mod random;
+pub mod settings;
 pub mod statistics;
 pub mod triangle;

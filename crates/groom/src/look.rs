@@ -1,33 +1,33 @@
 //! Colour and width of hair.
 
 use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
-
-use lovelock_base::numbers::within;
 
 /// What hair is made of and how thick it is: everything about its appearance that no light changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct HairLook {
-    /// Concentration of eumelanin, which makes hair brown and black: 0 to 8.
+    /// Concentration of eumelanin, the pigment of brown and black hair.
     pub eumelanin: f32,
-    /// Concentration of pheomelanin, which makes hair red: 0 to 8.
+    /// Concentration of pheomelanin, the pigment of red hair.
     pub pheomelanin: f32,
-    /// How much the melanin of strands differs from each other, as a fraction: 0 to 1.
+    /// How much the melanin varies between strands, as a fraction.
     pub variation: f32,
-    /// How much lighter the tips are than the roots, as a fraction of the melanin: 0 to 1.
+    /// How much less melanin the tips have than the roots, as a fraction.
     pub tip_lightening: f32,
-    /// Diameter of one real hair, metres: 17e-6 to 100e-6.
+    /// Diameter of one real hair, metres.
     pub diameter: f32,
-    /// Number of real hairs that all drawn strands together stand for: 1 to 10 million.
+    /// Number of real hairs that all drawn strands together stand for.
     pub real_hairs: f32,
-    /// Width of a drawn strand as a multiple of what its real hairs would cover: 0.05 to 2.
+    /// Width of a drawn strand as a multiple of the width that its real hairs would cover.
     pub width_scale: f32,
-    /// Strength of the first highlight, in the light's colour: 0 to 2.
+    /// Strength of the primary highlight, in the light's colour.
     pub primary_strength: f32,
-    /// Strength of the second highlight, in the hair's colour: 0 to 2.
+    /// Strength of the secondary highlight, in the hair's colour.
     pub secondary_strength: f32,
-    /// Width of the highlights along the hair: 0.05 (silky) to 1 (dull).
+    /// Width of the highlights along the hair: low values are silky, high ones dull.
     pub roughness: f32,
 }
 
@@ -48,24 +48,79 @@ impl Default for HairLook {
     }
 }
 
-impl HairLook {
-    /// The look with every number inside its range; what is not a number takes the value of the default.
-    pub fn clamped(&self) -> Self {
-        let d = Self::default();
-        Self {
-            eumelanin: within(self.eumelanin, 0.0, 8.0, d.eumelanin),
-            pheomelanin: within(self.pheomelanin, 0.0, 8.0, d.pheomelanin),
-            variation: within(self.variation, 0.0, 1.0, d.variation),
-            tip_lightening: within(self.tip_lightening, 0.0, 1.0, d.tip_lightening),
-            diameter: within(self.diameter, 17e-6, 100e-6, d.diameter),
-            real_hairs: within(self.real_hairs, 1.0, 1e7, d.real_hairs),
-            width_scale: within(self.width_scale, 0.05, 2.0, d.width_scale),
-            primary_strength: within(self.primary_strength, 0.0, 2.0, d.primary_strength),
-            secondary_strength: within(self.secondary_strength, 0.0, 2.0, d.secondary_strength),
-            roughness: within(self.roughness, 0.05, 1.0, d.roughness),
-        }
-    }
+impl Settings for HairLook {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(
+            field!(Self, eumelanin),
+            [0.0, 8.0],
+            "Eumelanin",
+            "Concentration of the pigment of brown and black hair. Higher values are darker.",
+        ),
+        Setting::number(
+            field!(Self, pheomelanin),
+            [0.0, 8.0],
+            "Pheomelanin",
+            "Concentration of the pigment of red hair.",
+        ),
+        Setting::number(
+            field!(Self, variation),
+            [0.0, 1.0],
+            "Colour variation",
+            "How much the colour varies between strands.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, tip_lightening),
+            [0.0, 1.0],
+            "Tip lightening",
+            "How much lighter hair is at its tips than at its roots.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, primary_strength),
+            [0.0, 2.0],
+            "Primary highlight",
+            "Strength of the highlight in the light's colour.",
+        ),
+        Setting::number(
+            field!(Self, secondary_strength),
+            [0.0, 2.0],
+            "Secondary highlight",
+            "Strength of the highlight in the hair's colour.",
+        ),
+        Setting::number(
+            field!(Self, roughness),
+            [0.05, 1.0],
+            "Roughness",
+            "Width of the highlights: narrow on silky hair, broad on dull hair.",
+        ),
+        Setting::number(
+            field!(Self, width_scale),
+            [0.05, 2.0],
+            "Strand width",
+            "Width of a drawn strand, as a multiple of the width of the hairs that it stands for.",
+        )
+        .logarithmic(),
+        Setting::number(
+            field!(Self, diameter),
+            [17e-6, 100e-6],
+            "Hair diameter",
+            "Thickness of one real hair. Thicker hair casts denser shadows.",
+        )
+        .unit(Unit::METRES_AS_UM),
+        Setting::number(
+            field!(Self, real_hairs),
+            [1.0, 1e7],
+            "Hair count",
+            "Number of real hairs that all drawn strands together stand for. More hair casts denser \
+             shadows.",
+        )
+        .unit(Unit::THOUSANDS)
+        .soft([1e4, 2e5]),
+    ];
+}
 
+impl HairLook {
     /// Absorption per unit of path through a fibre, linear sRGB.
     ///
     /// Chiang et al. 2016, "A practical and controllable hair and fur model", after d'Eon et al. 2011.

@@ -1,6 +1,7 @@
 //! The shipped hairstyles.
 
 use glam::Vec3;
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
 use crate::{GroomSettings, HairLook, HairTie, TieKind};
@@ -65,6 +66,14 @@ impl Preset {
 impl Default for GroomSettings {
     fn default() -> Self {
         Self::preset(Preset::Smooth)
+    }
+}
+
+impl Choices for Preset {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
     }
 }
 

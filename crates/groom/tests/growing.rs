@@ -1,6 +1,7 @@
 //! Properties of every grown hairstyle.
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::settings::Settings;
 use lovelock_groom::{
     GroomSettings, GrowError, GuideFrame, Hairstyle, NoObstacle, Obstacle, PlainHead, Preset, Scalp,
     ScalpError, ScalpIndex, Strands, grow, interpolate,

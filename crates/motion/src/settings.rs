@@ -1,5 +1,7 @@
 //! Units and axes of files that do not specify them.
 
+use lovelock_base::field;
+use lovelock_base::settings::{Choices, Setting, Settings};
 use serde::{Deserialize, Serialize};
 
 /// The length of one unit of a file.
@@ -116,4 +118,90 @@ pub struct MotionSettings {
     pub up: UpAxis,
     /// The meaning of the root's position channels.
     pub root: RootPosition,
+}
+
+impl Choices for LengthUnit {
+    const ALL: &'static [Self] = &[
+        Self::Auto,
+        Self::Metres,
+        Self::Decimetres,
+        Self::Centimetres,
+        Self::Millimetres,
+        Self::Inches,
+        Self::Cmu,
+    ];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("auto", "Automatic"),
+            Self::Metres => ("metres", "Metres"),
+            Self::Decimetres => ("decimetres", "Decimetres"),
+            Self::Centimetres => ("centimetres", "Centimetres"),
+            Self::Millimetres => ("millimetres", "Millimetres"),
+            Self::Inches => ("inches", "Inches"),
+            Self::Cmu => ("cmu", "CMU units (inches over 0.45)"),
+        }
+    }
+}
+
+impl Choices for UpAxis {
+    const ALL: &'static [Self] = &[Self::Auto, Self::Y, Self::Z];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("auto", "Automatic"),
+            Self::Y => ("y", "Y"),
+            Self::Z => ("z", "Z"),
+        }
+    }
+}
+
+impl Choices for Facing {
+    const ALL: &'static [Self] = &[Self::Auto, Self::PlusZ, Self::PlusX, Self::MinusZ, Self::MinusX];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("auto", "Automatic"),
+            Self::PlusZ => ("plus_z", "+Z"),
+            Self::PlusX => ("plus_x", "+X"),
+            Self::MinusZ => ("minus_z", "-Z"),
+            Self::MinusX => ("minus_x", "-X"),
+        }
+    }
+}
+
+impl Choices for RootPosition {
+    const ALL: &'static [Self] = &[Self::Auto, Self::Absolute, Self::Added];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("auto", "Automatic"),
+            Self::Absolute => ("absolute", "Absolute"),
+            Self::Added => ("added", "Added to the offset"),
+        }
+    }
+}
+
+impl Settings for BodySettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<LengthUnit>(field!(Self, unit), "Unit", "The length of one unit of the file."),
+        Setting::choice::<UpAxis>(field!(Self, up), "Up axis", "The axis of the file that points up."),
+        Setting::choice::<Facing>(
+            field!(Self, facing),
+            "Facing",
+            "The axis of the file along which the figure looks.",
+        ),
+    ];
+}
+
+impl Settings for MotionSettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<LengthUnit>(field!(Self, unit), "Unit", "The length of one unit of the file."),
+        Setting::choice::<UpAxis>(field!(Self, up), "Up axis", "The axis of the file that points up."),
+        Setting::choice::<RootPosition>(
+            field!(Self, root),
+            "Root position",
+            "What the position channels of the root mean. Change it if the figure floats or sinks.",
+        ),
+    ];
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
 /// The device that renders.
@@ -36,8 +37,16 @@ impl Backend {
         match self {
             Self::Auto => "Automatic",
             Self::Gpu => "Graphics card",
-            Self::Cpu => "Processor",
+            Self::Cpu => "CPU",
         }
+    }
+}
+
+impl Choices for Backend {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
     }
 }
 

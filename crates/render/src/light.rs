@@ -1,6 +1,8 @@
 //! Lights.
 
 use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
 /// The most lights of a picture: transmittance is stored per light and strand point.
@@ -12,17 +14,17 @@ pub const MAX_LIGHTS: usize = 4;
 pub struct Light {
     /// What the interface calls it.
     pub name: String,
-    /// Whether it shines.
+    /// Whether it is on.
     pub enabled: bool,
     /// The way the light travels, world space; any length but zero.
     pub direction: Vec3,
     /// Colour, linear sRGB, of about unit brightness.
     pub color: Vec3,
-    /// Brightness: 0 to 20.
+    /// Brightness.
     pub intensity: f32,
-    /// How much of it makes highlights: 1 for a lamp, 0 for a large soft source.
+    /// Fraction of it that makes highlights: 1 for a lamp, 0 for a large soft source.
     pub specular: f32,
-    /// How soft the body's shadow edges are in this light, metres of blur: 0 to 0.1.
+    /// Blur of the edges of the body's shadow in this light, metres.
     pub softness: f32,
 }
 
@@ -75,20 +77,37 @@ impl Light {
         ]
     }
 
-    /// A copy whose every value is finite and in range; a zero or non-finite direction becomes straight down.
-    pub fn clamped(&self) -> Self {
-        let finite = |v: f32, low: f32, high: f32, default: f32| {
-            if v.is_finite() { v.clamp(low, high) } else { default }
-        };
-        let direction = if self.direction.is_finite() { self.direction } else { Vec3::NEG_Y };
-        Self {
-            name: self.name.clone(),
-            enabled: self.enabled,
-            direction: direction.normalize_or(Vec3::NEG_Y),
-            color: Vec3::from_array(self.color.to_array().map(|c| finite(c, 0.0, 4.0, 1.0))),
-            intensity: finite(self.intensity, 0.0, 20.0, 1.0),
-            specular: finite(self.specular, 0.0, 1.0, 1.0),
-            softness: finite(self.softness, 0.0, 0.1, 0.01),
-        }
+    /// The light with every value in its range and a direction of length 1.
+    pub fn normalized(&self) -> Self {
+        let light = self.clamped();
+        Self { direction: light.direction.normalize_or(Vec3::NEG_Y), ..light }
     }
+}
+
+impl Settings for Light {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::switch(field!(Self, enabled), "Enabled", "Switches the light on."),
+        Setting::direction(
+            field!(Self, direction),
+            "Light direction",
+            "Direction in which the light travels.",
+        ),
+        Setting::number(field!(Self, intensity), [0.0, 20.0], "Intensity", "Brightness of the light."),
+        Setting::color(field!(Self, color), "Colour", "Colour of the light."),
+        Setting::number(
+            field!(Self, specular),
+            [0.0, 1.0],
+            "Highlights",
+            "How strongly the light makes highlights: fully for a lamp, hardly for a large soft \
+             source.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, softness),
+            [0.0, 0.1],
+            "Softness",
+            "Blur of the edges of the body's shadow in this light.",
+        )
+        .unit(Unit::METRES_AS_MM),
+    ];
 }

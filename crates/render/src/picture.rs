@@ -1,6 +1,8 @@
 //! Settings of the picture as a whole, and the finished picture.
 
 use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
 use crate::{Backend, RenderError, Transparency};
@@ -34,9 +36,9 @@ pub(crate) fn check_size_for(width: u32, height: u32, limit: u32) -> Result<(), 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PictureSettings {
-    /// Exposure in stops relative to the default: -6 to 6.
+    /// Exposure in stops relative to the default.
     pub exposure_stops: f32,
-    /// Brightness of the light that comes from everywhere: 0 to 4.
+    /// Brightness of the light from all directions.
     pub ambient: f32,
     /// Background at the upper edge, linear sRGB.
     pub background_top: Vec3,
@@ -46,7 +48,7 @@ pub struct PictureSettings {
     pub ground: bool,
     /// How overlapping strands are put together.
     pub transparency: Transparency,
-    /// Opacity of a strand where it covers a pixel wholly: 0.05 to 1.
+    /// Opacity of a strand where it covers a pixel completely.
     pub strand_opacity: f32,
     /// What draws.
     pub backend: Backend,
@@ -67,27 +69,50 @@ impl Default for PictureSettings {
     }
 }
 
-impl PictureSettings {
-    /// A copy whose every value is finite and in range.
-    pub fn clamped(&self) -> Self {
-        let default = Self::default();
-        let finite = |v: f32, low: f32, high: f32, default: f32| {
-            if v.is_finite() { v.clamp(low, high) } else { default }
-        };
-        let color = |v: Vec3, d: Vec3| {
-            if v.is_finite() { v.clamp(Vec3::ZERO, Vec3::splat(4.0)) } else { d }
-        };
-        Self {
-            exposure_stops: finite(self.exposure_stops, -6.0, 6.0, 0.0),
-            ambient: finite(self.ambient, 0.0, 4.0, default.ambient),
-            background_top: color(self.background_top, default.background_top),
-            background_bottom: color(self.background_bottom, default.background_bottom),
-            ground: self.ground,
-            transparency: self.transparency,
-            strand_opacity: finite(self.strand_opacity, 0.05, 1.0, default.strand_opacity),
-            backend: self.backend,
-        }
-    }
+impl Settings for PictureSettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(
+            field!(Self, exposure_stops),
+            [-6.0, 6.0],
+            "Exposure",
+            "Brightness of the whole image. One stop doubles the light.",
+        )
+        .unit(Unit::STOPS),
+        Setting::number(
+            field!(Self, ambient),
+            [0.0, 4.0],
+            "Ambient light",
+            "Brightness of the light from all directions, which also reaches the inside of the \
+             hair.",
+        ),
+        Setting::choice::<Transparency>(
+            field!(Self, transparency),
+            "Transparency",
+            "How strands that overlap in a pixel are blended: each hiding what is behind it, \
+             averaged, weighted by an estimated order, blended segment by segment, or sorted \
+             exactly.",
+        ),
+        Setting::choice::<Backend>(
+            field!(Self, backend),
+            "Backend",
+            "What renders the image: the graphics card or the CPU alone. Automatic uses the graphics \
+             card where there is a real one.",
+        ),
+        Setting::number(
+            field!(Self, strand_opacity),
+            [0.05, 1.0],
+            "Strand opacity",
+            "How much a strand hides of what is behind it.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::switch(field!(Self, ground), "Ground", "Shows the ground with the dancer's shadow."),
+        Setting::color(field!(Self, background_top), "Top colour", "Colour of the background at the top."),
+        Setting::color(
+            field!(Self, background_bottom),
+            "Bottom colour",
+            "Colour of the background at the bottom, and of the ground.",
+        ),
+    ];
 }
 
 /// A finished picture in memory.

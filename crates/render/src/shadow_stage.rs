@@ -87,8 +87,13 @@ impl ShadowStage {
     /// The map would exceed its memory limit, or given transmittance does not match the picture.
     pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), RenderError> {
         self.is_whole = false;
-        let lights: Vec<Light> =
-            input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
+        let lights: Vec<Light> = input
+            .lights
+            .iter()
+            .filter(|light| light.enabled)
+            .take(MAX_LIGHTS)
+            .map(Light::normalized)
+            .collect();
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
         if self.method != Some(method) {
             self.lights.clear();

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
 /// How strands that overlap in a pixel are put together.
@@ -62,6 +63,14 @@ impl Transparency {
             Self::Sorted => "Segments blended from far to near, by the depth of their middle.",
             Self::Exact => "Every fragment of a pixel sorted and blended: the reference for the others.",
         }
+    }
+}
+
+impl Choices for Transparency {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
+use lovelock_base::settings::Settings;
 
 use crate::{FrameInput, MAX_LIGHTS};
 
@@ -54,7 +55,7 @@ impl FrameUniform {
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
         let mut count = 0;
         for (light, map) in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).zip(maps) {
-            let light = light.clamped();
+            let light = light.normalized();
             lights[count] = LightUniform {
                 direction_specular: light.direction.extend(light.specular),
                 radiance_blur: (light.color * light.intensity)

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use combing::Combing;
 use glam::Affine3A;
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::settings::Settings;
 use lovelock_groom::{GuideFrame, Guides};
 use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders, pose_at};
 use lovelock_project::Project;

@@ -15,7 +15,6 @@ mod gpu;
 mod light;
 mod method;
 mod ray;
-mod setting_info;
 mod settings;
 
 pub mod methods;
@@ -37,5 +36,4 @@ pub use methods::texels::{TEXEL_RESOLUTIONS, TexelFilter};
 pub use methods::voxel_map;
 pub use methods::voxel_map::VoxelMapSettings;
 pub use ray::{RayMark, RayMarkKind, RayStructure};
-pub use setting_info::SettingInfo;
 pub use settings::ShadowSettings;

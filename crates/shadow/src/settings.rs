@@ -1,7 +1,7 @@
 //! What a user sets about shadows.
 
-use std::ops::RangeInclusive;
-
+use lovelock_base::field;
+use lovelock_base::settings::{AnySettings, Choices, Part, PartMut, Setting, Settings};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
 pub struct ShadowSettings {
     /// The method in use.
     pub method: ShadowMethod,
-    /// Factor on the optical depth of every strand; 0.01 to 4 on a logarithmic slider.
+    /// Factor on the optical depth of every strand.
     ///
     /// It stands for the light that hair scatters forward instead of blocking: 1 is a head of opaque fibres,
     /// which is black a centimetre inside.
@@ -35,8 +35,17 @@ pub struct ShadowSettings {
 }
 
 impl ShadowSettings {
-    /// Range of the slider of `extinction_scale`. Values outside are safe.
-    pub const EXTINCTION_SCALES: RangeInclusive<f32> = 0.01..=4.0;
+    /// The settings of one method alone; `None` of a method that has none.
+    pub fn of_method(&self, method: ShadowMethod) -> Option<&dyn AnySettings> {
+        let name = method.id().replace('-', "_");
+        self.parts().into_iter().find(|(part, _)| *part == name).map(|(_, settings)| settings)
+    }
+
+    /// The same, to be changed.
+    pub fn of_method_mut(&mut self, method: ShadowMethod) -> Option<&mut dyn AnySettings> {
+        let name = method.id().replace('-', "_");
+        self.parts_mut().into_iter().find(|(part, _)| *part == name).map(|(_, settings)| settings)
+    }
 
     /// The extinction scale as methods use it: not negative, finite, and 0 where it is no number.
     pub fn safe_extinction_scale(&self) -> f32 {
@@ -56,6 +65,56 @@ impl Default for ShadowSettings {
             occupancy_maps: OccupancyMapsSettings::default(),
             exact: ExactSettings::default(),
         }
+    }
+}
+
+impl Choices for ShadowMethod {
+    const ALL: &'static [Self] = Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
+    }
+}
+
+impl Settings for ShadowSettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<ShadowMethod>(
+            field!(Self, method),
+            "Method",
+            "How the light that reaches a hair through other hair is computed.",
+        ),
+        Setting::number(
+            field!(Self, extinction_scale),
+            [0.01, 4.0],
+            "Extinction",
+            "How much light a hair blocks. Low values let light through the hair, high ones make its \
+             inside dark; 1 is a head of opaque fibres.",
+        )
+        .symbol("s")
+        .logarithmic()
+        .decimals(3),
+    ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![
+            ("voxel_map".into(), &self.voxel_map),
+            ("opacity_maps".into(), &self.opacity_maps),
+            ("deep_opacity_maps".into(), &self.deep_opacity_maps),
+            ("density_clustering".into(), &self.density_clustering),
+            ("occupancy_maps".into(), &self.occupancy_maps),
+            ("exact".into(), &self.exact),
+        ]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![
+            ("voxel_map".into(), &mut self.voxel_map),
+            ("opacity_maps".into(), &mut self.opacity_maps),
+            ("deep_opacity_maps".into(), &mut self.deep_opacity_maps),
+            ("density_clustering".into(), &mut self.density_clustering),
+            ("occupancy_maps".into(), &mut self.occupancy_maps),
+            ("exact".into(), &mut self.exact),
+        ]
     }
 }
 

@@ -4,6 +4,7 @@ mod common;
 
 use common::{HEAD, SMOOTH, Style, grow, strands};
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
 use lovelock_shadow::voxel_map::{MapExtent, VoxelMap};
@@ -184,7 +185,7 @@ fn settings_that_no_slider_gives_are_safe() {
         assert!(used.is_multiple_of(8) && (32..=512).contains(&used));
         assert!(used.abs_diff(resolution.max(32)) <= 4);
     }
-    assert_eq!(settings(u32::MAX).voxel_map.safe_resolution(), 512);
+    assert_eq!(settings(u32::MAX).voxel_map.clamped().resolution, 512);
     for width in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e30] {
         let map = built(&ShadowInput { strand_width: width, ..input(&hair, DOWN) }, &settings(64));
         let t = map.transmittance(HEAD - Vec3::Y);

@@ -1,5 +1,6 @@
 //! The choice of integrator, the method that preserves link lengths.
 
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
 /// How the length of links is preserved. Everything else in a substep (forces, shape memory, collisions,
@@ -24,6 +25,18 @@ pub enum Integrator {
 impl Integrator {
     /// Every method, the default first.
     pub const ALL: [Self; 3] = [Self::Direct, Self::Relaxation, Self::FollowTheLeader];
+}
+
+impl Choices for Integrator {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Direct => ("direct", "Direct"),
+            Self::Relaxation => ("relaxation", "Relaxation, as published"),
+            Self::FollowTheLeader => ("follow-the-leader", "Follow the leader"),
+        }
+    }
 }
 
 /// Upper limit of sweeps per substep of [`Integrator::Relaxation`].

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, DVec3, Vec3};
+use lovelock_base::settings::Settings;
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::PlacedCollider;
 use rayon::prelude::*;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::settings::Settings;
 use lovelock_groom::Hairstyle;
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RepulsionMode, Simulation, SimulationSettings, StepInput, StepReport};

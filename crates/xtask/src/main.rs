@@ -3,6 +3,7 @@
 mod assets;
 mod browser;
 mod ci;
+mod docs;
 mod interchange;
 mod latency;
 mod launch;
@@ -48,6 +49,8 @@ enum Chore {
     },
     /// Runs every check: tests, interchange, browser, format, clippy, layers, documentation
     Ci,
+    /// Writes the tables of settings in the documents, as the program prints them
+    Docs,
     /// Checks which crate may use which
     Layers,
     /// Measures how long the window takes from an input to the screen, on a screen of its own (Linux, Xvfb)
@@ -73,6 +76,7 @@ fn main() -> ExitCode {
         }
         Chore::Test { filter, package, .. } => testing::run(filter.as_deref(), package.as_deref()),
         Chore::Ci => ci::run(),
+        Chore::Docs => docs::run(),
         Chore::Layers => layers::run(),
         Chore::Latency { inputs } => latency::run(inputs),
         Chore::Assets { preview } => assets::run(preview.as_deref()),

@@ -12,7 +12,7 @@ use crate::window::theme;
 
 /// An action that the toolbar requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ask {
+pub(super) enum ToolbarAction {
     /// Add a pane.
     Add,
     /// Save the panes as an image file.
@@ -31,8 +31,8 @@ pub(super) fn ui(
     layout: &mut CompareLayout,
     project: &mut Project,
     magnified: f32,
-) -> Option<Ask> {
-    let mut ask = None;
+) -> Option<ToolbarAction> {
+    let mut action = None;
     let panes = project.compare.panes.len();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 4.0);
@@ -69,7 +69,7 @@ pub(super) fn ui(
         if magnified > 1.001 {
             let tip = "Shows the whole image again. Ctrl+wheel over a pane magnifies all panes.";
             if ui.button(format!("{magnified:.1}×")).on_hover_text(tip).clicked() {
-                ask = Some(Ask::WholePicture);
+                action = Some(ToolbarAction::WholePicture);
             }
         }
         ui.separator();
@@ -92,11 +92,11 @@ pub(super) fn ui(
         toggle(ui, &mut layout.measures, icons::ICON_STRAIGHTEN, "Measure errors", measures);
         ui.separator();
         let mut button =
-            |ui: &mut Ui, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: Ask| {
+            |ui: &mut Ui, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: ToolbarAction| {
                 let response = ui.add_enabled(enabled, egui::Button::new(icon)).on_hover_text(tip);
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
                 if response.clicked() {
-                    ask = Some(what);
+                    action = Some(what);
                 }
             };
         let room = panes < CompareSection::MOST_PANES;
@@ -106,7 +106,7 @@ pub(super) fn ui(
             "Add pane",
             "Adds a pane: the next method that no pane shows.",
             room,
-            Ask::Add,
+            ToolbarAction::Add,
         );
         button(
             ui,
@@ -114,7 +114,7 @@ pub(super) fn ui(
             "Save comparison",
             "Saves the panes with their labels as an image (Ctrl+P).",
             true,
-            Ask::Save,
+            ToolbarAction::Save,
         );
         button(
             ui,
@@ -122,11 +122,11 @@ pub(super) fn ui(
             "Record comparison",
             "Records the dance as a film of all panes (Ctrl+R).",
             true,
-            Ask::Film,
+            ToolbarAction::Film,
         );
-        button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, Ask::Close);
+        button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, ToolbarAction::Close);
     });
-    ask
+    action
 }
 
 /// The two panes of the wipe.

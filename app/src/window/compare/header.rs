@@ -4,10 +4,11 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::{MaterialIcon, icons};
 use lovelock_panes::request::LivePane;
+use lovelock_project::Project;
 use lovelock_project::project::Contender;
-use lovelock_render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_render::ShadowMethod;
 
-use crate::window::control::{Number, choice, note};
+use crate::window::control::{note, settings as setting_rows};
 use crate::window::{panels, theme};
 
 /// Height of the title bar, points.
@@ -15,7 +16,7 @@ pub(super) const HEIGHT: f32 = 26.0;
 
 /// An action on a pane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ask {
+pub(super) enum PaneAction {
     /// Use its settings for the project.
     Use(usize),
     /// Swap it with the next one.
@@ -34,8 +35,8 @@ pub(super) fn ui(
     (index, panes): (usize, usize),
     pane: &mut Contender,
     drawn: Option<&LivePane>,
-) -> Option<Ask> {
-    let mut ask = None;
+) -> Option<PaneAction> {
+    let mut action = None;
     let middle = line.center().y;
     let part = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to.max(from), middle - 10.0..=middle + 10.0);
     let swatch = Rect::from_center_size(pos2(line.left() + 11.0, middle), vec2(8.0, 14.0));
@@ -60,7 +61,7 @@ pub(super) fn ui(
     }
     let place = |nth: u8| part(buttons + BUTTON * f32::from(nth), buttons + BUTTON * f32::from(nth + 1));
     ui.scope_builder(UiBuilder::new().max_rect(place(0)), |ui| settings(ui, index, pane));
-    let mut button = |nth: u8, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: Ask| {
+    let mut button = |nth: u8, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: PaneAction| {
         let button = egui::Button::new(icon).frame(false);
         let response = ui
             .scope_builder(UiBuilder::new().max_rect(place(nth)), |ui| ui.add_enabled(enabled, button))
@@ -69,15 +70,15 @@ pub(super) fn ui(
         let name = format!("{name} {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
         if response.clicked() {
-            ask = Some(what);
+            action = Some(what);
         }
     };
     let swap = "Swaps this pane with the next one.";
-    button(1, icons::ICON_SWAP_HORIZ, "Swap pane", swap, index + 1 < panes, Ask::Swap(index));
+    button(1, icons::ICON_SWAP_HORIZ, "Swap pane", swap, index + 1 < panes, PaneAction::Swap(index));
     let take = "Uses these settings for the project.";
-    button(2, icons::ICON_CHECK, "Use pane", take, true, Ask::Use(index));
-    button(3, icons::ICON_CLOSE, "Remove pane", "Removes this pane.", panes > 1, Ask::Remove(index));
-    ask
+    button(2, icons::ICON_CHECK, "Use pane", take, true, PaneAction::Use(index));
+    button(3, icons::ICON_CLOSE, "Remove pane", "Removes this pane.", panes > 1, PaneAction::Remove(index));
+    action
 }
 
 /// The choice of method.
@@ -127,26 +128,11 @@ pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
     }
     ui.label(RichText::new(pane.shadow.method.label()).strong());
     note(ui, pane.shadow.method.description());
-    let modes = Transparency::ALL.map(|mode| (mode, mode.label()));
-    choice(
-        ui,
-        "Transparency",
-        "How overlapping strands are put together in this pane.",
-        &mut pane.transparency,
-        PictureSettings::default().transparency,
-        &modes,
-    );
-    let backends = Backend::ALL.map(|backend| (backend, backend.label()));
-    choice(
-        ui,
-        "Backend",
-        "What draws this pane: a time on the processor and one on a graphics card do not compare.",
-        &mut pane.backend,
-        Backend::default(),
-        &backends,
-    );
-    Number::new("Pixels", 0.1..=1.0, "Pixels that are drawn along each edge for one of the pane.")
-        .percent()
-        .show(ui, &mut pane.scale, 1.0);
-    panels::shadow::of_method(ui, &mut pane.shadow, &ShadowSettings::default());
+    setting_rows(ui, &["transparency", "backend", "scale"], pane, &pane_defaults());
+    panels::shadow::of_method(ui, &mut pane.shadow);
+}
+
+/// The values to which the controls of a pane return.
+fn pane_defaults() -> Contender {
+    Contender { scale: 1.0, ..Contender::of(&Project::default()) }
 }

@@ -69,7 +69,9 @@ impl CostPlot {
 
     pub(crate) const fn tip(self) -> &'static str {
         match self {
-            Self::Whole => "Time per image over the last seconds, without simulation and interpolation of strands.",
+            Self::Whole => {
+                "Time per image over the last seconds, without simulation and interpolation of strands."
+            }
             Self::Build => "Time to build the shadow maps over the last seconds.",
             Self::Ask => "Time to look up the shadow maps at all strand points over the last seconds.",
             Self::Draw => "Time of the rest of the image over the last seconds.",

@@ -176,15 +176,15 @@ impl Window {
             let asked =
                 Panel::top("compare bar").show(ui, |ui| bar::ui(ui, layout, project, magnified)).inner;
             match asked {
-                Some(bar::Ask::Add) => {
+                Some(bar::ToolbarAction::Add) => {
                     let next = next_pane(project);
                     project.compare.panes.push(next);
                     project.compare.panes.truncate(CompareSection::MOST_PANES);
                 }
-                Some(bar::Ask::WholePicture) => self.compare.zoom = Zoom::default(),
-                Some(bar::Ask::Save) => command = Some(Command::SavePicture),
-                Some(bar::Ask::Film) => film = true,
-                Some(bar::Ask::Close) => command = Some(Command::Compare),
+                Some(bar::ToolbarAction::WholePicture) => self.compare.zoom = Zoom::default(),
+                Some(bar::ToolbarAction::Save) => command = Some(Command::SavePicture),
+                Some(bar::ToolbarAction::Film) => film = true,
+                Some(bar::ToolbarAction::Close) => command = Some(Command::Compare),
                 None => {}
             }
             self.dock(ui, project);
@@ -254,18 +254,18 @@ impl Window {
         };
         let panes = &mut project.compare.panes;
         match asked {
-            Some(header::Ask::Use(index)) => {
+            Some(header::PaneAction::Use(index)) => {
                 if let Some(pane) = panes.get(index).cloned() {
                     let scale = project.shadow.extinction_scale;
                     *project = pane.applied_to(project);
                     project.shadow.extinction_scale = scale;
                 }
             }
-            Some(header::Ask::Swap(index)) if index + 1 < panes.len() => panes.swap(index, index + 1),
-            Some(header::Ask::Remove(index)) if panes.len() > 1 && index < panes.len() => {
+            Some(header::PaneAction::Swap(index)) if index + 1 < panes.len() => panes.swap(index, index + 1),
+            Some(header::PaneAction::Remove(index)) if panes.len() > 1 && index < panes.len() => {
                 panes.remove(index);
             }
-            Some(header::Ask::Swap(_) | header::Ask::Remove(_)) | None => {}
+            Some(header::PaneAction::Swap(_) | header::PaneAction::Remove(_)) | None => {}
         }
     }
 }

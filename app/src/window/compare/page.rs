@@ -26,7 +26,7 @@ impl Window {
         page: Rect,
         project: &mut Project,
         flicked: bool,
-    ) -> Option<header::Ask> {
+    ) -> Option<header::PaneAction> {
         let count = project.compare.panes.len();
         let mut asked = None;
         for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
@@ -58,7 +58,7 @@ impl Window {
         page: Rect,
         project: &mut Project,
         flicked: bool,
-    ) -> Option<header::Ask> {
+    ) -> Option<header::PaneAction> {
         let mut pair = self.layout.compare.pair_of(project.compare.panes.len());
         let half = 0.5 * page.width();
         let mut asked = None;
@@ -130,7 +130,13 @@ impl Window {
     }
 
     /// The title bar of a pane.
-    fn header(&self, ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
+    fn header(
+        &self,
+        ui: &mut Ui,
+        cell: Rect,
+        index: usize,
+        project: &mut Project,
+    ) -> Option<header::PaneAction> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
         let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));

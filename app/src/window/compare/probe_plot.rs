@@ -15,7 +15,12 @@ const ROW: f64 = 0.075;
 pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: &Project, panes: &[usize]) {
     let hair = match probed {
         None if asked => return note(ui, "Probing the hair…"),
-        None => return note(ui, "Click a hair in a pane to plot the transmittance along its light ray for every pane."),
+        None => {
+            return note(
+                ui,
+                "Click a hair in a pane to plot the transmittance along its light ray for every pane.",
+            );
+        }
         Some(probed) => match &probed.hair {
             None => return note(ui, "There is no hair at this point. Click another one."),
             Some(hair) => hair,

@@ -70,11 +70,11 @@ impl Window {
     }
 
     /// Shows a message that the image of the panes was saved, or why not.
-    pub(in crate::window) fn tell_saved(&mut self) {
+    pub(in crate::window) fn report_saved(&mut self) {
         while let Some(saved) = self.compare.saved() {
             match saved {
-                Ok(path) => self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display())),
-                Err(why) => self.tell([why]),
+                Ok(path) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
+                Err(why) => self.warn([why]),
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use lovelock_motion::{ColliderEdit, ColliderShape, PlacedCollider};
 
 use super::{View, dot, dragged_to, handle};

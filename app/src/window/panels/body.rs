@@ -1,28 +1,28 @@
 //! The body and its motion.
 
 use egui::Ui;
-use lovelock_motion::{LengthUnit, MotionSettings, RootPosition, UpAxis};
+use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
-use crate::window::control::{Number, choice, note, section, toggle};
+use crate::window::control::{note, section, setting, settings};
 
 /// What the panel shows of the body that is loaded.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Loaded {
+pub(crate) struct LoadedBody {
     /// Names of the clips.
     pub(crate) clips: Vec<String>,
     /// Paths of the joints, such as `hips/spine/neck/head`.
     pub(crate) joints: Vec<String>,
     /// Path of the joint that carries the hair.
     pub(crate) head: String,
-    /// What the loaders said.
+    /// Notes of the loaders.
     pub(crate) notes: Vec<String>,
 }
 
-/// What the panel asks for beyond a change of the project.
+/// What the panel requests beyond a change of the project.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Ask {
+pub(crate) enum BodyRequest {
     /// A dialog that picks a character.
     PickBody,
     /// A dialog that picks a motion.
@@ -30,13 +30,13 @@ pub(crate) enum Ask {
 }
 
 /// The controls of the project's body and motion.
-pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
-    let mut ask = None;
+pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<BodyRequest> {
+    let mut request = None;
     ui.horizontal_wrapped(|ui| {
         let body = &mut project.body;
         if ui
             .selectable_label(body.source == BodySource::Dancer, "Dancer")
-            .on_hover_text("Takes the shipped dancer.")
+            .on_hover_text("Loads the shipped dancer.")
             .clicked()
         {
             body.source = BodySource::Dancer;
@@ -45,13 +45,13 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         let on = body.source == BodySource::File;
         if ui
             .selectable_label(on, "Character file…")
-            .on_hover_text("Takes a glTF 2 character: .glb or .gltf.")
+            .on_hover_text("Loads a glTF 2 character: .glb or .gltf.")
             .clicked()
         {
             if body.file.is_some() && !on {
                 body.source = BodySource::File;
             } else {
-                ask = Some(Ask::PickBody);
+                request = Some(BodyRequest::PickBody);
             }
         }
     });
@@ -59,9 +59,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         if let Some(file) = &project.body.file {
             note(ui, file.path.display().to_string());
         }
-        let d = lovelock_motion::BodySettings::default();
-        units(ui, &mut project.body.settings.unit, d.unit);
-        axes(ui, &mut project.body.settings.up, d.up);
+        settings(ui, &["unit", "up", "facing"], &mut project.body.settings, &BodySettings::default());
     }
     let chosen = project.body.head_joint.clone().unwrap_or_else(|| format!("{} (guess)", loaded.head));
     ui.horizontal(|ui| {
@@ -80,21 +78,21 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
             .labelled_by(label.id)
             .on_hover_text("The joint that carries the hair.");
     });
-    section(ui, "Motion", true, |ui| ask = motion(ui, project, loaded).or(ask));
+    section(ui, "Motion", true, |ui| request = motion(ui, project, loaded).or(request));
     for text in &loaded.notes {
         note(ui, text.as_str());
     }
-    ask
+    request
 }
 
-fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
-    let mut ask = None;
+fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<BodyRequest> {
+    let mut request = None;
     let default = MotionSection::default();
     let motion = &mut project.motion;
     ui.horizontal_wrapped(|ui| {
         for clip in &loaded.clips {
             let on = motion.source == MotionSource::Clip && motion.clip == *clip;
-            if ui.selectable_label(on, clip).on_hover_text("Takes this clip of the character.").clicked() {
+            if ui.selectable_label(on, clip).on_hover_text("Plays this clip of the character.").clicked() {
                 motion.source = MotionSource::Clip;
                 motion.clip.clone_from(clip);
             }
@@ -102,18 +100,18 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
         let on = motion.source == MotionSource::File;
         if ui
             .selectable_label(on, "Motion file…")
-            .on_hover_text("Takes a BVH motion, put on this body.")
+            .on_hover_text("Loads a BVH motion and retargets it to this body.")
             .clicked()
         {
             if motion.file.is_some() && !on {
                 motion.source = MotionSource::File;
             } else {
-                ask = Some(Ask::PickMotion);
+                request = Some(BodyRequest::PickMotion);
             }
         }
         if ui
             .selectable_label(motion.source == MotionSource::Rest, "Rest")
-            .on_hover_text("Stands still in the rest pose.")
+            .on_hover_text("Keeps the body still in its rest pose.")
             .clicked()
         {
             motion.source = MotionSource::Rest;
@@ -123,55 +121,11 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
         if let Some(file) = &motion.file {
             note(ui, file.path.display().to_string());
         }
-        let d = MotionSettings::default();
-        units(ui, &mut motion.settings.unit, d.unit);
-        axes(ui, &mut motion.settings.up, d.up);
-        let roots = [
-            (RootPosition::Auto, "Guess"),
-            (RootPosition::Absolute, "Absolute"),
-            (RootPosition::Added, "Added to the offset"),
-        ];
-        choice(
-            ui,
-            "Root position",
-            "What the root's position channels mean: change it where the figure floats or sinks.",
-            &mut motion.settings.root,
-            d.root,
-            &roots,
-        );
+        settings(ui, &["unit", "up", "root"], &mut motion.settings, &MotionSettings::default());
     }
-    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.")
-        .unit(" ×", 1.0)
-        .logarithmic()
-        .show(ui, &mut motion.speed, default.speed);
-    toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, default.looping);
+    settings(ui, &["speed", "looping"], motion, &default);
     if motion.looping {
-        Number::new(
-            "Loop blend",
-            0.0..=2.0,
-            "How long the end of a clip that does not loop by itself is faded into its beginning.",
-        )
-        .unit(" s", 1.0)
-        .show(ui, &mut motion.loop_blend_secs, default.loop_blend_secs);
+        setting(ui, "loop_blend_secs", motion, &default);
     }
-    ask
-}
-
-fn units(ui: &mut Ui, value: &mut LengthUnit, default: LengthUnit) {
-    let options = [
-        LengthUnit::Auto,
-        LengthUnit::Metres,
-        LengthUnit::Decimetres,
-        LengthUnit::Centimetres,
-        LengthUnit::Millimetres,
-        LengthUnit::Inches,
-        LengthUnit::Cmu,
-    ]
-    .map(|unit| (unit, unit.label()));
-    choice(ui, "Unit", "What one unit of the file is.", value, default, &options);
-}
-
-fn axes(ui: &mut Ui, value: &mut UpAxis, default: UpAxis) {
-    let options = [(UpAxis::Auto, "Guess"), (UpAxis::Y, "Y"), (UpAxis::Z, "Z")];
-    choice(ui, "Up", "The axis of the file that points up.", value, default, &options);
+    request
 }

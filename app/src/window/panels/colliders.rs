@@ -3,21 +3,21 @@
 use egui::Ui;
 use lovelock_motion::{ColliderEdit, ColliderEdits, FieldEdit};
 
-use crate::window::control::{Number, choice, note, row, section, toggle, unless};
+use crate::window::control::{choice, entry, note, restore_all, section, setting, settings, toggle, unless};
 
 /// A collider that was fitted to the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fitted<'a> {
     /// Named after its joint.
     pub(crate) name: &'a str,
-    /// Whether the skin of head and shoulders stands for it.
+    /// Whether hair collides with the skin of head and shoulders in its place.
     pub(crate) spared: bool,
 }
 
-/// What is shown of the colliders over the picture.
+/// How the colliders are shown over the image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
-    /// Whether they are seen.
+    /// Whether they are visible.
     pub(crate) on: bool,
     /// The one that is edited.
     pub(crate) selected: usize,
@@ -28,13 +28,13 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
     toggle(
         ui,
         "Show",
-        "Draws what hair collides with over the picture. Click a shape there to choose it; drag its middle to move it, and its rim to \
-         make it larger or smaller.",
+        "Shows the colliders over the image. Click a shape there to select it, drag its middle to move it, and drag its rim to scale \
+         it.",
         &mut shown.on,
         false,
     );
     if fitted.is_empty() {
-        note(ui, "Nothing was fitted to this body.");
+        note(ui, "No colliders were fitted to this body.");
         return;
     }
     shown.selected = shown.selected.min(fitted.len() - 1);
@@ -51,59 +51,21 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
     let Fitted { name, spared } = fitted[shown.selected];
     let default = ColliderEdit::default();
     let mut edit = edits.of(name);
-    let tip = "Whether hair meets this shape at all.";
     if spared {
-        let why_not = "Hair meets the skin here, and not this shape. Change its size or its place, or switch off Skin below, and hair \
-                       meets it.";
-        unless(ui, Some(why_not), |ui| toggle(ui, "On", tip, &mut false, false));
+        let why_not = "Hair collides with the skin here and not with this shape. To use the shape, change its size or its position, or \
+                       switch off Skin below.";
+        let info = &entry::<ColliderEdit>("enabled").info;
+        unless(ui, Some(why_not), |ui| toggle(ui, info.label, &info.tooltip(), &mut false, false));
     } else {
-        toggle(ui, "On", tip, &mut edit.enabled, default.enabled);
+        setting(ui, "enabled", &mut edit, &default);
     }
-    Number::new("Size", 0.2..=3.0, "How large its radii are, of those that were fitted.").percent().show(
-        ui,
-        &mut edit.scale,
-        default.scale,
-    );
-    let ways = [
-        ("Sideways", "Moves the shape toward the body's left, as the body rests."),
-        ("Upward", "Moves the shape up, as the body rests."),
-        ("Forward", "Moves the shape to the front, as the body rests."),
-    ];
-    for ((label, tip), offset) in ways.into_iter().zip(&mut edit.offset) {
-        Number::new(label, -0.5..=0.5, tip).centimetres().show(ui, offset, 0.0);
-    }
+    settings(ui, &["scale", "offset"], &mut edit, &default);
     edits.set(name, edit);
     section(ui, "Head and shoulders", true, |ui| {
-        let default = FieldEdit::default();
-        toggle(
-            ui,
-            "Skin",
-            "Whether hair meets the skin of head, neck and shoulders itself, and not the round shapes that stand for them.",
-            &mut edits.field.enabled,
-            default.enabled,
-        );
-        Number::new("Lift", -0.02..=0.02, "How far outside the skin hair is stopped.").millimetres().show(
-            ui,
-            &mut edits.field.lift,
-            default.lift,
-        );
+        settings(ui, &["enabled", "lift"], &mut edits.field, &FieldEdit::default());
     });
     if *edits == ColliderEdits::default() {
         return;
     }
-    row(
-        ui,
-        "Colliders",
-        "Restores every shape as it was fitted.",
-        false,
-        edits,
-        ColliderEdits::default(),
-        |ui, edits| {
-            let response = ui.button("Restore all");
-            if response.clicked() {
-                *edits = ColliderEdits::default();
-            }
-            response
-        },
-    );
+    restore_all(ui, "Colliders", "Restores every shape as fitted.", edits, &ColliderEdits::default());
 }

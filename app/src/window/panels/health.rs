@@ -74,8 +74,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
     ui.painter().rect_filled(full, 1.5, color);
     if let Some(within) = &gauge.within {
-        ui.label(RichText::new(format!("in {within}")).small().weak())
-            .on_hover_text("Part of the body.");
+        ui.label(RichText::new(format!("in {within}")).small().weak()).on_hover_text("Part of the body.");
     }
     if !gauge.advice.is_empty() {
         ui.label(RichText::new(&gauge.advice).small().color(color));

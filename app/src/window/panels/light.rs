@@ -1,10 +1,13 @@
 //! The lights.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use egui::Ui;
 use glam::Vec3;
+use lovelock_base::settings::Unit;
 use lovelock_render::{Light, MAX_LIGHTS};
 
-use crate::window::control::{Number, color, note, toggle};
+use crate::window::control::{Number, note, setting, settings};
 use crate::window::light_sphere::light_sphere;
 
 /// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back.
@@ -19,84 +22,58 @@ pub(crate) fn ui(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axe
         }
     });
     *selected = (*selected).min(lights.len().saturating_sub(1));
-    let standard = Light::default_rig();
-    let default = standard.get(*selected).cloned().unwrap_or_default();
+    let default = Light::default_rig().get(*selected).cloned().unwrap_or_default();
     let Some(light) = lights.get_mut(*selected) else {
-        note(ui, "No light: only what comes from everywhere.");
+        note(ui, "No light: only the ambient light remains.");
         return;
     };
+    let mut removed = false;
     ui.horizontal(|ui| {
         light_sphere(ui, &mut light.direction, axes);
         ui.vertical(|ui| {
             ui.add(egui::TextEdit::singleline(&mut light.name).desired_width(100.0))
-                .on_hover_text("What this light is called.");
-            let mut remove = false;
-            if ui.button("Remove").on_hover_text("Removes this light.").clicked() {
-                remove = true;
-            }
-            if remove {
-                ui.data_mut(|data| data.insert_temp(egui::Id::unique("remove light"), true));
-            }
+                .on_hover_text("Name of this light.");
+            removed = ui.button("Remove").on_hover_text("Removes this light.").clicked();
         });
     });
-    toggle(ui, "On", "Whether this light shines.", &mut light.enabled, default.enabled);
-    let [mut azimuth, mut elevation] = angles(light.direction);
-    let [default_azimuth, default_elevation] = angles(default.direction);
-    let before = [azimuth, elevation];
-    Number::new(
-        "Azimuth",
-        -std::f32::consts::PI..=std::f32::consts::PI,
-        "Where the light comes from about the vertical: 0 is the front, 90 the dancer's left.",
-    )
-    .degrees()
-    .show(ui, &mut azimuth, default_azimuth);
-    Number::new(
-        "Elevation",
-        -std::f32::consts::FRAC_PI_2..=std::f32::consts::FRAC_PI_2,
-        "How high above the horizon the light stands.",
-    )
-    .degrees()
-    .show(ui, &mut elevation, default_elevation);
-    if before != [azimuth, elevation] {
-        // Back at the default is back at its very bytes: sines would leave a trace of the way.
-        let near = |angle: f32, default: f32| (angle - default).abs() < 1e-5;
-        let restored = near(azimuth, default_azimuth) && near(elevation, default_elevation);
-        light.direction = if restored { default.direction } else { direction(azimuth, elevation) };
-    }
-    Number::new("Intensity", 0.0..=20.0, "How bright this light is.").show(
-        ui,
-        &mut light.intensity,
-        default.intensity,
-    );
-    let mut rgb = light.color.to_array();
-    color(ui, "Colour", "Colour of this light.", &mut rgb, default.color.to_array());
-    light.color = Vec3::from_array(rgb);
-    Number::new(
-        "Highlights",
-        0.0..=1.0,
-        "How much this light makes highlights: a lamp does, a large soft source does not.",
-    )
-    .percent()
-    .show(ui, &mut light.specular, default.specular);
-    Number::new("Softness", 0.0..=0.1, "Blur of the body's shadow in this light.").millimetres().show(
-        ui,
-        &mut light.softness,
-        default.softness,
-    );
-    if ui.data_mut(|data| data.remove_temp::<bool>(egui::Id::unique("remove light"))).is_some() {
+    setting(ui, "enabled", light, &default);
+    direction(ui, &mut light.direction, default.direction);
+    settings(ui, &["intensity", "color", "specular", "softness"], light, &default);
+    if removed {
         lights.remove(*selected);
         *selected = selected.saturating_sub(1);
     }
 }
 
-/// Azimuth and elevation of where a light that travels along `direction` comes from, radians.
+/// The direction of a light as the two angles of the place that it comes from.
+fn direction(ui: &mut Ui, direction: &mut Vec3, default: Vec3) {
+    let [mut azimuth, mut elevation] = angles(*direction);
+    let [default_azimuth, default_elevation] = angles(default);
+    let before = [azimuth, elevation];
+    let tip = "Angle about the vertical from which the light comes: 0 is the front, 90 the dancer's left.";
+    Number::new("Azimuth", -PI..=PI, Unit::RADIANS, tip).show(ui, &mut azimuth, default_azimuth);
+    let tip = "Height of the light above the horizon.";
+    Number::new("Elevation", -FRAC_PI_2..=FRAC_PI_2, Unit::RADIANS, tip).show(
+        ui,
+        &mut elevation,
+        default_elevation,
+    );
+    if before != [azimuth, elevation] {
+        // A restored default has exactly its own bytes: sines would leave a rounding error.
+        let near = |angle: f32, default: f32| (angle - default).abs() < 1e-5;
+        let restored = near(azimuth, default_azimuth) && near(elevation, default_elevation);
+        *direction = if restored { default } else { travel(azimuth, elevation) };
+    }
+}
+
+/// Azimuth and elevation of the place from which a light comes that travels along `direction`, radians.
 fn angles(direction: Vec3) -> [f32; 2] {
     let from = -direction.normalize_or(Vec3::NEG_Y);
     [from.x.atan2(from.z), from.y.clamp(-1.0, 1.0).asin()]
 }
 
-/// The way a light travels that comes from `azimuth` and `elevation`.
-fn direction(azimuth: f32, elevation: f32) -> Vec3 {
+/// The direction in which a light travels that comes from `azimuth` and `elevation`.
+fn travel(azimuth: f32, elevation: f32) -> Vec3 {
     -Vec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos())
 }
 
@@ -107,7 +84,7 @@ mod tests {
     #[test]
     fn angles_and_direction_are_inverse() {
         for (azimuth, elevation) in [(0.0, 0.0), (1.2, 0.7), (-2.9, -0.4), (0.3, 1.5)] {
-            let [a, e] = angles(direction(azimuth, elevation));
+            let [a, e] = angles(travel(azimuth, elevation));
             assert!(
                 (a - azimuth).abs() < 1e-4 && (e - elevation).abs() < 1e-4,
                 "{azimuth} {elevation}: {a} {e}"

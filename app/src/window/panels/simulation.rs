@@ -1,88 +1,54 @@
 //! How hair moves.
 
+use std::f64::consts::PI;
+
 use egui::Ui;
 use glam::Vec3;
+use lovelock_base::settings::{Kind, Unit};
 use lovelock_project::project::TimelineSection;
-use lovelock_simulation::{Integrator, MAX_SWEEPS, RepulsionMode, SimulationSettings, Wind};
+use lovelock_simulation::{Integrator, RepulsionMode, SimulationSettings, Wind};
 
-use crate::window::control::{Number, choice, count, row, section, unless};
+use crate::window::control::{Number, entry, restore_all, section, setting, settings, unless};
 use crate::window::light_sphere::{Sphere, sphere};
 use crate::window::ramp::{Ramp, RampValue};
 
-/// The controls of `settings`, which return to `d`, and of how long hair lives before an instant that one goes to. `axes` are the
-/// camera's right, up and back.
+/// The controls of `simulation`, whose defaults are `default`, and of the pre-roll in `timeline`. `axes` are the camera's right, up
+/// and back.
 pub(crate) fn ui(
     ui: &mut Ui,
-    settings: &mut SimulationSettings,
-    d: SimulationSettings,
-    preroll_secs: &mut f32,
+    simulation: &mut SimulationSettings,
+    default: &SimulationSettings,
+    timeline: &mut TimelineSection,
     axes: [Vec3; 3],
 ) {
-    shape(ui, settings, &d);
-    section(ui, "Weight and air", false, |ui| weight_and_air(ui, settings, &d));
-    section(ui, "Wind", false, |ui| wind(ui, &mut settings.wind, &d.wind, axes));
-    section(ui, "On the body", false, |ui| on_the_body(ui, settings, &d));
-    section(ui, "Hair against hair", false, |ui| hair_against_hair(ui, settings, &d));
-    section(ui, "Accuracy", false, |ui| accuracy(ui, settings, &d, preroll_secs));
-    row(ui, "Defaults", "Restores every control of this panel.", false, settings, d, |ui, s| {
-        let response = ui.button("Restore all");
-        if response.clicked() {
-            *s = d;
-        }
-        response
-    });
-}
-
-/// How stiff locks are, and how they keep their style.
-fn shape(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    stiffness_ramp(ui, s, d);
-    Number::new(
-        "Stiffness, roots",
-        0.0..=60.0,
-        "How stiff locks are near the scalp: high values keep the shape of the style, low ones let it swing. Symbol: √B, of a beam.",
-    )
-    .unit(" /s", 1.0)
-    .decimals(1)
-    .show(ui, &mut s.stiffness_root, d.stiffness_root);
-    Number::new(
-        "Stiffness, tips",
-        0.0..=60.0,
-        "How stiff locks are at their ends: low values make tips lag and flick. Symbol: √B, of a beam.",
-    )
-    .unit(" /s", 1.0)
-    .decimals(1)
-    .show(ui, &mut s.stiffness_tip, d.stiffness_tip);
-    Number::new(
-        "Bias",
-        0.05..=0.95,
-        "How much of the way from the roots' stiffness to the tips' is gone at the middle of a lock: 50 % is a straight line.",
-    )
-    .percent()
-    .show(ui, &mut s.stiffness_bias, d.stiffness_bias);
-    Number::new("Bend damping", 0.0..=0.2, "How soon a bent lock stops swaying. Symbol: γ h.")
-        .unit(" ms", 1e3)
-        .decimals(0)
-        .show(ui, &mut s.bend_damping, d.bend_damping);
-    Number::new(
-        "Hold",
-        0.0..=60.0,
-        "Pull toward the style as it was drawn, strongest at the roots: like hair spray.",
-    )
-    .unit(" /s", 1.0)
-    .decimals(1)
-    .show(ui, &mut s.hold, d.hold);
-    Number::new("Settle", 0.0..=20.0, "How soon hair comes to rest on the head after a movement.")
-        .unit(" /s", 1.0)
-        .decimals(1)
-        .show(ui, &mut s.settle, d.settle);
-    choice(
+    stiffness_ramp(ui, simulation, default);
+    settings(
         ui,
-        "Roots",
-        "How locks leave the scalp: free to turn, or stiffly as they were drawn for a link or two.",
-        &mut s.clamped_links,
-        d.clamped_links,
-        &[(0, "Hinged"), (1, "As drawn"), (2, "As drawn, firmly")],
+        &[
+            "stiffness_root",
+            "stiffness_tip",
+            "stiffness_bias",
+            "bend_damping",
+            "hold",
+            "settle",
+            "clamped_links",
+        ],
+        simulation,
+        default,
     );
+    section(ui, "Weight and air", false, |ui| {
+        settings(ui, &["gravity", "style_support", "drag"], simulation, default);
+    });
+    section(ui, "Wind", false, |ui| wind(ui, &mut simulation.wind, &default.wind, axes));
+    section(ui, "Body contact", false, |ui| {
+        settings(ui, &["friction", "skin_margin", "layering"], simulation, default);
+    });
+    section(ui, "Hair contact", false, |ui| repulsion(ui, simulation, default));
+    section(ui, "Accuracy", false, |ui| {
+        accuracy(ui, simulation, default);
+        setting(ui, "preroll_secs", timeline, &TimelineSection::default());
+    });
+    restore_all(ui, "Defaults", "Restores every control of this panel.", simulation, default);
 }
 
 /// The stiffness from root to tip as a curve.
@@ -104,10 +70,10 @@ fn stiffness_ramp(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSetting
     };
     let ramp = Ramp {
         label: "Stiffness curve",
-        hint: "How stiff locks are from their roots to their tips.",
+        hint: "How stiff wisps are from their roots to their tips.",
         unit: "/s",
-        range: 0.0..=60.0,
-        bias: 0.05..=0.95,
+        range: slider_range("stiffness_root"),
+        bias: slider_range("stiffness_bias"),
         at: &at,
     };
     let before = of(s);
@@ -118,31 +84,17 @@ fn stiffness_ramp(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSetting
     }
 }
 
-fn weight_and_air(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    Number::new("Gravity", 0.0..=30.0, "Weight of the hair. Symbol: g.").unit(" m/s²", 1.0).show(
-        ui,
-        &mut s.gravity,
-        d.gravity,
-    );
-    Number::new(
-        "Style support",
-        0.0..=1.0,
-        "How much of its own weight the style carries at rest: 100 % keeps it as drawn, less lets it sag.",
-    )
-    .percent()
-    .show(ui, &mut s.style_support, d.style_support);
-    Number::new("Air drag", 0.0..=20.0, "How much the air slows hair, and how much wind takes it along.")
-        .unit(" /s", 1.0)
-        .decimals(1)
-        .show(ui, &mut s.drag, d.drag);
+/// The range that the slider of a setting offers.
+fn slider_range(name: &str) -> std::ops::RangeInclusive<f32> {
+    let [low, high] = match entry::<SimulationSettings>(name).info.kind {
+        Kind::Number(range) => range.soft,
+        _ => [0.0, 1.0],
+    };
+    low as f32..=high as f32
 }
 
-fn wind(ui: &mut Ui, wind: &mut Wind, d: &Wind, axes: [Vec3; 3]) {
-    Number::new("Wind", 0.0..=30.0, "Mean speed of the wind. Symbol: w.").unit(" m/s", 1.0).decimals(1).show(
-        ui,
-        &mut wind.speed,
-        d.speed,
-    );
+fn wind(ui: &mut Ui, wind: &mut Wind, default: &Wind, axes: [Vec3; 3]) {
+    setting(ui, "speed", wind, default);
     let mut direction = Vec3::from_array(wind.direction);
     let before = direction;
     sphere(ui, Sphere { name: "Wind direction", what: "the wind" }, &mut direction, axes);
@@ -150,160 +102,42 @@ fn wind(ui: &mut Ui, wind: &mut Wind, d: &Wind, axes: [Vec3; 3]) {
         wind.direction = direction.to_array();
     }
     let mut angle = wind.direction[0].atan2(wind.direction[2]);
-    let (before, default) = (angle, d.direction[0].atan2(d.direction[2]));
-    Number::new(
-        "Wind toward",
-        -std::f32::consts::PI..=std::f32::consts::PI,
-        "Where the wind blows to, about the vertical: 0 is toward the front, 90 to the dancer's left.",
-    )
-    .degrees()
-    .show(ui, &mut angle, default);
+    let (before, default_angle) = (angle, default.direction[0].atan2(default.direction[2]));
+    let tip = "Angle about the vertical toward which the wind blows: 0 is toward the front, 90 toward the dancer's left.";
+    Number::new("Wind heading", -PI..=PI, Unit::RADIANS, tip).show(ui, &mut angle, default_angle);
     if angle != before {
         let [x, y, z] = wind.direction;
-        // As steeply as before.
+        // The wind keeps its slope.
         let level = x.hypot(z).max(1e-3);
-        wind.direction =
-            if angle == default { d.direction } else { [level * angle.sin(), y, level * angle.cos()] };
+        wind.direction = if angle == default_angle {
+            default.direction
+        } else {
+            [level * angle.sin(), y, level * angle.cos()]
+        };
     }
-    Number::new("Gusts", 0.0..=1.0, "How far gusts raise and lower the wind.").percent().show(
-        ui,
-        &mut wind.gusts,
-        d.gusts,
-    );
-    Number::new("Turbulence", 0.0..=1.0, "Eddies that move neighbouring locks apart.").percent().show(
-        ui,
-        &mut wind.turbulence,
-        d.turbulence,
-    );
-    Number::new("Sheltering", 0.0..=1.0, "How much of the wind the body keeps from the hair behind it.")
-        .percent()
-        .show(ui, &mut wind.sheltering, d.sheltering);
-    count(
-        ui,
-        "Which wind",
-        0..=999,
-        "Another number is another wind of the same kind.",
-        &mut wind.seed,
-        d.seed,
-    );
+    settings(ui, &["gusts", "turbulence", "sheltering", "seed"], wind, default);
 }
 
-fn on_the_body(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    Number::new("Friction", 0.0..=2.0, "How much hair sticks to skin and cloth. Symbol: μ, Coulomb's.").show(
-        ui,
-        &mut s.friction,
-        d.friction,
+fn repulsion(ui: &mut Ui, simulation: &mut SimulationSettings, default: &SimulationSettings) {
+    let (repulsion, default) = (&mut simulation.repulsion, &default.repulsion);
+    settings(ui, &["mode", "strength", "threshold"], repulsion, default);
+    let why_not = (repulsion.mode == RepulsionMode::Centre).then_some(
+        "Only Pressure depends on the direction of hair. The push from the centre of a cell does not.",
     );
-    Number::new("Skin margin", 0.0..=0.03, "Distance that hair keeps from the body.").millimetres().show(
-        ui,
-        &mut s.skin_margin,
-        d.skin_margin,
-    );
-    Number::new(
-        "Layering",
-        0.0..=1.0,
-        "How much of their height over the skull locks keep when they are pressed down.",
-    )
-    .percent()
-    .show(ui, &mut s.layering, d.layering);
+    unless(ui, why_not, |ui| setting(ui, "anisotropy", repulsion, default));
+    setting(ui, "cohesion", repulsion, default);
 }
 
-fn hair_against_hair(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    choice(
-        ui,
-        "Repulsion",
-        "How hair keeps its volume: down the slope of its density, or away from the middle of a cell that is too dense, as published.",
-        &mut s.repulsion.mode,
-        d.repulsion.mode,
-        &[(RepulsionMode::Pressure, "Pressure"), (RepulsionMode::Centre, "Cell centre")],
-    );
-    Number::new(
-        "Strength",
-        0.0..=1.0,
-        "How hard crowded hair pushes apart: more keeps more volume. Symbol: k.",
-    )
-    .unit(" m²/s²", 1.0)
-    .show(ui, &mut s.repulsion.strength, d.repulsion.strength);
-    Number::new(
-        "Threshold",
-        1.0..=10.0,
-        "How many times denser than at rest hair may be before it pushes. Symbol: τ.",
-    )
-    .unit(" ×", 1.0)
-    .decimals(1)
-    .show(ui, &mut s.repulsion.threshold, d.repulsion.threshold);
-    let why_not = (s.repulsion.mode == RepulsionMode::Centre)
-        .then_some("Only Pressure knows directions: away from the middle of a cell there are none.");
-    unless(ui, why_not, |ui| {
-        Number::new(
-            "Across",
-            0.0..=1.0,
-            "How much hair heeds the direction of the hair around it: at 100 % it pushes across strands alone, crossing wisps more \
-             than parallel ones, and lets them slide along each other. Symbol: a.",
-        )
-        .percent()
-        .show(ui, &mut s.repulsion.anisotropy, d.repulsion.anisotropy)
-    });
-    Number::new("Cohesion", 0.0..=20.0, "How much locks take on the movement of their neighbours.")
-        .unit(" /s", 1.0)
-        .decimals(1)
-        .show(ui, &mut s.repulsion.cohesion, d.repulsion.cohesion);
-}
-
-fn accuracy(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings, preroll_secs: &mut f32) {
-    choice(
-        ui,
-        "Method",
-        "What keeps locks at their length. Direct: all links at once; locks do not stretch, and more substeps swing more truly. \
-         Relaxation, as first published: one link after the other; locks stretch. Follow the leader: each point is laid behind the \
-         one before; the quickest, but hair swings differently with every number of substeps, so set that first.",
-        &mut s.integrator,
-        d.integrator,
-        &[
-            (Integrator::Direct, "Direct"),
-            (Integrator::Relaxation, "Relaxation, as published"),
-            (Integrator::FollowTheLeader, "Follow the leader"),
-        ],
-    );
-    match s.integrator {
+fn accuracy(ui: &mut Ui, simulation: &mut SimulationSettings, default: &SimulationSettings) {
+    setting(ui, "integrator", simulation, default);
+    match simulation.integrator {
         Integrator::Direct => {}
         Integrator::Relaxation => {
-            count(
-                ui,
-                "Sweeps",
-                1..=MAX_SWEEPS,
-                "How often the links are gone through in a substep: more stretch less, and take longer.",
-                &mut s.relaxation_sweeps,
-                d.relaxation_sweeps,
-            );
+            setting(ui, "relaxation_sweeps", simulation, default);
         }
         Integrator::FollowTheLeader => {
-            Number::new(
-                "Damping",
-                0.0..=1.0,
-                "How much of what a point is pulled by its follower its speed takes on: with little, locks gain energy. Symbol: s, s_damping in \
-                 Müller, Kim and Chentanez 2012.",
-            )
-            .percent()
-            .show(ui, &mut s.follow_damping, d.follow_damping);
+            setting(ui, "follow_damping", simulation, default);
         }
     }
-    count(
-        ui,
-        "Substeps",
-        1..=16,
-        "Steps of the solver in a sixtieth of a second; fast heads raise it by themselves. Each lasts h.",
-        &mut s.substeps,
-        d.substeps,
-    );
-    let default = TimelineSection::default().preroll_secs;
-    Number::new(
-        "Pre-roll",
-        0.0..=TimelineSection::MOST_PREROLL_SECS,
-        "How long, at least, hair has lived where you go on the timeline and where a recording starts: long enough to be settled. \
-         0 shows the style at rest.",
-    )
-    .unit(" s", 1.0)
-    .decimals(1)
-    .show(ui, preroll_secs, default);
+    setting(ui, "substeps", simulation, default);
 }

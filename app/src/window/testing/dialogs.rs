@@ -60,10 +60,10 @@ fn the_palette_closes_without_a_command() {
     harness.event(Event::Text("no such thing".to_owned()));
     harness.key_press(Key::Enter);
     harness.run();
-    assert!(harness.query_by_label("No command of that name").is_some(), "Enter finds nothing and stays");
+    assert!(harness.query_by_label("No matching command").is_some(), "Enter finds nothing and stays");
     harness.key_press(Key::Escape);
     harness.run();
-    assert!(harness.query_by_label("No command of that name").is_none());
+    assert!(harness.query_by_label("No matching command").is_none());
     assert!(harness.state().state.1.is_empty());
 }
 

@@ -35,7 +35,7 @@ fn gauges_show_advice_and_places() {
     let mut harness = screen(state, |ui, (gauges, shown, asked): &mut (Vec<Gauge>, _, Vec<_>)| {
         asked.extend(panels::health::ui(ui, gauges, *shown));
     });
-    assert!(harness.query_by_label("Something is wrong:").is_some());
+    assert!(harness.query_by_label("Problems:").is_some());
     let said = texts(&harness);
     for words in ["3.0 mm", "30.0 mm", "0.0 J/kg"] {
         assert!(said.iter().any(|(text, ..)| text == words), "{words}");
@@ -62,7 +62,7 @@ fn gauges_show_advice_and_places() {
     );
     harness.state_mut().state.0.retain(|gauge| gauge.level == HealthLevel::Good);
     harness.run();
-    assert!(harness.query_by_label("All is well.").is_some());
+    assert!(harness.query_by_label("No problems found.").is_some());
     harness.state_mut().state.0.clear();
     harness.run();
     assert!(harness.query_by_label_contains("a take plays").is_some());
@@ -76,10 +76,10 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     });
     let before = project(&harness);
     press_button(&mut harness, "Show: Largest stretch");
-    let pointed = |window: &Window| window.pointed.as_ref().map(|gauge| gauge.kind);
+    let pointed = |window: &Window| window.marked_gauge.as_ref().map(|gauge| gauge.kind);
     assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
     // The button goes to the time at which the value was found, and the measured value is kept.
-    let asked = of(&harness).pointed.clone().expect("a gauge");
+    let asked = of(&harness).marked_gauge.clone().expect("a gauge");
     let found = asked.found.expect("found");
     let secs = asked.found_secs().expect("a time");
     wait(&mut harness, "hair settled where it was found", |window| {

@@ -11,7 +11,7 @@ use crate::window::notices::{Kind, Notices};
 fn corner(sentences: &[&str]) -> Harness<'static, Shown<Notices>> {
     let mut notices = Notices::default();
     for sentence in sentences {
-        notices.tell(Kind::Warning, *sentence);
+        notices.push(Kind::Warning, *sentence);
     }
     let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices| notices.show(ui.ctx()));
     harness.run_steps(2);

@@ -8,7 +8,7 @@ use lovelock_project::tracks::Track;
 
 use super::super::command::Command;
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
-use crate::window::timeline::{self, Ask, Edited, Take, View, Writing, Zoom};
+use crate::window::timeline::{self, Edited, Take, TimelineRequest, View, Writing, Zoom};
 
 struct State {
     view: View,
@@ -17,7 +17,7 @@ struct State {
     markers: Vec<Marker>,
     tracks: Vec<Track>,
     motion: MotionSection,
-    asked: Vec<Ask>,
+    asked: Vec<TimelineRequest>,
 }
 
 fn state(view: View) -> State {
@@ -87,7 +87,7 @@ fn every_button_requests_its_command() {
             let rect = control(&harness, Role::Button, command.info().label).rect();
             harness.state_mut().state.asked.clear();
             click(&mut harness, rect.center());
-            assert_eq!(harness.state().state.asked, [Ask::Run(command)]);
+            assert_eq!(harness.state().state.asked, [TimelineRequest::Run(command)]);
             let said = tooltip_at(&mut harness, rect.center()).expect("a tooltip");
             assert!(said.contains(command.info().shortcuts[0]), "{command:?}: {said}");
         }
@@ -97,7 +97,7 @@ fn every_button_requests_its_command() {
         let rect = control(&harness, Role::CheckBox, command.info().label).rect();
         harness.state_mut().state.asked.clear();
         click(&mut harness, rect.center());
-        assert_eq!(harness.state().state.asked, [Ask::Run(command)]);
+        assert_eq!(harness.state().state.asked, [TimelineRequest::Run(command)]);
     }
 }
 
@@ -109,15 +109,15 @@ fn a_click_seeks_and_a_drag_stays_in_range() {
     let (left, right) = (rect.left() + 44.0, rect.right());
     let at = pos2(0.5 * (left + right), rect.bottom() - 4.0);
     click(&mut harness, at);
-    let Some(Ask::Seek(secs)) = harness.state().state.asked.last().copied() else {
+    let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
         panic!("no time was asked for")
     };
     // One point on the ruler is a hundredth of a second here.
     assert!((secs - 4.0).abs() < 0.02, "{secs}");
     drag(&mut harness, at, pos2(1e6, at.y));
-    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(8.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(8.0)));
     drag(&mut harness, at, pos2(-1e6, at.y));
-    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(0.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(0.0)));
     let said = tooltip_at(&mut harness, at + vec2(40.0, 0.0));
     assert!(said.is_some(), "the bar says what it does");
 }
@@ -141,7 +141,7 @@ fn the_wheel_magnifies_and_a_click_seeks_in_the_shown_range() {
     assert_ne!(harness.state().state.zoom, Zoom::default());
     harness.state_mut().state.asked.clear();
     click(&mut harness, pos2(rect.left() + 46.0, right.y));
-    let Some(Ask::Seek(secs)) = harness.state().state.asked.last().copied() else {
+    let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
         panic!("no time was asked for")
     };
     assert!((6.0..8.0).contains(&secs), "magnified about the end, the left edge is near it: {secs}");
@@ -166,7 +166,7 @@ fn markers_seek_and_can_be_removed() {
     let mut harness = bar(view());
     let flag = control(&harness, Role::Button, "Marker turn").rect().center();
     click(&mut harness, flag);
-    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(6.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(6.0)));
     for pressed in [true, false] {
         let button = PointerButton::Secondary;
         harness.event(Event::PointerButton { pos: flag, button, pressed, modifiers: Modifiers::NONE });
@@ -184,8 +184,11 @@ fn clips_of_zero_length_and_of_days_are_shown() {
             let mut harness = bar(View { time_secs, duration_secs, ..view });
             let rect = control(&harness, Role::Slider, "Time").rect();
             click(&mut harness, pos2(rect.center().x, rect.bottom() - 4.0));
-            for ask in &harness.state().state.asked {
-                assert!(matches!(ask, Ask::Seek(secs) if secs.is_finite()), "{duration_secs}: {ask:?}");
+            for request in &harness.state().state.asked {
+                assert!(
+                    matches!(request, TimelineRequest::Seek(secs) if secs.is_finite()),
+                    "{duration_secs}: {request:?}"
+                );
             }
             assert!(harness.state().taken.right() <= 900.0);
         }
@@ -260,7 +263,9 @@ fn keys_are_moved_added_and_removed() {
     // A click beside the keys seeks, and a double-click adds a key on the curve.
     let beside = key_at(&harness, 3.0, 0.1);
     click(&mut harness, beside);
-    assert!(matches!(harness.state().state.asked.last(), Some(Ask::Seek(secs)) if (secs - 3.0).abs() < 0.02));
+    assert!(
+        matches!(harness.state().state.asked.last(), Some(TimelineRequest::Seek(secs)) if (secs - 3.0).abs() < 0.02)
+    );
     let curve = harness.state().state.tracks[0].value_at(3.0).expect("keys");
     super::double_click(&mut harness, beside);
     let set = key(&harness, 1);
@@ -291,14 +296,16 @@ fn the_clip_menu_changes_clip_tempo_and_trim() {
     press(&mut harness, Role::Button, "idle");
     assert_eq!(harness.state().state.motion.clip, "idle");
     harness.state_mut().state.motion.source = MotionSource::Rest;
-    for (name, ask) in [("Trim to in and out points", Ask::Trim), ("Motion file…", Ask::PickMotion)] {
+    for (name, request) in
+        [("Trim to in and out points", TimelineRequest::Trim), ("Motion file…", TimelineRequest::PickMotion)]
+    {
         harness.state_mut().state.recording.first_frame = 30;
         let mut fresh = bar(view());
         fresh.state_mut().state.recording.first_frame = 30;
         fresh.run_ok();
         open(&mut fresh);
         press(&mut fresh, Role::Button, name);
-        assert_eq!(fresh.state().state.asked.last(), Some(&ask), "{name}");
+        assert_eq!(fresh.state().state.asked.last(), Some(&request), "{name}");
     }
     // Trimming needs in or out points, and *Whole clip* needs a trim.
     let mut fresh = bar(view());

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
+use lovelock_base::settings::Unit;
 
 use super::{Shown, click, controls, screen, tooltip_at, type_at};
 use crate::window::control::Number;
@@ -10,8 +11,8 @@ use crate::window::control::Number;
 /// A row, and whether a dialog covers it.
 fn row() -> Harness<'static, Shown<(f32, bool)>> {
     screen((0.27, false), |ui, (value, dialog): &mut (f32, bool)| {
-        let number = Number::new("Length", 0.02..=0.7, "Length of the longest hair.");
-        number.centimetres().show(ui, value, 0.27);
+        let number = Number::new("Length", 0.02..=0.7, Unit::METRES_AS_CM, "Length of the longest hair.");
+        number.show(ui, value, 0.27);
         if *dialog {
             egui::Modal::new(egui::Id::unique("over")).show(ui.ctx(), |ui| {
                 ui.set_width(20.0);

@@ -121,7 +121,7 @@ fn a_tie_can_be_dragged_in_the_viewport() {
     wait(&mut harness, "tied hair", |window| {
         window.session.frame.as_ref().is_some_and(|frame| !frame.scene.style.held.is_empty())
     });
-    let at = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let at = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     drag_over(&mut harness, at, at + egui::vec2(0.0, -30.0));
     let moved = project(&harness).hair.ties[0];
     assert!(moved.at.y > tie.at.y + 0.01, "{:?} from {:?}", moved.at, tie.at);
@@ -192,7 +192,7 @@ fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     assert!(back.axis.z < -0.8 && back.axis.x.abs() < 0.2, "it aims back: {}", back.axis);
     let steps = of(&harness).history.undo_len();
     // Drags the ring to the middle of the side of the head that faces the camera.
-    let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     let world_from_head = |harness: &Harness<'_, _>| {
         of(harness).session.painted.as_ref().expect("a picture").snapshot.guides.world_from_head
     };
@@ -204,8 +204,8 @@ fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     assert!(side.axis.x > 0.6 && side.axis.z.abs() < 0.4, "it aims to the side: {}", side.axis);
     assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
     // The arrow points toward the camera; its end is dragged upward.
-    let aim = "Aim of tie 1 in the picture";
-    let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let aim = "Direction of tie 1 in the image";
+    let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     let end = control(&harness, Role::Button, aim).rect().center();
     let clear = if end.distance(from) > 14.0 { end } else { end - egui::vec2(0.0, 10.5) };
     drag_over(&mut harness, clear, from - egui::vec2(0.0, 90.0));
@@ -226,7 +226,7 @@ fn a_tie_behind_the_head_stays_behind_it() {
     other.hair.ties[0].at = glam::Vec3::new(-0.09, 0.12, 0.0);
     harness.state_mut().state.as_mut().expect("a window").history.edit("tie", None, other);
     go(&mut harness);
-    let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     drag_over(&mut harness, from, from + egui::vec2(25.0, -20.0));
     let moved = project(&harness).hair.ties[0].at;
     assert!(moved.x < -0.05 && moved.y > 0.13, "{moved}");
@@ -247,12 +247,12 @@ fn a_patch_is_resized_and_moved_in_the_viewport() {
     let place = |harness: &Harness<'_, Shown<Option<Window>>>, name: &str| {
         control(harness, Role::Button, name).rect().center()
     };
-    let (middle, rim) = ("Patch in the picture", "Radius of the patch in the picture");
+    let (middle, rim) = ("Patch in the image", "Radius of the patch in the image");
     assert!(
         harness.query_by_role_and_label(Role::Button, middle).is_none(),
         "a patch that follows its ring has a handle"
     );
-    let (at, rim_at) = (place(&harness, "Tie 1 in the picture"), place(&harness, rim));
+    let (at, rim_at) = (place(&harness, "Tie 1 in the image"), place(&harness, rim));
     let steps = of(&harness).history.undo_len();
     drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
     let sized = project(&harness).hair.ties[0];
@@ -284,7 +284,7 @@ fn a_collider_is_moved_and_resized_in_the_viewport() {
     let place = |harness: &Harness<'_, Shown<Option<Window>>>, name: &str| {
         control(harness, Role::Button, name).rect().center()
     };
-    let (middle, rim) = ("Collider in the picture", "Radius of the collider in the picture");
+    let (middle, rim) = ("Collider in the image", "Radius of the collider in the image");
     let [first, out] = [place(&harness, middle), place(&harness, rim)];
     let at = first;
     // A shape grabbed beside its centre keeps its distance from the pointer.

@@ -29,10 +29,11 @@ pub(super) fn window() -> Harness<'static, Shown<Option<Window>>> {
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
     project.shadow.voxel_map.resolution = 32;
-    let mut opened = Some(Opened { project, project_path: None, picked: Vec::new(), problems: Vec::new() });
+    let mut opened = Some(Opened { project, ..Opened::default() });
     let mut harness = screen_of(vec2(1200.0, 900.0), None, move |ui, window: &mut Option<Window>| {
         let window = window.get_or_insert_with(|| {
-            Window::start(ui.ctx(), Layout::default(), opened.take()).expect("the threads start")
+            Window::start(ui.ctx(), Layout::default(), opened.take().unwrap_or_default())
+                .expect("the threads start")
         });
         window.pass(ui);
     });
@@ -237,7 +238,7 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     go(&mut harness);
     press_button(&mut harness, "Stay");
     key(&mut harness, CTRL, Key::N);
-    press_button(&mut harness, "Go on without saving");
+    press_button(&mut harness, "Discard changes");
     assert_eq!(*project(&harness), Project::default());
 
     key(&mut harness, CTRL, Key::O);

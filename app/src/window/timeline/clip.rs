@@ -4,13 +4,18 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
 use lovelock_project::project::{MotionSection, MotionSource};
 
-use super::{Ask, Edited, View};
-use crate::window::control::{Number, toggle};
+use super::{Edited, TimelineRequest, View};
+use crate::window::control::settings;
 use crate::window::theme;
 
 /// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
-pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
-    let mut ask = None;
+pub(super) fn menu(
+    ui: &mut Ui,
+    place: Rect,
+    view: &View,
+    edited: &mut Edited<'_>,
+) -> Option<TimelineRequest> {
+    let mut request = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
@@ -18,16 +23,16 @@ pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_
         ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
         let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
             ui.set_width(270.0);
-            ask = contents(ui, view, edited);
+            request = contents(ui, view, edited);
         });
         let response = response.on_hover_text("Clip, trim, tempo and loop of the motion.");
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
     });
-    ask
+    request
 }
 
-fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
-    let mut ask = None;
+fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<TimelineRequest> {
+    let mut request = None;
     let d = MotionSection::default();
     let recording = &*edited.recording;
     let pointed = recording.first_frame > 0 || recording.end_frame.is_some();
@@ -40,19 +45,19 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
         }
     }
     if ui.selectable_label(motion.source == MotionSource::File, "Motion file…").clicked() {
-        ask = Some(Ask::PickMotion);
+        request = Some(TimelineRequest::PickMotion);
         ui.close();
     }
     ui.separator();
     let trim = ui.add_enabled(pointed, egui::Button::new("Trim to in and out points"));
     if trim.on_hover_text("Plays only the part between the brackets on the ruler.").clicked() {
-        ask = Some(Ask::Trim);
+        request = Some(TimelineRequest::Trim);
         ui.close();
     }
     let trimmed = motion.start_secs > 0.0 || motion.end_secs.is_some();
     let whole = ui.add_enabled(trimmed, egui::Button::new("Whole clip"));
     if whole.on_hover_text("Removes the trim.").clicked() {
-        ask = Some(Ask::Untrim);
+        request = Some(TimelineRequest::Untrim);
         ui.close();
     }
     if trimmed {
@@ -60,16 +65,6 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
         ui.label(RichText::new(format!("From {:.2} s to {end}", motion.start_secs)).color(theme::QUIET));
     }
     ui.separator();
-    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.")
-        .unit(" ×", 1.0)
-        .logarithmic()
-        .show(ui, &mut motion.speed, d.speed);
-    toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, d.looping);
-    let blend = "How long the end of a clip that does not loop by itself is faded into its beginning.";
-    Number::new("Loop blend", 0.0..=2.0, blend).unit(" s", 1.0).show(
-        ui,
-        &mut motion.loop_blend_secs,
-        d.loop_blend_secs,
-    );
-    ask
+    settings(ui, &["speed", "looping", "loop_blend_secs"], motion, &d);
+    request
 }

@@ -3,8 +3,9 @@
 use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2};
 use lovelock_project::project::Marker;
 
+use super::scale::Scale;
 use super::zoom::tick_secs;
-use super::{Ask, Edited, View, Zoom, thumbnails};
+use super::{Edited, TimelineRequest, View, Zoom, thumbnails};
 use crate::window::theme;
 
 const RULER: f32 = 22.0;
@@ -13,38 +14,12 @@ const LANE: f32 = 15.0;
 const NAMES: f32 = 44.0;
 const NAMES_OF_TRACKS: f32 = 150.0;
 
-/// The mapping of times to positions on the screen.
-#[derive(Clone, Copy)]
-pub(super) struct Scale {
-    left: f32,
-    width: f32,
-    from: f64,
-    to: f64,
-}
-
-impl Scale {
-    pub(super) fn x(&self, secs: f64) -> f32 {
-        let span = (self.to - self.from).max(1e-9);
-        self.left + self.width * (((secs - self.from) / span).clamp(-1.0, 2.0)) as f32
-    }
-
-    /// The position of a time, if it is visible.
-    pub(super) fn x_of(&self, secs: f64) -> Option<f32> {
-        (self.from..=self.to).contains(&secs).then(|| self.x(secs))
-    }
-
-    /// The positions of the first and the last visible time, points.
-    pub(super) fn x_range(&self) -> egui::Rangef {
-        egui::Rangef::new(self.left, self.left + self.width)
-    }
-
-    pub(super) fn secs(&self, x: f32) -> f64 {
-        let part = f64::from(((x - self.left) / self.width.max(1.0)).clamp(0.0, 1.0));
-        self.from + (self.to - self.from) * part
-    }
-}
-
-pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Ask> {
+pub(super) fn ui(
+    ui: &mut Ui,
+    view: &View,
+    zoom: &mut Zoom,
+    edited: &mut Edited<'_>,
+) -> Option<TimelineRequest> {
     let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
     let names = if edited.tracks.is_empty() { NAMES } else { NAMES_OF_TRACKS };
     let size =
@@ -56,7 +31,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     let (duration, now) = (finite(view.duration_secs).max(1e-3), finite(view.time_secs));
     magnify(ui, &response, rect, zoom, duration);
     let [from, to] = zoom.shown(duration);
-    let scale = Scale { left: rect.left(), width: rect.width(), from, to };
+    let scale = Scale::new(rect.x_range(), [from, to]);
 
     ruler(ui, rect, scale);
     let strip =
@@ -94,15 +69,16 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
         painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::ACCENT));
         painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
     }
-    let response = response
-        .on_hover_text("Drag to scrub. The wheel zooms, the right button pans, and a double-click shows the whole timeline.");
+    let response = response.on_hover_text(
+        "Drag to scrub. The wheel zooms, the right button pans, and a double-click shows the whole timeline.",
+    );
     if response.double_clicked() {
         *zoom = Zoom::default();
     }
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
     let at_track = super::tracks::ui(ui, names, scale, view, edited.tracks);
-    of_clip.or(flagged.or(at).or(at_track).map(Ask::Seek))
+    of_clip.or(flagged.or(at).or(at_track).map(TimelineRequest::Seek))
 }
 
 /// Zooms about the pointer by the wheel; pans by the right or middle button.

@@ -2,6 +2,7 @@
 
 mod clip;
 mod lanes;
+mod scale;
 mod thumbnails;
 mod tracks;
 mod transport;
@@ -76,7 +77,7 @@ pub(crate) struct Take {
 
 /// What the timeline requests beyond changes of the project.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Ask {
+pub(crate) enum TimelineRequest {
     /// Run a command.
     Run(Command),
     /// Seek to a time, seconds.
@@ -104,7 +105,12 @@ pub(crate) struct Edited<'a> {
 }
 
 /// The row of buttons, and the ruler with its lanes.
-pub(crate) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Ask> {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    view: &View,
+    zoom: &mut Zoom,
+    edited: &mut Edited<'_>,
+) -> Option<TimelineRequest> {
     ui.spacing_mut().item_spacing.y = 2.0;
     let pressed = ui.horizontal(|ui| transport::ui(ui, view)).inner;
     let sought = lanes::ui(ui, view, zoom, edited);

@@ -12,7 +12,7 @@ use lovelock_session::filmstrip::{Filmstrip, FilmstripRequest};
 use lovelock_session::render_thread::RenderedImage;
 
 use super::Zoom;
-use super::lanes::Scale;
+use super::scale::Scale;
 use crate::window::theme;
 
 /// Size of a thumbnail, in pixels and on the screen in points.
@@ -55,8 +55,9 @@ impl Thumbnails {
     pub(crate) fn new(ctx: &Context) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
         let strip = Filmstrip::start(move || wake.request_repaint());
-        let strip =
-            strip.map_err(|error| ProjectError::work(format!("the thread for thumbnails could not be started: {error}")))?;
+        let strip = strip.map_err(|error| {
+            ProjectError::work(format!("the thread for thumbnails could not be started: {error}"))
+        })?;
         Ok(Self { strip, thumbs: Vec::new(), of: None, seen: None, filled: None, wanted: None, asked: None })
     }
 
@@ -97,11 +98,11 @@ impl Thumbnails {
                 self.put(ctx, drawn.secs, &drawn.picture, 0.25 * slot_secs);
             }
         }
-        self.ask(ctx, project, access, &slots);
+        self.request(ctx, project, access, &slots);
     }
 
     /// Requests the thumbnails of a take in the visible slots when nothing changes any more.
-    fn ask(&mut self, ctx: &Context, project: &Arc<Project>, access: &Access, slots: &[f64]) {
+    fn request(&mut self, ctx: &Context, project: &Arc<Project>, access: &Access, slots: &[f64]) {
         if project.take.file.is_none() {
             (self.wanted, self.asked) = (None, None);
             return;

@@ -5,7 +5,7 @@ use egui_material_icons::icons;
 use lovelock_project::tracks::Track;
 
 use super::View;
-use super::lanes::Scale;
+use super::scale::Scale;
 use crate::window::theme;
 
 /// Height of a track, points.
@@ -87,13 +87,7 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
                 true,
                 Whole::Delete,
             ),
-            (
-                icons::ICON_WAVES,
-                "Smooth track",
-                "Smooths jitter out of the track.",
-                many,
-                Whole::Smooth,
-            ),
+            (icons::ICON_WAVES, "Smooth track", "Smooths jitter out of the track.", many, Whole::Smooth),
             (
                 mute,
                 "Mute track",

@@ -4,15 +4,15 @@ use super::super::command::{Command, CommandInfo};
 use egui::{RichText, Ui, Vec2};
 use egui_material_icons::icons;
 
-use super::{Ask, FRAMES_PER_SEC, View};
+use super::{FRAMES_PER_SEC, TimelineRequest, View};
 use crate::window::theme;
 
 /// The rates on offer, with their labels.
 const RATES: [(f64, &str); 6] =
     [(0.1, "1/10 ×"), (0.25, "1/4 ×"), (0.5, "1/2 ×"), (1.0, "1 ×"), (1.5, "1 1/2 ×"), (2.0, "2 ×")];
 
-pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
-    let mut ask = None;
+pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<TimelineRequest> {
+    let mut request = None;
     let play = if view.playing { icons::ICON_PAUSE } else { icons::ICON_PLAY_ARROW };
     for (icon, command) in [
         (icons::ICON_SKIP_PREVIOUS, Command::JumpToStart),
@@ -22,21 +22,21 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
         (icons::ICON_SKIP_NEXT, Command::JumpToEnd),
     ] {
         if button(ui, icon.into(), command.info()) {
-            ask = Some(Ask::Run(command));
+            request = Some(TimelineRequest::Run(command));
         }
     }
     if toggle(ui, view.looping, icons::ICON_REPEAT, Command::ToggleLoop.info()) {
-        ask = Some(Ask::Run(Command::ToggleLoop));
+        request = Some(TimelineRequest::Run(Command::ToggleLoop));
     }
     if let Some(take) = &view.take
         && toggle(ui, take.backwards, icons::ICON_FAST_REWIND, Command::PlayBackwards.info())
     {
-        ask = Some(Ask::Run(Command::PlayBackwards));
+        request = Some(TimelineRequest::Run(Command::PlayBackwards));
     }
     if toggle(ui, view.writing.armed, icons::ICON_TIMELINE, Command::WriteTracks.info()) {
-        ask = Some(Ask::Run(Command::WriteTracks));
+        request = Some(TimelineRequest::Run(Command::WriteTracks));
     }
-    ask = rate(ui, view.rate).or(ask);
+    request = rate(ui, view.rate).or(request);
     ui.monospace(format!("{:6.2} s", view.time_secs));
     let frame = (view.time_secs * FRAMES_PER_SEC).round() as i64;
     ui.label(RichText::new(format!("frame {frame}")).small().color(theme::QUIET));
@@ -46,18 +46,18 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
             ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
                 .on_hover_text("Body and hair move as recorded. Lights, look and camera can be changed.");
             if button(ui, icons::ICON_CLOSE.into(), Command::LeaveTake.info()) {
-                ask = Some(Ask::Run(Command::LeaveTake));
+                request = Some(TimelineRequest::Run(Command::LeaveTake));
             }
         }
         (None, recording) => {
             let running = recording.is_some();
             let icon = if running { icons::ICON_STOP } else { icons::ICON_FIBER_MANUAL_RECORD };
             if button(ui, RichText::from(icon).color(theme::RECORDING), Command::RecordTake.info()) {
-                ask = Some(Ask::Run(Command::RecordTake));
+                request = Some(TimelineRequest::Run(Command::RecordTake));
             }
             if !running && view.can_play_take && button(ui, "Play the take".into(), Command::PlayTake.info())
             {
-                ask = Some(Ask::Run(Command::PlayTake));
+                request = Some(TimelineRequest::Run(Command::PlayTake));
             }
             if let Some([secs, kept]) = recording {
                 ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
@@ -65,7 +65,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
             }
         }
     }
-    ask
+    request
 }
 
 /// A button for a command, which screen readers announce by the command's name.
@@ -89,7 +89,7 @@ fn tip(info: &CommandInfo) -> String {
     }
 }
 
-fn rate(ui: &mut Ui, rate: f64) -> Option<Ask> {
+fn rate(ui: &mut Ui, rate: f64) -> Option<TimelineRequest> {
     let mut chosen = rate;
     let name = RATES.iter().find(|(value, _)| *value == rate).map_or("other", |(_, name)| *name);
     let response = egui::ComboBox::from_id_salt("rate").width(64.0).selected_text(name).show_ui(ui, |ui| {
@@ -98,6 +98,8 @@ fn rate(ui: &mut Ui, rate: f64) -> Option<Ask> {
         }
     });
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Rate"));
-    response.response.on_hover_text("Speed of playback: seconds of the dance per second. Hair slows down with it.");
-    (chosen != rate).then_some(Ask::Rate(chosen))
+    response
+        .response
+        .on_hover_text("Speed of playback: seconds of the dance per second. Hair slows down with it.");
+    (chosen != rate).then_some(TimelineRequest::Rate(chosen))
 }

@@ -14,6 +14,7 @@ mod guides;
 mod path;
 mod strands;
 
+use lovelock_base::settings::Settings;
 use rayon::prelude::*;
 use thiserror::Error;
 

@@ -19,6 +19,7 @@ mod snap;
 mod surface;
 
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use thiserror::Error;
 
 use crate::{HairFile, Hairstyle, Obstacle, Scalp, Wisp};
@@ -77,7 +78,7 @@ fn hairstyle_of(
     scalp: &Scalp,
     groom: &PlacedGroom,
 ) -> (Hairstyle, Vec<u32>) {
-    let settings = settings.in_range();
+    let settings = settings.clamped();
     let wisps = cluster::cluster(groom, settings.wisps_for(groom.strands()), settings.seed);
     let points_per_guide = settings.points_per_guide_for(&groom.first_point);
     let guides = guides::choose(groom, &wisps, points_per_guide);

@@ -1,6 +1,7 @@
 //! Places a groom on a head: unit and axes, fit, manual placement, roots onto the skin, strands out of the body.
 
 use glam::{EulerRot, Quat, Vec3};
+use lovelock_base::settings::Settings;
 use rayon::prelude::*;
 
 use super::fit::{Fit, fit};
@@ -48,7 +49,7 @@ pub fn place(
     scalp: &Scalp,
     body: Option<&dyn Obstacle>,
 ) -> Result<PlacedGroom, ImportError> {
-    let settings = settings.in_range();
+    let settings = settings.clamped();
     let no_scalp = || ImportError::NoScalp { name: file.name.clone() };
     let skin = Skin {
         grows: Surface::where_hair_grows(scalp).ok_or_else(no_scalp)?,

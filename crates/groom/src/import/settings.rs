@@ -1,9 +1,10 @@
 //! What a person may decide about an import.
 
-use std::f32::consts::PI;
-use std::ops::RangeInclusive;
+use std::f64::consts::PI;
 
 use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{self, Choices, Setting, Settings};
 use lovelock_base::statistics::upper_median_by;
 use serde::{Deserialize, Serialize};
 
@@ -23,9 +24,9 @@ pub struct ImportSettings {
     pub fit_scale: bool,
     /// Move each strand as a whole by the gap that is left between its root and the skin.
     pub snap_roots: bool,
-    /// Number of wisps to aim for; 0 takes one for every 25 strands, 64 to 512. See [`Self::WISPS`].
+    /// Number of wisps to aim for; 0 takes one per 25 strands, 64 to 512.
     pub wisps: u32,
-    /// Points of a guide; 0 takes the median of the file's strands, 8 to 40. See [`Self::POINTS_PER_GUIDE`].
+    /// Points per guide; 0 takes the median of the file's strands, 8 to 40.
     pub points_per_guide: u32,
     /// Where to put the groom after it was fitted.
     pub placement: Placement,
@@ -37,21 +38,12 @@ pub struct ImportSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Placement {
-    /// Even scale. See [`Self::SCALE`].
+    /// Uniform scale.
     pub scale: f32,
-    /// Turns about the axes x (nod), then y (shake), then z (tilt), radians. See [`Self::TURN`].
+    /// Turns about the axes x (nod), then y (shake), then z (tilt), radians.
     pub turn: Vec3,
-    /// Shift along the axes of the head, metres. See [`Self::OFFSET_M`].
+    /// Shift along the axes of the head, metres.
     pub offset_m: Vec3,
-}
-
-impl Placement {
-    /// Range of `scale`.
-    pub const SCALE: RangeInclusive<f32> = 0.25..=4.0;
-    /// Range of each component of `turn`, radians.
-    pub const TURN: RangeInclusive<f32> = -PI..=PI;
-    /// Range of each component of `offset_m`, metres.
-    pub const OFFSET_M: RangeInclusive<f32> = -0.5..=0.5;
 }
 
 impl Default for Placement {
@@ -76,31 +68,124 @@ impl Default for ImportSettings {
     }
 }
 
-impl ImportSettings {
-    /// Range of `wisps`.
-    pub const WISPS: RangeInclusive<u32> = 0..=4096;
-    /// Range of `points_per_guide`, besides 0.
-    pub const POINTS_PER_GUIDE: RangeInclusive<u32> = 4..=64;
+impl Choices for Unit {
+    const ALL: &'static [Self] =
+        &[Self::Auto, Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch, Self::Custom(0.00254)];
 
-    /// The same with every number brought into its range; what is no number becomes the default.
-    pub fn in_range(mut self) -> Self {
-        let clamp = |value: f32, range: RangeInclusive<f32>, default: f32| {
-            if value.is_nan() { default } else { value.clamp(*range.start(), *range.end()) }
-        };
-        self.wisps = self.wisps.min(*Self::WISPS.end());
-        if self.points_per_guide > 0 {
-            let range = Self::POINTS_PER_GUIDE;
-            self.points_per_guide = self.points_per_guide.clamp(*range.start(), *range.end());
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("Auto", "Automatic"),
+            Self::Metre => ("Metre", "Metres"),
+            Self::Centimetre => ("Centimetre", "Centimetres"),
+            Self::Millimetre => ("Millimetre", "Millimetres"),
+            Self::Inch => ("Inch", "Inches"),
+            Self::Custom(_) => ("Custom", "Tenths of an inch"),
         }
-        let placement = &mut self.placement;
-        placement.scale = clamp(placement.scale, Placement::SCALE, 1.0);
-        for axis in 0..3 {
-            placement.turn[axis] = clamp(placement.turn[axis], Placement::TURN, 0.0);
-            placement.offset_m[axis] = clamp(placement.offset_m[axis], Placement::OFFSET_M, 0.0);
-        }
-        self
     }
+}
 
+impl Choices for UpAxis {
+    const ALL: &'static [Self] = &[Self::Auto, Self::Y, Self::Z];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("Auto", "Automatic"),
+            Self::Y => ("Y", "Y"),
+            Self::Z => ("Z", "Z"),
+        }
+    }
+}
+
+impl Choices for Facing {
+    const ALL: &'static [Self] =
+        &[Self::Auto, Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Auto => ("Auto", "Automatic"),
+            Self::PlusX => ("PlusX", "+X"),
+            Self::MinusX => ("MinusX", "-X"),
+            Self::PlusY => ("PlusY", "+Y"),
+            Self::MinusY => ("MinusY", "-Y"),
+            Self::PlusZ => ("PlusZ", "+Z"),
+            Self::MinusZ => ("MinusZ", "-Z"),
+        }
+    }
+}
+
+impl Settings for ImportSettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<Unit>(
+            field!(Self, unit),
+            "Unit",
+            "The length of one unit of the file, which hair files do not state.",
+        ),
+        Setting::choice::<UpAxis>(field!(Self, up), "Up axis", "The axis of the file that points up."),
+        Setting::choice::<Facing>(
+            field!(Self, facing),
+            "Facing",
+            "The axis of the file along which the face looks.",
+        ),
+        Setting::switch(
+            field!(Self, fit_scale),
+            "Fit size",
+            "Scales the hair so that its roots fit the scalp.",
+        ),
+        Setting::switch(
+            field!(Self, snap_roots),
+            "Roots on skin",
+            "Moves each strand as a whole so that its root lies on the skin.",
+        ),
+        Setting::count(
+            field!(Self, wisps),
+            [0, 4096],
+            "Wisps",
+            "Number of groups of strands that move together. 0 makes one per 25 strands.",
+        )
+        .logarithmic(),
+        Setting::count(
+            field!(Self, points_per_guide),
+            [4, 64],
+            "Points per guide",
+            "Number of points of each simulated guide strand. 0 takes the median of the file's \
+             strands.",
+        )
+        .soft([0.0, 64.0])
+        .or_zero(),
+        Setting::number(
+            field!(Self, placement.scale),
+            [0.25, 4.0],
+            "Scale",
+            "Scales the hair after the fit.",
+        )
+        .logarithmic(),
+        Setting::vector(
+            field!(Self, placement.turn),
+            [-PI, PI],
+            "Rotation",
+            ["Nod", "Shake", "Tilt"],
+            "Turns the hair about the middle of the scalp.",
+        )
+        .unit(settings::Unit::RADIANS),
+        Setting::vector(
+            field!(Self, placement.offset_m),
+            [-0.5, 0.5],
+            "Offset",
+            ["Left", "Up", "Forward"],
+            "Moves the hair.",
+        )
+        .unit(settings::Unit::METRES_AS_CM),
+        Setting::count(
+            field!(Self, seed),
+            [0, u32::MAX as u64],
+            "Seed",
+            "Chooses among equally good groupings of strands, and their shades.",
+        )
+        .soft([0.0, 999.0]),
+    ];
+}
+
+impl ImportSettings {
     /// How many wisps to make of `strands` strands. Left to itself it keeps three strands a wisp, as many as
     /// a wisp has guides.
     pub(super) fn wisps_for(&self, strands: usize) -> usize {

@@ -1,6 +1,7 @@
 //! Paths of a wisp's centre: over the head to the tie, and beyond it.
 
 use glam::{Quat, Vec3};
+use lovelock_base::settings::Settings;
 
 use super::HairTie;
 use crate::Obstacle;

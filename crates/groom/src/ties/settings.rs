@@ -1,10 +1,11 @@
 //! What an artist sets about a tie.
 
 use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
 use crate::{Scalp, ScalpIndex};
-use lovelock_base::numbers::within;
 
 /// What becomes of the hair beyond a tie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,21 +37,21 @@ pub enum TieReach {
 pub struct HairTie {
     /// What becomes of the hair beyond it.
     pub kind: TieKind,
-    /// Centre of the ring, metres, each coordinate -0.6 to 0.6. A ring inside the head is moved out of it.
+    /// Centre of the ring, metres. A ring inside the head is moved out of it.
     pub at: Vec3,
     /// Direction in which hair leaves the ring: any vector but zero.
     pub axis: Vec3,
-    /// Radius of the opening, metres, 0.004 to 0.05.
+    /// Radius of the opening, metres.
     pub radius: f32,
     /// How firmly hair lies on the head before the tie: 0 loose, 1 combed tight.
     pub tightness: f32,
-    /// Outer radius of a bun, metres, 0.015 to 0.12.
+    /// Outer radius of a bun, metres.
     pub bun_radius: f32,
-    /// How often the hair of a bun goes around the axis while its lock turns once about itself, 0.5 to 8.
+    /// Turns of the hair of a bun around the axis while it turns once about itself.
     pub bun_coils: f32,
     /// Which hair it gathers.
     pub reach: TieReach,
-    /// A point of the plane of [`TieReach::AbovePlane`], metres, each coordinate -0.6 to 0.6.
+    /// A point of the plane of [`TieReach::AbovePlane`], metres.
     pub plane_point: Vec3,
     /// The side of that plane on which hair is gathered: any vector but zero.
     pub plane_normal: Vec3,
@@ -58,9 +59,9 @@ pub struct HairTie {
     /// files that do not tell.
     #[serde(default)]
     pub sphere_at_ring: bool,
-    /// Centre of that sphere, metres, each coordinate -0.6 to 0.6.
+    /// Centre of that sphere, metres.
     pub sphere_centre: Vec3,
-    /// Its radius, metres, 0.005 to 0.6.
+    /// Its radius, metres.
     pub sphere_radius: f32,
 }
 
@@ -68,6 +69,111 @@ impl Default for HairTie {
     fn default() -> Self {
         Self::DEFAULT
     }
+}
+
+impl Choices for TieKind {
+    const ALL: &'static [Self] = &[Self::Ponytail, Self::Bun];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Ponytail => ("Ponytail", "Ponytail"),
+            Self::Bun => ("Bun", "Bun"),
+        }
+    }
+}
+
+impl Choices for TieReach {
+    const ALL: &'static [Self] = &[Self::All, Self::BehindEars, Self::AbovePlane, Self::InSphere];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::All => ("All", "All hair that is long enough"),
+            Self::BehindEars => ("BehindEars", "Hair behind the ears"),
+            Self::AbovePlane => ("AbovePlane", "Hair above a plane"),
+            Self::InSphere => ("InSphere", "Hair in a patch"),
+        }
+    }
+}
+
+/// How far from the origin of head space each coordinate of a place may be, metres.
+const REACH: [f64; 2] = [-0.6, 0.6];
+
+impl Settings for HairTie {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<TieKind>(
+            field!(Self, kind),
+            "Style",
+            "What the hair does beyond the tie: it hangs, or it is wound up.",
+        ),
+        Setting::vector(
+            field!(Self, at),
+            REACH,
+            "Position",
+            ["Sideways", "Upward", "Forward"],
+            "Moves the tie toward the dancer's left, up, or to the front. It can also be dragged in \
+             the image.",
+        )
+        .unit(Unit::METRES_AS_CM),
+        Setting::direction(field!(Self, axis), "Direction", "Direction in which hair leaves the tie."),
+        Setting::number(field!(Self, radius), [0.004, 0.05], "Ring radius", "Radius of the tie's opening.")
+            .unit(Unit::METRES_AS_MM),
+        Setting::number(
+            field!(Self, tightness),
+            [0.0, 1.0],
+            "Tightness",
+            "How firmly hair lies on the head before the tie: 0 % is loose, 100 % combed tight.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(field!(Self, bun_radius), [0.015, 0.12], "Bun radius", "Outer radius of the bun.")
+            .unit(Unit::METRES_AS_MM),
+        Setting::number(
+            field!(Self, bun_coils),
+            [0.5, 8.0],
+            "Coils",
+            "Turns of the hair around the bun while it turns once about itself. Lower values twist \
+             it more.",
+        )
+        .decimals(1),
+        Setting::choice::<TieReach>(
+            field!(Self, reach),
+            "Gathered hair",
+            "Which hair the tie gathers, by where it grows. Where several ties reach the same hair, \
+             the first one gathers it.",
+        ),
+        Setting::vector(
+            field!(Self, plane_point),
+            REACH,
+            "Plane position",
+            ["Parting", "Height", "Depth"],
+            "A point of the plane that divides gathered hair from the rest. Left is the dancer's.",
+        )
+        .unit(Unit::METRES_AS_CM),
+        Setting::direction(
+            field!(Self, plane_normal),
+            "Plane direction",
+            "The side of the plane on which hair is gathered.",
+        ),
+        Setting::switch(
+            field!(Self, sphere_at_ring),
+            "Follow ring",
+            "Moves the patch with the tie. Off, the patch has a position of its own.",
+        ),
+        Setting::vector(
+            field!(Self, sphere_centre),
+            REACH,
+            "Patch position",
+            ["Patch sideways", "Patch upward", "Patch forward"],
+            "Moves the patch toward the dancer's left, up, or to the front.",
+        )
+        .unit(Unit::METRES_AS_CM),
+        Setting::number(
+            field!(Self, sphere_radius),
+            [0.005, 0.6],
+            "Patch radius",
+            "Radius of the patch whose hair is gathered.",
+        )
+        .unit(Unit::METRES_AS_CM),
+    ];
 }
 
 impl HairTie {
@@ -125,27 +231,6 @@ impl HairTie {
         Self { at, axis, plane_point, plane_normal, sphere_centre, ..*self }
     }
 
-    /// The tie with every value inside its range; what is not a number becomes the default.
-    #[must_use]
-    pub fn clamped(&self) -> Self {
-        let d = Self::default();
-        Self {
-            kind: self.kind,
-            at: place(self.at, d.at),
-            axis: direction(self.axis, d.axis),
-            radius: within(self.radius, 0.004, 0.05, d.radius),
-            tightness: within(self.tightness, 0.0, 1.0, d.tightness),
-            bun_radius: within(self.bun_radius, 0.015, 0.12, d.bun_radius),
-            bun_coils: within(self.bun_coils, 0.5, 8.0, d.bun_coils),
-            reach: self.reach,
-            plane_point: place(self.plane_point, d.plane_point),
-            plane_normal: direction(self.plane_normal, d.plane_normal),
-            sphere_at_ring: self.sphere_at_ring,
-            sphere_centre: place(self.sphere_centre, d.sphere_centre),
-            sphere_radius: within(self.sphere_radius, 0.005, 0.6, d.sphere_radius),
-        }
-    }
-
     /// Whether hair rooted at `root` is to be gathered; `ears` is how far forward the ears are.
     pub(super) fn includes(&self, root: Vec3, ears: f32) -> bool {
         match self.reach {
@@ -163,13 +248,4 @@ pub(super) fn hairy_box(scalp: &Scalp) -> Option<(Vec3, Vec3)> {
     let (low, high) =
         hairy.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), (p, _)| (l.min(*p), h.max(*p)));
     low.cmple(high).all().then(|| (0.5 * (low + high), 0.5 * (high - low)))
-}
-
-fn place(p: Vec3, fallback: Vec3) -> Vec3 {
-    if p.is_nan() { fallback } else { p.clamp(Vec3::splat(-0.6), Vec3::splat(0.6)) }
-}
-
-/// Any direction stays as it is, whatever its length.
-fn direction(v: Vec3, fallback: Vec3) -> Vec3 {
-    if v.try_normalize().is_some() { v } else { fallback }
 }

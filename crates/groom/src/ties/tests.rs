@@ -1,4 +1,5 @@
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 
 use super::*;
 use crate::{GroomSettings, PlainHead, Preset, Scalp, grow};

@@ -214,6 +214,8 @@ impl FromStr for BenchScene {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_base::settings::Settings;
+
     use super::*;
 
     #[test]

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::settings::Settings;
 use lovelock_groom::{HairLook, Hairstyle, Strands};
 use lovelock_motion::Body;
 use lovelock_project::Project;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3};
-use lovelock_base::numbers::within;
+use lovelock_base::field;
+use lovelock_base::settings::{Part, PartMut, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
 use crate::{BodyField, Collider, ColliderShape};
@@ -24,9 +25,9 @@ pub struct ColliderEdits {
 pub struct ColliderEdit {
     /// Whether hair collides with it.
     pub enabled: bool,
-    /// Factor of its radii: 0.2 to 3.
+    /// Factor of its radii.
     pub scale: f32,
-    /// Displacement in the rest pose along each axis, metres: -0.5 to 0.5.
+    /// Displacement in the rest pose along each axis, metres.
     pub offset: [f32; 3],
 }
 
@@ -42,7 +43,7 @@ impl Default for ColliderEdit {
 pub struct FieldEdit {
     /// Whether hair collides with the field; if not, it collides with the colliders that the field replaces.
     pub enabled: bool,
-    /// Outward displacement of its surface, metres: -0.02 to 0.02.
+    /// Outward displacement of its surface, metres.
     pub lift: f32,
 }
 
@@ -52,17 +53,64 @@ impl Default for FieldEdit {
     }
 }
 
-impl ColliderEdit {
-    /// The same edit limited to its ranges; NaN is replaced by the default.
-    #[must_use]
-    pub fn clamped(&self) -> Self {
-        Self {
-            enabled: self.enabled,
-            scale: within(self.scale, 0.2, 3.0, 1.0),
-            offset: self.offset.map(|v| within(v, -0.5, 0.5, 0.0)),
-        }
+impl Settings for ColliderEdits {
+    const TABLE: &'static [Setting<Self>] = &[];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        let shapes =
+            self.shapes.iter().map(|(name, edit)| -> Part<'_> { (format!("shapes.{name}").into(), edit) });
+        std::iter::once::<Part<'_>>(("field".into(), &self.field)).chain(shapes).collect()
     }
 
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        let shapes = self
+            .shapes
+            .iter_mut()
+            .map(|(name, edit)| -> PartMut<'_> { (format!("shapes.{name}").into(), edit) });
+        std::iter::once::<PartMut<'_>>(("field".into(), &mut self.field)).chain(shapes).collect()
+    }
+}
+
+impl Settings for ColliderEdit {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::switch(field!(Self, enabled), "Enabled", "Whether hair collides with this shape."),
+        Setting::number(
+            field!(Self, scale),
+            [0.2, 3.0],
+            "Size",
+            "Radii of the shape, relative to those that were fitted.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::vector(
+            field!(Self, offset),
+            [-0.5, 0.5],
+            "Offset",
+            ["Sideways", "Upward", "Forward"],
+            "Moves the shape in the rest pose toward the body's left, up, or to the front.",
+        )
+        .unit(Unit::METRES_AS_CM),
+    ];
+}
+
+impl Settings for FieldEdit {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::switch(
+            field!(Self, enabled),
+            "Skin",
+            "Makes hair collide with the skin of head, neck and shoulders itself, in place of the \
+             round shapes that approximate them.",
+        ),
+        Setting::number(
+            field!(Self, lift),
+            [-0.02, 0.02],
+            "Lift",
+            "Distance outside the skin at which hair is stopped.",
+        )
+        .unit(Unit::METRES_AS_MM),
+    ];
+}
+
+impl ColliderEdit {
     /// The edited shape at rest, even if the collider is disabled.
     pub fn apply(&self, shape: &ColliderShape) -> ColliderShape {
         let Self { scale, offset, .. } = self.clamped();
@@ -87,7 +135,7 @@ impl ColliderEdit {
 impl FieldEdit {
     /// The lift limited to its range, metres.
     pub fn lift_m(&self) -> f32 {
-        within(self.lift, -0.02, 0.02, 0.0)
+        self.clamped().lift
     }
 }
 

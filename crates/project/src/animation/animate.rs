@@ -1,5 +1,6 @@
 //! The project at a time of its timeline.
 
+use lovelock_base::settings::Settings;
 use std::borrow::Cow;
 
 use lovelock_simulation::SimulationSettings;
@@ -24,7 +25,7 @@ impl Project {
             return project;
         }
         set_all(&mut project, values);
-        let ranged = project.in_range();
+        let ranged = project.clamped();
         // Only sections that tracks can change; the rest is copied bit for bit.
         Self {
             look: ranged.look,

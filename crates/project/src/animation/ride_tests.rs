@@ -3,6 +3,7 @@
 use super::*;
 use crate::project::Project;
 use crate::tracks::{Key, Track};
+use lovelock_base::settings::Settings;
 
 /// A project whose camera distance has a constant track of 1 m.
 fn still_camera() -> Project {
@@ -115,5 +116,5 @@ fn a_pass_of_minutes_is_written_to_its_end() {
     assert!(track.keys.len() <= Track::MOST_KEYS / 2 + 8);
     let late = track.keys.iter().filter(|key| (190.0..201.0).contains(&key.secs)).count();
     assert!(late > 100, "the end is written: {late} keys");
-    assert_eq!(project.in_range().timeline, project.timeline, "reading it again changes nothing");
+    assert_eq!(project.clamped().timeline, project.timeline, "reading it again changes nothing");
 }

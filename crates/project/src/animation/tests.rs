@@ -3,6 +3,7 @@ use glam::Vec3;
 use super::*;
 use crate::project::Project;
 use crate::tracks::{Key, Track};
+use lovelock_base::settings::Settings;
 
 fn key(secs: f64, value: f64) -> Key {
     Key { secs, value: vec![value] }
@@ -66,7 +67,7 @@ fn numbers_vectors_and_integers_follow_tracks_and_nothing_else_changes() {
     back.camera.distance = project.camera.distance;
     back.shadow.occupancy_maps.resolution = project.shadow.occupancy_maps.resolution;
     back.lights[0].direction = project.lights[0].direction;
-    assert_eq!(back, project.in_range(), "only what has a track");
+    assert_eq!(back, project.clamped(), "only what has a track");
     // A value out of range is clamped.
     project.timeline.tracks = vec![track("camera/distance", &[(0.0, 1e9)])];
     assert_eq!(project.at(0.0).camera.distance, 30.0);
@@ -166,7 +167,7 @@ fn a_pass_in_stopped_or_slow_time_keeps_the_moved_values() {
     let still: Vec<_> = (0..30).map(|i| (0.0, Some(2.0 + 0.1 * i as f32))).collect();
     let project = dub(&mut overdub, Project::default(), &still);
     assert!((project.at(0.0).camera.distance - 4.9).abs() < 1e-5);
-    assert_eq!(project.in_range().timeline, project.timeline, "reading it again changes nothing");
+    assert_eq!(project.clamped().timeline, project.timeline, "reading it again changes nothing");
     // A tenth of the rate, up and down again.
     let slow: Vec<_> = (0..=600)
         .map(|i| (1.0 + f64::from(i) / 600.0, Some(2.0 + (f64::from(i) / 300.0 - 1.0).abs() as f32)))
@@ -176,7 +177,7 @@ fn a_pass_in_stopped_or_slow_time_keeps_the_moved_values() {
         let at = f64::from(project.at(secs).camera.distance);
         assert!((at - value).abs() < 1e-6, "{at} at {secs}, wanted {value}");
     }
-    assert_eq!(project.in_range().timeline, project.timeline);
+    assert_eq!(project.clamped().timeline, project.timeline);
 }
 
 #[test]

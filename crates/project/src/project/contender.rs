@@ -16,7 +16,7 @@ pub struct Contender {
     pub transparency: Transparency,
     /// What renders: CPU or GPU.
     pub backend: Backend,
-    /// Rendered pixels per pixel of the pane along each edge, 0.1 to 1.
+    /// Rendered pixels per pixel of the pane along each edge.
     pub scale: f32,
     /// A take that this pane shows, at the common time, instead of what the others show.
     pub take: Option<FileRef>,
@@ -29,9 +29,6 @@ impl Default for Contender {
 }
 
 impl Contender {
-    /// The smallest and the largest [`Contender::scale`].
-    pub const SCALES: std::ops::RangeInclusive<f32> = 0.1..=1.0;
-
     /// The settings of `project` itself.
     pub fn of(project: &Project) -> Self {
         let PictureSettings { transparency, backend, .. } = project.picture;

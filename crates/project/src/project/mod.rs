@@ -9,6 +9,8 @@ mod file;
 mod generic;
 mod sanitise;
 mod sections;
+mod settings;
+mod tables;
 mod trim;
 
 pub use contender::{Contender, backend_label};
@@ -20,6 +22,8 @@ pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
     MotionSection, MotionSource, RecordingSection, TakeSection, TimelineSection,
 };
+
+pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
 use lovelock_groom::{GroomSettings, HairLook, Haircut, Preset};
 use lovelock_render::{Light, PictureSettings, ShadowSettings};

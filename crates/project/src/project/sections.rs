@@ -62,7 +62,7 @@ pub struct MotionSection {
     pub file: Option<FileRef>,
     /// Unit, axis and root position of that file.
     pub settings: MotionSettings,
-    /// Tempo: how many seconds of the clip pass in a second, 0.1 to 4.
+    /// Tempo: seconds of the clip that pass per second.
     pub speed: f32,
     /// Second of the clip at which it begins.
     pub start_secs: f32,
@@ -70,7 +70,7 @@ pub struct MotionSection {
     pub end_secs: Option<f32>,
     /// Whether the clip starts again at its end; it holds its last pose otherwise.
     pub looping: bool,
-    /// How long the end of a clip that does not loop by itself is blended into its beginning, seconds, 0 to 2.
+    /// Duration over which the end of a clip that does not loop by itself is blended into its start, seconds.
     pub loop_blend_secs: f32,
 }
 
@@ -165,19 +165,19 @@ pub enum CameraMode {
 pub struct CameraSection {
     /// What it looks at.
     pub mode: CameraMode,
-    /// The target where it follows: offset from the smoothed head joint, world axes, metres, each -3 to 3.
+    /// The target if it follows the head: offset from the smoothed head joint, world axes, metres.
     pub follow_offset: Vec3,
-    /// How slowly it follows: the width of the window over which the head's path is smoothed, seconds, 0 to 4.
+    /// Width of the window over which the path of the head is smoothed, seconds.
     pub follow_secs: f32,
-    /// The target where it is fixed, world space, metres, each -20 to 20.
+    /// The target if it is fixed, world space, metres.
     pub fixed_target: Vec3,
-    /// Angle about the vertical from the front (+Z) toward the dancer's left (+X), radians, -π to π.
+    /// Angle about the vertical from the front (+Z) toward the dancer's left (+X), radians.
     pub azimuth: f32,
-    /// Angle above the horizon, radians, -1.5 to 1.5.
+    /// Angle above the horizon, radians.
     pub elevation: f32,
-    /// Distance from the target, metres, 0.1 to 30.
+    /// Distance from the target, metres.
     pub distance: f32,
-    /// Vertical field of view, radians, 0.05 to 2.
+    /// Vertical field of view, radians.
     pub fov_y: f32,
 }
 
@@ -201,31 +201,31 @@ impl Default for CameraSection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecordingSection {
-    /// Width, pixels, 16 to 8192.
+    /// Width, pixels.
     pub width: u32,
-    /// Height, pixels, 16 to 8192.
+    /// Height, pixels.
     pub height: u32,
-    /// Frames a second, 1 to 240.
+    /// Frames per second.
     pub fps: f64,
     /// Number of the first frame.
     pub first_frame: u64,
     /// One past the number of the last frame; all of the clip's where none.
     pub end_frame: Option<u64>,
-    /// Whether the hair at the end of a film of one whole round of a looping dance is blended into the hair at its start.
+    /// Whether the hair at the end of a film of one cycle of a looping dance is blended into the hair at its start.
     pub seamless: bool,
-    /// How finely a film is coded.
+    /// How finely a film is encoded.
     pub quality: FilmQuality,
-    /// What the files of a folder are.
+    /// The format of the files in a folder.
     pub format: SequenceFormat,
-    /// Whether there is nothing behind hair and body: neither background nor ground.
+    /// Whether background and ground are left out.
     pub transparent: bool,
-    /// Pictures that a frame is the mean of, for motion blur: 1 (none) to [`RecordingSection::MOST_SUBFRAMES`].
+    /// Samples per frame for motion blur; 1 is no blur.
     pub subframes: u32,
-    /// How long the shutter is open, degrees of 360 a frame, 0 to 360.
+    /// Shutter angle, degrees; 360 is the whole frame.
     pub shutter_degrees: f32,
-    /// Whether the shadow method, the transparency and the frame's number are written into each picture.
+    /// Whether the shadow method, the transparency and the frame number are written into each image.
     pub label: bool,
-    /// Where it goes: a name ending in `.mp4`, or a folder.
+    /// The output: a name that ends in `.mp4`, or a folder.
     pub output: Option<FileRef>,
 }
 
@@ -250,7 +250,7 @@ impl Default for RecordingSection {
 }
 
 impl RecordingSection {
-    /// The most pictures that a frame is the mean of.
+    /// The most samples per frame.
     pub const MOST_SUBFRAMES: u32 = 64;
 }
 
@@ -280,8 +280,8 @@ pub struct TimelineSection {
     pub markers: Vec<Marker>,
     /// Numbers of the project that follow the timeline, at most [`Track::MOST`].
     pub tracks: Vec<Track>,
-    /// How long hair lives, at least, before an instant that is gone to or recorded from, seconds, 0 to
-    /// [`TimelineSection::MOST_PREROLL_SECS`]: it comes from rest, and is settled after that. 0 shows the style at rest.
+    /// Simulated time, at least, from rest to an instant that is jumped to or recorded from, seconds, so that the hair has settled. 0
+    /// shows the style at rest.
     pub preroll_secs: f32,
 }
 
@@ -292,8 +292,6 @@ impl Default for TimelineSection {
 }
 
 impl TimelineSection {
-    /// The longest life before an instant, seconds.
-    pub const MOST_PREROLL_SECS: f32 = 30.0;
     /// The most markers.
     pub const MOST_MARKERS: usize = 200;
     /// The longest name of a marker, characters.

@@ -5,6 +5,7 @@ mod worker;
 
 use crate::partial::{self, Opener};
 use crate::{FrameRate, RecordError};
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -33,6 +34,14 @@ pub enum FilmQuality {
     High,
     /// Hardly distinguishable from the rendered images, for editing and encoding again.
     Best,
+}
+
+impl Choices for FilmQuality {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
+    }
 }
 
 impl FilmQuality {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
 /// File format of a sequence.
@@ -13,6 +14,14 @@ pub enum SequenceFormat {
     Png,
     /// `OpenEXR`: linear half floats with depth and transmittance ([`FrameLayers`](crate::FrameLayers)).
     Exr,
+}
+
+impl Choices for SequenceFormat {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
+    }
 }
 
 impl SequenceFormat {

@@ -256,7 +256,7 @@ impl CpuRenderer {
             .into_par_iter()
             .zip(&mut self.depth)
             .map(|(light, depth)| {
-                let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
+                let view = light_view(light.normalized().direction, center, radius, DEPTH_TEXELS);
                 depth.draw(width, view.shadow_from_world, (positions, triangles, closed));
                 view
             })

@@ -208,7 +208,7 @@ impl GpuRenderer {
         let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
         let mut maps = Vec::with_capacity(MAX_LIGHTS);
         for light in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS) {
-            let view = light_view(light.clamped().direction, center, radius, self.surface.texels);
+            let view = light_view(light.normalized().direction, center, radius, self.surface.texels);
             let columns_from_world = self.shadow.columns_from_world(maps.len());
             maps.push(LightMaps { columns_from_world, ..view });
         }

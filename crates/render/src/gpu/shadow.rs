@@ -72,8 +72,13 @@ impl GpuShadowStage {
         hair: &mut HairBuffers,
         vertices: Option<Vertices>,
     ) -> Result<(), RenderError> {
-        let lights: Vec<Light> =
-            input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
+        let lights: Vec<Light> = input
+            .lights
+            .iter()
+            .filter(|light| light.enabled)
+            .take(MAX_LIGHTS)
+            .map(Light::normalized)
+            .collect();
         let method = input.shadow.method;
         if self.method != method
             && let Some(old) = self.methods.get_mut(&self.method)

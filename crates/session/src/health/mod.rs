@@ -224,7 +224,7 @@ fn gauges(
                 "The hair is torn about. Calm the wind, or lower the air drag that it takes hold of."
                     .to_owned()
             } else {
-                "The hair flies. Slow the motion down, or raise Settle and the air drag.".to_owned()
+                "The hair flies. Slow the motion down, or raise Settling and Air drag.".to_owned()
             }
         }),
         Gauge::new(

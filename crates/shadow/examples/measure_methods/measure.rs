@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::settings::Settings;
 use lovelock_shadow::{
     CpuShadow, ExactMap, MapKind, ShadowMethod, ShadowReport, ShadowSettings, converged, cpu_shadow,
 };
@@ -70,7 +71,7 @@ pub(crate) fn all_methods(groom: &Groom) -> Vec<Measured> {
 /// Texels or cells along the edge of the map with default settings. `none` has no map and is compared with `exact`.
 fn resolution(method: ShadowMethod) -> u32 {
     let settings = ShadowSettings { method, ..ShadowSettings::default() };
-    settings.map_size().map_or_else(|| settings.exact.safe_resolution(), |size| size.edge)
+    settings.map_size().map_or_else(|| settings.exact.clamped().resolution, |size| size.edge)
 }
 
 /// Texels or cells along the edge of the map that was made: texels are no narrower than strands, so that there may be

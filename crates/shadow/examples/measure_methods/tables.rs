@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use lovelock_shadow::{CONVERGED_CHANGE, SettingInfo, ShadowMethod, ShadowSettings};
+use lovelock_shadow::{CONVERGED_CHANGE, ShadowMethod};
 
 use crate::grooms::Groom;
 use crate::measure::{CONVERGED_POINTS, FIRST, Measured, RUNS, Time};
 use crate::{machine, on_gpu};
 
-/// The methods and their settings.
+/// The methods.
 pub(crate) fn registry() -> String {
     let mut text = String::from("\n| id | label | what | source |\n|---|---|---|---|\n");
     for method in ShadowMethod::ALL {
@@ -16,17 +16,6 @@ pub(crate) fn registry() -> String {
         let what = method.description().split(" (").next().unwrap_or_default().trim_end_matches('.');
         let source = method.source().unwrap_or_default();
         let _ = writeln!(text, "| `{}` | {} | {what} | {source} |", method.id(), method.label());
-    }
-    text.push_str("\n| method | setting | values | usual |\n|---|---|---|---|\n");
-    let mut rows = |of: &str, settings: &[SettingInfo]| {
-        for (at, SettingInfo { name, values, usual }) in settings.iter().enumerate() {
-            let of = if at == 0 { of } else { "" };
-            let _ = writeln!(text, "| {of} | `{name}` | {values} | {usual} |");
-        }
-    };
-    rows("all", &ShadowSettings::shared_settings());
-    for method in ShadowMethod::ALL {
-        rows(&format!("`{method}`"), &method.settings());
     }
     text
 }

@@ -8,6 +8,8 @@ mod footprint;
 mod ribbons;
 mod strips;
 
+use lovelock_base::settings::Settings;
+
 use crate::bounds::Bounds;
 use crate::methods::exact::cpu::{sort_and_sum, sum_before};
 use crate::methods::texels::TexelFrame;
@@ -92,11 +94,11 @@ fn frame_in_use(input: &ShadowInput, settings: &ShadowSettings, bounds: &Bounds)
                 bounds,
             );
         }
-        ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
-        ShadowMethod::OpacityMaps => settings.opacity_maps.safe_resolution(),
-        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.safe_resolution(),
-        ShadowMethod::DensityClustering => settings.density_clustering.safe_resolution(),
-        ShadowMethod::OccupancyMaps => settings.occupancy_maps.safe_resolution(),
+        ShadowMethod::None | ShadowMethod::Exact => settings.exact.clamped().resolution,
+        ShadowMethod::OpacityMaps => settings.opacity_maps.clamped().resolution,
+        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.clamped().resolution,
+        ShadowMethod::DensityClustering => settings.density_clustering.clamped().resolution,
+        ShadowMethod::OccupancyMaps => settings.occupancy_maps.clamped().resolution,
     };
     TexelFrame::new(input, resolution, bounds)
 }

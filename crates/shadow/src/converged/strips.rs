@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use lovelock_base::settings::Settings;
+
 use super::ribbons::Ribbons;
 use crate::methods::texels::TexelFrame;
 use crate::methods::texels::fragments::{BYTES_PER_FRAGMENT, for_each_segment};
@@ -31,7 +33,7 @@ impl Strips {
                 *sum = sum.saturating_add(count);
             });
         });
-        let limit = input.share_of(settings.exact.safe_memory_limit_bytes());
+        let limit = input.share_of(settings.exact.clamped().memory_limit_bytes);
         // An index of two numbers per subtexel, and the fragments.
         let row_bytes = |texel_row: usize| {
             let fragments = fragments[texel_row].div_ceil(u64::from(ribbons.samples));

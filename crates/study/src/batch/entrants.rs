@@ -33,7 +33,7 @@ pub(super) fn entrants(
     let methods = without_repetition(methods, ShadowMethod::ALL);
     let transparencies = without_repetition(transparencies, &[project.picture.transparency]);
     for sweep in sweeps {
-        let has = |method: &ShadowMethod| method.settings().iter().any(|info| info.name == sweep.setting);
+        let has = |method: &ShadowMethod| sweep::has_setting(*method, &sweep.setting);
         if !methods.iter().any(has) {
             return Err(unknown_setting(sweep, &methods));
         }
@@ -120,8 +120,9 @@ fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, Project
 }
 
 fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> ProjectError {
-    let mut known: Vec<&str> =
-        methods.iter().flat_map(|method| method.settings()).map(|info| info.name).collect();
+    let settings = ShadowSettings::default();
+    let of_methods = methods.iter().filter_map(|method| settings.of_method(*method));
+    let mut known: Vec<&str> = of_methods.flat_map(|own| own.infos()).map(|info| info.name).collect();
     known.sort_unstable();
     known.dedup();
     let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };

@@ -54,5 +54,5 @@ impl Hair {
 
 /// The enabled lights, as in rendering.
 pub(super) fn lights(project: &Project) -> Vec<Light> {
-    project.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect()
+    project.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized).collect()
 }

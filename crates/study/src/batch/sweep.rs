@@ -2,9 +2,9 @@
 
 use std::str::FromStr;
 
+use lovelock_base::settings::{Info, Value};
 use lovelock_project::error::ProjectError;
 use lovelock_render::{ShadowMethod, ShadowSettings};
-use serde_json::Value;
 
 /// A setting of shadow methods, and its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,81 +31,47 @@ impl FromStr for Sweep {
     }
 }
 
-/// The name of a method's settings in projects.
-fn section(method: ShadowMethod) -> String {
-    method.id().replace('-', "_")
+/// Name and value of every setting of `method` alone.
+pub(super) fn values(settings: &ShadowSettings, method: ShadowMethod) -> Vec<(String, String)> {
+    let Some(of_method) = settings.of_method(method) else { return Vec::new() };
+    let known = of_method.infos().into_iter().filter_map(|info| of_method.value(info.name));
+    known.map(|(info, value)| (info.name.to_owned(), text(info, value))).collect()
 }
 
-/// Names and values of all settings of `method`.
-pub(super) fn values(settings: &ShadowSettings, method: ShadowMethod) -> Vec<(String, String)> {
-    let all = serde_json::to_value(settings).unwrap_or_default();
-    let of_method = all.get(section(method));
-    let known = method.settings().into_iter();
-    known
-        .filter_map(|info| {
-            let value = of_method?.get(info.name)?;
-            let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-            Some((info.name.to_owned(), text))
-        })
-        .collect()
+/// Whether `method` has a setting of that name.
+pub(super) fn has_setting(method: ShadowMethod, name: &str) -> bool {
+    ShadowSettings::default().of_method(method).is_some_and(|settings| settings.value(name).is_some())
+}
+
+/// The value as reports hold it: numbers as JSON writes them.
+fn text(info: &Info, value: Value) -> String {
+    match value {
+        Value::Number(number) => serde_json::Value::from(number).to_string(),
+        other => info.format(other),
+    }
 }
 
 /// `settings` with one setting of their method changed; `None` if the method has no such setting.
 ///
 /// # Errors
-/// If the value is invalid, with the valid ones.
+/// A value that the setting does not take, with those that it does.
 pub(super) fn with_value(
     settings: &ShadowSettings,
     setting: &str,
     text: &str,
 ) -> Result<Option<ShadowSettings>, ProjectError> {
-    let known = settings.method.settings();
-    let Some(info) = known.iter().find(|info| info.name == setting) else { return Ok(None) };
-    let wrong = || {
-        ProjectError::option(format!(
-            "--sweep {setting}={text}: {} takes {} (usually {})",
-            settings.method, info.values, info.usual
-        ))
+    let method = settings.method;
+    let Some((info, _)) = settings.of_method(method).and_then(|settings| settings.value(setting)) else {
+        return Ok(None);
     };
-    let value: Value = serde_json::from_str(text).unwrap_or_else(|_| text.into());
-    if !may_be(&info.values, &value) {
-        return Err(wrong());
+    let value = info.parse(text).map_err(|valid| {
+        ProjectError::option(format!("--sweep {setting}: found {text} for {method}; must be {valid}"))
+    })?;
+    let mut changed = *settings;
+    if let Some(settings) = changed.of_method_mut(method) {
+        settings.assign(setting, value);
     }
-    if let Some((below, above)) = off_step(&info.values, &value) {
-        return Err(ProjectError::option(format!(
-            "--sweep {setting}={text}: {} takes {}; the nearest are {below} and {above}",
-            settings.method, info.values
-        )));
-    }
-    let mut all = serde_json::to_value(settings).map_err(ProjectError::work)?;
-    let place = all.get_mut(section(settings.method)).and_then(|of_method| of_method.get_mut(setting));
-    *place.ok_or_else(wrong)? = value;
-    serde_json::from_value(all).map(Some).map_err(|_| wrong())
-}
-
-/// Whether a number is allowed by the text `values`, such as `64 to 2048 texels` or `128, 256, 512`. Other texts are not checked
-/// here but by the type of the setting.
-fn may_be(values: &str, value: &Value) -> bool {
-    let Some(number) = value.as_f64() else { return true };
-    let choices: Result<Vec<f64>, _> = values.split(", ").map(str::parse).collect();
-    if let Ok(choices) = choices {
-        return choices.contains(&number);
-    }
-    let Some((low, rest)) = values.split_once(" to ") else { return true };
-    let high = rest.split([' ', ',']).next().unwrap_or_default();
-    match (low.parse::<f64>(), high.parse::<f64>()) {
-        (Ok(low), Ok(high)) => (low..=high).contains(&number),
-        _ => true,
-    }
-}
-
-/// The multiples on both sides of a number that is not a multiple of the step in `values`, such as `64 to 2048 texels, in steps of
-/// 16`. `None` if it is a multiple.
-fn off_step(values: &str, value: &Value) -> Option<(u64, u64)> {
-    let (_, step) = values.split_once(", in steps of ")?;
-    let (number, step) = (value.as_u64()?, step.parse::<u64>().ok().filter(|step| *step > 0)?);
-    let below = number - number % step;
-    (below < number).then(|| (below, below.saturating_add(step)))
+    Ok(Some(changed))
 }
 
 #[cfg(test)]
@@ -127,7 +93,7 @@ mod tests {
         for &method in ShadowMethod::ALL {
             let settings = ShadowSettings { method, ..ShadowSettings::default() };
             let all = values(&settings, method);
-            assert_eq!(all.len(), method.settings().len(), "{method}");
+            assert_eq!(all.len(), settings.of_method(method).map_or(0, |own| own.infos().len()), "{method}");
             for (name, value) in all {
                 let same = with_value(&settings, &name, &value).expect("its own value");
                 assert_eq!(same, Some(settings), "{method} {name}={value}");
@@ -148,9 +114,10 @@ mod tests {
             (ShadowMethod::VoxelMap, "resolution", "-128"),
         ] {
             let error = with_value(&of(method), name, value).expect_err(value);
-            let info = method.settings().into_iter().find(|info| info.name == name).expect("a setting");
+            let settings = of(method);
+            let (info, _) = settings.of_method(method).and_then(|own| own.value(name)).expect("a setting");
             assert_eq!(error.exit_code(), 2);
-            assert!(error.to_string().contains(&info.values), "{error}");
+            assert!(error.to_string().contains(&info.values()), "{error}");
         }
         for (method, value, nearest) in [
             (ShadowMethod::OccupancyMaps, "65", "64 and 80"),

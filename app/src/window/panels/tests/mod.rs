@@ -25,8 +25,8 @@ use crate::window::testing::{Shown, screen, unfold};
 pub(super) struct Bench {
     pub(super) project: Project,
     pub(super) selected_light: usize,
-    pub(super) hair: super::hair::Loaded,
-    pub(super) body: super::body::Loaded,
+    pub(super) hair: super::hair::LoadedHair,
+    pub(super) body: super::body::LoadedBody,
     pub(super) stages: StageHistory,
     pub(super) passes: PassHistory,
     pub(super) clip_frames: u64,
@@ -51,12 +51,12 @@ impl Bench {
         Self {
             project,
             selected_light: 0,
-            hair: super::hair::Loaded {
+            hair: super::hair::LoadedHair {
                 counts: [134, 3350, 100_500],
                 size_m: [0.2, 0.4, 0.3],
                 notes: vec!["A note on the hair that is long enough to need a second line.".to_owned()],
             },
-            body: super::body::Loaded {
+            body: super::body::LoadedBody {
                 clips: vec!["dance".to_owned(), "walk".to_owned()],
                 joints: vec!["hips".to_owned(), "hips/spine/neck/head".to_owned()],
                 head: "hips/spine/neck/head".to_owned(),
@@ -83,8 +83,8 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         super::simulation::ui(
             ui,
             &mut b.project.simulation,
-            b.project.hair.simulation(),
-            &mut b.project.timeline.preroll_secs,
+            &b.project.hair.simulation(),
+            &mut b.project.timeline,
             [Vec3::X, Vec3::Y, Vec3::Z],
         );
     }),

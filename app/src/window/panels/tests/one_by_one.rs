@@ -49,11 +49,11 @@ fn presets_are_applied_with_their_colours() {
 fn a_hair_file_is_requested_only_if_there_is_none() {
     let state = (Project::default(), None);
     let mut harness = screen(state, |ui, (project, asked)| {
-        *asked = hair::ui(ui, project, &hair::Loaded::default()).or(*asked);
+        *asked = hair::ui(ui, project, &hair::LoadedHair::default()).or(*asked);
     });
     harness.get_by_label("From file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(hair::Ask::PickFile));
+    assert_eq!(harness.state().state.1, Some(hair::HairRequest::PickFile));
     let mut project = Project::default();
     project.set_hair_file("/x.hair");
     project.hair.source = HairSource::Grown;
@@ -73,7 +73,7 @@ fn a_hair_file_is_requested_only_if_there_is_none() {
 #[test]
 fn body_clip_file_and_head_joint_are_chosen() {
     let state = (Project::default(), None);
-    let loaded = body::Loaded {
+    let loaded = body::LoadedBody {
         clips: vec!["dance".to_owned(), "walk".to_owned()],
         joints: vec!["hips".to_owned(), "hips/head".to_owned()],
         head: "hips/head".to_owned(),
@@ -90,10 +90,10 @@ fn body_clip_file_and_head_joint_are_chosen() {
     assert_eq!(harness.state().state.0.motion.source, MotionSource::Rest);
     harness.get_by_label("Motion file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(body::Ask::PickMotion));
+    assert_eq!(harness.state().state.1, Some(body::BodyRequest::PickMotion));
     harness.get_by_label("Character file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(body::Ask::PickBody));
+    assert_eq!(harness.state().state.1, Some(body::BodyRequest::PickBody));
     assert_eq!(harness.state().state.0.body.source, BodySource::Dancer, "no file yet");
     choose(&mut harness, "Head joint", "hips");
     assert_eq!(harness.state().state.0.body.head_joint.as_deref(), Some("hips"));
@@ -115,7 +115,7 @@ fn simulation_numbers_are_set_and_restored() {
     let at = control(&harness, Role::SpinButton, "Substeps").rect().center();
     type_at(&mut harness, at, "5");
     assert_eq!(harness.state().state.project.simulation.substeps, 5);
-    let at = control(&harness, Role::SpinButton, "Wind toward").rect().center();
+    let at = control(&harness, Role::SpinButton, "Wind heading").rect().center();
     type_at(&mut harness, at, "90");
     let [x, y, z] = harness.state().state.project.simulation.wind.direction;
     assert!((x - 1.0).abs() < 1e-6 && y == 0.0 && z.abs() < 1e-6, "90 degrees is the dancer's left, +X");
@@ -172,7 +172,7 @@ fn the_sphere_sets_the_wind_direction() {
     drag(&mut harness, sphere.center(), sphere.center() + egui::vec2(0.0, -30.0));
     let [x, y, z] = harness.state().state.project.simulation.wind.direction;
     assert!(y < -0.5 && x.abs() < 0.1 && z.abs() < 0.9, "it comes from above: {x} {y} {z}");
-    let at = control(&harness, Role::SpinButton, "Wind toward").rect().center();
+    let at = control(&harness, Role::SpinButton, "Wind heading").rect().center();
     type_at(&mut harness, at, "180");
     let turned = harness.state().state.project.simulation.wind.direction;
     assert!((turned[1] - y).abs() < 1e-6 && turned[2] < 0.0, "as steep as before: {turned:?}");
@@ -184,13 +184,13 @@ fn colliders_are_edited_by_name_and_restored() {
     choose(&mut harness, "Collider", "upper arm left of a rather long name");
     let size = control(&harness, Role::SpinButton, "Size").rect().center();
     type_at(&mut harness, size, "150");
-    control(&harness, Role::CheckBox, "On").click();
+    control(&harness, Role::CheckBox, "Enabled").click();
     harness.run();
     let edits = harness.state().state.project.body.colliders.clone();
     let edit = edits.shapes["upper arm left of a rather long name"];
     assert_eq!((edits.shapes.len(), edit.enabled, edit.scale), (1, false, 1.5));
     choose(&mut harness, "Collider", "neck");
-    assert!(is_on(&control(&harness, Role::CheckBox, "On")), "the other one is as it was");
+    assert!(is_on(&control(&harness, Role::CheckBox, "Enabled")), "the other one is as it was");
     control(&harness, Role::CheckBox, "Show").click();
     harness.run();
     assert!(harness.state().state.colliders.on);

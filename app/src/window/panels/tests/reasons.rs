@@ -18,16 +18,16 @@ fn state(harness: &mut Harness<'_, Shown<Bench>>, role: Role, name: &str) -> (bo
 }
 
 #[test]
-fn across_is_enabled_only_for_pressure() {
+fn anisotropy_is_enabled_only_for_pressure() {
     let mut harness = panel("Simulation", Project::default());
-    let (live, said) = state(&mut harness, Role::SpinButton, "Across");
+    let (live, said) = state(&mut harness, Role::SpinButton, "Anisotropy");
     assert!(live && !said.contains("Only Pressure"), "{said}");
     choose(&mut harness, "Repulsion", "Cell centre");
     assert_eq!(harness.state().state.project.simulation.repulsion.mode, RepulsionMode::Centre);
-    let (live, said) = state(&mut harness, Role::SpinButton, "Across");
+    let (live, said) = state(&mut harness, Role::SpinButton, "Anisotropy");
     assert!(!live && said.contains("across strands") && said.contains("Only Pressure"), "{said}");
     let before = harness.state().state.project.clone();
-    let at = control(&harness, Role::SpinButton, "Across").rect().center();
+    let at = control(&harness, Role::SpinButton, "Anisotropy").rect().center();
     type_at(&mut harness, at, "10");
     assert!(harness.state().state.project == before, "it takes no number");
     let (live, said) = state(&mut harness, Role::SpinButton, "Cohesion");
@@ -37,17 +37,20 @@ fn across_is_enabled_only_for_pressure() {
 #[test]
 fn a_shape_replaced_by_the_skin_is_disabled_until_it_is_edited() {
     let mut harness = panel("Colliders", Project::default());
-    assert!(state(&mut harness, Role::CheckBox, "On").0);
+    assert!(state(&mut harness, Role::CheckBox, "Enabled").0);
     choose(&mut harness, "Collider", "skull");
-    let (live, said) = state(&mut harness, Role::CheckBox, "On");
-    assert!(!live && said.contains("meets the skin"), "{said}");
-    assert!(!is_on(&control(&harness, Role::CheckBox, "On")), "hair does not meet it");
-    let at = control(&harness, Role::CheckBox, "On").rect().center();
+    let (live, said) = state(&mut harness, Role::CheckBox, "Enabled");
+    assert!(!live && said.contains("collides with the skin"), "{said}");
+    assert!(!is_on(&control(&harness, Role::CheckBox, "Enabled")), "hair does not collide with it");
+    let at = control(&harness, Role::CheckBox, "Enabled").rect().center();
     click(&mut harness, at);
     assert!(harness.state().state.project == Project::default());
     let size = control(&harness, Role::SpinButton, "Size").rect().center();
     type_at(&mut harness, size, "120");
-    assert!(state(&mut harness, Role::CheckBox, "On").0 && is_on(&control(&harness, Role::CheckBox, "On")));
+    assert!(
+        state(&mut harness, Role::CheckBox, "Enabled").0
+            && is_on(&control(&harness, Role::CheckBox, "Enabled"))
+    );
 }
 
 #[test]
@@ -65,15 +68,15 @@ fn controls_name_their_symbols() {
     let mut harness = panel("Simulation", project);
     for (name, symbol) in [
         ("Gravity", "g"),
-        ("Stiffness, roots", "√B"),
-        ("Stiffness, tips", "√B"),
+        ("Root stiffness", "√B"),
+        ("Tip stiffness", "√B"),
         ("Bend damping", "γ h"),
-        ("Wind", "w"),
+        ("Wind speed", "w"),
         ("Friction", "μ"),
-        ("Strength", "k"),
-        ("Threshold", "τ"),
-        ("Across", "a"),
-        ("Damping", "s"),
+        ("Repulsion strength", "k"),
+        ("Density threshold", "τ"),
+        ("Anisotropy", "a"),
+        ("Velocity damping", "s"),
     ] {
         let (_, said) = state(&mut harness, Role::SpinButton, name);
         assert!(said.contains(&format!("Symbol: {symbol}")), "{name}: {said}");

@@ -9,13 +9,13 @@ use lovelock_record::SequenceFormat;
 use super::one_by_one::choose;
 use super::panel;
 use crate::window::panels::recording;
-use crate::window::panels::recording::{Ask, State};
+use crate::window::panels::recording::{RecordingRequest, State};
 use crate::window::testing::{control, screen, type_at};
 
 #[test]
 fn the_frame_range_is_never_empty() {
     let mut harness = panel("Recording", Project::default());
-    let (first, end) = ("From frame", "To frame");
+    let (first, end) = ("First frame", "End frame");
     let place = |harness: &egui_kittest::Harness<'_, _>, name| {
         control(harness, Role::SpinButton, name).rect().center()
     };
@@ -31,7 +31,7 @@ fn the_frame_range_is_never_empty() {
     let recording = &harness.state().state.project.recording;
     assert_eq!((recording.first_frame, recording.end_frame), (50, Some(51)));
     choose(&mut harness, "Size", "640 × 360");
-    choose(&mut harness, "Frames a second", "60");
+    choose(&mut harness, "Frame rate", "60");
     let recording = &harness.state().state.project.recording;
     assert_eq!((recording.width, recording.height, recording.fps), (640, 360, 60.0));
 }
@@ -39,12 +39,12 @@ fn the_frame_range_is_never_empty() {
 #[test]
 fn the_panel_offers_the_options_of_the_command_line() {
     let mut harness = panel("Recording", Project::default());
-    choose(&mut harness, "Pictures as", "EXR, linear");
-    for name in ["Clear behind", "Label"] {
+    choose(&mut harness, "File format", "EXR, linear");
+    for name in ["Transparent", "Label"] {
         control(&harness, Role::CheckBox, name).click();
         harness.run();
     }
-    for (name, typed) in [("Motion blur", "12"), ("Shutter", "270")] {
+    for (name, typed) in [("Samples per frame", "12"), ("Shutter angle", "270")] {
         let at = control(&harness, Role::SpinButton, name).rect().center();
         type_at(&mut harness, at, typed);
     }
@@ -60,7 +60,7 @@ fn a_size_outside_the_list_is_shown() {
     (project.recording.width, project.recording.height, project.recording.fps) = (96, 64, 29.97);
     let harness = panel("Recording", project);
     assert_eq!(control(&harness, Role::ComboBox, "Size").value().as_deref(), Some("96 × 64"));
-    assert_eq!(control(&harness, Role::ComboBox, "Frames a second").value().as_deref(), Some("29.97"));
+    assert_eq!(control(&harness, Role::ComboBox, "Frame rate").value().as_deref(), Some("29.97"));
 }
 
 #[test]
@@ -71,10 +71,10 @@ fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
         *asked = recording::ui(ui, &mut section, state, 480).or(*asked);
     });
     for (button, ask) in [
-        ("Record film…", Ask::Film),
-        ("Pictures…", Ask::Sequence),
-        ("Preview…", Ask::Preview),
-        ("Go on…", Ask::Resume),
+        ("Record film…", RecordingRequest::Film),
+        ("Images…", RecordingRequest::Sequence),
+        ("Preview…", RecordingRequest::Preview),
+        ("Resume…", RecordingRequest::Resume),
     ] {
         harness.get_by_label(button).click();
         harness.run();
@@ -89,7 +89,7 @@ fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
     assert!(format!("{bar:?}").contains("25"), "a quarter is done: {bar:?}");
     harness.get_by_label("Cancel").click();
     harness.run_steps(5);
-    assert_eq!(harness.state().state.1, Some(Ask::Cancel));
+    assert_eq!(harness.state().state.1, Some(RecordingRequest::Cancel));
     for (state, text) in [
         (State::Done("48 frames in a b.mp4".to_owned()), "48 frames"),
         (State::Failed("out.mp4: the disk is full".to_owned()), "disk is full"),

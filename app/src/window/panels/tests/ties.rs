@@ -54,32 +54,32 @@ fn heading_and_rise_set_the_direction_of_a_tie() {
 #[test]
 fn a_parting_selects_one_side() {
     let mut harness = with_ties(&[HairTie::default()]);
-    for (entry, normal) in [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)] {
-        choose(&mut harness, "Gathers", entry);
+    for (entry, normal) in [("Hair on the left", Vec3::X), ("Hair on the right", Vec3::NEG_X)] {
+        choose(&mut harness, "Gathered hair", entry);
         assert_eq!((tie(&harness, 0).reach, tie(&harness, 0).plane_normal), (TieReach::AbovePlane, normal));
         assert_eq!(tie(&harness, 0).plane_point.x, 0.0, "in the middle");
     }
     set(&mut harness, "Parting", "3.5");
     assert!((tie(&harness, 0).plane_point.x - 0.035).abs() < 1e-6);
-    choose(&mut harness, "Gathers", "What grows above a height");
+    choose(&mut harness, "Gathered hair", "Hair above a height");
     assert_eq!(tie(&harness, 0).plane_normal, Vec3::Y);
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Height").is_some());
     // A project file may contain any plane: the panel names it and keeps it.
     harness.state_mut().state.project.hair.ties[0].plane_normal = Vec3::new(1.0, 1.0, 0.0);
     harness.run();
-    let said = control(&harness, Role::ComboBox, "Gathers").value();
-    assert_eq!(said.as_deref(), Some("What grows beyond a plane"));
+    let said = control(&harness, Role::ComboBox, "Gathered hair").value();
+    assert_eq!(said.as_deref(), Some("Hair beyond a plane"));
 }
 
 #[test]
 fn a_patch_follows_its_ring_until_it_has_its_own_centre() {
     let mut harness = with_ties(&[HairTie::default()]);
-    choose(&mut harness, "Gathers", "What grows in a patch");
+    choose(&mut harness, "Gathered hair", "Hair in a patch");
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Patch upward").is_none());
     set(&mut harness, "Upward", "10");
     let moved = tie(&harness, 0);
     assert_eq!(moved.sphere_middle(), moved.at, "it goes with the ring");
-    control(&harness, Role::CheckBox, "Around the ring").click();
+    control(&harness, Role::CheckBox, "Follow ring").click();
     harness.run();
     assert_eq!(tie(&harness, 0).sphere_middle(), moved.at, "nothing jumps");
     set(&mut harness, "Patch upward", "18");

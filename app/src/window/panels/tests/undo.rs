@@ -27,8 +27,8 @@ fn editor() -> Harness<'static, Shown<Edited>> {
         simulation::ui(
             ui,
             &mut project.simulation,
-            project.hair.simulation(),
-            &mut project.timeline.preroll_secs,
+            &project.hair.simulation(),
+            &mut project.timeline,
             [Vec3::X, Vec3::Y, Vec3::Z],
         );
         let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
@@ -46,10 +46,10 @@ fn steps(harness: &Harness<'_, Shown<Edited>>) -> usize {
 fn one_drag_is_one_undo_step() {
     let mut harness = editor();
     let before = harness.state().state.history.project().clone();
-    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    let rail = control(&harness, Role::Slider, "Root stiffness").rect();
     drag(&mut harness, rail.left_center(), rail.right_center());
     assert_eq!(steps(&harness), 1);
-    let rail = control(&harness, Role::Slider, "Settle").rect();
+    let rail = control(&harness, Role::Slider, "Settling").rect();
     drag(&mut harness, rail.right_center(), rail.left_center());
     assert_eq!(steps(&harness), 2, "another drag is another step");
     let history = &mut harness.state_mut().state.history;
@@ -61,7 +61,7 @@ fn one_drag_is_one_undo_step() {
 #[test]
 fn a_pause_during_a_drag_does_not_end_it() {
     let mut harness = editor();
-    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    let rail = control(&harness, Role::Slider, "Root stiffness").rect();
     harness.hover_at(rail.left_center());
     press(&harness, rail.left_center(), true);
     harness.run_steps(40);
@@ -76,7 +76,7 @@ fn a_pause_during_a_drag_does_not_end_it() {
 #[test]
 fn a_typed_number_is_one_undo_step() {
     let mut harness = editor();
-    control(&harness, Role::SpinButton, "Settle").click();
+    control(&harness, Role::SpinButton, "Settling").click();
     harness.run();
     for letter in ["1", "2", ".", "5"] {
         harness.event(Event::Text(letter.to_owned()));
@@ -131,7 +131,7 @@ fn an_orbit_of_the_camera_is_one_undo_step() {
 #[test]
 fn a_double_click_undoes_its_first_click() {
     let mut harness = editor();
-    let rail = control(&harness, Role::Slider, "Settle").rect();
+    let rail = control(&harness, Role::Slider, "Settling").rect();
     double_click(&mut harness, rail.right_center() - vec2(4.0, 0.0));
     assert_eq!(**harness.state().state.history.project(), Project::default());
     assert_eq!(steps(&harness), 0, "nothing has changed");

@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+use lovelock_base::settings::Settings;
+
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::{DeepOpacityMapsSettings, LAYER, LayerGrowth};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
@@ -36,13 +38,13 @@ impl TexelMethod for Layers {
     const METHOD: ShadowMethod = ShadowMethod::DeepOpacityMaps;
 
     fn new(settings: &ShadowSettings) -> Self {
-        let settings = settings.deep_opacity_maps;
-        let count = settings.safe_layers() as usize;
+        let settings = settings.deep_opacity_maps.clamped();
+        let count = settings.layers as usize;
         let weight = |layer: usize| match settings.growth {
             LayerGrowth::Even => 1.0,
             LayerGrowth::Linear => (layer + 1) as f32,
         };
-        let thinnest = settings.safe_depth_share() / (0..count).map(weight).sum::<f32>();
+        let thinnest = settings.depth_share / (0..count).map(weight).sum::<f32>();
         let (mut starts, mut per_depth) = ([0.0; MOST_LAYERS], [0.0; MOST_LAYERS]);
         let mut start = 0.0;
         for layer in 0..count {
@@ -54,7 +56,7 @@ impl TexelMethod for Layers {
     }
 
     fn resolution(&self) -> u32 {
-        self.settings.safe_resolution()
+        self.settings.resolution
     }
 
     fn filter(&self) -> TexelFilter {

@@ -5,6 +5,7 @@
 
 mod cpu;
 mod gpu;
+mod table;
 
 pub use cpu::{DeepOpacityMaps, Layers};
 
@@ -62,35 +63,13 @@ pub struct DeepOpacityMapsSettings {
     pub layers: u32,
     /// How thick layers are.
     pub growth: LayerGrowth,
-    /// Thickness of all layers together, a share of the hair's depth range; see
-    /// [`DeepOpacityMapsSettings::DEPTH_SHARES`].
+    /// Thickness of all layers together, as a share of the hair's depth range.
     pub depth_share: f32,
 }
 
 impl DeepOpacityMapsSettings {
     /// Layers that the map can have.
     pub const LAYERS: RangeInclusive<u32> = 3..=16;
-    /// Shares of the depth range that layers can cover.
-    pub const DEPTH_SHARES: RangeInclusive<f32> = 0.05..=1.0;
-
-    /// The resolution that is used.
-    pub fn safe_resolution(&self) -> u32 {
-        texels::safe_resolution(self.resolution)
-    }
-
-    /// The number of layers that is used: the nearest one in [`DeepOpacityMapsSettings::LAYERS`].
-    pub fn safe_layers(&self) -> u32 {
-        self.layers.clamp(*Self::LAYERS.start(), *Self::LAYERS.end())
-    }
-
-    /// The share of the depth range that is used: within [`DeepOpacityMapsSettings::DEPTH_SHARES`], and the
-    /// usual one where it is no number.
-    pub fn safe_depth_share(&self) -> f32 {
-        if self.depth_share.is_nan() {
-            return Self::default().depth_share;
-        }
-        self.depth_share.clamp(*Self::DEPTH_SHARES.start(), *Self::DEPTH_SHARES.end())
-    }
 }
 
 impl Default for DeepOpacityMapsSettings {

@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+use lovelock_base::settings::Settings;
+
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::seeds::seeds;
 use super::{BIN, ClusterDeviation, DensityClusteringSettings};
@@ -94,7 +96,7 @@ impl Clustering {
     ) -> ([f32; K], [f64; K], [bool; K]) {
         let mut centres = seeds(self.settings.seeds, fragments, near, far);
         let mut found = [Sums::default(); K];
-        for _ in 0..self.settings.safe_steps() {
+        for _ in 0..self.settings.steps {
             found = sums(fragments, &centres);
             for (centre, sums) in centres.iter_mut().zip(&found) {
                 if sums.weight > 0.0 {
@@ -208,12 +210,12 @@ impl TexelMethod for Clustering {
     const METHOD: ShadowMethod = ShadowMethod::DensityClustering;
 
     fn new(settings: &ShadowSettings) -> Self {
-        let settings = settings.density_clustering;
-        Self { settings, count: settings.safe_clusters() as usize }
+        let settings = settings.density_clustering.clamped();
+        Self { settings, count: settings.clusters as usize }
     }
 
     fn resolution(&self) -> u32 {
-        self.settings.safe_resolution()
+        self.settings.resolution
     }
 
     fn filter(&self) -> TexelFilter {

@@ -7,6 +7,7 @@
 mod cpu;
 mod gpu;
 mod seeds;
+mod table;
 
 pub use cpu::{Bin, Clustering, DensityClustering};
 
@@ -82,7 +83,7 @@ pub struct DensityClusteringSettings {
     pub clusters: u32,
     /// Where clusters start.
     pub seeds: ClusterSeeds,
-    /// How often clusters are moved to the mean of their hair; see [`DensityClusteringSettings::STEPS`].
+    /// How many times each cluster is moved to the mean of its hair.
     pub steps: u32,
     /// How the spread of a cluster is found.
     pub deviation: ClusterDeviation,
@@ -94,23 +95,6 @@ pub struct DensityClusteringSettings {
 impl DensityClusteringSettings {
     /// Clusters that a texel can have.
     pub const CLUSTERS: RangeInclusive<u32> = 1..=8;
-    /// How often clusters can be moved.
-    pub const STEPS: RangeInclusive<u32> = 1..=8;
-
-    /// The resolution that is used.
-    pub fn safe_resolution(&self) -> u32 {
-        texels::safe_resolution(self.resolution)
-    }
-
-    /// The number of clusters that is used: the nearest one in [`DensityClusteringSettings::CLUSTERS`].
-    pub fn safe_clusters(&self) -> u32 {
-        self.clusters.clamp(*Self::CLUSTERS.start(), *Self::CLUSTERS.end())
-    }
-
-    /// The number of steps that is used: the nearest one in [`DensityClusteringSettings::STEPS`].
-    pub fn safe_steps(&self) -> u32 {
-        self.steps.clamp(*Self::STEPS.start(), *Self::STEPS.end())
-    }
 }
 
 impl Default for DensityClusteringSettings {

@@ -3,6 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use rayon::prelude::*;
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
@@ -67,11 +68,11 @@ impl TexelMethod for Sorted {
     const READS_FRAGMENTS: bool = true;
 
     fn new(settings: &ShadowSettings) -> Self {
-        Self(settings.exact)
+        Self(settings.exact.clamped())
     }
 
     fn resolution(&self) -> u32 {
-        self.0.safe_resolution()
+        self.0.resolution
     }
 
     fn filter(&self) -> TexelFilter {
@@ -79,7 +80,7 @@ impl TexelMethod for Sorted {
     }
 
     fn memory_limit_bytes(&self) -> u64 {
-        self.0.safe_memory_limit_bytes()
+        self.0.memory_limit_bytes
     }
 
     fn cells(&self) -> usize {

@@ -5,10 +5,9 @@
 
 pub(crate) mod cpu;
 mod gpu;
+mod table;
 
 pub use cpu::{ExactMap, Sorted};
-
-use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -39,23 +38,8 @@ pub struct ExactSettings {
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Memory that a build may take, bytes; see [`ExactSettings::MEMORY_LIMITS`]. Hair that needs more is refused.
+    /// Memory that a build may take, bytes. Hair that needs more is refused.
     pub memory_limit_bytes: u64,
-}
-
-impl ExactSettings {
-    /// Limits of memory that can be set, bytes.
-    pub const MEMORY_LIMITS: RangeInclusive<u64> = 16 << 20..=32 << 30;
-
-    /// The resolution that is used.
-    pub fn safe_resolution(&self) -> u32 {
-        texels::safe_resolution(self.resolution)
-    }
-
-    /// The limit that is used: the nearest one in [`ExactSettings::MEMORY_LIMITS`].
-    pub fn safe_memory_limit_bytes(&self) -> u64 {
-        self.memory_limit_bytes.clamp(*Self::MEMORY_LIMITS.start(), *Self::MEMORY_LIMITS.end())
-    }
 }
 
 impl Default for ExactSettings {

@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+use lovelock_base::settings::Settings;
+
 use super::super::texels::{Fragment, SLICE, TexelFilter, TexelMap, TexelMethod};
 use super::{OccupancyMapsSettings, SLAB};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
@@ -118,13 +120,8 @@ impl TexelMethod for Occupancy {
     const METHOD: ShadowMethod = ShadowMethod::OccupancyMaps;
 
     fn new(settings: &ShadowSettings) -> Self {
-        let OccupancyMapsSettings { filter, .. } = settings.occupancy_maps;
-        Self {
-            resolution: settings.occupancy_maps.safe_resolution(),
-            filter,
-            slices: settings.occupancy_maps.safe_slices(),
-            slabs: settings.occupancy_maps.safe_slabs(),
-        }
+        let OccupancyMapsSettings { resolution, filter, slices, slabs } = settings.occupancy_maps.clamped();
+        Self { resolution, filter, slices, slabs }
     }
 
     fn resolution(&self) -> u32 {

@@ -6,6 +6,7 @@
 
 mod cpu;
 mod gpu;
+mod table;
 
 pub use cpu::{Occupancy, OccupancyMaps};
 
@@ -48,58 +49,14 @@ pub struct OccupancyMapsSettings {
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Slices, a bit each: one of [`OccupancyMapsSettings::SLICES`].
+    /// Slices, a bit each: 128, 256 or 512.
     pub slices: u32,
-    /// Slabs, a count each: one of [`OccupancyMapsSettings::SLABS`].
+    /// Slabs, a count each: 4, 8 or 16.
     pub slabs: u32,
-}
-
-impl OccupancyMapsSettings {
-    /// Numbers of slices that the map can have.
-    pub const SLICES: [u32; 3] = [128, 256, 512];
-    /// Numbers of slabs that the map can have. The paper's is 4.
-    pub const SLABS: [u32; 3] = [4, 8, 16];
-
-    /// The resolution that is used.
-    pub fn safe_resolution(&self) -> u32 {
-        texels::safe_resolution(self.resolution)
-    }
-
-    /// The number of slices that is used: the nearest of [`OccupancyMapsSettings::SLICES`].
-    pub fn safe_slices(&self) -> u32 {
-        nearest(Self::SLICES, self.slices)
-    }
-
-    /// The number of slabs that is used: the nearest of [`OccupancyMapsSettings::SLABS`].
-    pub fn safe_slabs(&self) -> u32 {
-        nearest(Self::SLABS, self.slabs)
-    }
-}
-
-fn nearest(choices: [u32; 3], asked: u32) -> u32 {
-    let [first, mut best, last] = choices;
-    for choice in [first, last] {
-        if choice.abs_diff(asked) < best.abs_diff(asked) {
-            best = choice;
-        }
-    }
-    best
 }
 
 impl Default for OccupancyMapsSettings {
     fn default() -> Self {
         Self { resolution: texels::DEFAULT_RESOLUTION, filter: TexelFilter::default(), slices: 128, slabs: 8 }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_choice_is_used() {
-        for (asked, used) in [(0, 128), (128, 128), (200, 256), (256, 256), (511, 512), (u32::MAX, 512)] {
-            assert_eq!(nearest(OccupancyMapsSettings::SLICES, asked), used);
-        }
     }
 }

@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+use lovelock_base::settings::Settings;
+
 use super::super::texels::{Fragment, SLICE, TexelFilter, TexelMap, TexelMethod};
 use super::OpacityMapsSettings;
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
@@ -33,12 +35,12 @@ impl TexelMethod for Slices {
     const METHOD: ShadowMethod = ShadowMethod::OpacityMaps;
 
     fn new(settings: &ShadowSettings) -> Self {
-        let settings = settings.opacity_maps;
-        Self { settings, count: settings.safe_slices() as usize }
+        let settings = settings.opacity_maps.clamped();
+        Self { settings, count: settings.slices as usize }
     }
 
     fn resolution(&self) -> u32 {
-        self.settings.safe_resolution()
+        self.settings.resolution
     }
 
     fn filter(&self) -> TexelFilter {

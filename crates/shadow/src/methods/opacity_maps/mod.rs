@@ -5,10 +5,9 @@
 
 mod cpu;
 mod gpu;
+mod table;
 
 pub use cpu::{OpacityMaps, Slices};
-
-use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -43,23 +42,8 @@ pub struct OpacityMapsSettings {
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Slices of equal depth; see [`OpacityMapsSettings::SLICES`].
+    /// Slices of equal depth.
     pub slices: u32,
-}
-
-impl OpacityMapsSettings {
-    /// Slices that the map can have.
-    pub const SLICES: RangeInclusive<u32> = 8..=256;
-
-    /// The resolution that is used.
-    pub fn safe_resolution(&self) -> u32 {
-        texels::safe_resolution(self.resolution)
-    }
-
-    /// The number of slices that is used: the nearest one in [`OpacityMapsSettings::SLICES`].
-    pub fn safe_slices(&self) -> u32 {
-        self.slices.clamp(*Self::SLICES.start(), *Self::SLICES.end())
-    }
 }
 
 impl Default for OpacityMapsSettings {

@@ -20,6 +20,7 @@ pub use method::TexelMethod;
 
 use std::ops::RangeInclusive;
 
+use lovelock_base::settings::{Choices, Field, Setting, Unit};
 use serde::{Deserialize, Serialize};
 
 use crate::RayMarkKind;
@@ -59,21 +60,49 @@ impl TexelFilter {
     pub const ALL: [Self; 3] = [Self::Nearest, Self::Bilinear, Self::Jitter];
 }
 
-/// The resolution that is used: the nearest multiple of 16 in [`TEXEL_RESOLUTIONS`].
-pub(crate) fn safe_resolution(resolution: u32) -> u32 {
-    (resolution.clamp(*TEXEL_RESOLUTIONS.start(), *TEXEL_RESOLUTIONS.end()) + 8) / 16 * 16
+impl Choices for TexelFilter {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Nearest => ("nearest", "Nearest"),
+            Self::Bilinear => ("bilinear", "Bilinear"),
+            Self::Jitter => ("jitter", "Jitter"),
+        }
+    }
+}
+
+/// The setting `resolution` of every method with texels.
+pub(crate) const fn resolution<S>(field: Field<S>) -> Setting<S> {
+    let range = [*TEXEL_RESOLUTIONS.start() as u64, *TEXEL_RESOLUTIONS.end() as u64];
+    let text = "Maximum number of texels along each edge of the map. More texels show finer shadows and take longer. \
+                Texels are never narrower than strands are wide.";
+    Setting::count(field, range, "Map resolution", text)
+        .unit(Unit::TEXELS)
+        .step(16)
+        .offered(&[64, 128, 256, 512, 1024, 2048])
+}
+
+/// The setting `filter` of every method with texels.
+pub(crate) const fn filter<S>(field: Field<S>) -> Setting<S> {
+    let text = "How a point reads the texels around it: the nearest one, with hard steps, the mean of four, or one at a \
+                random offset.";
+    Setting::choice::<TexelFilter>(field, "Filter", text)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use lovelock_base::settings::Settings;
+
+    use crate::ExactSettings;
 
     #[test]
     fn every_resolution_is_brought_into_range() {
         for (asked, used) in
             [(0, 64), (1, 64), (64, 64), (71, 64), (72, 80), (500, 496), (512, 512), (u32::MAX, 2048)]
         {
-            assert_eq!(safe_resolution(asked), used);
+            let settings = ExactSettings { resolution: asked, ..ExactSettings::default() };
+            assert_eq!(settings.clamped().resolution, used);
         }
     }
 }

@@ -4,6 +4,7 @@
 //! anchor. The window follows the hair; the lattice follows only the anchor.
 
 use glam::{IVec3, Mat4, Vec3, Vec4};
+use lovelock_base::settings::Settings;
 use lovelock_groom::Strands;
 
 use super::{MapExtent, VoxelMapSettings};
@@ -45,15 +46,15 @@ impl Lattice {
         settings: &VoxelMapSettings,
         bounds: &Bounds,
     ) -> Self {
-        let resolution = settings.safe_resolution();
+        let VoxelMapSettings { resolution, extent, head_size, .. } = settings.clamped();
         let (min, max) =
             if bounds.min.x <= bounds.max.x { (bounds.min, bounds.max) } else { (Vec3::ZERO, Vec3::ZERO) };
         let fitting = (max - min).max_element() / (resolution - SPARE_CELLS) as f32;
-        let wanted = match settings.extent {
+        let wanted = match extent {
             MapExtent::Fit => fitting,
             MapExtent::Paper => {
                 let longest = longest_strand().clamp(0.0, FARTHEST);
-                let edge = 2.0 * longest + settings.head_size.clamp(0.0, 10.0);
+                let edge = 2.0 * longest + head_size;
                 fitting.max(edge / resolution as f32)
             }
         };

@@ -20,14 +20,13 @@ mod lookup;
 pub mod reference;
 mod samples;
 mod sum;
+mod table;
 
 pub use cpu::VoxelMap;
 use gpu::GpuVoxelMap;
 pub use lattice::{Lattice, longest_strand};
 
 pub use crate::bounds::Bounds;
-
-use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -95,7 +94,7 @@ pub enum VoxelDeposit {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct VoxelMapSettings {
-    /// Cells along each edge; see [`VoxelMapSettings::RESOLUTIONS`].
+    /// Cells along each edge, a multiple of 8.
     pub resolution: u32,
     /// How large the map is.
     pub extent: MapExtent,
@@ -108,17 +107,6 @@ pub struct VoxelMapSettings {
     /// The paper's *f* for [`VoxelDeposit::PointCount`]: extinction per metre that one point adds to a cell,
     /// before the extinction scale.
     pub point_extinction: f32,
-}
-
-impl VoxelMapSettings {
-    /// Cells along each edge that the map can have; multiples of 8.
-    pub const RESOLUTIONS: RangeInclusive<u32> = 32..=512;
-
-    /// The resolution that is used: the nearest multiple of 8 in [`VoxelMapSettings::RESOLUTIONS`].
-    pub fn safe_resolution(&self) -> u32 {
-        let resolution = self.resolution.clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
-        (resolution + 4) / 8 * 8
-    }
 }
 
 impl Default for VoxelMapSettings {

@@ -72,7 +72,7 @@ impl GpuTexelMethod for Clustering {
             passes.push(1);
         }
         passes.push(2);
-        for _ in 1..self.settings.safe_steps() {
+        for _ in 1..self.settings.steps {
             passes.extend([3, 5]);
         }
         match self.settings.deviation {

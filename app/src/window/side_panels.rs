@@ -1,4 +1,4 @@
-//! The panels at the left and at the right of the picture.
+//! The panels to the left and to the right of the image.
 
 use egui::{Panel, ScrollArea, Ui};
 use lovelock_project::Project;
@@ -17,7 +17,7 @@ impl Window {
                     self.problems(ui, &[Place::Take]);
                     super::control::note(
                         ui,
-                        "A take plays: body and hair are as they were recorded. Leave it (Shift+R) to change them.",
+                        "A take plays: body and hair move as recorded. Leave the take (Shift+R) to change them.",
                     );
                     ui.disable();
                 }
@@ -35,7 +35,7 @@ impl Window {
                 section(ui, "Simulation", true, |ui| {
                     let axes = camera_control::axes(&project.camera);
                     let Project { simulation, timeline, hair, .. } = project;
-                    panels::simulation::ui(ui, simulation, hair.simulation(), &mut timeline.preroll_secs, axes);
+                    panels::simulation::ui(ui, simulation, &hair.simulation(), timeline, axes);
                 });
                 section(ui, "Colliders", false, |ui| {
                     let scene = self.session.scene.as_ref();
@@ -57,7 +57,7 @@ impl Window {
             });
         });
         if let Some(purpose) = asked {
-            self.ask(purpose);
+            self.open_path_dialog(purpose);
         }
     }
 
@@ -84,11 +84,11 @@ impl Window {
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
                 section(ui, "Health", true, |ui| self.health_panel(ui, project));
-                // Panes have their own: nobody draws the one picture beside them.
+                // The panes have their own statistics; the single image is not rendered beside them.
                 let compares = self.layout.compare.shown;
                 section(ui, "Statistics", true, |ui| {
                     if compares {
-                        super::control::note(ui, "Of the one picture, before the comparison was opened.");
+                        super::control::note(ui, "Of the single image, before the comparison was opened.");
                     }
                     let session = &self.session;
                     panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
@@ -96,12 +96,14 @@ impl Window {
             });
         });
         match recording {
-            Some(panels::recording::Ask::Film) => self.ask(Purpose::Film),
-            Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
-            Some(panels::recording::Ask::Preview) => self.ask(Purpose::Preview),
-            Some(panels::recording::Ask::Resume) => self.ask(Purpose::Resume),
-            Some(panels::recording::Ask::Curves) => self.ask(Purpose::Curves),
-            Some(panels::recording::Ask::Cancel) => self.run(crate::window::Command::Record, ctx),
+            Some(panels::recording::RecordingRequest::Film) => self.open_path_dialog(Purpose::Film),
+            Some(panels::recording::RecordingRequest::Sequence) => self.open_path_dialog(Purpose::Sequence),
+            Some(panels::recording::RecordingRequest::Preview) => self.open_path_dialog(Purpose::Preview),
+            Some(panels::recording::RecordingRequest::Resume) => self.open_path_dialog(Purpose::Resume),
+            Some(panels::recording::RecordingRequest::Curves) => self.open_path_dialog(Purpose::Curves),
+            Some(panels::recording::RecordingRequest::Cancel) => {
+                self.run(crate::window::Command::Record, ctx)
+            }
             None => {}
         }
     }

@@ -25,16 +25,16 @@ impl Window {
     /// The gauges, with buttons that go to their places.
     pub(super) fn health_panel(&mut self, ui: &mut Ui, project: &mut Project) {
         let gauges = self.gauges(project);
-        let shown = self.pointed.as_ref().map(|gauge| gauge.kind);
+        let shown = self.marked_gauge.as_ref().map(|gauge| gauge.kind);
         let Some(asked) = panels::health::ui(ui, &gauges, shown) else { return };
         if shown == Some(asked) {
-            self.pointed = None;
+            self.marked_gauge = None;
             return;
         }
         // The place would leave the image if the dance went on.
         self.session.set_playing(false);
-        self.pointed = gauges.into_iter().find(|gauge| gauge.kind == asked);
-        if let Some(gauge) = &self.pointed {
+        self.marked_gauge = gauges.into_iter().find(|gauge| gauge.kind == asked);
+        if let Some(gauge) = &self.marked_gauge {
             self.go_to(gauge, project);
         }
     }
@@ -56,8 +56,8 @@ impl Window {
     }
 
     /// The ring around the place of the selected gauge.
-    pub(super) fn paint_pointed(&self, ui: &Ui, view: View, painted: &RenderedImage) {
-        let Some(asked) = &self.pointed else { return };
+    pub(super) fn paint_marked_gauge(&self, ui: &Ui, view: View, painted: &RenderedImage) {
+        let Some(asked) = &self.marked_gauge else { return };
         let gauges = self.gauges(self.history.project());
         let Some(now) = gauges.iter().find(|gauge| gauge.kind == asked.kind) else { return };
         // The selected value stays, also if a worse one follows.
@@ -80,16 +80,8 @@ impl Window {
             let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
             let size = format!("{} × {}", picture.width, picture.height);
             fact("Picture", "Size of the rendered image in pixels.", size);
-            fact(
-                "Segments drawn",
-                "Segments of all strands in the image.",
-                stats.segments.to_string(),
-            );
-            fact(
-                "Shadow maps",
-                "Memory of the shadow maps of all lights.",
-                mib(stats.shadow_bytes),
-            );
+            fact("Segments drawn", "Segments of all strands in the image.", stats.segments.to_string());
+            fact("Shadow maps", "Memory of the shadow maps of all lights.", mib(stats.shadow_bytes));
             fact(
                 "Strands and pixels",
                 "Memory for the interpolated strands and for blending them in each pixel.",

@@ -1,61 +1,58 @@
 //! What the artist can change about how hair moves.
 
-use lovelock_base::numbers::within;
+mod table;
+
 use lovelock_groom::Preset;
 use serde::{Deserialize, Serialize};
 
-use crate::integrator::{Integrator, MAX_SWEEPS};
+use crate::integrator::Integrator;
 
-/// How hair moves. Every field has a range that cannot break the motion; [`SimulationSettings::clamped`]
-/// puts a value into it, and the simulator does so itself.
+/// How hair moves. Ranges are in its table of settings; the simulator clamps what it is given.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SimulationSettings {
-    /// Gravity, metres per second squared, downwards: 0 to 30.
+    /// Gravity, downwards, metres per second squared.
     pub gravity: f32,
-    /// How much of its own weight the hairstyle carries at rest: 1 keeps the style exactly as it was drawn,
-    /// 0 lets it sag as far as its stiffness allows. 0 to 1.
+    /// How much of its own weight the hairstyle carries at rest: 1 keeps the style exactly as drawn, 0 lets it sag as far as its
+    /// stiffness allows.
     pub style_support: f32,
-    /// Substeps of one step, 1 to 16; a fast head raises them.
+    /// Substeps per step; a fast head raises them.
     pub substeps: u32,
-    /// Bending stiffness near the roots, as the angular frequency (1/s) with which a lock 0.2 m long, held
-    /// at one end and without weight, would sway: 0 (a chain) to 200 (wire). One real hair has about 3.
+    /// Bending stiffness near the roots, as the angular frequency (1/s) with which a wisp 0.2 m long, clamped at one end and without
+    /// weight, would sway. 0 is a chain, 200 wire; one real hair has about 3.
     pub stiffness_root: f32,
-    /// Bending stiffness at the tips, 1/s, as `stiffness_root`: 0 to 200.
+    /// Bending stiffness at the tips, 1/s, as `stiffness_root`.
     pub stiffness_tip: f32,
-    /// How much of the way from the root's stiffness to the tip's is gone at the middle of a lock: 0.05 (it is
-    /// stiff nearly to the tip) to 0.95 (only the roots are); 0.5 is a straight ramp.
+    /// Fraction of the change from the root's stiffness to the tip's that is reached at the middle of a wisp: low values keep it stiff
+    /// nearly to the tip, high ones only at the roots, and 0.5 is a straight ramp.
     pub stiffness_bias: f32,
-    /// Damping of bending, seconds: 0 to 0.2. A sway of frequency f is damped by the ratio pi * f * this.
+    /// Damping of bending, seconds. A sway of frequency f has the damping ratio pi * f * this.
     pub bend_damping: f32,
-    /// Pull of the roots' half toward the style as it was drawn, as an angular frequency, 1/s; it falls to
-    /// zero at the tips: 0 to 60.
+    /// Pull of the root half toward the style as drawn, as an angular frequency, 1/s; it falls to zero at the tips.
     pub hold: f32,
-    /// The rate (1/s) at which motion relative to the head dies away, a stand-in for friction against the hair
-    /// around: 0 to 20.
+    /// Rate at which motion relative to the head decays, 1/s: a stand-in for friction against the hair around.
     pub settle: f32,
-    /// Drag of the air, as the rate (1/s) at which hair takes on the speed of the wind: 0 to 20.
+    /// Drag of the air, as the rate at which hair takes on the speed of the wind, 1/s.
     pub drag: f32,
     /// The wind.
     pub wind: Wind,
-    /// Friction coefficient of hair on the body: 0 to 2.
+    /// Friction coefficient of hair on the body.
     pub friction: f32,
-    /// Distance at which hair stays off the body, metres: 0 to 0.03. Hair that rests nearer keeps its
-    /// distance of rest.
+    /// Distance that hair keeps from the body, metres. Hair that rests nearer keeps its distance of rest.
     pub skin_margin: f32,
-    /// How much of its height above the skull a lock keeps when it is pressed down, so that layers keep
-    /// their order and the hair its volume: 0 to 1.
+    /// Fraction of its height above the skull that a wisp keeps when it is pressed down, so that layers keep their order and the hair its
+    /// volume.
     pub layering: f32,
     /// How hair keeps other hair away.
     pub repulsion: Repulsion,
-    /// How many links at the root leave the scalp in the direction of rest: 0 (a hinge), 1 or 2.
+    /// Number of links at the root that leave the scalp in the direction of rest; 0 is a hinge.
     pub clamped_links: u32,
     /// The method that keeps links at their length.
     pub integrator: Integrator,
-    /// Sweeps along the chain in a substep of [`Integrator::Relaxation`]: 1 to 200.
+    /// Relaxation iterations along the chain per substep of [`Integrator::Relaxation`].
     pub relaxation_sweeps: u32,
-    /// How much of the correction of its follower a point's velocity takes in
-    /// [`Integrator::FollowTheLeader`]: 0 (chains gain energy) to 1.
+    /// Fraction of the correction of its follower that a point's velocity takes in [`Integrator::FollowTheLeader`]; with 0 chains gain
+    /// energy.
     pub follow_damping: f32,
 }
 
@@ -81,35 +78,6 @@ impl Default for SimulationSettings {
             integrator: Integrator::Direct,
             relaxation_sweeps: 20,
             follow_damping: 0.9,
-        }
-    }
-}
-
-impl SimulationSettings {
-    /// The same settings with every value inside its range; a value that is not a number becomes the default.
-    #[must_use]
-    pub fn clamped(&self) -> Self {
-        let d = Self::default();
-        Self {
-            gravity: within(self.gravity, 0.0, 30.0, d.gravity),
-            style_support: within(self.style_support, 0.0, 1.0, d.style_support),
-            substeps: self.substeps.clamp(1, MAX_SUBSTEPS),
-            stiffness_root: within(self.stiffness_root, 0.0, 200.0, d.stiffness_root),
-            stiffness_tip: within(self.stiffness_tip, 0.0, 200.0, d.stiffness_tip),
-            stiffness_bias: within(self.stiffness_bias, 0.05, 0.95, d.stiffness_bias),
-            bend_damping: within(self.bend_damping, 0.0, 0.2, d.bend_damping),
-            hold: within(self.hold, 0.0, 60.0, d.hold),
-            settle: within(self.settle, 0.0, 20.0, d.settle),
-            drag: within(self.drag, 0.0, 20.0, d.drag),
-            wind: self.wind.clamped(),
-            friction: within(self.friction, 0.0, 2.0, d.friction),
-            skin_margin: within(self.skin_margin, 0.0, 0.03, d.skin_margin),
-            layering: within(self.layering, 0.0, 1.0, d.layering),
-            repulsion: self.repulsion.clamped(),
-            clamped_links: self.clamped_links.min(2),
-            integrator: self.integrator,
-            relaxation_sweeps: self.relaxation_sweeps.clamp(1, MAX_SWEEPS),
-            follow_damping: within(self.follow_damping, 0.0, 1.0, d.follow_damping),
         }
     }
 }
@@ -170,15 +138,15 @@ pub const MAX_SUBSTEPS: u32 = 16;
 pub struct Wind {
     /// Where the wind blows to, world space, any length; a zero vector is still air.
     pub direction: [f32; 3],
-    /// Mean speed, metres per second: 0 to 30.
+    /// Mean speed, metres per second.
     pub speed: f32,
-    /// How far gusts raise and lower the speed, as a fraction of it: 0 to 1.
+    /// How far gusts raise and lower the speed, as a fraction of it.
     pub gusts: f32,
-    /// Speed of the eddies as a fraction of the mean speed: 0 to 1.
+    /// Speed of the eddies as a fraction of the mean speed.
     pub turbulence: f32,
-    /// How much of the wind the body keeps from the hair behind it: 0 (none) to 1.
+    /// Fraction of the wind that the body keeps from the hair behind it.
     pub sheltering: f32,
-    /// Which wind.
+    /// Chooses among winds that differ only by chance.
     pub seed: u32,
 }
 
@@ -188,55 +156,26 @@ impl Default for Wind {
     }
 }
 
-impl Wind {
-    fn clamped(&self) -> Self {
-        let d = Self::default();
-        let finite = self.direction.iter().all(|v| v.is_finite() && v.abs() < 1e9);
-        Self {
-            direction: if finite { self.direction } else { d.direction },
-            speed: within(self.speed, 0.0, 30.0, d.speed),
-            gusts: within(self.gusts, 0.0, 1.0, d.gusts),
-            turbulence: within(self.turbulence, 0.0, 1.0, d.turbulence),
-            sheltering: within(self.sheltering, 0.0, 1.0, d.sheltering),
-            seed: self.seed,
-        }
-    }
-}
-
 /// How over-dense cells of the density grid push hair out, and how near hair moves together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Repulsion {
     /// Which force.
     pub mode: RepulsionMode,
-    /// Strength, metres squared per second squared (a push of `strength / cell` for a cell twice as dense as
-    /// it may be): 0 to 1.
+    /// Strength, metres squared per second squared: a push of `strength / cell` for a cell twice as dense as it may be.
     pub strength: f32,
-    /// From how many times the density at rest a cell counts as over-dense: 1 to 10.
+    /// Multiple of the density at rest above which a cell counts as over-dense.
     pub threshold: f32,
-    /// Rate at which hair takes on the mean velocity of the hair around it, 1/s: 0 to 20.
+    /// Rate at which hair takes on the mean velocity of the hair around it, 1/s.
     pub cohesion: f32,
-    /// How much hair heeds the direction of the hair around it: 1 pushes across itself alone, harder where wisps
-    /// cross than where they run along each other, and lets them slide along each other; 0 heeds none. 0 to 1.
+    /// How much the push depends on the direction of the hair around it. 1 pushes only across the hair, harder where wisps cross than
+    /// where they run in parallel, and lets them slide along each other; 0 pushes alike in all directions.
     pub anisotropy: f32,
 }
 
 impl Default for Repulsion {
     fn default() -> Self {
         Self { mode: RepulsionMode::Pressure, strength: 0.05, threshold: 1.3, cohesion: 2.0, anisotropy: 1.0 }
-    }
-}
-
-impl Repulsion {
-    fn clamped(&self) -> Self {
-        let d = Self::default();
-        Self {
-            mode: self.mode,
-            strength: within(self.strength, 0.0, 1.0, d.strength),
-            threshold: within(self.threshold, 1.0, 10.0, d.threshold),
-            cohesion: within(self.cohesion, 0.0, 20.0, d.cohesion),
-            anisotropy: within(self.anisotropy, 0.0, 1.0, d.anisotropy),
-        }
     }
 }
 
@@ -252,6 +191,8 @@ pub enum RepulsionMode {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_base::settings::Settings;
+
     use super::*;
 
     #[test]

@@ -1,0 +1,144 @@
+//! The rows of a panel: a label, a control with its unit, a tooltip, and a mark where the value differs from its default.
+
+mod number;
+mod setting;
+
+use egui::{Id, PointerButton, Response, RichText, Sense, Ui, Vec2};
+
+pub(crate) use number::{Number, is_escaped, typed};
+pub(crate) use setting::{all_settings, entry, setting, settings};
+
+use super::theme;
+
+/// Width of the column of labels, points.
+const LABEL_WIDTH: f32 = 118.0;
+
+/// A choice among a few.
+pub(crate) fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &str,
+    value: &mut T,
+    default: T,
+    options: &[(T, &str)],
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| {
+        let chosen = options.iter().find(|(option, _)| option == value).map_or("", |(_, name)| name);
+        let width = ui.available_width() - 4.0;
+        egui::ComboBox::from_id_salt(label)
+            .selected_text(chosen)
+            .width(width)
+            // Room for a dozen options without scrolling.
+            .height(320.0)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for (option, name) in options {
+                    ui.selectable_value(value, *option, *name);
+                }
+            })
+            .response
+    })
+}
+
+/// Something that is on or off.
+pub(crate) fn toggle(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &str,
+    value: &mut bool,
+    default: bool,
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| ui.checkbox(value, ""))
+}
+
+/// Controls that have no effect if there is a reason `why_not`: they are disabled then, and their tooltips give the reason.
+pub(crate) fn unless<R>(ui: &mut Ui, why_not: Option<&str>, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = Id::unique("why not");
+    if let Some(why_not) = why_not {
+        ui.data_mut(|data| data.insert_temp(id, why_not.to_owned()));
+    }
+    let shown = ui.add_enabled_ui(why_not.is_none(), add).inner;
+    ui.data_mut(|data| data.remove::<String>(id));
+    shown
+}
+
+/// A colour, linear sRGB.
+fn color(ui: &mut Ui, label: &'static str, tip: &str, value: &mut [f32; 3], default: [f32; 3]) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| {
+        // The button converts the colour to hue and back, which rounds: only what the user picks is taken.
+        let mut picked = *value;
+        let response = ui.color_edit_button_rgb(&mut picked);
+        if response.changed() {
+            *value = picked;
+        }
+        response
+    })
+}
+
+/// One row: the label with its mark, then the control of `add`, which is tied to the label for screen readers and tests.
+pub(crate) fn row<T>(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &str,
+    differs: bool,
+    value: &mut T,
+    default: T,
+    add: impl FnOnce(&mut Ui, &mut T) -> Response,
+) -> Response {
+    ui.horizontal(|ui| {
+        let text = RichText::new(label);
+        let text = if differs { text.color(theme::ACCENT) } else { text };
+        let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
+        let name = ui
+            .allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.set_min_width(LABEL_WIDTH);
+                ui.add(egui::Label::new(text).sense(Sense::click()).truncate())
+            })
+            .inner;
+        let tip = if differs {
+            format!("{tip}\n\nChanged: double-click restores the default.")
+        } else {
+            tip.to_owned()
+        };
+        let why_not: Option<String> = ui.data(|data| data.get_temp(Id::unique("why not")));
+        let tip = why_not.map_or(tip.clone(), |why_not| format!("{tip}\n\n{why_not}"));
+        let mut response = add(ui, value).labelled_by(name.id);
+        let mut name = name;
+        // An open tooltip stays while the pointer rests: a dialog that opens over it must close it.
+        if ui.memory(|memory| memory.is_above_modal_layer(ui.layer_id())) {
+            response = response.on_hover_text(&tip).on_disabled_hover_text(&tip);
+            name = name.on_hover_text(&tip).on_disabled_hover_text(&tip);
+        }
+        // A slider's rail senses drags but no clicks, so its own response does not report a double-click.
+        let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
+        if differs && twice && ui.is_enabled() && (name.contains_pointer() || response.contains_pointer()) {
+            *value = default;
+            response.mark_changed();
+        }
+        response
+    })
+    .inner
+}
+
+/// The row with the button that restores all of `value`.
+pub(crate) fn restore_all<T: Clone>(ui: &mut Ui, label: &'static str, tip: &str, value: &mut T, default: &T) {
+    row(ui, label, tip, false, value, default.clone(), |ui, value| {
+        let response = ui.button("Restore all");
+        if response.clicked() {
+            value.clone_from(default);
+        }
+        response
+    });
+}
+
+/// A titled part of a panel that folds.
+///
+/// Returns what `add` returned if the part is unfolded.
+pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add).body_returned
+}
+
+/// A line of quiet text.
+pub(crate) fn note(ui: &mut Ui, text: impl Into<String>) {
+    ui.label(RichText::new(text.into()).small().color(theme::QUIET));
+}

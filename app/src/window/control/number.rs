@@ -1,0 +1,119 @@
+//! Numbers that a slider changes.
+
+use std::ops::RangeInclusive;
+
+use egui::{Id, Key, Response, Slider, SliderClamping, Ui, Widget};
+use lovelock_base::settings::{Counts, Info, Range, Unit};
+
+use super::row;
+
+/// Width that a slider leaves for its number, points.
+const NUMBER_WIDTH: f32 = 78.0;
+
+/// A number that a slider changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Number {
+    label: &'static str,
+    tip: String,
+    range: RangeInclusive<f64>,
+    unit: Unit,
+    logarithmic: bool,
+}
+
+impl Number {
+    /// A number in `range`; `tip` says what it changes in the image.
+    pub(crate) fn new(label: &'static str, range: RangeInclusive<f64>, unit: Unit, tip: &str) -> Self {
+        Self { label, tip: tip.to_owned(), range, unit, logarithmic: false }
+    }
+
+    /// The number of a setting, called `label`.
+    pub(super) fn of(info: &Info, range: &Range, label: &'static str) -> Self {
+        let [low, high] = range.soft;
+        Self { logarithmic: range.logarithmic, ..Self::new(label, low..=high, info.unit, &info.tooltip()) }
+    }
+
+    /// The row. Double-click restores `default`.
+    pub(crate) fn show(self, ui: &mut Ui, value: &mut f32, default: f32) -> Response {
+        let mut wide = f64::from(*value);
+        let before = wide;
+        let response = self.show_wide(ui, &mut wide, f64::from(default));
+        if wide.to_bits() != before.to_bits() {
+            *value = wide as f32;
+        }
+        response
+    }
+
+    /// The same for a number of double precision.
+    pub(super) fn show_wide(self, ui: &mut Ui, value: &mut f64, default: f64) -> Response {
+        let Unit { suffix, factor, decimals, .. } = self.unit;
+        let range = self.range.start() * factor..=self.range.end() * factor;
+        // Angles come and go through sines: less than a millionth of the range is no difference.
+        let differs = (*value - default).abs() > 1e-6 * (self.range.end() - self.range.start());
+        row(ui, self.label, &self.tip, differs, value, default, |ui, value| {
+            let canceled = is_escaped(ui);
+            ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
+            Slider::from_get_set(range, |new| {
+                // The slider rounds to what it shows; that alone is no change.
+                let shown = 0.5 * 0.1_f64.powi(decimals as i32);
+                let old = *value * factor;
+                if let Some(new) = new.filter(|new| new.is_finite() && (new - old).abs() > shown) {
+                    *value = new / factor;
+                }
+                *value * factor
+            })
+            .logarithmic(self.logarithmic)
+            // A project may hold values outside the slider's range: showing them must not change them.
+            .clamping(SliderClamping::Edits)
+            // A typed number takes effect when it is entered, and Escape restores the old one.
+            .update_while_editing(false)
+            .fixed_decimals(decimals)
+            .suffix(suffix)
+            .custom_parser(|text| typed(text, suffix).filter(|_| !canceled))
+            .ui(ui)
+        })
+    }
+}
+
+/// The row of a whole number with a slider.
+pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, default: u64) -> Response {
+    let Unit { suffix, factor, decimals, .. } = info.unit;
+    row(ui, info.label, &info.tooltip(), *value != default, value, default, |ui, value| {
+        let canceled = is_escaped(ui);
+        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
+        let [low, high] = counts.soft.map(|bound| bound as f64 * factor);
+        let slider = Slider::from_get_set(low..=high, |new| {
+            if let Some(new) = new.filter(|new| new.is_finite()) {
+                *value = (new / factor).round() as u64;
+            }
+            *value as f64 * factor
+        });
+        // Whole numbers that are shown in a larger unit have digits after the point.
+        let slider = if factor == 1.0 { slider.integer() } else { slider.fixed_decimals(decimals) };
+        slider
+            .suffix(suffix)
+            .custom_parser(|text| typed(text, suffix).filter(|_| !canceled))
+            .logarithmic(counts.logarithmic)
+            .clamping(SliderClamping::Edits)
+            .update_while_editing(false)
+            .ui(ui)
+    })
+}
+
+/// Whether Escape was pressed in this pass or the one before, so that the text of a field is discarded. The field itself sees the
+/// key for one pass only, and takes its text in the next one.
+pub(crate) fn is_escaped(ui: &Ui) -> bool {
+    let (id, now) = (Id::unique("escape"), ui.ctx().cumulative_pass_nr());
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(id, now));
+    }
+    ui.data(|data| data.get_temp::<u64>(id)).is_some_and(|pressed| now <= pressed + 1)
+}
+
+/// The number in what was typed, with or without its unit; `None` where it is not a finite number.
+pub(crate) fn typed(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text.strip_suffix(unit.trim()).unwrap_or(text);
+    let plain: String =
+        text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
+    plain.parse().ok().filter(|number: &f64| number.is_finite())
+}

@@ -1,0 +1,440 @@
+//! The tables of the project's sections, and which parts a project has.
+
+use std::f64::consts::PI;
+
+use lovelock_base::field;
+use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
+use lovelock_groom::{HairTie, Preset};
+use lovelock_record::{FilmQuality, SequenceFormat};
+use lovelock_render::{Backend, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, Transparency};
+
+use super::super::Project;
+use super::PROJECT_VERSION;
+use super::contender::Contender;
+use super::sections::{
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
+    MotionSection, MotionSource, RecordingSection, TimelineSection,
+};
+use crate::tracks::Track;
+
+/// The parts of a list, named `PREFIX.0`, `PREFIX.1` and so on.
+fn list<'a, T: Settings>(prefix: &'static str, items: &'a [T]) -> impl Iterator<Item = Part<'a>> {
+    items.iter().enumerate().map(move |(i, item)| -> Part<'a> { (format!("{prefix}.{i}").into(), item) })
+}
+
+/// The same, to be changed.
+fn list_mut<'a, T: Settings>(prefix: &'static str, items: &'a mut [T]) -> impl Iterator<Item = PartMut<'a>> {
+    items
+        .iter_mut()
+        .enumerate()
+        .map(move |(i, item)| -> PartMut<'a> { (format!("{prefix}.{i}").into(), item) })
+}
+
+impl Settings for Project {
+    const TABLE: &'static [Setting<Self>] = &[];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        let mut parts: Vec<Part<'_>> = vec![
+            ("body".into(), &self.body),
+            ("motion".into(), &self.motion),
+            ("hair".into(), &self.hair),
+            ("look".into(), &self.look),
+            ("simulation".into(), &self.simulation),
+            ("shadow".into(), &self.shadow),
+        ];
+        parts.extend(list("lights", &self.lights));
+        let rest: [Part<'_>; 5] = [
+            ("camera".into(), &self.camera),
+            ("picture".into(), &self.picture),
+            ("recording".into(), &self.recording),
+            ("compare".into(), &self.compare),
+            ("timeline".into(), &self.timeline),
+        ];
+        parts.extend(rest);
+        parts
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        let mut parts: Vec<PartMut<'_>> = vec![
+            ("body".into(), &mut self.body),
+            ("motion".into(), &mut self.motion),
+            ("hair".into(), &mut self.hair),
+            ("look".into(), &mut self.look),
+            ("simulation".into(), &mut self.simulation),
+            ("shadow".into(), &mut self.shadow),
+        ];
+        parts.extend(list_mut("lights", &mut self.lights));
+        let rest: [PartMut<'_>; 5] = [
+            ("camera".into(), &mut self.camera),
+            ("picture".into(), &mut self.picture),
+            ("recording".into(), &mut self.recording),
+            ("compare".into(), &mut self.compare),
+            ("timeline".into(), &mut self.timeline),
+        ];
+        parts.extend(rest);
+        parts
+    }
+
+    fn reconcile(&mut self) {
+        self.version = PROJECT_VERSION;
+        self.lights.truncate(MAX_LIGHTS);
+    }
+}
+
+impl Choices for BodySource {
+    const ALL: &'static [Self] = &[Self::Dancer, Self::File];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Dancer => ("Dancer", "Dancer"),
+            Self::File => ("File", "Character file"),
+        }
+    }
+}
+
+/// The most shapes that a body can have.
+const MOST_COLLIDERS: usize = 1000;
+/// The longest name of a joint, characters.
+const LONGEST_COLLIDER: usize = 400;
+
+impl Settings for BodySection {
+    const TABLE: &'static [Setting<Self>] = &[Setting::choice::<BodySource>(
+        field!(Self, source),
+        "Body",
+        "The body that dances: the shipped dancer or a character file.",
+    )];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![("settings".into(), &self.settings), ("colliders".into(), &self.colliders)]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![("settings".into(), &mut self.settings), ("colliders".into(), &mut self.colliders)]
+    }
+
+    fn reconcile(&mut self) {
+        let shapes = std::mem::take(&mut self.colliders.shapes);
+        let named = shapes.into_iter().filter(|(name, _)| name.chars().count() <= LONGEST_COLLIDER);
+        self.colliders.shapes = named.take(MOST_COLLIDERS).collect();
+    }
+}
+
+impl Choices for MotionSource {
+    const ALL: &'static [Self] = &[Self::Clip, Self::File, Self::Rest];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Clip => ("Clip", "Clip of the character"),
+            Self::File => ("File", "Motion file"),
+            Self::Rest => ("Rest", "Rest pose"),
+        }
+    }
+}
+
+/// The farthest second of a clip that can be named: a day.
+const MOST_CLIP_SECS: f64 = 86_400.0;
+
+impl Settings for MotionSection {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<MotionSource>(field!(Self, source), "Motion", "Where the motion comes from."),
+        Setting::number(
+            field!(Self, speed),
+            [0.1, 4.0],
+            "Tempo",
+            "Seconds of the clip that pass per second. The hair reacts to the speed.",
+        )
+        .unit(Unit::TIMES)
+        .logarithmic(),
+        Setting::number(
+            field!(Self, start_secs),
+            [0.0, MOST_CLIP_SECS],
+            "Clip start",
+            "Time of the clip at which the motion begins.",
+        )
+        .unit(Unit::SECONDS),
+        Setting::number(
+            field!(Self, end_secs),
+            [0.0, MOST_CLIP_SECS],
+            "Clip end",
+            "Time of the clip at which the motion ends.",
+        )
+        .unit(Unit::SECONDS)
+        .or_none("the last key of the clip"),
+        Setting::switch(
+            field!(Self, looping),
+            "Loop",
+            "Starts the clip again at its end. Off, the last pose is held.",
+        ),
+        Setting::number(
+            field!(Self, loop_blend_secs),
+            [0.0, 2.0],
+            "Loop blend",
+            "Duration over which the end of a clip that does not loop by itself is blended into its \
+             start.",
+        )
+        .unit(Unit::SECONDS)
+        .decimals(2),
+    ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![("settings".into(), &self.settings)]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![("settings".into(), &mut self.settings)]
+    }
+}
+
+impl Choices for HairSource {
+    const ALL: &'static [Self] = &[Self::Grown, Self::File];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Grown => ("Grown", "Grown from settings"),
+            Self::File => ("File", "Hair file"),
+        }
+    }
+}
+
+impl Settings for HairSection {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<HairSource>(field!(Self, source), "Hair", "Where the hairstyle comes from."),
+        Setting::choice::<Preset>(
+            field!(Self, preset),
+            "Hairstyle",
+            "The shipped hairstyle, with its colours and ties, that the other settings start from.",
+        ),
+    ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        let mut parts: Vec<Part<'_>> = vec![("groom".into(), &self.groom), ("import".into(), &self.import)];
+        parts.extend(list("ties", &self.ties));
+        parts
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        let mut parts: Vec<PartMut<'_>> =
+            vec![("groom".into(), &mut self.groom), ("import".into(), &mut self.import)];
+        parts.extend(list_mut("ties", &mut self.ties));
+        parts
+    }
+
+    fn reconcile(&mut self) {
+        self.ties.truncate(HairTie::MOST);
+        self.cut = self.cut.clamped();
+    }
+}
+
+impl Choices for CameraMode {
+    const ALL: &'static [Self] = &[Self::Follow, Self::Fixed];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Follow => ("Follow", "Follow the head"),
+            Self::Fixed => ("Fixed", "Fixed"),
+        }
+    }
+}
+
+impl Settings for CameraSection {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<CameraMode>(
+            field!(Self, mode),
+            "Camera target",
+            "What the camera looks at: the head, followed smoothly, or a fixed place in the world.",
+        ),
+        Setting::vector(
+            field!(Self, follow_offset),
+            [-3.0, 3.0],
+            "Follow offset",
+            ["Sideways", "Upward", "Forward"],
+            "Offset of the target from the smoothed head joint, along the axes of the world.",
+        )
+        .unit(Unit::METRES),
+        Setting::number(
+            field!(Self, follow_secs),
+            [0.0, 4.0],
+            "Follow smoothing",
+            "Width of the window over which the path of the head is smoothed. Higher values follow \
+             more slowly.",
+        )
+        .unit(Unit::SECONDS),
+        Setting::vector(
+            field!(Self, fixed_target),
+            [-20.0, 20.0],
+            "Fixed target",
+            ["Target x", "Target y", "Target z"],
+            "The fixed target in the world.",
+        )
+        .unit(Unit::METRES),
+        Setting::number(
+            field!(Self, azimuth),
+            [-PI, PI],
+            "Azimuth",
+            "Angle about the vertical from the front toward the dancer's left.",
+        )
+        .unit(Unit::RADIANS)
+        .wraps(),
+        Setting::number(field!(Self, elevation), [-1.5, 1.5], "Elevation", "Angle above the horizon.")
+            .unit(Unit::RADIANS),
+        Setting::number(field!(Self, distance), [0.1, 30.0], "Distance", "Distance from the target.")
+            .unit(Unit::METRES)
+            .logarithmic(),
+        Setting::number(
+            field!(Self, fov_y),
+            [0.05, 2.0],
+            "Field of view",
+            "Vertical field of view. Small angles look like a long lens.",
+        )
+        .unit(Unit::RADIANS),
+    ];
+}
+
+impl Settings for RecordingSection {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::count(field!(Self, width), [16, MOST_SIDE as u64], "Width", "Width of the recorded images.")
+            .unit(Unit::PIXELS),
+        Setting::count(
+            field!(Self, height),
+            [16, MOST_SIDE as u64],
+            "Height",
+            "Height of the recorded images.",
+        )
+        .unit(Unit::PIXELS),
+        Setting::number(field!(Self, fps), [1.0, 240.0], "Frame rate", "Frames per second of the recording.")
+            .unit(Unit::FRAMES_PER_SECOND),
+        Setting::choice::<FilmQuality>(
+            field!(Self, quality),
+            "Quality",
+            "How finely a film is encoded. Finer settings keep single hairs apart and make larger \
+             files.",
+        ),
+        Setting::count(
+            field!(Self, first_frame),
+            [0, 10_000_000],
+            "First frame",
+            "Number of the first recorded frame.",
+        )
+        .soft([0.0, 1e6]),
+        Setting::count(
+            field!(Self, end_frame),
+            [1, 20_000_000],
+            "End frame",
+            "One past the number of the last recorded frame.",
+        )
+        .soft([1.0, 1e6])
+        .or_none("the end of the clip"),
+        Setting::choice::<SequenceFormat>(
+            field!(Self, format),
+            "File format",
+            "Format of the files in a folder: PNG as the screen shows it, or EXR for compositing, \
+             with linear light, depth and the light that reaches the hair.",
+        ),
+        Setting::switch(
+            field!(Self, transparent),
+            "Transparent",
+            "Leaves out background and ground, so that the images can be composited over others. A \
+             film has no alpha and is refused.",
+        ),
+        Setting::count(
+            field!(Self, subframes),
+            [1, Self::MOST_SUBFRAMES as u64],
+            "Samples per frame",
+            "Images that are averaged per frame for motion blur while the shutter is open: 1 is no \
+             blur, 8 to 16 are smooth. Rendering time grows in proportion.",
+        )
+        .logarithmic(),
+        Setting::number(
+            field!(Self, shutter_degrees),
+            [0.0, 360.0],
+            "Shutter angle",
+            "How long the shutter is open for motion blur. 360° is the whole frame.",
+        )
+        .unit(Unit::DEGREES),
+        Setting::switch(
+            field!(Self, label),
+            "Label",
+            "Writes the shadow method, the transparency and the frame number into each image.",
+        ),
+        Setting::switch(
+            field!(Self, seamless),
+            "Seamless loop",
+            "Blends the end of the loop into its start, so that the film of a looping dance repeats \
+             without a jump.",
+        ),
+    ];
+
+    fn reconcile(&mut self) {
+        if u64::from(self.width) * u64::from(self.height) > MOST_PIXELS {
+            // Even, as films need it.
+            self.height = (MOST_PIXELS / u64::from(self.width)) as u32 & !1;
+        }
+        self.end_frame = self.end_frame.map(|end| end.max(self.first_frame + 1));
+    }
+}
+
+impl Settings for TimelineSection {
+    const TABLE: &'static [Setting<Self>] = &[Setting::number(
+        field!(Self, preroll_secs),
+        [0.0, 30.0],
+        "Pre-roll",
+        "Simulated time before a frame that is jumped to or that a recording starts at, so that \
+             the hair has settled. 0 shows the style at rest.",
+    )
+    .unit(Unit::SECONDS)];
+
+    fn reconcile(&mut self) {
+        let good = self.markers.iter().filter(|marker| marker.secs.is_finite() && marker.secs >= 0.0);
+        let markers = good.take(Self::MOST_MARKERS).map(|marker| Marker {
+            secs: marker.secs,
+            name: marker.name.chars().take(Self::LONGEST_NAME).collect(),
+        });
+        self.markers = markers.collect();
+        self.tracks = self.tracks.iter().filter_map(Track::in_range).take(Track::MOST).collect();
+    }
+}
+
+impl Settings for CompareSection {
+    const TABLE: &'static [Setting<Self>] = &[];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        list("panes", &self.panes).collect()
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        list_mut("panes", &mut self.panes).collect()
+    }
+
+    fn reconcile(&mut self) {
+        if self.panes.is_empty() {
+            *self = Self::default();
+        }
+        self.panes.truncate(Self::MOST_PANES);
+    }
+}
+
+impl Settings for Contender {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<Transparency>(
+            field!(Self, transparency),
+            "Transparency",
+            "How strands that overlap in a pixel are blended.",
+        ),
+        Setting::choice::<Backend>(field!(Self, backend), "Backend", "What renders the pane."),
+        Setting::number(
+            field!(Self, scale),
+            [0.1, 1.0],
+            "Resolution",
+            "Rendered pixels per pixel of the pane along each edge.",
+        )
+        .unit(Unit::FRACTION),
+    ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![("shadow".into(), &self.shadow)]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![("shadow".into(), &mut self.shadow)]
+    }
+}

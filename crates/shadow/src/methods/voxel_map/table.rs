@@ -1,0 +1,91 @@
+//! The table of settings.
+
+use lovelock_base::field;
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
+
+use super::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
+
+impl Settings for VoxelMapSettings {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::count(
+            field!(Self, resolution),
+            [32, 512],
+            "Map resolution",
+            "Number of cells along each edge of the map. More cells show finer shadows and take \
+             longer; the brightness stays.",
+        )
+        .symbol("N")
+        .unit(Unit::CELLS)
+        .step(8)
+        .offered(&[32, 48, 64, 96, 128, 192, 256, 384, 512]),
+        Setting::choice::<MapExtent>(
+            field!(Self, extent),
+            "Map extent",
+            "How large the map is: the size of the hair, or the paper's bound for any pose.",
+        ),
+        Setting::number(
+            field!(Self, head_size),
+            [0.05, 1.0],
+            "Head size",
+            "Size of the head in the paper's bound for any pose.",
+        )
+        .symbol("h_max")
+        .unit(Unit::METRES_AS_CM),
+        Setting::choice::<VoxelFilter>(
+            field!(Self, filter),
+            "Filter",
+            "How a point reads the cells around it. As printed, shadows are displaced by half a \
+             cell.",
+        ),
+        Setting::choice::<VoxelDeposit>(
+            field!(Self, deposit),
+            "Density",
+            "What strands add to the cells: the optical depth of their length, or one per point as \
+             printed, which makes the brightness depend on the resolution.",
+        ),
+        Setting::number(
+            field!(Self, point_extinction),
+            [0.0, 1e4],
+            "Point extinction",
+            "Extinction that one point adds to a cell where points are counted. Higher values cast \
+             darker shadows.",
+        )
+        .symbol("f")
+        .unit(Unit::PER_METRE)
+        .soft([0.1, 1000.0])
+        .logarithmic(),
+    ];
+}
+
+impl Choices for MapExtent {
+    const ALL: &'static [Self] = &[Self::Fit, Self::Paper];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Fit => ("fit", "Size of the hair"),
+            Self::Paper => ("paper", "Bound of the paper"),
+        }
+    }
+}
+
+impl Choices for VoxelFilter {
+    const ALL: &'static [Self] = &[Self::Centred, Self::Paper];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Centred => ("centred", "Centred"),
+            Self::Paper => ("paper", "As printed"),
+        }
+    }
+}
+
+impl Choices for VoxelDeposit {
+    const ALL: &'static [Self] = &[Self::Length, Self::PointCount];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Length => ("length", "By length"),
+            Self::PointCount => ("point-count", "By points, as printed"),
+        }
+    }
+}
