@@ -1,15 +1,15 @@
 //! `cargo xtask ci`: every check, in the order in which they find faults.
 
-use crate::tool::{cargo, run as run_tool, timed};
-use crate::{browser, interchange, layers, testing};
+use crate::testing::{self, Suite};
 use anyhow::{bail, ensure};
+use lovelock_xtask::tool::{cargo, run as run_tool, timed};
 use std::time::Duration;
 
 /// Runs the tests, then interchange, browser, format, clippy, layers and documentation, all of them even after a fault. The totals of the
 /// tests are the last line on standard output.
 pub(crate) fn run() -> anyhow::Result<()> {
     let mut steps = Vec::new();
-    let (tests, time) = timed(|| testing::totals(None, None));
+    let (tests, time) = timed(|| testing::totals(&Suite::default()));
     let (totals, outcome) = match tests {
         Ok((totals, outcome)) => (Some(totals), outcome),
         Err(error) => (None, Err(error)),
@@ -17,13 +17,13 @@ pub(crate) fn run() -> anyhow::Result<()> {
     steps.push(("test", outcome, time));
     // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
-        ("interchange", interchange::run as fn() -> anyhow::Result<()>),
-        ("browser", browser::run),
+        ("interchange", (|| crate::chore("interchange", [])) as fn() -> anyhow::Result<()>),
+        ("browser", || crate::chore("browser", [])),
         ("format", || run_tool(&mut cargo(&["fmt", "--all", "--check"]))),
         ("clippy", || {
             run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
         }),
-        ("layers", layers::run),
+        ("layers", || crate::chore("layers", [])),
         ("documentation", || {
             run_tool(cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
         }),

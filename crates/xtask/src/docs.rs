@@ -1,7 +1,7 @@
 //! `cargo xtask docs`: the tables of settings in the documents, as the program prints them.
 
-use crate::tool;
 use anyhow::{Context as _, ensure};
+use lovelock_xtask::tool;
 use std::fs;
 
 /// Documents with marked tables of settings.

@@ -1,6 +1,6 @@
 //! `cargo xtask run`: opens the window, or records the default dance if there is no display.
 
-use crate::{system, tool};
+use lovelock_xtask::{system, tool};
 use std::ffi::{OsStr, OsString};
 
 /// The film that is recorded if there is no display.

@@ -1,20 +1,19 @@
 //! Chores of the workspace: run, test, ci, layers, latency and assets. `cargo xtask` lists them.
+//!
+//! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
+//! libraries are in `lovelock-chores`, which is built when one of them is called.
 
-mod assets;
-mod browser;
 mod ci;
 mod docs;
-mod interchange;
-mod latency;
 mod launch;
-mod layers;
-mod system;
 mod testing;
-mod tool;
 mod totals;
 
 use clap::{Parser, Subcommand};
+use lovelock_xtask::tool;
+use std::ffi::OsString;
 use std::process::ExitCode;
+use testing::Suite;
 
 /// Chores of Lovelock.
 #[derive(Parser)]
@@ -30,28 +29,31 @@ enum Chore {
     Run {
         /// Arguments for `lovelock`
         #[arg(last = true)]
-        arguments: Vec<std::ffi::OsString>,
+        arguments: Vec<OsString>,
     },
-    /// Runs every test and prints the totals
+    /// Runs the tests and prints the totals
     Test {
-        /// Only tests whose name holds this
+        /// Only tests whose name contains this
         #[arg(long)]
         filter: Option<String>,
         /// Only the tests of this package
         #[arg(short, long)]
         package: Option<String>,
-        /// Instead, holds FLIP, USD and farm jobs against other people's programs in Python, which it installs below target
-        #[arg(long, conflicts_with_all = ["filter", "package"])]
+        /// The long suite: dances of ten minutes in place of seconds, and tests that take minutes; for releases
+        #[arg(long)]
+        long: bool,
+        /// Instead, compares FLIP, USD and farm jobs with other people's programs in Python, installed below target
+        #[arg(long, conflicts_with_all = ["filter", "package", "long"])]
         interchange: bool,
-        /// Instead, opens the page of a comparison in Chromium, which it installs where it may
-        #[arg(long, conflicts_with_all = ["filter", "package"])]
+        /// Instead, opens the page of a comparison in Chromium, which is installed where that is allowed
+        #[arg(long, conflicts_with_all = ["filter", "package", "long"])]
         browser: bool,
     },
     /// Runs every check: tests, interchange, browser, format, clippy, layers, documentation
     Ci,
     /// Writes the tables of settings in the documents, as the program prints them
     Docs,
-    /// Checks which crate may use which
+    /// Prints which crate uses which; fails on arrows that the architecture lacks and on circles among modules
     Layers,
     /// Measures how long the window takes from an input to the screen, on a screen of its own (Linux, Xvfb)
     Latency {
@@ -59,9 +61,9 @@ enum Chore {
         #[arg(long, default_value_t = 50)]
         inputs: usize,
     },
-    /// Makes the shipped assets anew
+    /// Makes the shipped assets again
     Assets {
-        /// Also write pictures of the dancer into this folder
+        /// Also write images of the dancer into this folder
         #[arg(long, value_name = "DIR")]
         preview: Option<std::path::PathBuf>,
     },
@@ -71,15 +73,20 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().chore {
         Chore::Run { arguments } => launch::run(&arguments),
         Chore::Test { interchange, browser, .. } if interchange || browser => {
-            let first = if interchange { interchange::run() } else { Ok(()) };
-            first.and_then(|()| if browser { browser::run() } else { Ok(()) })
+            let first = if interchange { chore("interchange", []) } else { Ok(()) };
+            first.and_then(|()| if browser { chore("browser", []) } else { Ok(()) })
         }
-        Chore::Test { filter, package, .. } => testing::run(filter.as_deref(), package.as_deref()),
+        Chore::Test { filter, package, long, .. } => {
+            testing::run(&Suite { filter: filter.as_deref(), package: package.as_deref(), long })
+        }
         Chore::Ci => ci::run(),
         Chore::Docs => docs::run(),
-        Chore::Layers => layers::run(),
-        Chore::Latency { inputs } => latency::run(inputs),
-        Chore::Assets { preview } => assets::run(preview.as_deref()),
+        Chore::Layers => chore("layers", []),
+        Chore::Latency { inputs } => chore("latency", ["--inputs".into(), inputs.to_string().into()]),
+        Chore::Assets { preview } => chore(
+            "assets",
+            preview.into_iter().flat_map(|folder| ["--preview".into(), folder.into_os_string()]),
+        ),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -88,4 +95,9 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Builds `lovelock-chores` and runs one of its chores.
+fn chore(name: &str, arguments: impl IntoIterator<Item = OsString>) -> anyhow::Result<()> {
+    tool::run(tool::cargo(&["run", "--quiet", "--package", "lovelock-chores", "--", name]).args(arguments))
 }

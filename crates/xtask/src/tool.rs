@@ -1,27 +1,29 @@
 //! Running other programs, and measuring time.
 
 use anyhow::{Context as _, ensure};
-use lovelock_base::clock::Stopwatch;
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// The root folder of the workspace.
-pub(crate) fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().and_then(Path::parent).unwrap_or(here)
 }
 
 /// The cargo that runs this program, in the folder of the workspace.
-pub(crate) fn cargo(arguments: &[&str]) -> Command {
+pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
     command
 }
 
 /// Runs a program. Fails if it cannot be started or does not succeed.
-pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
+///
+/// # Errors
+/// If it cannot be started or its exit status is not 0.
+pub fn run(command: &mut Command) -> anyhow::Result<()> {
     let shown = shown(command);
     let status = command.status().with_context(|| format!("could not start `{shown}`"))?;
     ensure!(status.success(), "`{shown}` failed ({status})");
@@ -30,18 +32,19 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
 
 /// The output of a program that is read line by line.
 #[derive(Clone, Copy)]
-pub(crate) enum Stream {
+pub enum Stream {
+    /// Standard output.
     Out,
+    /// Standard error.
     Err,
 }
 
 /// Runs a program to its end, shows all that it prints, and hands every line of one stream to `see`.
 /// Returns whether it succeeded.
-pub(crate) fn watch(
-    command: &mut Command,
-    stream: Stream,
-    mut see: impl FnMut(&str),
-) -> anyhow::Result<bool> {
+///
+/// # Errors
+/// Where it cannot be started or its output cannot be read.
+pub fn watch(command: &mut Command, stream: Stream, mut see: impl FnMut(&str)) -> anyhow::Result<bool> {
     let shown = shown(command);
     match stream {
         Stream::Out => command.stdout(Stdio::piped()),
@@ -70,22 +73,23 @@ fn copy_lines(from: impl Read, to: &mut impl Write, see: &mut impl FnMut(&str)) 
 }
 
 /// The standard output of a program, if it can be started and succeeds.
-pub(crate) fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
+pub fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
     let output =
         Command::new(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// A command as it would be typed in a shell.
-pub(crate) fn shown(command: &Command) -> String {
+pub fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or_default();
     let words = std::iter::once(program).chain(command.get_args());
     words.map(std::ffi::OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
 }
 
-/// Measures the time that something takes.
-pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let watch = Stopwatch::start();
+/// Measures the time that something takes. The stopwatch of `lovelock-base` would make this crate wait for that crate's libraries.
+#[expect(clippy::disallowed_methods, reason = "tasks report how long they took; no result depends on it")]
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let start = std::time::Instant::now();
     let result = work();
-    (result, watch.elapsed())
+    (result, start.elapsed())
 }

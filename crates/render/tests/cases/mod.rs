@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::BACKEND;
 use crate::common::{self, Scene, pixel, quad, scene};
 use glam::Vec3;
 use lovelock_render::{Camera, Light, ShadowMethod, ShadowSettings, Transparency};
@@ -26,12 +27,12 @@ fn an_empty_scene_is_background_and_a_strand_is_not() {
     let mut nothing = scene(&[]);
     nothing.picture.background_top = Vec3::splat(0.1);
     nothing.picture.background_bottom = Vec3::splat(0.1);
-    let Some(empty) = nothing.draw(64, 64) else { return };
+    let Some(empty) = nothing.draw_by(BACKEND, 64, 64) else { return };
     let mut one = scene(&curtain(1, 0.1, 0.0));
     (one.picture.background_top, one.picture.background_bottom) = (Vec3::splat(0.1), Vec3::splat(0.1));
     one.look.diameter = 0.02;
     one.look.width_scale = 1.0;
-    let picture = one.draw(64, 64).expect("an adapter");
+    let picture = one.draw_by(BACKEND, 64, 64).expect("an adapter");
     assert_ne!(pixel(&empty, 32, 32), pixel(&picture, 32, 32));
     assert_eq!(pixel(&empty, 32, 2), pixel(&picture, 32, 2), "the strand is in the middle alone");
 }
@@ -39,13 +40,13 @@ fn an_empty_scene_is_background_and_a_strand_is_not() {
 #[test]
 fn the_same_frame_gives_the_same_picture() {
     let scene = scene(&curtain(200, 0.2, 0.0));
-    let Some(a) = scene.draw(128, 96) else { return };
-    assert_eq!(a, scene.draw(128, 96).expect("an adapter"));
+    let Some(a) = scene.draw_by(BACKEND, 128, 96) else { return };
+    assert_eq!(a, scene.draw_by(BACKEND, 128, 96).expect("an adapter"));
 }
 
 /// Mean brightness above black, as display values; enough to compare equal coverage of equal colour.
 fn energy(scene: &Scene, size: u32) -> Option<f64> {
-    Some(mean_color(&scene.draw(size, size)?.rgba)[0])
+    Some(mean_color(&scene.draw_by(BACKEND, size, size)?.rgba)[0])
 }
 
 #[test]
@@ -73,7 +74,7 @@ fn the_body_hides_strands_behind_it_and_not_those_before() {
         s.picture.transparency = transparency;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;
-        s.draw(96, 96).map(|p| pixel(&p, 48, 48))
+        s.draw_by(BACKEND, 96, 96).map(|p| pixel(&p, 48, 48))
     };
     let Some(without) = picture(-5.0, Transparency::Sorted) else {
         return;
@@ -102,7 +103,7 @@ fn near_strands_cover_far_ones() {
         s.look.variation = 1.0;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;
-        s.draw(96, 96).map(|p| sum(pixel(&p, 48, 48)))
+        s.draw_by(BACKEND, 96, 96).map(|p| sum(pixel(&p, 48, 48)))
     };
     let Some(light_behind) = both(0.05) else { return };
     let light_before = both(-0.05).expect("an adapter");
@@ -124,7 +125,7 @@ fn hair_shadows_the_body() {
         s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
         s.picture.ambient = 0.0;
         s.camera = Camera { eye: Vec3::new(0.0, -0.1, 1.0), target: Vec3::new(0.0, -0.1, 0.0), fov_y: 0.3 };
-        s.draw(96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
+        s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
     };
     let Some(free) = wall(false, ShadowMethod::VoxelMap) else { return };
     let unshadowed = wall(true, ShadowMethod::None).expect("an adapter");
@@ -153,7 +154,7 @@ fn hair_shadows_the_ground() {
         s.picture.ground = true;
         (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.3), Vec3::splat(0.3));
         s.camera = Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3 };
-        s.draw(96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
+        s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
     };
     let Some(free) = ground(false, ShadowMethod::VoxelMap) else { return };
     let unshadowed = ground(true, ShadowMethod::None).expect("an adapter");
@@ -176,7 +177,7 @@ fn the_body_shadows_hair() {
         s.picture.ambient = 0.1;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;
-        s.draw(64, 64).map(|p| sum(pixel(&p, 32, 32)))
+        s.draw_by(BACKEND, 64, 64).map(|p| sum(pixel(&p, 32, 32)))
     };
     let Some(lit) = behind(false) else { return };
     let dark = behind(true).expect("an adapter");
@@ -193,7 +194,7 @@ fn evenness(toward: Vec3, curl: f32) -> Option<(f32, f32)> {
     s.body = Some(board);
     s.lights = vec![Light { direction: toward, softness: 0.05, specular: 0.0, ..Light::default() }];
     s.camera.fov_y = 0.4;
-    let picture = s.draw(96, 96)?;
+    let picture = s.draw_by(BACKEND, 96, 96)?;
     let red: Vec<f32> = picture.rgba.iter().step_by(4).map(|&c| f32::from(c)).collect();
     let mean = red.iter().sum::<f32>() / red.len() as f32;
     Some((mean, red.iter().map(|c| (c - mean).abs()).fold(0.0, f32::max)))
@@ -224,7 +225,7 @@ fn self_shadow_darkens_the_inside() {
         s.look.real_hairs = 20_000.0;
         s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
         s.lights = vec![Light { direction: Vec3::new(0.0, 0.0, 1.0), ..Light::default() }];
-        s.draw(96, 96).map(|p| mean_color(&p.rgba)[0])
+        s.draw_by(BACKEND, 96, 96).map(|p| mean_color(&p.rgba)[0])
     };
     // The light comes from behind: the camera sees the last layer.
     let Some(none) = mean(ShadowMethod::None, 0.15) else {
@@ -247,19 +248,19 @@ fn hostile_settings_give_a_picture_without_holes() {
     s.look.width_scale = f32::INFINITY;
     s.picture.background_top = Vec3::splat(0.2);
     s.picture.background_bottom = Vec3::splat(0.2);
-    let Some(picture) = s.draw(64, 64) else { return };
+    let Some(picture) = s.draw_by(BACKEND, 64, 64) else { return };
     let corner = pixel(&picture, 1, 1);
     assert!(sum(corner) > 60, "the background is still there: {corner:?}");
     // An eye on the target, and a picture of one pixel.
     s.camera.eye = s.camera.target;
-    assert_eq!(s.draw(1, 1).expect("an adapter").rgba.len(), 4);
+    assert_eq!(s.draw_by(BACKEND, 1, 1).expect("an adapter").rgba.len(), 4);
 }
 
 #[test]
 fn sizes_out_of_range_are_refused_with_the_limit() {
     let scene = scene(&[]);
     for (width, height) in [(0, 64), (64, 0), (100_000, 1), (8192, 8192)] {
-        let Some(error) = scene.try_draw(width, height) else { return };
+        let Some(error) = scene.try_draw(BACKEND, width, height) else { return };
         let error = error.expect_err("out of range").to_string();
         assert!(
             error.contains(&format!("{width}x{height}")) && error.contains("at most 35 million"),
@@ -287,7 +288,7 @@ fn odd_hair_in_every_combination_is_a_picture() {
                 for extinction_scale in [0.0, 0.15, 1e9] {
                     s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
                     s.picture.transparency = transparency;
-                    let Some(picture) = s.draw(24, 16) else { return };
+                    let Some(picture) = s.draw_by(BACKEND, 24, 16) else { return };
                     // NaN must not reach the background, which would become black.
                     assert!(sum(pixel(&picture, 1, 1)) > 60, "{name}, {method}, {transparency}");
                 }
@@ -301,9 +302,9 @@ fn flip_tells_two_lights_apart() {
     let mut s = scene(&curtain(200, 0.2, 0.0));
     s.look.diameter = 0.001;
     s.look.width_scale = 1.0;
-    let Some(a) = s.draw(96, 96) else { return };
+    let Some(a) = s.draw_by(BACKEND, 96, 96) else { return };
     s.lights[0].direction = Vec3::new(0.9, 0.3, 0.2);
-    let b = s.draw(96, 96).expect("an adapter");
+    let b = s.draw_by(BACKEND, 96, 96).expect("an adapter");
     // The negative control of all comparisons of pictures here.
     assert!(flip(&a.rgba, &b.rgba, 96, 96).mean > 0.02);
 }

@@ -38,22 +38,18 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Renders it with the backend of the test.
-    pub fn draw(&self, width: u32, height: u32) -> Option<Picture> {
-        self.draw_by(crate::BACKEND, width, height)
-    }
-
     /// Renders it with `backend`.
     pub fn draw_by(&self, backend: Backend, width: u32, height: u32) -> Option<Picture> {
-        Some(self.attempt(backend, width, height)?.expect("a picture"))
+        Some(self.try_draw(backend, width, height)?.expect("a picture"))
     }
 
-    /// Renders it with the backend of the test, or returns the error.
-    pub fn try_draw(&self, width: u32, height: u32) -> Option<Result<Picture, RenderError>> {
-        self.attempt(crate::BACKEND, width, height)
-    }
-
-    fn attempt(&self, backend: Backend, width: u32, height: u32) -> Option<Result<Picture, RenderError>> {
+    /// Renders it with `backend`, or returns the error.
+    pub fn try_draw(
+        &self,
+        backend: Backend,
+        width: u32,
+        height: u32,
+    ) -> Option<Result<Picture, RenderError>> {
         let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let mut picture = Picture::default();
         Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))

@@ -15,22 +15,34 @@ use std::process::Command;
 /// On Debian and related distributions missing packages are installed; elsewhere the command for installing them is printed.
 /// Only a missing compiler is an error. Without the other packages the window or GPU rendering does not work, and a warning
 /// says so. macOS and Windows need no packages.
-pub(crate) fn prepare() -> anyhow::Result<()> {
+///
+/// # Errors
+/// If a compiler is missing and cannot be installed.
+pub fn prepare() -> anyhow::Result<()> {
     get(&NEEDS)
 }
 
 /// Installs the system packages for `cargo xtask test --interchange`.
-pub(crate) fn prepare_interchange() -> anyhow::Result<()> {
+///
+/// # Errors
+/// If a compiler is missing and cannot be installed.
+pub fn prepare_interchange() -> anyhow::Result<()> {
     get(&INTERCHANGE)
 }
 
 /// Installs the system packages for `cargo xtask test --browser`.
-pub(crate) fn prepare_browser() -> anyhow::Result<()> {
+///
+/// # Errors
+/// If a compiler is missing and cannot be installed.
+pub fn prepare_browser() -> anyhow::Result<()> {
     get(&BROWSER)
 }
 
 /// Installs the system packages for `cargo xtask latency`.
-pub(crate) fn prepare_screen() -> anyhow::Result<()> {
+///
+/// # Errors
+/// If a compiler is missing and cannot be installed.
+pub fn prepare_screen() -> anyhow::Result<()> {
     get(&SCREEN)
 }
 

@@ -1,0 +1,132 @@
+//! `cargo xtask test --interchange`: compares results with those of other programs, which are installed from the Python
+//! Package Index into a virtual environment in `target`.
+
+mod exr;
+mod farm;
+mod pictures;
+mod program;
+mod stage;
+
+use anyhow::{Context as _, ensure};
+use lovelock_metrics::{Image, flip};
+use lovelock_xtask::{system, tool};
+use pictures::Picture;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The program of FLIP's authors in the Python Package Index.
+const PACKAGE: &str = "flip-evaluator==1.7";
+/// An undeclared dependency of FLIP, Pixar's USD library with its validators, and the command line of the Open Job
+/// Description. The release depends on the version of Python.
+const BESIDE: [&str; 3] = ["numpy<3", "usd-core>=25.5", "openjd-cli>=0.7"];
+
+/// The largest accepted difference between two means of FLIP. Measured: 8e-5, because theirs uses 67.02 pixels per degree.
+const LIMIT: f64 = 1e-3;
+
+/// Compares FLIP, USD and the job for many machines with other programs, and fails if one differs.
+pub(crate) fn run() -> anyhow::Result<()> {
+    system::prepare_interchange()?;
+    let folder = tool::root().join("target/interchange");
+    let python = environment(&folder.join("python"))?;
+    check_flip(&python, &folder)?;
+    exr::run(&folder)?;
+    let lovelock = program::build()?;
+    stage::check(&python, &folder, &lovelock)?;
+    farm::check(&python, &folder, &lovelock)
+}
+
+/// Creates an empty folder.
+fn empty(folder: &Path) -> anyhow::Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).with_context(|| format!("could not create {}", folder.display()))
+}
+
+/// Compares the means of FLIP for pairs of images.
+fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
+    let pictures = Picture::all();
+    for picture in &pictures {
+        picture.save(folder)?;
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/interchange/flip_means.py");
+    let mut program = Command::new(python);
+    program.arg(&script).args(pictures.iter().map(|picture| folder.join(picture.file())));
+    let output = program.output().with_context(|| format!("could not start {}", python.display()))?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
+    let theirs: Vec<f64> = serde_json::from_slice(&output.stdout).context("the script printed no numbers")?;
+    let means =
+        pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
+    compare(&means, &theirs)?;
+    println!("interchange: {} means of FLIP agree with {PACKAGE} to {LIMIT}", means.len());
+    Ok(())
+}
+
+/// Every pair of images in both orders, in the order of the script.
+fn pairs(pictures: &[Picture]) -> impl Iterator<Item = (&Picture, &Picture)> {
+    let size = |picture: &Picture| (picture.width, picture.height);
+    pictures.iter().flat_map(move |reference| {
+        let same = pictures.iter().filter(move |test| size(test) == size(reference));
+        same.map(move |test| (reference, test))
+    })
+}
+
+fn mean(reference: &Picture, test: &Picture) -> anyhow::Result<f64> {
+    let reference = Image::new(reference.width, reference.height, &reference.rgba)?;
+    let test = Image::new(test.width, test.height, &test.rgba)?;
+    Ok(flip(&reference, &test)?.mean())
+}
+
+/// Fails if two means differ by more than the limit.
+fn compare(ours: &[f64], theirs: &[f64]) -> anyhow::Result<()> {
+    ensure!(ours.len() == theirs.len(), "{} means, and {} of theirs", ours.len(), theirs.len());
+    for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
+        println!("  pair {index}: {ours:.6}, theirs {theirs:.6}");
+        let difference = (ours - theirs).abs();
+        ensure!(difference <= LIMIT, "the mean of pair {index} is off by {difference:.6}");
+    }
+    Ok(())
+}
+
+/// Creates a virtual environment with the packages if there is none. Returns the path of its Python.
+fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    // Written last, so that an incomplete environment is created again.
+    let made = folder.join("made");
+    let wanted = [&[PACKAGE][..], &BESIDE].concat();
+    if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted.join(" ")) {
+        return Ok(python);
+    }
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
+    }
+    println!("Creating a Python environment with {}.", wanted.join(", "));
+    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    tool::run(Command::new(&python).args(pip).args(&wanted))?;
+    fs::write(&made, wanted.join(" "))?;
+    Ok(python)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Picture, compare, mean, pairs};
+
+    #[test]
+    fn means_that_differ_are_found() {
+        assert!(compare(&[0.1, 0.2], &[0.1005, 0.1995]).is_ok());
+        let error = compare(&[0.1, 0.2], &[0.1, 0.202]).unwrap_err().to_string();
+        assert_eq!(error, "the mean of pair 1 is off by 0.002000");
+        assert!(compare(&[0.1], &[]).is_err());
+        assert!(compare(&[0.1], &[f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn pairs_are_of_one_size_and_most_of_them_differ() {
+        let pictures = Picture::all();
+        let means: Vec<f64> = pairs(&pictures).map(|(a, b)| mean(a, b).unwrap()).collect();
+        let differ = means.iter().filter(|&&mean| mean > 0.01).count();
+        assert!(differ * 2 > means.len() && differ < means.len(), "{means:?}");
+    }
+}

@@ -1,0 +1,101 @@
+//! `cargo xtask latency`: measures the time from an input to the screen, on a virtual screen.
+
+mod screen;
+
+use anyhow::{Context as _, ensure};
+use lovelock_metrics::Spread;
+use lovelock_xtask::{system, tool};
+use screen::{Place, Screen};
+use std::fs;
+use std::process::{Child, Command};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Size of the window. With six panes in two columns each pane has at least 640 × 360 pixels.
+const WINDOW: (u16, u16) = (1960, 1240);
+/// The menu "File", and an empty part of the menu bar.
+const MENU: Place = Place { x: 6, y: 2, width: 30, height: 14 };
+const BESIDE: (i16, i16) = (1000, 9);
+
+/// Opens the window three times (one view while the dance plays, six panes while it plays, six panes while it is paused),
+/// moves the pointer on and off a menu at irregular times, and prints the time until the menu changes.
+pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
+    ensure!(inputs > 0, "--inputs: found 0; must be at least 1");
+    system::prepare()?;
+    system::prepare_screen()?;
+    tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
+    let folder = tool::root().join("target/latency");
+    for (what, panes, paused) in [
+        ("one view, playing", false, false),
+        ("six panes, playing", true, false),
+        ("six panes, paused", true, true),
+    ] {
+        let mut times = window(panes, paused, inputs, &folder).with_context(|| what.to_owned())?;
+        times.sort_unstable_by(f64::total_cmp);
+        let spread = Spread::of(&times).context("no inputs were measured")?;
+        println!(
+            "{what}: {:.0} ms median, {:.0} to {:.0} for the middle 80 %, {:.0} at most, {} inputs",
+            spread.median,
+            spread.low,
+            spread.high,
+            times.last().copied().unwrap_or_default(),
+            spread.count
+        );
+    }
+    Ok(())
+}
+
+/// Time from each input to the screen, in milliseconds.
+fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) -> anyhow::Result<Vec<f64>> {
+    // An empty home folder: the window has the layout of a first start, and the user's own settings are not touched.
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not empty {}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).with_context(|| format!("could not create {}", folder.display()))?;
+    let project = folder.join("six.lovelock");
+    fs::write(&project, include_str!("six.lovelock"))?;
+    let screen = Screen::start(WINDOW.0 + 40, WINDOW.1 + 40)?;
+    let program = tool::root().join("target/release/lovelock");
+    let child = Command::new(&program)
+        .arg(&project)
+        .env("DISPLAY", screen.name())
+        .env_remove("WAYLAND_DISPLAY")
+        .env("HOME", folder)
+        .env("XDG_DATA_HOME", folder)
+        .spawn()
+        .with_context(|| format!("could not start {}", program.display()))?;
+    let _closed = Closed(child);
+    let window = screen.wait_for_window(Duration::from_mins(1))?;
+    sleep(Duration::from_secs(4));
+    screen.size(window, WINDOW)?;
+    sleep(Duration::from_secs(2));
+    if panes {
+        screen.key(window, screen::KEY_C)?;
+        sleep(Duration::from_secs(6));
+    }
+    if paused {
+        screen.key(window, screen::KEY_SPACE)?;
+        sleep(Duration::from_secs(3));
+    }
+    screen.point(BESIDE)?;
+    sleep(Duration::from_secs(1));
+    let mut times = Vec::with_capacity(inputs);
+    for input in 0..inputs {
+        let to = if input % 2 == 0 { MENU.middle() } else { BESIDE };
+        times.push(screen.time_to_change(to, MENU)?.as_secs_f64() * 1e3);
+        // Irregular, so that inputs do not synchronise with the window's frames.
+        sleep(Duration::from_millis(250 + (input as u64 * 97) % 300));
+    }
+    Ok(times)
+}
+
+/// A process that is ended when the measurement ends.
+struct Closed(Child);
+
+impl Drop for Closed {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}

@@ -1,0 +1,53 @@
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency and assets.
+//!
+//! They are called through `cargo xtask`, which stays small so that it builds in seconds.
+
+mod assets;
+mod browser;
+mod interchange;
+mod latency;
+mod layers;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+/// One chore; `cargo xtask` calls them and documents them.
+#[derive(Parser)]
+#[command(name = "lovelock-chores")]
+enum Chore {
+    /// Prints which crate uses which; fails on arrows that the architecture lacks and on circles among modules
+    Layers,
+    /// Compares FLIP, USD, EXR and farm jobs with other people's programs
+    Interchange,
+    /// Opens the page of a comparison in Chromium
+    Browser,
+    /// Measures how long the window takes from an input to the screen
+    Latency {
+        /// Inputs that are timed for each of three windows
+        #[arg(long)]
+        inputs: usize,
+    },
+    /// Makes the shipped assets again
+    Assets {
+        /// Also write images of the dancer into this folder
+        #[arg(long, value_name = "DIR")]
+        preview: Option<std::path::PathBuf>,
+    },
+}
+
+fn main() -> ExitCode {
+    let done = match Chore::parse() {
+        Chore::Layers => layers::run(),
+        Chore::Interchange => interchange::run(),
+        Chore::Browser => browser::run(),
+        Chore::Latency { inputs } => latency::run(inputs),
+        Chore::Assets { preview } => assets::run(preview.as_deref()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

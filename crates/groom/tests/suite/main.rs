@@ -1,0 +1,11 @@
+//! Tests of hairstyles through the public interface, in one program: each further one would link everything again.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/motion.rs"]
+mod motion;
+
+mod growing;
+mod hair_files;
+mod interpolation;
+mod strand_bounds;

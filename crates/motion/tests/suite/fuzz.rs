@@ -1,0 +1,130 @@
+//! Corrupt bytes: every truncation and every flipped bit gives an error or a character, never a panic or a
+//! hang.
+
+use crate::common;
+
+use lovelock_motion::{MotionSettings, load_character_bytes, load_motion_bytes};
+use proptest::prelude::*;
+
+/// A small skinned, morphed and animated figure: a valid file to corrupt.
+fn glb() -> Vec<u8> {
+    let mut bin: Vec<u8> = Vec::new();
+    let mut floats = |values: &[f32]| {
+        let at = bin.len();
+        bin.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+        at
+    };
+    floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    floats(&[0.5, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.25, 0.75, 0.0, 0.0]);
+    floats(&[0.0, 1.0]);
+    floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.707, 0.0, 0.707]);
+    bin.extend([0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 2, 0]);
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0,2]}}],
+        "nodes":[{{"name":"hips","children":[1]}},{{"name":"head","translation":[0,1,0]}},{{"mesh":0,"skin":0}}],
+        "skins":[{{"joints":[0,1]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":4}},"indices":5,
+        "targets":[{{"POSITION":6}}]}}]}}],
+        "animations":[{{"samplers":[{{"input":2,"output":3}}],"channels":[{{"sampler":0,"target":{{"node":1,"path":"rotation"}}}}]}}],
+        "accessors":[
+        {{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}},
+        {{"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC4"}},
+        {{"bufferView":0,"byteOffset":84,"componentType":5126,"count":2,"type":"SCALAR"}},
+        {{"bufferView":0,"byteOffset":92,"componentType":5126,"count":2,"type":"VEC4"}},
+        {{"bufferView":0,"byteOffset":124,"componentType":5121,"count":3,"type":"VEC4"}},
+        {{"bufferView":0,"byteOffset":136,"componentType":5121,"count":3,"type":"SCALAR"}},
+        {{"componentType":5126,"count":3,"type":"VEC3","sparse":{{"count":1,"indices":{{"bufferView":0,"byteOffset":137,
+        "componentType":5121}},"values":{{"bufferView":0,"byteOffset":12}}}}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{0}}}],"buffers":[{{"byteLength":{0}}}]}}"#,
+        bin.len()
+    );
+    let mut json = json.into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut out = b"glTF\x02\0\0\0".to_vec();
+    out.extend((20 + json.len() as u32 + 8 + bin.len() as u32).to_le_bytes());
+    for (kind, data) in [(b"JSON", &json), (b"BIN\0", &bin)] {
+        out.extend((data.len() as u32).to_le_bytes());
+        out.extend(kind);
+        out.extend(data);
+    }
+    out
+}
+
+const BVH: &str = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 90 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation \
+    Yrotation\n JOINT Head\n {\n  OFFSET 0 60 0\n  CHANNELS 3 Zrotation Xrotation Yrotation\n  End Site\n  {\n   OFFSET \
+    0 20 0\n  }\n }\n}\nMOTION\nFrames: 2\nFrame Time: 0.033\n0 90 0 1 2 3 4 5 6\n0 91 0 1 2 3 4 5 7\n";
+
+#[test]
+fn the_original_files_are_valid() {
+    let character = load_character_bytes("x.glb", &glb(), None).unwrap();
+    assert_eq!((character.joints, character.clips.len(), character.body.skin.morphs.len()), (2, 1, 1));
+    assert_eq!(character.body.skin.morphs[0].vertices, [1]);
+    assert!(character.dropped.is_empty(), "{:?}", character.dropped);
+    assert_eq!(load_motion_bytes("x.bvh", BVH.as_bytes(), MotionSettings::default()).unwrap().frames, 2);
+}
+
+#[test]
+fn every_truncation_is_handled() {
+    let (glb, bvh) = (glb(), BVH.as_bytes());
+    for cut in 0..glb.len() {
+        assert!(load_character_bytes("x.glb", &glb[..cut], None).is_err(), "{cut}");
+    }
+    for cut in 0..bvh.len() {
+        let _ = load_motion_bytes("x.bvh", &bvh[..cut], MotionSettings::default());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_flipped_bit_is_handled(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u32), 1..6)) {
+        let (mut glb, mut bvh) = (glb(), BVH.as_bytes().to_vec());
+        for (place, bit) in flips {
+            let (i, j) = (place.index(glb.len()), place.index(bvh.len()));
+            glb[i] ^= 1 << bit;
+            bvh[j] ^= 1 << bit;
+        }
+        if let Ok(character) = load_character_bytes("x.glb", &glb, None) {
+            prop_assert!(character.body.mesh.positions.iter().all(|p| p.is_finite()));
+            prop_assert!(lovelock_motion::fit_colliders(&character.body).len() < 100);
+        }
+        let _ = load_motion_bytes("x.bvh", &bvh, MotionSettings::default());
+    }
+
+    #[test]
+    fn any_number_is_handled(number in "-?[0-9]{1,20}|1e400|-1|4294967296|18446744073709551615", which in 0..40_usize) {
+        // Replaces the n-th number of the document.
+        let glb = glb();
+        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        let json = String::from_utf8(glb[20..20 + length].to_vec()).unwrap();
+        let starts: Vec<usize> = json.match_indices(|c: char| c.is_ascii_digit()).map(|(i, _)| i)
+            .filter(|&i| matches!(json.as_bytes()[i - 1], b':' | b'[' | b',')).collect();
+        let at = starts[which % starts.len()];
+        let end = at + json[at..].find(|c: char| !c.is_ascii_digit()).unwrap();
+        let mut json = format!("{}{number}{}", &json[..at], &json[end..]).into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let mut bytes = glb[..12].to_vec();
+        bytes.extend((json.len() as u32).to_le_bytes());
+        bytes.extend(b"JSON");
+        bytes.extend(json);
+        bytes.extend(&glb[20 + length..]);
+        let _ = load_character_bytes("x.glb", &bytes, None);
+    }
+}
+
+#[test]
+fn truncated_real_files_are_handled() {
+    let Some(data) = common::data_dir() else { return };
+    for file in ["SimpleSkin.gltf", "Fox.glb", "broken/quad_skin.glb", "CesiumMan_quantized.glb"] {
+        let bytes = std::fs::read(data.join("characters").join(file)).unwrap();
+        for k in 0..40 {
+            let cut = bytes.len() * k / 40;
+            assert!(load_character_bytes(file, &bytes[..cut], None).is_err(), "{file} {cut}");
+        }
+    }
+    let bytes = std::fs::read(data.join("motion/cmu1_jumping_jacks.bvh")).unwrap();
+    for k in 0..40 {
+        let _ = load_motion_bytes("cmu", &bytes[..bytes.len() * k / 40], MotionSettings::default());
+    }
+}

@@ -1,0 +1,12 @@
+//! Tests of bodies and motion through the public interface, in one program: each further one would link everything again.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bvh;
+mod characters;
+mod clips;
+mod collide;
+mod fuzz;
+mod retargeting;
+mod rolls;

@@ -1,0 +1,12 @@
+//! Tests of films, sequences and takes through the public interface, in one program: each further one would link everything again.
+
+#[path = "../take_scene/mod.rs"]
+mod take_scene;
+
+mod outside;
+mod sequence_kill;
+mod take_damage;
+mod take_kill;
+mod take_layout;
+mod take_play;
+mod take_regrown;

@@ -1,0 +1,13 @@
+//! Tests of pictures through the public interface, in one program: each further one would link everything again.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod agreement;
+mod inspect;
+mod layers;
+mod picture_cpu;
+mod picture_gpu;
+mod receding;
+mod shaders;
+mod values;

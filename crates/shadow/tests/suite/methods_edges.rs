@@ -1,0 +1,288 @@
+//! Empty, invalid and huge input, and settings out of range, for every method.
+
+use std::sync::Arc;
+
+use crate::common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
+use glam::Vec3;
+use lovelock_groom::Strands;
+use lovelock_shadow::{
+    ClusterDeviation, ClusterSeeds, LayerGrowth, LightFrame, ShadowError, ShadowInput, ShadowMethod,
+    ShadowSettings, TexelFilter, converged, cpu_shadow,
+};
+
+const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
+
+fn input(strands: &Strands) -> ShadowInput<'_> {
+    ShadowInput { strands, strand_width: 1e-3, light: LightFrame::new(LIGHT), anchor: HEAD, maps: 1 }
+}
+
+/// Hair that is empty, invalid, flat, or at a single position.
+fn bad_hair() -> Vec<(&'static str, Strands)> {
+    let one = Vec3::new(0.1, 1.7, 0.05);
+    let grown = grow(Style { wisps: 10, ..SMOOTH }, 1);
+    let mut broken = grown.clone();
+    broken[3][7] = Vec3::NAN;
+    broken[40] = vec![Vec3::INFINITY; 31];
+    broken[41][3].y = f32::NEG_INFINITY;
+    broken[77][0].x = 1e30;
+    broken[78][5].x = f32::MAX;
+    broken[90].truncate(1);
+    broken[91].clear();
+    let light = LightFrame::new(LIGHT);
+    let along = |i: usize| HEAD + light.x * 0.01 * i as f32;
+    // Through the middle of one texel, at every depth.
+    let mut random = SplitMix64::new(4);
+    let crowd = |_| {
+        let middle = light.x * 0.1 * random.signed();
+        vec![HEAD + middle - 0.001 * light.y, HEAD + middle + 0.001 * light.y]
+    };
+    let mut crowd: Vec<_> = (0..100_000).map(crowd).collect();
+    crowd.extend([vec![HEAD - 0.1 * Vec3::ONE], vec![HEAD + 0.1 * Vec3::ONE]]);
+    vec![
+        ("nothing at all", Strands::default()),
+        ("no strands", strands(&[])),
+        ("strands of no points", strands(&[vec![], vec![]])),
+        ("one point", strands(&[vec![one]])),
+        ("coincident points", strands(&vec![vec![one; 50]; 20])),
+        ("along the light", strands(&[(0..30).map(along).collect()])),
+        ("all broken", strands(&[vec![Vec3::NAN; 5], vec![Vec3::INFINITY; 5], vec![Vec3::splat(1e30); 4]])),
+        ("partly broken", strands(&broken)),
+        ("huge", strands(&[vec![Vec3::splat(-9e3), Vec3::splat(9e3)], vec![Vec3::ZERO, Vec3::X]])),
+        ("a crowded texel", strands(&crowd)),
+        ("hair", strands(&grown)),
+    ]
+}
+
+/// Settings out of range, and at the ends of ranges.
+fn hostile(of: u32) -> ShadowSettings {
+    let mut s = ShadowSettings::default();
+    let (n, x) =
+        [(0, f32::NAN), (1, f32::NEG_INFINITY), (u32::MAX, f32::INFINITY), (100, -1.0)][of as usize % 4];
+    // The largest maps would be slow here; `methods_memory.rs` tests them.
+    let resolution = if n == u32::MAX { 300 } else { n };
+    s.voxel_map.resolution = if n == u32::MAX { 64 } else { n };
+    s.voxel_map.head_size = x;
+    s.voxel_map.point_extinction = x;
+    (s.opacity_maps.resolution, s.opacity_maps.slices) = (resolution, n);
+    (s.deep_opacity_maps.resolution, s.deep_opacity_maps.layers) = (resolution, n);
+    s.deep_opacity_maps.depth_share = x;
+    s.deep_opacity_maps.growth = LayerGrowth::Even;
+    (s.density_clustering.resolution, s.density_clustering.clusters) = (resolution, n);
+    s.density_clustering.steps = n;
+    s.density_clustering.seeds = [ClusterSeeds::Uniform, ClusterSeeds::Histogram][of as usize % 2];
+    s.density_clustering.deviation = ClusterDeviation::Merged;
+    (s.occupancy_maps.resolution, s.occupancy_maps.slices, s.occupancy_maps.slabs) = (resolution, n, n);
+    (s.exact.resolution, s.exact.memory_limit_bytes) = (resolution, u64::MAX);
+    s.exact.filter = TexelFilter::Nearest;
+    s
+}
+
+fn points_around(hair: &Strands) -> [Vec<f32>; 3] {
+    let mut random = SplitMix64::new(5);
+    let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.signed_vec3()).collect();
+    points.extend((0..hair.points()).step_by(1 + hair.points() / 500).map(|i| hair.point(i)));
+    for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
+        points.extend([Vec3::splat(broken), Vec3::new(broken, 1.6, 0.0), Vec3::new(0.0, 1.6, broken)]);
+    }
+    [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect())
+}
+
+#[test]
+fn every_answer_is_a_transmittance() {
+    for (what, hair) in bad_hair() {
+        let [x, y, z] = points_around(&hair);
+        let mut out = vec![f32::NAN; x.len()];
+        for &method in ShadowMethod::ALL {
+            let mut map = cpu_shadow(method);
+            let mut check = |input: &ShadowInput, settings: &ShadowSettings| {
+                let done = map.build(input, settings);
+                assert!(done.is_ok(), "{method}, {what}: {done:?}");
+                out.fill(f32::NAN);
+                map.transmittance_at(&x, &y, &z, &mut out);
+                assert!(out.iter().all(|t| (0.0..=1.0).contains(t)), "{method}, {what}: {out:?}");
+                if let Some(columns) = map.column_map() {
+                    assert!(
+                        columns.transmittance.iter().all(|t| (0.0..=1.0).contains(t)),
+                        "{method}, {what}"
+                    );
+                    assert!(columns.uv_from_world.is_finite(), "{method}, {what}");
+                }
+                out.iter().copied().fold(1.0, f32::min)
+            };
+            let usual = check(&input(&hair), &ShadowSettings::default());
+            for of in 0..4 {
+                check(&input(&hair), &hostile(of));
+            }
+            for extinction_scale in [0.0, -1.0, f32::NAN] {
+                let settings = ShadowSettings { extinction_scale, ..ShadowSettings::default() };
+                assert_eq!(check(&input(&hair), &settings), 1.0, "{method}, {what}: no extinction");
+            }
+            for extinction_scale in [1e-30, 4.0, 1e30, f32::INFINITY] {
+                check(&input(&hair), &ShadowSettings { extinction_scale, ..ShadowSettings::default() });
+            }
+            for strand_width in [0.0, -1.0, f32::NAN, 1e-40, 1e30, f32::INFINITY] {
+                check(&ShadowInput { strand_width, ..input(&hair) }, &ShadowSettings::default());
+            }
+            // Control: valid hair casts a shadow.
+            assert_eq!(
+                usual < 0.9,
+                method != ShadowMethod::None && ["a crowded texel", "hair", "partly broken"].contains(&what),
+                "{method}, {what}: {usual}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_converged_shadow_takes_anything_too() {
+    for (what, hair) in bad_hair() {
+        let [x, y, z] = points_around(&hair).map(|c| c.into_iter().step_by(9).collect::<Vec<_>>());
+        for (strand_width, extinction_scale) in
+            [(1e-3, 0.15), (f32::NAN, 0.15), (1e30, f32::INFINITY), (1e-3, 0.0)]
+        {
+            let mut settings = ShadowSettings { extinction_scale, ..ShadowSettings::default() };
+            settings.method = ShadowMethod::Exact;
+            settings.exact.resolution = 64;
+            let input = ShadowInput { strand_width, ..input(&hair) };
+            let found = converged(&input, &settings, [&x, &y, &z]).expect("fits");
+            assert!(found.transmittance.iter().all(|t| (0.0..=1.0).contains(t)), "{what}: {found:?}");
+        }
+    }
+    let nothing = converged(&input(&Strands::default()), &ShadowSettings::default(), [&[], &[], &[]]);
+    assert!(nothing.expect("fits").transmittance.is_empty());
+}
+
+/// Zigzag strands whose segments span the whole map.
+fn zigzag(lines: usize) -> Strands {
+    let light = LightFrame::new(LIGHT);
+    let at = |i: usize| {
+        let side = if (i / 2 + i).is_multiple_of(2) { -1.0 } else { 1.0 };
+        let across = (i / 2) as f32 / lines as f32 * 2.0 - 1.0;
+        HEAD + light.world_from_light(0.2 * Vec3::new(0.1 * side, side, across))
+    };
+    strands(&[(0..2 * lines).map(at).collect()])
+}
+
+#[test]
+fn maps_that_do_not_fit_are_refused_with_the_number() {
+    // 150,000 lines of 2000 texels: 3 · 10⁸ fragments.
+    let hair = zigzag(150_000);
+    let fine = ShadowInput { strand_width: 1e-5, ..input(&hair) };
+    let mut settings = ShadowSettings::default();
+    settings.opacity_maps.resolution = 2048;
+    settings.deep_opacity_maps.resolution = 2048;
+    settings.density_clustering.resolution = 2048;
+    settings.density_clustering.prefiltered = false;
+    settings.occupancy_maps.resolution = 2048;
+    settings.exact.resolution = 2048;
+    settings.exact.memory_limit_bytes = 1 << 30;
+    for method in texel_methods() {
+        let mut map = cpu_shadow(method);
+        map.build(&input(&strands(&grow(Style { wisps: 2, ..SMOOTH }, 1))), &settings)
+            .expect("a little fits");
+        let error = map.build(&fine, &settings).expect_err("does not fit");
+        let ShadowError::TooLarge { method: of, needed_bytes, limit_bytes, .. } = error else {
+            panic!("{method}: {error}");
+        };
+        assert_eq!(of, method);
+        // 21 bytes each.
+        assert!(
+            needed_bytes > limit_bytes && (5_800_000_000..6_800_000_000).contains(&needed_bytes),
+            "{error}"
+        );
+        let text = error.to_string();
+        let needed = format!("needs {:.1} GiB", needed_bytes as f64 / f64::from(1 << 30));
+        assert!(text.starts_with(method.id()) && text.contains(&needed), "{text}");
+        assert_eq!(map.transmittance(HEAD + 0.5 * input(&hair).light.x), 1.0, "lit until it fits");
+        assert_eq!(map.column_map(), None);
+    }
+    // Fragments fit, but records do not: 4 million texels of 256 slices.
+    let hair = zigzag(2000);
+    let fine = ShadowInput { strand_width: 1e-5, ..input(&hair) };
+    settings.opacity_maps.slices = 256;
+    let mut map = cpu_shadow(ShadowMethod::OpacityMaps);
+    let error = map.build(&fine, &settings).expect_err("does not fit").to_string();
+    assert!(error.contains("needs 4.0 GiB") && error.contains("limit of 2.0 GiB"), "{error}");
+    // Both fit with less.
+    settings.opacity_maps.resolution = 512;
+    map.build(&fine, &settings).expect("fits");
+    settings.exact.memory_limit_bytes = 8 << 30;
+    cpu_shadow(ShadowMethod::Exact).build(&fine, &settings).expect("fits");
+}
+
+#[test]
+fn the_converged_shadow_is_refused_where_a_row_does_not_fit() {
+    // All in one row of texels.
+    let light = LightFrame::new(LIGHT);
+    let at = |i: usize| HEAD + light.y * if i.is_multiple_of(2) { 0.3 } else { -0.3 };
+    let hair = strands(&[(0..60_000).map(at).collect()]);
+    let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
+    settings.exact.memory_limit_bytes = 0;
+    let found = converged(&input(&hair), &settings, [&[HEAD.x], &[HEAD.y], &[HEAD.z]]);
+    assert!(
+        matches!(found, Err(ShadowError::TooLarge { limit_bytes, .. }) if limit_bytes == 16 << 20),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn shadows_are_the_same_for_any_number_of_threads() {
+    let hair = strands(&grow(Style { wisps: 60, ..SMOOTH }, 2));
+    let [x, y, z] = points_around(&hair);
+    for &method in ShadowMethod::ALL {
+        let answer = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| {
+                let mut map = cpu_shadow(method);
+                map.build(&input(&hair), &ShadowSettings::default()).expect("fits");
+                let mut out = vec![f32::NAN; x.len()];
+                map.transmittance_at(&x, &y, &z, &mut out);
+                let columns = map.column_map();
+                (out.into_iter().map(f32::to_bits).collect::<Vec<_>>(), columns)
+            })
+        };
+        let one = answer(1);
+        for threads in [2, 3, 7] {
+            assert!(answer(threads) == one, "{method} on {threads} threads");
+        }
+    }
+    let settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
+    let answer = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let few = |c: &[f32]| c.iter().copied().step_by(20).collect::<Vec<_>>();
+        pool.install(|| converged(&input(&hair), &settings, [&few(&x), &few(&y), &few(&z)]).expect("fits"))
+    };
+    assert!(answer(1) == answer(3));
+}
+
+#[test]
+fn a_map_that_is_built_again_remembers_nothing() {
+    let (first, second) = (grow(Style { wisps: 30, ..SMOOTH }, 2), grow(Style { wisps: 12, ..SMOOTH }, 9));
+    let (first, second) = (strands(&first), strands(&second));
+    let [x, y, z] = points_around(&second);
+    for &method in ShadowMethod::ALL {
+        let mut used = cpu_shadow(method);
+        let mut finer = ShadowSettings::default();
+        finer.density_clustering.clusters = 8;
+        finer.opacity_maps.slices = 256;
+        used.build(&input(&first), &finer).expect("fits");
+        let mut fresh = cpu_shadow(method);
+        let answers = [&mut used, &mut fresh].map(|map| {
+            map.build(&input(&second), &ShadowSettings::default()).expect("fits");
+            let mut out = vec![f32::NAN; x.len()];
+            map.transmittance_at(&x, &y, &z, &mut out);
+            out
+        });
+        assert_eq!(answers[0], answers[1], "{method}");
+    }
+}
+
+#[test]
+fn strands_without_their_last_index_are_empty() {
+    let hair = Strands { first_point: Arc::from([0_u32]), ..Strands::default() };
+    for &method in ShadowMethod::ALL {
+        let mut map = cpu_shadow(method);
+        map.build(&input(&hair), &ShadowSettings::default()).expect("fits");
+        assert_eq!(map.transmittance(HEAD), 1.0);
+    }
+}
