@@ -2,6 +2,7 @@
 
 mod compare;
 mod data;
+pub mod suite;
 
 pub use compare::{Flip, flip, mean_color};
 pub use data::{data_dir, skip_without_adapter};

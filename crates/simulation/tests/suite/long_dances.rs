@@ -1,12 +1,15 @@
-//! Ten minutes of each dance, at several rates and at an uneven one: lengths hold and no guide is lost.
+//! Twenty seconds of each dance, ten minutes in the long suite, at several rates and at an uneven one: lengths hold and no
+//! guide is lost.
 
 use lovelock_groom::{GroomSettings, Preset};
 use lovelock_simulation::{Integrator, SimulationSettings, StepReport};
-use lovelock_testkit::data_dir;
+use lovelock_testkit::{data_dir, suite};
 
 use crate::common::{Stage, stretch, worse};
 
-const TEN_MINUTES: f64 = 600.0;
+/// The duration of a dance in each suite, seconds.
+const SHORT: f64 = 20.0;
+const LONG: f64 = 600.0;
 
 /// At most sixteen guides, so that ten minutes of motion cost seconds.
 fn stage() -> Stage {
@@ -48,7 +51,7 @@ fn uneven(n: u32) -> f32 {
 }
 
 fn check(stage: &mut Stage, name: &str, step: fn(u32) -> f32) {
-    let all = dance(stage, &SimulationSettings::default(), TEN_MINUTES, step);
+    let all = dance(stage, &SimulationSettings::default(), suite::seconds(SHORT, LONG), step);
     println!("{name}: {all:?}");
     assert_eq!(all.recovered_guides, 0, "{name}");
     assert!(all.max_stretch < 1e-5, "{name}: stretch {}", all.max_stretch);
@@ -71,42 +74,42 @@ fn captured(step: fn(u32) -> f32) {
 
 // One test per rate, so that they run in parallel.
 #[test]
-fn ten_minutes_of_the_shipped_dance_at_30_hertz() {
+fn the_shipped_dance_keeps_its_lengths_at_30_hertz() {
     shipped(|_| 1.0 / 30.0);
 }
 
 #[test]
-fn ten_minutes_of_the_shipped_dance_at_60_hertz() {
+fn the_shipped_dance_keeps_its_lengths_at_60_hertz() {
     shipped(|_| 1.0 / 60.0);
 }
 
 #[test]
-fn ten_minutes_of_the_shipped_dance_at_144_hertz() {
+fn the_shipped_dance_keeps_its_lengths_at_144_hertz() {
     shipped(|_| 1.0 / 144.0);
 }
 
 #[test]
-fn ten_minutes_of_the_shipped_dance_in_uneven_steps() {
+fn the_shipped_dance_keeps_its_lengths_in_uneven_steps() {
     shipped(uneven);
 }
 
 #[test]
-fn ten_minutes_of_a_captured_dance_at_30_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_30_hertz() {
     captured(|_| 1.0 / 30.0);
 }
 
 #[test]
-fn ten_minutes_of_a_captured_dance_at_60_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_60_hertz() {
     captured(|_| 1.0 / 60.0);
 }
 
 #[test]
-fn ten_minutes_of_a_captured_dance_at_144_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_144_hertz() {
     captured(|_| 1.0 / 144.0);
 }
 
 #[test]
-fn ten_minutes_of_a_captured_dance_in_uneven_steps() {
+fn a_captured_dance_keeps_its_lengths_in_uneven_steps() {
     captured(uneven);
 }
 
