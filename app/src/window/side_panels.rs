@@ -68,7 +68,8 @@ impl Window {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 section(ui, "Shadow", true, |ui| {
                     let bytes = self.session.painted.as_ref().map_or(0, |painted| painted.stats.shadow_bytes);
-                    panels::shadow::ui(ui, &mut project.shadow, bytes);
+                    let default = project.hair.groom.look;
+                    panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), bytes);
                 });
                 section(ui, "Light", true, |ui| {
                     panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);

@@ -55,12 +55,12 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
 }
 
 /// A valid shader and the results of its validation.
-pub(crate) struct Checked {
+pub(crate) struct CheckedShader {
     module: naga::Module,
     info: naga::valid::ModuleInfo,
 }
 
-impl Checked {
+impl CheckedShader {
     /// Whether the shader declares an `override` of this name.
     pub(crate) fn has_override(&self, name: &str) -> bool {
         self.module.overrides.iter().any(|(_, constant)| constant.name.as_deref() == Some(name))
@@ -79,7 +79,7 @@ impl Checked {
     }
 }
 
-pub(crate) fn check(source: &ShaderSource) -> Result<Checked, GpuError> {
+pub(crate) fn check(source: &ShaderSource) -> Result<CheckedShader, GpuError> {
     let module = naga::front::wgsl::parse_str(&source.text).map_err(|error| {
         let line = error.location(&source.text).map_or(1, |at| at.line_number as usize);
         let (name, line) = source.locate(line);
@@ -101,7 +101,7 @@ pub(crate) fn check(source: &ShaderSource) -> Result<Checked, GpuError> {
         }
         GpuError::Shader(format!("{name}, line {line}: {reason}"))
     })?;
-    Ok(Checked { module, info })
+    Ok(CheckedShader { module, info })
 }
 
 #[cfg(test)]

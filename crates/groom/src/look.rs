@@ -29,6 +29,11 @@ pub struct HairLook {
     pub secondary_strength: f32,
     /// Width of the highlights along the hair: low values are silky, high ones dull.
     pub roughness: f32,
+    /// Factor on the optical depth with which strands shadow each other (the symbol *s*).
+    ///
+    /// It represents the light that hair scatters forward instead of blocking: 1 is a head of opaque fibres, which is black a
+    /// centimetre inside.
+    pub extinction_scale: f32,
 }
 
 impl Default for HairLook {
@@ -44,6 +49,7 @@ impl Default for HairLook {
             primary_strength: 0.6,
             secondary_strength: 0.8,
             roughness: 0.3,
+            extinction_scale: 0.15,
         }
     }
 }
@@ -117,6 +123,16 @@ impl Settings for HairLook {
         )
         .unit(Unit::THOUSANDS)
         .soft([1e4, 2e5]),
+        Setting::number(
+            field!(Self, extinction_scale),
+            [0.01, 4.0],
+            "Extinction",
+            "How much light a hair blocks. Low values let light through the hair, high ones make its \
+             inside dark; 1 is a head of opaque fibres.",
+        )
+        .symbol("s")
+        .logarithmic()
+        .decimals(3),
     ];
 }
 

@@ -134,6 +134,7 @@ const SMOOTH: GroomSettings = GroomSettings {
         primary_strength: 0.6,
         secondary_strength: 0.8,
         roughness: 0.3,
+        extinction_scale: 0.15,
     },
 };
 

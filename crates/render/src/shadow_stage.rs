@@ -52,7 +52,14 @@ impl LightShadow {
         self.frame = self.frame.transported(direction);
         let strand_width = input.look.shadow_width(input.style.strands.count());
         let anchor = input.world_from_head.translation.into();
-        let from = ShadowInput { strands, strand_width, light: self.frame, anchor, maps };
+        let from = ShadowInput {
+            strands,
+            strand_width,
+            extinction_scale: input.look.extinction_scale,
+            light: self.frame,
+            anchor,
+            maps,
+        };
         self.shadow.build(&from, input.shadow)
     }
 

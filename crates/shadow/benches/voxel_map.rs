@@ -6,7 +6,7 @@ mod common;
 
 use std::hint::black_box;
 
-use common::{HEAD, SMOOTH, Style, grow, strands};
+use common::{EXTINCTION, HEAD, SMOOTH, Style, grow, strands};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use lovelock_groom::Strands;
@@ -24,6 +24,7 @@ fn input(strands: &Strands) -> ShadowInput<'_> {
     ShadowInput {
         strands,
         strand_width: 80e-6 * 100_000.0 / strands.count() as f32,
+        extinction_scale: EXTINCTION,
         light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
         anchor: HEAD,
         maps: 1,

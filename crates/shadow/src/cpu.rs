@@ -13,6 +13,8 @@ pub struct ShadowInput<'a> {
     /// The width with which one strand blocks light, metres: the diameter of a hair times the number of real hairs that a
     /// strand represents. See `HairLook::shadow_width`.
     pub strand_width: f32,
+    /// Factor on the optical depth of every strand; see `HairLook::extinction_scale`. Negative values and NaN count as 0.
+    pub extinction_scale: f32,
     /// The light's direction and axes.
     pub light: LightFrame,
     /// The origin of the map's lattice, world space: the head. Hair that moves with it stays in its cells, so that its shadow
@@ -20,6 +22,11 @@ pub struct ShadowInput<'a> {
     pub anchor: Vec3,
     /// The number of maps that are built together, one per light. They share the memory limit evenly. 0 counts as 1.
     pub maps: u32,
+}
+
+/// A factor on optical depth in its usable range: not negative, finite, and 0 for NaN.
+pub(crate) fn safe_extinction(scale: f32) -> f32 {
+    if scale > 0.0 { scale.min(1e6) } else { 0.0 }
 }
 
 impl ShadowInput<'_> {
@@ -88,4 +95,17 @@ pub trait CpuShadow {
 
     /// What the last map holds along the light through `p` (world space, metres), for inspection.
     fn along_ray(&self, p: Vec3) -> RayStructure;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extinction_is_always_a_usable_number() {
+        let cases = [(0.15, 0.15), (0.0, 0.0), (-1.0, 0.0), (f32::NAN, 0.0), (f32::INFINITY, 1e6)];
+        for (scale, safe) in cases {
+            assert_eq!(safe_extinction(scale), safe);
+        }
+    }
 }

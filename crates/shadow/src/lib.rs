@@ -13,9 +13,7 @@ mod error;
 mod exp;
 mod gpu;
 mod light;
-mod method;
 mod ray;
-mod settings;
 
 pub mod methods;
 
@@ -25,8 +23,6 @@ pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport};
 pub use error::ShadowError;
 pub use gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS};
 pub use light::LightFrame;
-pub use method::{MapKind, MapSize, UnknownShadowMethod, all_shaders, cpu_shadow, gpu_shadow};
-pub use methods::ShadowMethod;
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
 pub use methods::density_clustering::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};
 pub use methods::exact::{ExactMap, ExactSettings};
@@ -35,5 +31,7 @@ pub use methods::opacity_maps::OpacityMapsSettings;
 pub use methods::texels::{TEXEL_RESOLUTIONS, TexelFilter};
 pub use methods::voxel_map;
 pub use methods::voxel_map::VoxelMapSettings;
+pub use methods::{
+    MapKind, MapSize, ShadowMethod, ShadowSettings, UnknownShadowMethod, all_shaders, cpu_shadow, gpu_shadow,
+};
 pub use ray::{RayMark, RayMarkKind, RayStructure};
-pub use settings::ShadowSettings;

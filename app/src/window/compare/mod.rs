@@ -256,9 +256,7 @@ impl Window {
         match asked {
             Some(header::PaneAction::Use(index)) => {
                 if let Some(pane) = panes.get(index).cloned() {
-                    let scale = project.shadow.extinction_scale;
                     *project = pane.applied_to(project);
-                    project.shadow.extinction_scale = scale;
                 }
             }
             Some(header::PaneAction::Swap(index)) if index + 1 < panes.len() => panes.swap(index, index + 1),

@@ -1,16 +1,22 @@
 //! How hair shadows itself.
 
 use egui::Ui;
+use lovelock_groom::HairLook;
 use lovelock_render::{MapExtent, ShadowMethod, ShadowSettings, VoxelDeposit, VoxelMapSettings};
 
 use crate::window::control::{all_settings, note, section, setting, settings};
 
 /// The controls of `shadow`; `memory_bytes` is the size of the maps of the last frame.
-pub(crate) fn ui(ui: &mut Ui, shadow: &mut ShadowSettings, memory_bytes: u64) {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    shadow: &mut ShadowSettings,
+    (look, default_look): (&mut HairLook, &HairLook),
+    memory_bytes: u64,
+) {
     let default = ShadowSettings::default();
     setting(ui, "method", shadow, &default);
     note(ui, shadow.method.description());
-    setting(ui, "extinction_scale", shadow, &default);
+    setting(ui, "extinction_scale", look, default_look);
     of_method(ui, shadow);
     note(ui, format!("{:.1} MiB for the maps of all lights", memory_bytes as f64 / (1024.0 * 1024.0)));
 }

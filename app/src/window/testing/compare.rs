@@ -91,11 +91,11 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     assert_eq!(methods(&harness), before);
     assert_eq!(of(&harness).history.undo_len(), 0);
 
-    let shadow = project(&harness).shadow;
+    let (shadow, look) = (project(&harness).shadow, project(&harness).look);
     press_button(&mut harness, "Use pane 3");
     let used = project(&harness);
     assert_eq!(used.shadow.method, before[2]);
-    assert_eq!(used.shadow.extinction_scale.to_bits(), shadow.extinction_scale.to_bits());
+    assert_eq!(used.look, look);
     assert_eq!(used.compare.panes.len(), 4);
     assert_eq!(of(&harness).history.undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);

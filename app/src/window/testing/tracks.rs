@@ -40,10 +40,10 @@ fn a_slider_moved_during_playback_becomes_a_track() {
     ride(&mut harness);
     let written = project(&harness);
     let [track] = written.timeline.tracks.as_slice() else { panic!("{:?}", written.timeline.tracks) };
-    assert_eq!(track.target, "shadow/extinction_scale");
+    assert_eq!(track.target, "look/extinction_scale");
     let [low, high] = track.range()[0];
     assert!(high > low && track.keys.len() >= 3, "{track:?}");
-    assert_eq!(written.shadow, before.shadow, "the project's own value stays");
+    assert_eq!(written.look, before.look, "the project's own value stays");
     assert_eq!(of(&harness).history.undo_len(), 1, "not one undo step");
 
     // The image and the panel follow the track.
@@ -52,11 +52,11 @@ fn a_slider_moved_during_playback_becomes_a_track() {
         window.session.drawn.as_ref().is_some_and(|(drawn, frame, _)| {
             let track = &window.history.project().timeline.tracks[0];
             let at = track.value_at(frame.position_secs).map_or(0.0, |value| value[0]);
-            (f64::from(drawn.shadow.extinction_scale) - at).abs() < 1e-5 && at > low + 0.5 * (high - low)
+            (f64::from(drawn.look.extinction_scale) - at).abs() < 1e-5 && at > low + 0.5 * (high - low)
         })
     });
-    let shown = of(&harness).seen.as_ref().map(|seen| seen.project.shadow.extinction_scale);
-    assert!(shown.is_some_and(|shown| shown != before.shadow.extinction_scale));
+    let shown = of(&harness).seen.as_ref().map(|seen| seen.project.look.extinction_scale);
+    assert!(shown.is_some_and(|shown| shown != before.look.extinction_scale));
 
     // A control whose track plays cannot be moved, and the window says so.
     ride(&mut harness);

@@ -136,7 +136,7 @@ impl Rounds {
         let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
-        let project = drawn_as(&request.project, contender);
+        let project = contender.applied_to(&request.project);
         let shared = (&request.snapshot, &self.strands);
         let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
         let input = input_of(snapshot, &project, strands, &pane.camera);
@@ -251,10 +251,11 @@ fn kept(
     light: &Light,
     p: Vec3,
 ) -> Result<RayStructure, RenderError> {
-    let drawn = drawn_as(project, &project.compare.panes.get(pane).cloned().unwrap_or_default());
+    let drawn = project.compare.panes.get(pane).cloned().unwrap_or_default().applied_to(project);
     let input = ShadowInput {
         strands,
         strand_width: project.look.shadow_width(strands.count()),
+        extinction_scale: project.look.extinction_scale,
         light: LightFrame::new(direction(light)),
         anchor: snapshot.guides.world_from_head.translation.into(),
         maps: enabled(project).count() as u32,
@@ -267,13 +268,6 @@ fn kept(
 /// The lights that are on.
 fn enabled(project: &Project) -> impl Iterator<Item = &Light> {
     project.lights.iter().filter(|light| light.enabled)
-}
-
-/// The project with the settings of a contender, except the extinction scale, which is a property of the hair.
-fn drawn_as(project: &Project, contender: &Contender) -> Project {
-    let mut drawn = contender.applied_to(project);
-    drawn.shadow.extinction_scale = project.shadow.extinction_scale;
-    drawn
 }
 
 /// The render input of an instant with interpolated strands.

@@ -120,13 +120,13 @@ fn a_pane_of_lower_scale_is_rendered_smaller_and_others_are_unchanged() {
 }
 
 #[test]
-fn the_extinction_scale_is_that_of_the_project() {
+fn panes_use_the_extinction_of_the_hair() {
     let mut rig = on_processor(&[ShadowMethod::VoxelMap]);
-    rig.project.compare.panes[0].shadow.extinction_scale = 4.0;
+    let before = alone(&rig, 0, 64, 48);
+    rig.project.look.extinction_scale = 4.0;
     rig.draw(rig.request(&[0]));
-    assert!(rig.pane(0).picture != alone(&rig, 0, 64, 48), "a pane with its own scale would differ");
-    rig.project.compare.panes[0].shadow.extinction_scale = rig.project.shadow.extinction_scale;
     assert!(rig.pane(0).picture == alone(&rig, 0, 64, 48));
+    assert!(rig.pane(0).picture != before, "control: extinction is visible");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! One way to render hair among those that are compared.
 
-use lovelock_render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_render::{Backend, PictureSettings, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
 use super::super::Project;
@@ -46,24 +46,7 @@ impl Contender {
 
     /// The main settings of the method: the size of its map, and the number of samples along the light.
     pub fn size_label(&self) -> String {
-        let shadow = &self.shadow;
-        match shadow.method {
-            ShadowMethod::None => String::new(),
-            ShadowMethod::VoxelMap => format!("{}³", shadow.voxel_map.resolution),
-            ShadowMethod::OpacityMaps => {
-                format!("{}² × {}", shadow.opacity_maps.resolution, shadow.opacity_maps.slices)
-            }
-            ShadowMethod::DeepOpacityMaps => {
-                format!("{}² × {}", shadow.deep_opacity_maps.resolution, shadow.deep_opacity_maps.layers)
-            }
-            ShadowMethod::DensityClustering => {
-                format!("{}² × {}", shadow.density_clustering.resolution, shadow.density_clustering.clusters)
-            }
-            ShadowMethod::OccupancyMaps => {
-                format!("{}² × {}", shadow.occupancy_maps.resolution, shadow.occupancy_maps.slices)
-            }
-            ShadowMethod::Exact => format!("{}²", shadow.exact.resolution),
-        }
+        self.shadow.size_label()
     }
 
     /// The settings besides the method, such as `128³ · sorted · CPU`.
@@ -104,6 +87,8 @@ pub const fn backend_label(backend: Backend) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_render::ShadowMethod;
+
     use super::*;
 
     #[test]

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::generic::unknown_fields;
+use super::version_1::Version1;
 use super::{PROJECT_VERSION, Project};
 use crate::error::{Place, Problem, ProblemKind, ProjectError};
 use crate::files::{Access, folder_of, write_whole};
@@ -107,13 +108,18 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
             ),
         ));
     }
-    let project: Project = options.from_str(text).map_err(refuse)?;
+    let mut project: Project = options.from_str(text).map_err(refuse)?;
+    let is_version_1 = header.version < 2;
+    if is_version_1 {
+        options.from_str::<Version1>(text).map_err(refuse)?.migrate(&mut project);
+    }
     let mut problems = Vec::new();
     let known = options
         .to_string(&project)
         .and_then(|text| options.from_str::<ron::Value>(&text).map_err(|error| error.code));
     if let (Ok(found), Ok(known)) = (options.from_str::<ron::Value>(text), known) {
-        problems.extend(unknown_fields(&found, &known).into_iter().map(|field| {
+        let unknown = unknown_fields(&found, &known).into_iter();
+        problems.extend(unknown.filter(|field| !(is_version_1 && Version1::knows(field))).map(|field| {
             let message = format!("the field `{field}` is not known to this version and was left out");
             Problem::new(Place::Project, ProblemKind::Ignored, message)
         }));

@@ -12,6 +12,7 @@ mod sections;
 mod settings;
 mod tables;
 mod trim;
+mod version_1;
 
 pub use contender::{Contender, backend_label};
 pub use file::{
@@ -33,7 +34,7 @@ use serde::{Deserialize, Serialize};
 use crate::files::FileRef;
 
 /// Version of the project file that this program writes, and the newest version that it reads.
-pub const PROJECT_VERSION: u32 = 1;
+pub const PROJECT_VERSION: u32 = 2;
 
 /// Everything that is saved and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +96,8 @@ impl Project {
     pub fn set_preset(&mut self, preset: Preset) {
         self.change_hair(HairSource::Grown, preset);
         self.hair.groom = GroomSettings::preset(preset);
-        self.look = self.hair.groom.look;
+        // How much light hair blocks stays, whatever its colour.
+        self.look = HairLook { extinction_scale: self.look.extinction_scale, ..self.hair.groom.look };
         self.hair.ties = preset.ties().to_vec();
         // A cut belongs to the hair that it was made on.
         self.hair.cut = Haircut::default();

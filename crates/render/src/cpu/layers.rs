@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::finish::{PixelsIn, compose_row, noise_at};
 use super::hair::segment::{Span, SpanSink, each_span};
 use super::math::{clamp, floor, index_of};
-use super::placed::{Placed, PosedBody, TileScratch, copy_rows, posed_body};
+use super::placed::{PlacedScene, PosedBody, TileScratch, copy_rows, posed_body};
 use super::points::ShadedPoint;
 use super::pool::Pool;
 use super::surface::raster::SurfaceSamples;
@@ -50,7 +50,7 @@ impl LayerTiles {
         view: &View,
         grid: &Grid,
         input: &FrameInput,
-        placed: &mut Placed,
+        placed: &mut PlacedScene,
         at_points: &[u32],
     ) {
         let lit = view.lights.is_empty();
@@ -113,7 +113,7 @@ pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool,
 fn nearest_of(
     view: &View,
     grid: &Grid,
-    placed: &Placed,
+    placed: &PlacedScene,
     (tile, body): (usize, PosedBody),
     samples: &SurfaceSamples,
 ) -> Vec<f32> {

@@ -26,7 +26,7 @@ const SEGMENTS_AT_ONCE: usize = 128;
 
 /// The projected content of a picture, sorted into tiles; kept from frame to frame.
 #[derive(Debug)]
-pub(super) struct Placed {
+pub(super) struct PlacedScene {
     pub width: Width,
     pub details: StrandDetails,
     pub points: Vec<ShadedPoint>,
@@ -51,7 +51,7 @@ pub(super) struct TileScratch {
 /// The body of a picture.
 pub(super) type PosedBody<'a> = Option<(&'a Body, &'a Skin)>;
 
-impl Placed {
+impl PlacedScene {
     pub fn new(width: Width) -> Self {
         Self {
             width,

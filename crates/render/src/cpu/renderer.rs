@@ -13,7 +13,7 @@ use super::backdrop::{Ground, ground_simd};
 use super::body_depth::{self, DepthMap};
 use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
 use super::layers::{LayerTiles, finish_light};
-use super::placed::{Placed, TileScratch, copy_rows, posed_body, surface_of};
+use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of};
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
@@ -32,7 +32,7 @@ const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 pub struct CpuRenderer {
     strands: Strands,
     shadow: ShadowStage,
-    placed: Placed,
+    placed: PlacedScene,
     depth: Vec<DepthMap>,
     tiles: Vec<u8>,
     plain: PlainTiles,
@@ -67,7 +67,7 @@ impl Default for CpuRenderer {
         Self {
             strands: Strands::default(),
             shadow: ShadowStage::default(),
-            placed: Placed::new(Width::widest()),
+            placed: PlacedScene::new(Width::widest()),
             depth: Vec::new(),
             tiles: Vec::new(),
             plain: PlainTiles::default(),
@@ -84,7 +84,7 @@ impl CpuRenderer {
     /// If the CPU does not support such vectors.
     pub fn with_width(width: Width) -> Self {
         assert!(width.is_available(), "{width:?} on a processor without");
-        Self { placed: Placed::new(width), ..Self::default() }
+        Self { placed: PlacedScene::new(width), ..Self::default() }
     }
 
     /// The name of the device: the vector width in use.

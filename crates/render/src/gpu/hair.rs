@@ -100,7 +100,8 @@ impl HairBuffers {
         let extent = self.extent.get_or_insert_with(|| StrandBounds::new(input.style));
         let bounds = match input.hair {
             HairPose::Strands(strands) => {
-                let input = ShadowInput { strands, strand_width: 0.0, light, anchor, maps: 1 };
+                let input =
+                    ShadowInput { strands, strand_width: 0.0, extinction_scale: 0.0, light, anchor, maps: 1 };
                 Bounds::of_strands(&input)
             }
             HairPose::Guides(guides) => {

@@ -10,7 +10,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
-use super::eye::{Area, Drawn, Eye, EyeInput, WIDEST_PLAIN, too_large};
+use super::eye::{Area, Eye, EyeInput, HairOutput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
@@ -233,7 +233,8 @@ impl GpuRenderer {
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }
-        let eye = eye_input(&seen, &self.hair, targets, &uniform, Drawn::Blended(input.picture.transparency));
+        let eye =
+            eye_input(&seen, &self.hair, targets, &uniform, HairOutput::Blended(input.picture.transparency));
         self.eye.draw(gpu, &mut commands, &eye)?;
         let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
@@ -316,7 +317,7 @@ fn eye_input<'a>(
     hair: &'a HairBuffers,
     targets: &'a Targets,
     uniform: &FrameUniform,
-    drawn: Drawn,
+    drawn: HairOutput,
 ) -> EyeInput<'a> {
     let strands = hair.strands();
     EyeInput {

@@ -108,6 +108,7 @@ impl GpuShadowStage {
                 bounds,
                 longest_strand,
                 strand_width: input.look.shadow_width(input.style.strands.count()),
+                extinction_scale: input.look.extinction_scale,
                 light: frame,
                 anchor,
                 maps: lights.len() as u32,

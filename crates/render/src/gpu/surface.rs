@@ -17,7 +17,7 @@ use crate::closed::{Closedness, encloses};
 /// Vertex attributes that change every frame: position and normal. Shadow methods read them as two `vec4f`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-struct Moving {
+struct VertexPose {
     position: [f32; 4],
     normal: [f32; 4],
 }
@@ -25,7 +25,7 @@ struct Moving {
 /// Colour, and 1 where hair grows.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-struct Fixed([f32; 4]);
+struct VertexColor([f32; 4]);
 
 /// The body's buffers and depth maps.
 #[derive(Debug)]
@@ -35,11 +35,11 @@ pub(super) struct SurfaceBuffers {
     is_closed: bool,
     /// Whether the body is closed and the eye outside.
     seen_from_without: bool,
-    moving: GrowBuffer<Moving>,
+    moving: GrowBuffer<VertexPose>,
     hair: GrowBuffer<u32>,
-    fixed: GrowBuffer<Fixed>,
+    fixed: GrowBuffer<VertexColor>,
     indices: GrowBuffer<u32>,
-    staging: Vec<Moving>,
+    staging: Vec<VertexPose>,
     /// The depth maps of all lights, as a texture array.
     pub depth: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
@@ -125,7 +125,7 @@ impl SurfaceBuffers {
             let fixed: Vec<_> = (0..mesh.positions.len())
                 .map(|i| {
                     let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
-                    Fixed([color.x, color.y, color.z, mesh.scalp.get(i).copied().unwrap_or(0.0)])
+                    VertexColor([color.x, color.y, color.z, mesh.scalp.get(i).copied().unwrap_or(0.0)])
                 })
                 .collect();
             self.fixed.write(device, queue, &fixed);
@@ -137,7 +137,7 @@ impl SurfaceBuffers {
         skin.positions
             .par_iter()
             .zip(&skin.normals)
-            .map(|(p, n)| Moving { position: [p.x, p.y, p.z, 1.0], normal: [n.x, n.y, n.z, 0.0] })
+            .map(|(p, n)| VertexPose { position: [p.x, p.y, p.z, 1.0], normal: [n.x, n.y, n.z, 0.0] })
             .collect_into_vec(&mut self.staging);
         self.moving.write(device, queue, &self.staging);
         self.hair.reserve(device, self.staging.len());

@@ -223,7 +223,8 @@ fn self_shadow_darkens_the_inside() {
     let mean = |method, extinction_scale| {
         let mut s = scene(&lines);
         s.look.real_hairs = 20_000.0;
-        s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
+        s.shadow.method = method;
+        s.look.extinction_scale = extinction_scale;
         s.lights = vec![Light { direction: Vec3::new(0.0, 0.0, 1.0), ..Light::default() }];
         s.draw_by(BACKEND, 96, 96).map(|p| mean_color(&p.rgba)[0])
     };
@@ -244,7 +245,7 @@ fn hostile_settings_give_a_picture_without_holes() {
     s.lights = vec![Light { direction: Vec3::ZERO, intensity: f32::NAN, ..Light::default() }; 9];
     s.picture.exposure_stops = f32::NAN;
     s.picture.strand_opacity = f32::NAN;
-    s.shadow.extinction_scale = f32::NAN;
+    s.look.extinction_scale = f32::NAN;
     s.look.width_scale = f32::INFINITY;
     s.picture.background_top = Vec3::splat(0.2);
     s.picture.background_bottom = Vec3::splat(0.2);
@@ -286,7 +287,8 @@ fn odd_hair_in_every_combination_is_a_picture() {
         for &method in ShadowMethod::ALL {
             for transparency in Transparency::ALL {
                 for extinction_scale in [0.0, 0.15, 1e9] {
-                    s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
+                    s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
+                    s.look.extinction_scale = extinction_scale;
                     s.picture.transparency = transparency;
                     let Some(picture) = s.draw_by(BACKEND, 24, 16) else { return };
                     // NaN must not reach the background, which would become black.

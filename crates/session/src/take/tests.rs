@@ -1,6 +1,6 @@
 //! Takes reproduce the simulation and the changes of the project. No test here needs a graphics adapter.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lovelock_project::Project;
@@ -226,4 +226,17 @@ fn a_transport_loops_plays_backwards_and_stops_at_its_ends() {
     assert!((transport.snapshot().expect("a frame").position_secs - 1.0).abs() < 1e-9, "the last frame");
     assert!(!transport.advance(2.0 / 60.0));
     assert!((transport.snapshot().expect("a frame").position_secs - 1.0 / 60.0).abs() < 1e-9, "and round");
+}
+
+/// A take of the program before the extinction scale moved from the section `shadow` to the look of the hair.
+#[test]
+fn a_take_of_project_version_1_keeps_its_extinction() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/take/version_1.take");
+    let mut player = played(&path);
+    let project = player.project();
+    assert_eq!((project.look.extinction_scale, project.shadow.deep_opacity_maps.layers), (0.3, 6));
+    let targets: Vec<_> = project.timeline.tracks.iter().map(|track| track.target.as_str()).collect();
+    assert_eq!(targets, ["look/extinction_scale", "camera/distance"]);
+    assert_eq!(player.frames(), 6);
+    player.snapshot(0.05).expect("a frame");
 }

@@ -8,14 +8,11 @@ mod footprint;
 mod ribbons;
 mod strips;
 
-use lovelock_base::settings::Settings;
-
 use crate::bounds::Bounds;
 use crate::methods::exact::cpu::{sort_and_sum, sum_before};
 use crate::methods::texels::TexelFrame;
 use crate::methods::texels::fragments::Fragments;
-use crate::methods::voxel_map::Lattice;
-use crate::{ShadowError, ShadowInput, ShadowMethod, ShadowSettings};
+use crate::{ShadowError, ShadowInput, ShadowSettings};
 use footprint::Footprint;
 use rayon::prelude::*;
 use ribbons::Ribbons;
@@ -52,7 +49,7 @@ pub struct Converged {
 /// because the light plane is processed in strips.
 ///
 /// # Errors
-/// [`ShadowError::TooLarge`] of [`ShadowMethod::Exact`] if one row of subtexels needs more than the memory limit in the settings
+/// [`ShadowError::TooLarge`] of the method `exact` if one row of subtexels needs more than the memory limit in the settings
 /// of `exact`.
 pub fn converged(
     input: &ShadowInput,
@@ -61,7 +58,7 @@ pub fn converged(
 ) -> Result<Converged, ShadowError> {
     assert!(x.len() == y.len() && y.len() == z.len(), "slices of one length");
     let bounds = Bounds::of_strands(input);
-    let frame = frame_in_use(input, settings, &bounds);
+    let frame = settings.footprint(input, &bounds);
     let axes = frame.axes();
     let place = |((x, y), z): ((&f32, &f32), &f32)| axes.transform(glam::Vec3::new(*x, *y, *z));
     let places: Vec<_> = x.par_iter().zip(y).zip(z).map(place).collect();
@@ -82,27 +79,6 @@ pub fn converged(
     Ok(Converged { transmittance: last, samples, change, changes })
 }
 
-/// The texels of the method in use.
-fn frame_in_use(input: &ShadowInput, settings: &ShadowSettings, bounds: &Bounds) -> TexelFrame {
-    let resolution = match settings.method {
-        ShadowMethod::VoxelMap => {
-            let lattice = Lattice::new(input, &settings.voxel_map, bounds);
-            return TexelFrame::with_texel_size(
-                (input.light, input.anchor),
-                lattice.resolution,
-                lattice.cell_size,
-                bounds,
-            );
-        }
-        ShadowMethod::None | ShadowMethod::Exact => settings.exact.clamped().resolution,
-        ShadowMethod::OpacityMaps => settings.opacity_maps.clamped().resolution,
-        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.clamped().resolution,
-        ShadowMethod::DensityClustering => settings.density_clustering.clamped().resolution,
-        ShadowMethod::OccupancyMaps => settings.occupancy_maps.clamped().resolution,
-    };
-    TexelFrame::new(input, resolution, bounds)
-}
-
 /// Transmittance with `samples` subtexels along the edge of a texel.
 fn round(
     input: &ShadowInput,
@@ -112,7 +88,7 @@ fn round(
     samples: u32,
     scratch: &mut Fragments,
 ) -> Result<Vec<f32>, ShadowError> {
-    let ribbons = Ribbons::new(input, settings, frame, samples, places);
+    let ribbons = Ribbons::new(input, frame, samples, places);
     let strips = Strips::new(input, settings, frame, &ribbons)?;
     // The light lost in each footprint, in subtexels.
     let mut lost = vec![0.0_f64; places.len()];

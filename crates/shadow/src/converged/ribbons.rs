@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::ShadowInput;
+use crate::cpu::safe_extinction;
 use crate::methods::texels::TexelFrame;
 use crate::methods::texels::lines::{Draw, Steps};
-use crate::{ShadowInput, ShadowSettings};
 
 /// The largest optical depth of a ribbon; e^−10⁴ is 0 in any float.
 const MOST_DEPTH: f32 = 1e4;
@@ -34,16 +35,10 @@ pub(super) struct Ribbons {
 
 impl Ribbons {
     /// Ribbons over all rows, for the footprints around `places` (in texel coordinates).
-    pub(super) fn new(
-        input: &ShadowInput,
-        settings: &ShadowSettings,
-        frame: &TexelFrame,
-        samples: u32,
-        places: &[Vec3],
-    ) -> Self {
+    pub(super) fn new(input: &ShadowInput, frame: &TexelFrame, samples: u32, places: &[Vec3]) -> Self {
         let resolution = frame.resolution;
         let width = input.strand_width / frame.texel_size * samples as f32;
-        let depth = settings.safe_extinction_scale().min(MOST_DEPTH);
+        let depth = safe_extinction(input.extinction_scale).min(MOST_DEPTH);
         // Nothing is wider than the map.
         let width = if width > 0.0 { width.min((resolution * samples) as f32) } else { 0.0 };
         let mut wanted = vec![false; (resolution * resolution) as usize];

@@ -40,6 +40,8 @@ pub struct GpuShadowInput<'a> {
     pub longest_strand: f32,
     /// As [`ShadowInput::strand_width`](crate::ShadowInput::strand_width).
     pub strand_width: f32,
+    /// As [`ShadowInput::extinction_scale`](crate::ShadowInput::extinction_scale).
+    pub extinction_scale: f32,
     /// The light's direction and axes.
     pub light: LightFrame,
     /// As [`ShadowInput::anchor`](crate::ShadowInput::anchor).

@@ -6,15 +6,19 @@
 pub mod deep_opacity_maps;
 pub mod density_clustering;
 pub mod exact;
+mod method;
 pub mod none;
 pub mod occupancy_maps;
 pub mod opacity_maps;
 pub mod texels;
 pub mod voxel_map;
 
+pub use method::{MapKind, MapSize, UnknownShadowMethod, all_shaders, cpu_shadow, gpu_shadow};
+
+use lovelock_base::settings::AnySettings;
 use serde::{Deserialize, Serialize};
 
-use crate::method::Method;
+use method::Method;
 
 /// How the light that reaches a point inside hair is computed.
 ///
@@ -62,5 +66,39 @@ impl ShadowMethod {
             Self::OccupancyMaps => &occupancy_maps::METHOD,
             Self::Exact => &exact::METHOD,
         }
+    }
+}
+
+/// The method in use, and the settings of every method, so that switching the method keeps them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ShadowSettings {
+    /// The method in use.
+    pub method: ShadowMethod,
+    /// See [`voxel_map`].
+    pub voxel_map: voxel_map::VoxelMapSettings,
+    /// See [`opacity_maps`].
+    pub opacity_maps: opacity_maps::OpacityMapsSettings,
+    /// See [`deep_opacity_maps`].
+    pub deep_opacity_maps: deep_opacity_maps::DeepOpacityMapsSettings,
+    /// See [`density_clustering`].
+    pub density_clustering: density_clustering::DensityClusteringSettings,
+    /// See [`occupancy_maps`].
+    pub occupancy_maps: occupancy_maps::OccupancyMapsSettings,
+    /// See [`exact`].
+    pub exact: exact::ExactSettings,
+}
+
+impl ShadowSettings {
+    /// The settings of each method that has any, to be changed.
+    fn sections_mut(&mut self) -> Vec<(ShadowMethod, &mut dyn AnySettings)> {
+        vec![
+            (ShadowMethod::VoxelMap, &mut self.voxel_map),
+            (ShadowMethod::OpacityMaps, &mut self.opacity_maps),
+            (ShadowMethod::DeepOpacityMaps, &mut self.deep_opacity_maps),
+            (ShadowMethod::DensityClustering, &mut self.density_clustering),
+            (ShadowMethod::OccupancyMaps, &mut self.occupancy_maps),
+            (ShadowMethod::Exact, &mut self.exact),
+        ]
     }
 }

@@ -61,6 +61,7 @@ impl Uploaded {
             bounds: Bounds::of_strands(input),
             longest_strand: longest_strand(input.strands),
             strand_width: input.strand_width,
+            extinction_scale: input.extinction_scale,
             light: input.light,
             anchor: input.anchor,
             maps: input.maps,

@@ -8,13 +8,14 @@ use lovelock_groom::{
 };
 use lovelock_shadow::{LightFrame, ShadowInput};
 
-use crate::common::{SplitMix64, strands};
+use crate::common::{EXTINCTION, SplitMix64, strands};
 
 /// Strands, and their width.
 pub struct Groom {
     pub name: &'static str,
     pub strands: Strands,
     pub width: f32,
+    pub extinction_scale: f32,
 }
 
 /// Light from above and in front, nearly that of the default project.
@@ -25,6 +26,7 @@ impl Groom {
         ShadowInput {
             strands: &self.strands,
             strand_width: self.width,
+            extinction_scale: self.extinction_scale,
             light: LightFrame::new(LIGHT),
             anchor: Vec3::new(0.0, 0.11, 0.0),
             maps: 1,
@@ -33,7 +35,7 @@ impl Groom {
 
     fn of(name: &'static str, strands: Strands) -> Self {
         let width = HairLook::default().shadow_width(strands.count());
-        Self { name, strands, width }
+        Self { name, strands, width, extinction_scale: EXTINCTION }
     }
 
     fn at_rest(name: &'static str, style: &Hairstyle) -> Self {

@@ -14,6 +14,9 @@ pub fn texel_methods() -> impl Iterator<Item = ShadowMethod> {
     ShadowMethod::ALL.iter().copied().filter(|method| method.map_kind() == MapKind::Texels)
 }
 
+/// The default factor on optical depth.
+pub const EXTINCTION: f32 = 0.15;
+
 /// Strands through the given points.
 pub fn strands(of: &[Vec<Vec3>]) -> Strands {
     let mut made = Strands::default();

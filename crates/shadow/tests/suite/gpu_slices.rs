@@ -22,7 +22,12 @@ const SHARE_ROUNDING: f32 = 8.0;
 
 fn one_strand() -> Groom {
     let line = (0..30).map(|i| Vec3::new(0.002 * i as f32, 0.1 - 0.005 * i as f32, 0.001 * i as f32));
-    Groom { name: "one strand", strands: common::strands(&[line.collect()]), width: 2e-3 }
+    Groom {
+        name: "one strand",
+        strands: common::strands(&[line.collect()]),
+        width: 2e-3,
+        extinction_scale: common::EXTINCTION,
+    }
 }
 
 fn all_grooms() -> Vec<Groom> {
@@ -51,7 +56,7 @@ impl<M: TexelMethod> Both<M> {
         cpu.build(&groom.input(), on_cpu).expect("it fits");
         let words = Built::new(gpu, M::METHOD, &groom.input(), on_gpu).words();
         let texel_size = cpu.frame().expect("it was built").texel_size;
-        let unit = on_cpu.safe_extinction_scale() * groom.width / texel_size / 1024.0;
+        let unit = groom.extinction_scale * groom.width / texel_size / 1024.0;
         Some(Self { cpu, words, unit })
     }
 
@@ -265,10 +270,10 @@ fn many_fragments_of_one_texel_do_not_wrap() {
     let ends =
         |i: usize| vec![Vec3::new(-0.01, 0.1 - 1e-7 * (i % 1000) as f32, 0.0), Vec3::new(0.01, 0.1, 0.0)];
     let made: Vec<_> = (0..COUNT).map(ends).collect();
-    let groom = Groom { name: "many", strands: common::strands(&made), width: 5e-9 };
+    let groom = Groom { name: "many", strands: common::strands(&made), width: 5e-9, extinction_scale: 1.0 };
     for method in [ShadowMethod::OpacityMaps, ShadowMethod::DeepOpacityMaps, ShadowMethod::DensityClustering]
     {
-        let mut settings = ShadowSettings { extinction_scale: 1.0, ..ShadowSettings::default() };
+        let mut settings = ShadowSettings::default();
         settings.opacity_maps.resolution = 64;
         settings.deep_opacity_maps.resolution = 64;
         settings.density_clustering.resolution = 64;

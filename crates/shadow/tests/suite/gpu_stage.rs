@@ -80,17 +80,18 @@ fn faces_of_voxels_are_the_same() {
             // Cells that wrap around.
             (32, VoxelDeposit::Length, MapExtent::Fit, 1e6),
         ] {
-            let mut settings = ShadowSettings { extinction_scale, ..ShadowSettings::default() };
+            let mut settings = ShadowSettings::default();
+            let input = ShadowInput { extinction_scale, ..groom.input() };
             settings.voxel_map.resolution = resolution;
             settings.voxel_map.deposit = deposit;
             settings.voxel_map.extent = extent;
             let mut cpu = VoxelMap::default();
-            cpu.build(&groom.input(), &settings).expect("it fits");
-            built.build(0, &groom.input(), &settings).expect("it fits");
+            cpu.build(&input, &settings).expect("it fits");
+            built.build(0, &input, &settings).expect("it fits");
             assert_eq!(wrong_faces(&cpu, &built.words()), 0, "{}, {resolution}", groom.name);
             // Control: moved by a fraction of a cell.
             let cell_size = cpu.lattice().expect("it was built").cell_size;
-            built.build(0, &aside(&groom.input(), 0.5 * cell_size), &settings).expect("it fits");
+            built.build(0, &aside(&input, 0.5 * cell_size), &settings).expect("it fits");
             assert!(wrong_faces(&cpu, &built.words()) > 0, "{}, {resolution}", groom.name);
         }
     }
@@ -167,7 +168,7 @@ fn sorted_fragments_and_their_sums_are_the_same() {
         assert!(found == walked, "{}", groom.name);
         assert_eq!(built.shadow.report(0).samples, cpu.report().samples);
         // The same as the definition, except that weights are integers: half of 1/1024 each.
-        let unit = settings.extinction_scale * groom.width / frame.texel_size / 1024.0;
+        let unit = groom.extinction_scale * groom.width / frame.texel_size / 1024.0;
         let mut texels = 0;
         for row in 0..frame.resolution {
             for column in 0..frame.resolution {

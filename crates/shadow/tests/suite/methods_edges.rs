@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
+use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{
@@ -13,7 +13,14 @@ use lovelock_shadow::{
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 
 fn input(strands: &Strands) -> ShadowInput<'_> {
-    ShadowInput { strands, strand_width: 1e-3, light: LightFrame::new(LIGHT), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width: 1e-3,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(LIGHT),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 /// Hair that is empty, invalid, flat, or at a single position.
@@ -114,11 +121,11 @@ fn every_answer_is_a_transmittance() {
                 check(&input(&hair), &hostile(of));
             }
             for extinction_scale in [0.0, -1.0, f32::NAN] {
-                let settings = ShadowSettings { extinction_scale, ..ShadowSettings::default() };
-                assert_eq!(check(&input(&hair), &settings), 1.0, "{method}, {what}: no extinction");
+                let input = ShadowInput { extinction_scale, ..input(&hair) };
+                assert_eq!(check(&input, &ShadowSettings::default()), 1.0, "{method}, {what}: no extinction");
             }
             for extinction_scale in [1e-30, 4.0, 1e30, f32::INFINITY] {
-                check(&input(&hair), &ShadowSettings { extinction_scale, ..ShadowSettings::default() });
+                check(&ShadowInput { extinction_scale, ..input(&hair) }, &ShadowSettings::default());
             }
             for strand_width in [0.0, -1.0, f32::NAN, 1e-40, 1e30, f32::INFINITY] {
                 check(&ShadowInput { strand_width, ..input(&hair) }, &ShadowSettings::default());
@@ -140,10 +147,9 @@ fn the_converged_shadow_takes_anything_too() {
         for (strand_width, extinction_scale) in
             [(1e-3, 0.15), (f32::NAN, 0.15), (1e30, f32::INFINITY), (1e-3, 0.0)]
         {
-            let mut settings = ShadowSettings { extinction_scale, ..ShadowSettings::default() };
-            settings.method = ShadowMethod::Exact;
+            let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
             settings.exact.resolution = 64;
-            let input = ShadowInput { strand_width, ..input(&hair) };
+            let input = ShadowInput { strand_width, extinction_scale, ..input(&hair) };
             let found = converged(&input, &settings, [&x, &y, &z]).expect("fits");
             assert!(found.transmittance.iter().all(|t| (0.0..=1.0).contains(t)), "{what}: {found:?}");
         }

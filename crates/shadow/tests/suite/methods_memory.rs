@@ -1,6 +1,6 @@
 //! The memory that methods compute before a build is an upper bound, and maps share the limit.
 
-use crate::common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
+use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{LightFrame, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow};
@@ -8,7 +8,14 @@ use lovelock_shadow::{LightFrame, ShadowError, ShadowInput, ShadowMethod, Shadow
 const LIGHT: Vec3 = Vec3::new(0.4, -1.0, -0.5);
 
 fn input(strands: &Strands) -> ShadowInput<'_> {
-    ShadowInput { strands, strand_width: 1e-4, light: LightFrame::new(LIGHT), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width: 1e-4,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(LIGHT),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 /// Every method with as many texels as there can be.

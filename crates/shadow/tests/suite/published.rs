@@ -3,7 +3,7 @@
 use crate::common::SplitMix64;
 use lovelock_shadow::methods::deep_opacity_maps::Layers;
 use lovelock_shadow::methods::density_clustering::Clustering;
-use lovelock_shadow::methods::exact::Sorted;
+use lovelock_shadow::methods::exact::SortedFragments;
 use lovelock_shadow::methods::occupancy_maps::Occupancy;
 use lovelock_shadow::methods::opacity_maps::Slices;
 use lovelock_shadow::methods::texels::{Fragment, TexelMethod};
@@ -63,7 +63,7 @@ fn error_on<M: TexelMethod>(
 ) -> f64 {
     let one = |seed: u64| {
         let fragments = mixture(seed);
-        let truth = visibility::<Sorted>(settings, &fragments, depths).0;
+        let truth = visibility::<SortedFragments>(settings, &fragments, depths).0;
         rmse(&visibility::<M>(settings, &fragments, depths).0, &truth).powi(2)
     };
     ((0..300).map(one).sum::<f64>() / 300.0).sqrt()
@@ -111,7 +111,7 @@ fn four_clusters_beat_eight_bins_on_four_bells_and_not_on_eight() {
     }
     // Control: the exact method in place of the clusters has a much smaller error.
     let of = |seed: u64| mixture(8, 3.0, 0.01, seed);
-    assert!(error_on::<Sorted>(&settings, &depths(0.0, 1.0), of) < 1e-6);
+    assert!(error_on::<SortedFragments>(&settings, &depths(0.0, 1.0), of) < 1e-6);
 }
 
 #[test]

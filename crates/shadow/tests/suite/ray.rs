@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use common::{CURLY, SplitMix64, Style, grow, strands};
+use common::{CURLY, EXTINCTION, SplitMix64, Style, grow, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::VoxelMap;
@@ -17,7 +17,14 @@ fn hair() -> Strands {
 
 fn input(hair: &Strands) -> ShadowInput<'_> {
     let light = LightFrame::new(Vec3::new(0.3, -1.0, 0.2));
-    ShadowInput { strands: hair, strand_width: 2e-3, light, anchor: common::HEAD, maps: 1 }
+    ShadowInput {
+        strands: hair,
+        strand_width: 2e-3,
+        extinction_scale: EXTINCTION,
+        light,
+        anchor: common::HEAD,
+        maps: 1,
+    }
 }
 
 /// Settings with which a point reads a single texel.

@@ -15,12 +15,19 @@ const LIGHTS: [Vec3; 7] =
     [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(0.4, -1.0, -0.5)];
 
 fn input(strands: &Strands, direction: Vec3, strand_width: f32) -> ShadowInput<'_> {
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width,
+        extinction_scale: 0.5,
+        light: LightFrame::new(direction),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 /// 64 texels along each edge for every method, and thin lines, which lie in one row of texels.
 fn settings(filter: TexelFilter) -> ShadowSettings {
-    let mut s = ShadowSettings { extinction_scale: 0.5, ..ShadowSettings::default() };
+    let mut s = ShadowSettings::default();
     (s.opacity_maps.resolution, s.opacity_maps.filter) = (64, filter);
     (s.deep_opacity_maps.resolution, s.deep_opacity_maps.filter) = (64, filter);
     (s.density_clustering.resolution, s.density_clustering.filter) = (64, filter);

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use crate::common::{CURLY, HEAD, SMOOTH, SplitMix64, Style, grow, strands};
+use crate::common::{CURLY, EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
@@ -16,7 +16,14 @@ const MOST_DIFFERENCE: f64 = 1.5e-4;
 
 fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
     let strand_width = 80e-6 * 100_000.0 / strands.count().max(1) as f32;
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(direction),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 fn settings(resolution: u32) -> ShadowSettings {

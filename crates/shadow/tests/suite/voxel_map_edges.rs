@@ -1,6 +1,6 @@
 //! Empty, flat, invalid and huge input.
 
-use crate::common::{HEAD, SMOOTH, Style, grow, strands};
+use crate::common::{EXTINCTION, HEAD, SMOOTH, Style, grow, strands};
 use glam::Vec3;
 use lovelock_base::settings::Settings;
 use lovelock_groom::Strands;
@@ -10,7 +10,14 @@ use lovelock_shadow::{CpuShadow, LightFrame, ShadowInput, ShadowMethod, ShadowSe
 
 fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
     let strand_width = 80e-6 * 100_000.0 / strands.count().max(1) as f32;
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(direction),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 fn settings(resolution: u32) -> ShadowSettings {

@@ -1,6 +1,6 @@
 //! Compares the voxel map with analytic results.
 
-use crate::common::{CURLY, HEAD, SMOOTH, SplitMix64, Style, grow, resampled, strands};
+use crate::common::{CURLY, EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, resampled, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
@@ -9,7 +9,14 @@ use lovelock_shadow::{CpuShadow, LightFrame, ShadowInput, ShadowSettings};
 
 fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
     let strand_width = 80e-6 * 100_000.0 / strands.count().max(1) as f32;
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(direction),
+        anchor: HEAD,
+        maps: 1,
+    }
 }
 
 fn settings(resolution: u32) -> ShadowSettings {
@@ -66,12 +73,11 @@ fn a_uniform_slab_dims_exponentially() {
         let light = LightFrame::new(direction);
         let of = slab(&light);
         let hair = strands(&of);
-        let input = input(&hair, direction);
-        let settings = ShadowSettings { extinction_scale: 0.5, ..settings(64) };
-        let map = built(&input, &settings);
+        let input = ShadowInput { extinction_scale: 0.5, ..input(&hair, direction) };
+        let map = built(&input, &settings(64));
         // κ = s_ext · w · (total length) / volume.
         let kappa =
-            f64::from(settings.extinction_scale) * f64::from(input.strand_width) * 0.008 * of.len() as f64
+            f64::from(input.extinction_scale) * f64::from(input.strand_width) * 0.008 * of.len() as f64
                 / (0.2 * 0.16 * 0.16);
         for step in 0..=20 {
             let along = 0.2 * step as f32 / 20.0;
@@ -212,11 +218,10 @@ fn a_single_lit_column_casts_a_symmetric_shadow() {
 fn points_before_or_beside_the_hair_are_lit() {
     let hair = small(SMOOTH);
     for direction in [LIGHT, Vec3::X, Vec3::NEG_X, Vec3::NEG_Y, Vec3::Z] {
-        let input = input(&hair, direction);
+        let input = ShadowInput { extinction_scale: 4.0, ..input(&hair, direction) };
         for extent in [MapExtent::Fit, MapExtent::Paper] {
             let mut settings = settings(64);
             settings.voxel_map.extent = extent;
-            settings.extinction_scale = 4.0;
             let map = built(&input, &settings);
             let light = input.light;
             for away in [0.5, 2.0, 1e3, 1e9] {
@@ -255,8 +260,8 @@ fn extinction_darkens_and_none_lights_everything() {
     let input = input(&hair, LIGHT);
     let mut last = vec![1.0_f32; hair.points()];
     for scale in [0.0, 0.01, 0.15, 1.0, 4.0, 1e3, f32::INFINITY] {
-        let settings = ShadowSettings { extinction_scale: scale, ..settings(64) };
-        let now = at_points(&built(&input, &settings), &hair);
+        let input = ShadowInput { extinction_scale: scale, ..input };
+        let now = at_points(&built(&input, &settings(64)), &hair);
         if scale == 0.0 {
             assert!(now.iter().all(|t| *t == 1.0));
         }
@@ -266,6 +271,6 @@ fn extinction_darkens_and_none_lights_everything() {
         last = now;
     }
     assert!(mean(&last) < 0.05, "opaque strands let nothing through");
-    let nan = ShadowSettings { extinction_scale: f32::NAN, ..settings(64) };
-    assert!(at_points(&built(&input, &nan), &hair).iter().all(|t| *t == 1.0));
+    let nan = ShadowInput { extinction_scale: f32::NAN, ..input };
+    assert!(at_points(&built(&nan, &settings(64)), &hair).iter().all(|t| *t == 1.0));
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_metrics::{banding, errors};
-use lovelock_render::{ShadowMethod, ShadowSettings, VoxelDeposit};
-use lovelock_shadow::{LightFrame, RayStructure, ShadowInput, cpu_shadow};
+use lovelock_render::ShadowSettings;
+use lovelock_shadow::{LightFrame, MapKind, RayStructure, ShadowInput, cpu_shadow};
 
 use crate::report::BandingReport;
 
@@ -29,23 +29,22 @@ const RAYS: usize = 1024;
 /// The banding of a method, by its CPU definition; the GPU backend agrees with it. `None` if the slab cannot be built, there is no
 /// shadow, or strands are counted by points.
 pub(super) fn slab(settings: &ShadowSettings) -> Option<BandingReport> {
-    let by_points = settings.voxel_map.deposit == VoxelDeposit::PointCount;
-    if settings.method == ShadowMethod::None || settings.method == ShadowMethod::VoxelMap && by_points {
+    if settings.method.map_kind() == MapKind::None || settings.counts_points() {
         return None;
     }
-    let settings = ShadowSettings { extinction_scale: 1.0, ..*settings };
     let light = LightFrame::default();
     let strands = strands(&light);
     let per_layer = STRANDS as f32 / STRIP;
     let input = ShadowInput {
         strands: &strands,
         strand_width: OPTICAL_DEPTH / (LAYERS as f32 * per_layer),
+        extinction_scale: 1.0,
         light,
         anchor: Vec3::ZERO,
         maps: 1,
     };
     let mut map = cpu_shadow(settings.method);
-    map.build(&input, &settings).ok()?;
+    map.build(&input, settings).ok()?;
     let depths: Vec<f32> = (0..SAMPLES).map(|i| depth(i) * SIZE).collect();
     let transmittance: Vec<f32> = depths
         .iter()
@@ -121,6 +120,8 @@ fn strands(light: &LightFrame) -> Strands {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_render::{ShadowMethod, VoxelDeposit};
+
     use super::*;
 
     fn of(method: ShadowMethod, change: impl FnOnce(&mut ShadowSettings)) -> BandingReport {

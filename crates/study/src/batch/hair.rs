@@ -38,6 +38,7 @@ impl Hair {
         ShadowInput {
             strands: &self.strands,
             strand_width: project.look.shadow_width(self.snapshot.scene.style.strands.count()),
+            extinction_scale: project.look.extinction_scale,
             light: LightFrame::new(light.direction),
             anchor: self.snapshot.guides.world_from_head.translation.into(),
             maps: 1,

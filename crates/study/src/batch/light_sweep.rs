@@ -206,9 +206,15 @@ mod tests {
         let strands = sheets(40, width);
         let first = Vec3::new(1.0, -1.0, 0.0).normalize_or_zero();
         let light = LightFrame::new(first);
-        let input =
-            ShadowInput { strands: &strands, strand_width: width, light, anchor: Vec3::ZERO, maps: 1 };
-        let settings = ShadowSettings { extinction_scale: 0.02, ..ShadowSettings::default() };
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: width,
+            extinction_scale: 0.02,
+            light,
+            anchor: Vec3::ZERO,
+            maps: 1,
+        };
+        let settings = ShadowSettings::default();
         let [x, y, z] = [0, 1, 2].map(|axis| {
             let at = |i: usize| [0.001 + 1e-5 * (i % 100) as f32, -0.0045, 1e-5 * i as f32 - 0.002][axis];
             (0..400).map(at).collect::<Vec<f32>>()

@@ -192,7 +192,7 @@ fn facts(
         strands: strands.count() as u64,
         points: strands.points() as u64,
         segments: strands.segments() as u64,
-        extinction_scale: project.shadow.safe_extinction_scale(),
+        extinction_scale: project.look.extinction_scale,
         lights: lights(project).len() as u32,
         draws: request.draws.max(1),
     }

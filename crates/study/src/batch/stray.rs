@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
-use lovelock_render::{ShadowMethod, ShadowSettings, VoxelDeposit};
+use lovelock_render::ShadowSettings;
 use lovelock_shadow::{LightFrame, ShadowInput, cpu_shadow};
 
 use crate::changes::ChangeReport;
@@ -38,8 +38,7 @@ const DEPTHS: usize = 16;
 /// Changes behind the stray hair, by the method's CPU definition. The hair is before every point in every frame and always absorbs
 /// the same light, so the ground truth does not change. `None` if the bundle cannot be built, or strands are counted by points.
 pub(super) fn stray(settings: &ShadowSettings) -> Option<ChangeReport> {
-    let by_points = settings.voxel_map.deposit == VoxelDeposit::PointCount;
-    if settings.method == ShadowMethod::VoxelMap && by_points {
+    if settings.counts_points() {
         return None;
     }
     let depths: Vec<f32> = (0..=STEPS).map(|step| START + STEP * step as f32).collect();
@@ -50,7 +49,6 @@ pub(super) fn stray(settings: &ShadowSettings) -> Option<ChangeReport> {
 
 /// Transmittance of the points behind the stray hair while it is at each of `depths`.
 fn behind(settings: &ShadowSettings, depths: &[f32]) -> Option<Vec<Vec<f32>>> {
-    let settings = ShadowSettings { extinction_scale: EXTINCTION, ..*settings };
     let light = LightFrame::default();
     let points = points().map(|p| light.world_from_light(p));
     let [x, y, z] =
@@ -59,9 +57,15 @@ fn behind(settings: &ShadowSettings, depths: &[f32]) -> Option<Vec<Vec<f32>>> {
     let mut frames = Vec::with_capacity(depths.len());
     for &depth in depths {
         let strands = bundle(&light, depth);
-        let input =
-            ShadowInput { strands: &strands, strand_width: WIDTH, light, anchor: Vec3::ZERO, maps: 1 };
-        map.build(&input, &settings).ok()?;
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: WIDTH,
+            extinction_scale: EXTINCTION,
+            light,
+            anchor: Vec3::ZERO,
+            maps: 1,
+        };
+        map.build(&input, settings).ok()?;
         let mut found = vec![1.0; x.len()];
         map.transmittance_at(&x, &y, &z, &mut found);
         frames.push(found);
@@ -113,6 +117,7 @@ fn bundle(light: &LightFrame, depth: f32) -> Strands {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_render::{ShadowMethod, VoxelDeposit};
     use lovelock_shadow::{TexelFilter, converged};
 
     use super::*;
@@ -140,14 +145,19 @@ mod tests {
     #[test]
     fn the_mean_over_a_texel_is_constant_too() {
         let light = LightFrame::default();
-        let mut settings = ShadowSettings { extinction_scale: EXTINCTION, ..ShadowSettings::default() };
-        settings.method = ShadowMethod::Exact;
+        let settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
         let points: Vec<Vec3> = points().step_by(7).map(|p| light.world_from_light(p)).collect();
         let axis = |of: fn(&Vec3) -> f32| points.iter().map(of).collect::<Vec<f32>>();
         let truth = |depth: f32| {
             let strands = bundle(&light, depth);
-            let input =
-                ShadowInput { strands: &strands, strand_width: WIDTH, light, anchor: Vec3::ZERO, maps: 1 };
+            let input = ShadowInput {
+                strands: &strands,
+                strand_width: WIDTH,
+                extinction_scale: EXTINCTION,
+                light,
+                anchor: Vec3::ZERO,
+                maps: 1,
+            };
             converged(&input, &settings, [&axis(|p| p.x), &axis(|p| p.y), &axis(|p| p.z)]).expect("fits")
         };
         let largest = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
@@ -166,8 +176,14 @@ mod tests {
         settings.exact.filter = TexelFilter::Nearest;
         let strands = bundle(&LightFrame::default(), START);
         let light = LightFrame::default();
-        let input =
-            ShadowInput { strands: &strands, strand_width: WIDTH, light, anchor: Vec3::ZERO, maps: 1 };
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: WIDTH,
+            extinction_scale: EXTINCTION,
+            light,
+            anchor: Vec3::ZERO,
+            maps: 1,
+        };
         let mut map = cpu_shadow(ShadowMethod::Exact);
         map.build(&input, &settings).expect("fits");
         let expected = (EXTINCTION * WIDTH * std::f32::consts::SQRT_2 / map.report().cell_size).exp();

@@ -28,7 +28,7 @@ fn request(out: &Path, methods: &[ShadowMethod]) -> CompareRequest {
 fn little_hair() -> Project {
     let mut project = small_project();
     project.look.real_hairs *= 0.04;
-    project.shadow.extinction_scale = 0.5;
+    project.look.extinction_scale = 0.5;
     project
 }
 

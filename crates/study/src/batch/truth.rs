@@ -9,7 +9,7 @@ use lovelock_metrics::errors;
 use lovelock_project::Project;
 use lovelock_render::{Light, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
 use lovelock_shadow::{
-    CONVERGED_CHANGE, CpuShadow, ExactMap, ShadowError, ShadowInput, converged, cpu_shadow,
+    CONVERGED_CHANGE, CpuShadow, ExactMap, MapKind, ShadowError, ShadowInput, converged, cpu_shadow,
 };
 
 use super::hair::Hair;
@@ -86,7 +86,7 @@ fn footprint(
     (hair, project, light): (&Hair, &Project, &Light),
     settings: &ShadowSettings,
 ) -> (Footprint, Option<f32>) {
-    let has_map = settings.method != ShadowMethod::None;
+    let has_map = settings.method.map_kind() != MapKind::None;
     let method = if has_map { settings.method } else { ShadowMethod::Exact };
     let settings = ShadowSettings { method, ..*settings };
     let mut map = cpu_shadow(method);
@@ -94,7 +94,7 @@ fn footprint(
         return (Footprint::Unknown(settings, error.to_string()), None);
     }
     let report = map.report();
-    let footprint = if method == ShadowMethod::VoxelMap {
+    let footprint = if method.map_kind() == MapKind::Cells {
         Footprint::Cells(report.cell_size, report.cells_total)
     } else {
         Footprint::Texels(report.cell_size, report.cells_total)

@@ -103,7 +103,10 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
         super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.scissors);
     }),
-    ("Shadow", |ui, b| super::shadow::ui(ui, &mut b.project.shadow, 1 << 21)),
+    ("Shadow", |ui, b| {
+        let default = b.project.hair.groom.look;
+        super::shadow::ui(ui, &mut b.project.shadow, (&mut b.project.look, &default), 1 << 21);
+    }),
     ("Light", |ui, b| {
         super::light::ui(ui, &mut b.project.lights, &mut b.selected_light, [Vec3::X, Vec3::Y, Vec3::Z]);
     }),

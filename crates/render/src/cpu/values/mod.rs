@@ -7,7 +7,7 @@ use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
-use super::placed::{Placed, TileScratch, copy_rows};
+use super::placed::{PlacedScene, TileScratch, copy_rows};
 use super::pool::Pool;
 use super::tile::{Grid, HairPlanes, STRIDE, TILE};
 use super::view::View;
@@ -25,7 +25,7 @@ const LEAST_SHARE: f32 = 1e-6;
 #[derive(Debug)]
 pub struct ValueRenderer {
     strands: Strands,
-    placed: Placed,
+    placed: PlacedScene,
     /// Full transmittance, one word per point.
     lit: Vec<u32>,
     tiles: Vec<[f32; 2]>,
@@ -61,7 +61,7 @@ impl Default for ValueRenderer {
     fn default() -> Self {
         Self {
             strands: Strands::default(),
-            placed: Placed::new(Width::widest()),
+            placed: PlacedScene::new(Width::widest()),
             lit: Vec::new(),
             tiles: Vec::new(),
             pixels: Vec::new(),

@@ -14,7 +14,7 @@ use lovelock_gpu::{
 
 use crate::Transparency;
 pub(super) use area::Area;
-pub(super) use modes::Drawn;
+pub(super) use modes::HairOutput;
 use modes::{Mode, Over, Pass};
 
 macro_rules! part {
@@ -68,7 +68,7 @@ pub(super) struct EyeInput<'a> {
     pub streaked: bool,
     /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
-    pub drawn: Drawn,
+    pub drawn: HairOutput,
 }
 
 /// The most pixels per thread: half of what software adapters allow.
@@ -91,7 +91,7 @@ impl EyeInput<'_> {
 pub(super) struct Eye {
     behind_kernel: Kernel,
     /// By whether strands are streaked.
-    modes: Vec<((Drawn, bool), Vec<Kernel>)>,
+    modes: Vec<((HairOutput, bool), Vec<Kernel>)>,
     depths: Option<AreaDepths>,
     map: GrowBuffer<u32>,
     list: GrowBuffer<u32>,
@@ -149,8 +149,8 @@ fn behind_source() -> ShaderSource {
 /// Every composed shader with its label.
 pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
     let behind = ("behind".to_owned(), behind_source());
-    let blended = Transparency::ALL.into_iter().map(|mode| (mode.to_string(), Drawn::Blended(mode)));
-    let all = blended.chain([("nearest".to_owned(), Drawn::NearestDepth)]);
+    let blended = Transparency::ALL.into_iter().map(|mode| (mode.to_string(), HairOutput::Blended(mode)));
+    let all = blended.chain([("nearest".to_owned(), HairOutput::NearestDepth)]);
     let modes = all.flat_map(|(name, drawn)| {
         let passes = Mode::of(drawn).passes.iter();
         passes.map(move |pass| (format!("{name}: {}", pass.name), pass.source()))

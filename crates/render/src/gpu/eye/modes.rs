@@ -7,7 +7,7 @@ use crate::Transparency;
 
 /// The result of the fragments of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::gpu) enum Drawn {
+pub(in crate::gpu) enum HairOutput {
     /// Their light, blended by this mode.
     Blended(Transparency),
     /// The depth of the nearest fragment; its bits are in red and green.
@@ -137,10 +137,10 @@ const NEAR_MODE: Mode = Mode {
 };
 
 impl Mode {
-    pub const fn of(drawn: Drawn) -> &'static Self {
+    pub const fn of(drawn: HairOutput) -> &'static Self {
         match drawn {
-            Drawn::NearestDepth => &NEAR_MODE,
-            Drawn::Blended(transparency) => match transparency {
+            HairOutput::NearestDepth => &NEAR_MODE,
+            HairOutput::Blended(transparency) => match transparency {
                 Transparency::Opaque => &OPAQUE_MODE,
                 Transparency::WeightedAverage => &WEIGHTED_MODE,
                 Transparency::OccupancyOrder => &OCCUPANCY_MODE,

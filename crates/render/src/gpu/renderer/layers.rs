@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lovelock_gpu::{PassTimer, constants};
 
 use super::{GpuRenderer, eye_input};
-use crate::gpu::eye::{Drawn, too_large};
+use crate::gpu::eye::{HairOutput, too_large};
 use crate::gpu::frame_resources::FrameResources;
 use crate::gpu::layers::LayerBuffers;
 use crate::{FrameInput, FrameStats, Layers, Picture, RenderError};
@@ -74,10 +74,10 @@ impl GpuRenderer {
         });
 
         self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
-        let blended = Drawn::Blended(input.picture.transparency);
+        let blended = HairOutput::Blended(input.picture.transparency);
         for (drawn, kernel, threads) in [
             (blended, &kernels.transmittance, seen.area.pixels()),
-            (Drawn::NearestDepth, &kernels.depth, pixels),
+            (HairOutput::NearestDepth, &kernels.depth, pixels),
         ] {
             let eye = eye_input(&seen, &self.hair, targets, &uniform, drawn);
             self.eye.draw(&gpu, &mut commands, &eye)?;

@@ -1,7 +1,7 @@
-//! `deep-opacity-maps`: a few layers that begin at the first hair (Yuksel, Keyser 2008, "Deep Opacity Maps").
+//! `deep-opacity-maps`: a few layers that start at the first hair (Yuksel, Keyser 2008, "Deep Opacity Maps").
 //!
-//! Layers follow the hair's lit surface, so that no boundary cuts it where the eye would see it. Everything
-//! behind the last boundary counts to the last layer. A single hair before the rest moves all layers forward.
+//! Layers follow the lit surface of the hair, so that no boundary between layers is visible on it. Everything behind the last
+//! boundary counts toward the last layer. A single hair in front of the rest moves all layers forward.
 
 mod cpu;
 mod gpu;
@@ -11,11 +11,12 @@ pub use cpu::{DeepOpacityMaps, Layers};
 
 use std::ops::RangeInclusive;
 
+use lovelock_base::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter, TexelShadow};
+use super::method::{MapKind, MapSize, Method};
+use super::texels::{self, TexelFilter, TexelFrame, TexelShadow};
 use crate::RayMarkKind;
-use crate::method::{MapKind, MapSize, Method};
 
 pub(super) static METHOD: Method = Method {
     id: "deep-opacity-maps",
@@ -31,6 +32,10 @@ pub(super) static METHOD: Method = Method {
         })
     },
     marks: &[LAYER],
+    settings: |settings| Some(&settings.deep_opacity_maps),
+    footprint: |input, settings, bounds| {
+        TexelFrame::new(input, settings.deep_opacity_maps.clamped().resolution, bounds)
+    },
     counts_points: |_| false,
     cpu: || Box::new(DeepOpacityMaps::default()),
     gpu: |gpu| Ok(Box::new(TexelShadow::<Layers>::new(gpu)?)),
@@ -40,30 +45,30 @@ pub(super) static METHOD: Method = Method {
 /// A layer of a texel.
 pub(crate) const LAYER: RayMarkKind = RayMarkKind { label: "Layer", resolves_depth: true };
 
-/// How thick layers are.
+/// The thickness of layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LayerGrowth {
-    /// All alike.
+    /// All are equally thick.
     Even,
-    /// The k-th is k times as thick as the first: fine where light falls off fastest.
+    /// The k-th layer is k times as thick as the first: fine where light falls off fastest.
     #[default]
     Linear,
 }
 
-/// What a user sets about deep opacity maps.
+/// Settings of deep opacity maps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DeepOpacityMapsSettings {
-    /// Most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    /// The most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Layers a texel; see [`DeepOpacityMapsSettings::LAYERS`].
+    /// Layers per texel; see [`DeepOpacityMapsSettings::LAYERS`].
     pub layers: u32,
-    /// How thick layers are.
+    /// The thickness of layers.
     pub growth: LayerGrowth,
-    /// Thickness of all layers together, as a share of the hair's depth range.
+    /// Thickness of all layers together, as a fraction of the depth range of the hair.
     pub depth_share: f32,
 }
 

@@ -1,8 +1,8 @@
-//! `density-clustering`: a few bins of even density a texel, placed where its hair is (Mertens, Kautz, Bekaert,
+//! `density-clustering`: a few bins of uniform density per texel, placed where its hair is (Mertens, Kautz, Bekaert,
 //! Van Reeth 2004, "A Self-Shadow Algorithm for Dynamic Hair using Density Clustering").
 //!
-//! The fragments of a texel are divided into clusters along the light. Each becomes a bin of even density as wide
-//! as its spread, and optical depth rises evenly through a bin.
+//! The fragments of a texel are divided into clusters along the light. Each becomes a bin of uniform density as wide as its
+//! spread, and optical depth rises linearly through a bin.
 
 mod cpu;
 mod gpu;
@@ -13,11 +13,12 @@ pub use cpu::{Bin, Clustering, DensityClustering};
 
 use std::ops::RangeInclusive;
 
+use lovelock_base::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter, TexelShadow};
+use super::method::{MapKind, MapSize, Method};
+use super::texels::{self, TexelFilter, TexelFrame, TexelShadow};
 use crate::RayMarkKind;
-use crate::method::{MapKind, MapSize, Method};
 
 pub(super) static METHOD: Method = Method {
     id: "density-clustering",
@@ -36,59 +37,63 @@ pub(super) static METHOD: Method = Method {
         })
     },
     marks: &[BIN],
+    settings: |settings| Some(&settings.density_clustering),
+    footprint: |input, settings, bounds| {
+        TexelFrame::new(input, settings.density_clustering.clamped().resolution, bounds)
+    },
     counts_points: |_| false,
     cpu: || Box::new(DensityClustering::default()),
     gpu: |gpu| Ok(Box::new(TexelShadow::<Clustering>::new(gpu)?)),
     shaders: TexelShadow::<Clustering>::shaders,
 };
 
-/// A cluster as a bin of even density.
+/// A cluster as a bin of uniform density.
 pub(crate) const BIN: RayMarkKind = RayMarkKind { label: "Bin", resolves_depth: false };
 
-/// Where clusters start.
+/// The initial centres of clusters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClusterSeeds {
-    /// Evenly between the nearest and the farthest hair of the texel.
+    /// Evenly spaced between the nearest and the farthest hair of the texel.
     Uniform,
-    /// The same, drawn to three quarters of the distance from the nearest hair, as in the paper's last figure:
-    /// light falls off fastest there.
+    /// The same, moved to three quarters of the distance from the nearest hair, where light falls off fastest, as in the last
+    /// figure of the paper.
     #[default]
     TowardLight,
-    /// Half way between the even ones and those that divide the light lost in the texel evenly, read from a
-    /// histogram of 32 bins.
+    /// Half way between the evenly spaced ones and those that divide the light lost in the texel equally, from a histogram of 32
+    /// bins.
     Histogram,
 }
 
-/// How the spread of a cluster is found.
+/// How the spread of a cluster is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClusterDeviation {
-    /// About the centres that were found, in a pass of its own, as the paper has it.
+    /// Relative to the final centres, in a pass of its own, as in the paper.
     #[default]
     Exact,
-    /// In the pass that finds the centres: differs by the hair that changes its cluster.
+    /// In the pass that computes the centres; differs by hair that changes its cluster.
     Merged,
 }
 
-/// What a user sets about density clustering.
+/// Settings of density clustering.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DensityClusteringSettings {
-    /// Most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    /// The most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Clusters a texel (the paper's *K*); see [`DensityClusteringSettings::CLUSTERS`].
+    /// Clusters per texel (the paper's *K*); see [`DensityClusteringSettings::CLUSTERS`].
     pub clusters: u32,
-    /// Where clusters start.
+    /// The initial centres of clusters.
     pub seeds: ClusterSeeds,
     /// How many times each cluster is moved to the mean of its hair.
     pub steps: u32,
-    /// How the spread of a cluster is found.
+    /// How the spread of a cluster is computed.
     pub deviation: ClusterDeviation,
-    /// Whether each step of a strand is shared between the two nearest texels (the paper's pre-filtered lines) and not put
-    /// into one.
+    /// Whether each step of a strand is shared between the two nearest texels (the paper's pre-filtered lines) instead of being
+    /// added to one.
     pub prefiltered: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Sorted fragments with running sums.
+//! SortedFragments fragments with running sums.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
@@ -11,11 +11,11 @@ use super::ExactSettings;
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::Exact`].
-pub type ExactMap = TexelMap<Sorted>;
+pub type ExactMap = TexelMap<SortedFragments>;
 
 /// Every fragment, sorted by depth; each holds the optical depth up to and including itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sorted(ExactSettings);
+pub struct SortedFragments(ExactSettings);
 
 /// Sorts fragments by depth and replaces the optical depth of each by the sum up to and including itself.
 pub(crate) fn sort_and_sum(fragments: &mut [Fragment]) {
@@ -60,7 +60,7 @@ impl ExactMap {
     }
 }
 
-impl TexelMethod for Sorted {
+impl TexelMethod for SortedFragments {
     type Cell = ();
 
     const METHOD: ShadowMethod = ShadowMethod::Exact;

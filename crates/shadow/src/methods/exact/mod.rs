@@ -1,19 +1,19 @@
-//! `exact`: every fragment that the strands leave in a light texel, sorted by depth. The other methods are judged
-//! by it.
+//! `exact`: every fragment of strands in a light texel, sorted by depth. It is the reference for the other methods.
 //!
-//! A point receives what the fragments before it let through; its own does not count.
+//! A point receives the light that the fragments before it let through; its own fragment does not count.
 
 pub(crate) mod cpu;
 mod gpu;
 mod table;
 
-pub use cpu::{ExactMap, Sorted};
+pub use cpu::{ExactMap, SortedFragments};
 
+use lovelock_base::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter, TexelShadow};
+use super::method::{MapKind, MapSize, Method};
+use super::texels::{self, TexelFilter, TexelFrame, TexelShadow};
 use crate::RayMarkKind;
-use crate::method::{MapKind, MapSize, Method};
 
 pub(super) static METHOD: Method = Method {
     id: "exact",
@@ -24,21 +24,23 @@ pub(super) static METHOD: Method = Method {
     map: MapKind::Texels,
     size: |settings| Some(MapSize { edge: settings.exact.resolution, per_texel: None }),
     marks: &[RayMarkKind::FRAGMENT],
+    settings: |settings| Some(&settings.exact),
+    footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
     cpu: || Box::new(ExactMap::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<Sorted>::new(gpu)?)),
-    shaders: TexelShadow::<Sorted>::shaders,
+    gpu: |gpu| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu)?)),
+    shaders: TexelShadow::<SortedFragments>::shaders,
 };
 
-/// What a user sets about the exact shadow.
+/// Settings of the exact method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ExactSettings {
-    /// Most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    /// The most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Memory that a build may take, bytes. Hair that needs more is refused.
+    /// The most memory that a build may use, bytes. Hair that needs more is an error.
     pub memory_limit_bytes: u64,
 }
 

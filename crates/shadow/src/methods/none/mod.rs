@@ -1,10 +1,12 @@
 //! `none`: no shadow inside hair.
 
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
+use super::method::{MapKind, Method};
+use super::texels::TexelFrame;
 use crate::gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, wgsl};
-use crate::method::{MapKind, Method};
 use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 pub(super) static METHOD: Method = Method {
@@ -16,6 +18,9 @@ pub(super) static METHOD: Method = Method {
     map: MapKind::None,
     size: |_| None,
     marks: &[],
+    settings: |_| None,
+    // Compared over the texels of the exact method.
+    footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
     cpu: || Box::new(NoShadow),
     gpu: |gpu| Ok(Box::new(GpuNoShadow::new(gpu)?)),

@@ -1,8 +1,7 @@
-//! `occupancy-maps`: a bit for each slice with hair in it, and the amount of hair a slab of slices (Sintorn,
-//! Assarsson 2009, "Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps").
+//! `occupancy-maps`: one bit per slice that contains hair, and the amount of hair per slab of slices (Sintorn, Assarsson 2009, "Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps").
 //!
-//! Slices divide the depth range of each texel by itself. A point counts the hair of the slabs before its own, and
-//! of its own the share of occupied slices before it.
+//! Slices divide the depth range of each texel. A point counts the hair of the slabs before its own slab, and a fraction of its
+//! own slab: the share of occupied slices before it.
 
 mod cpu;
 mod gpu;
@@ -10,11 +9,12 @@ mod table;
 
 pub use cpu::{Occupancy, OccupancyMaps};
 
+use lovelock_base::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter, TexelShadow};
+use super::method::{MapKind, MapSize, Method};
+use super::texels::{self, TexelFilter, TexelFrame, TexelShadow};
 use crate::RayMarkKind;
-use crate::method::{MapKind, MapSize, Method};
 
 pub(super) static METHOD: Method = Method {
     id: "occupancy-maps",
@@ -32,6 +32,10 @@ pub(super) static METHOD: Method = Method {
         })
     },
     marks: &[SLAB, texels::SLICE],
+    settings: |settings| Some(&settings.occupancy_maps),
+    footprint: |input, settings, bounds| {
+        TexelFrame::new(input, settings.occupancy_maps.clamped().resolution, bounds)
+    },
     counts_points: |_| false,
     cpu: || Box::new(OccupancyMaps::default()),
     gpu: |gpu| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu)?)),
@@ -41,17 +45,17 @@ pub(super) static METHOD: Method = Method {
 /// A slab of slices, with its count of fragments times their mean optical depth.
 pub(crate) const SLAB: RayMarkKind = RayMarkKind { label: "Slab", resolves_depth: false };
 
-/// What a user sets about occupancy maps.
+/// Settings of occupancy maps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OccupancyMapsSettings {
-    /// Most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    /// The most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,
-    /// Slices, a bit each: 128, 256 or 512.
+    /// Slices, one bit each: 128, 256 or 512.
     pub slices: u32,
-    /// Slabs, a count each: 4, 8 or 16.
+    /// Slabs, one count each: 4, 8 or 16.
     pub slabs: u32,
 }
 

@@ -1,7 +1,7 @@
 //! `opacity-maps`: optical depth at uniform slices along the light (Kim, Neumann 2001, "Opacity Shadow Maps").
 //!
-//! The depth range of the whole hair is cut into equal slices. A texel holds the optical depth before the end of
-//! each slice, and a point between two ends interpolates optical depth.
+//! The depth range of the whole hair is divided into equal slices. A texel holds the optical depth before the end of each slice,
+//! and a point between two ends interpolates optical depth.
 
 mod cpu;
 mod gpu;
@@ -9,10 +9,11 @@ mod table;
 
 pub use cpu::{OpacityMaps, Slices};
 
+use lovelock_base::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter, TexelShadow};
-use crate::method::{MapKind, MapSize, Method};
+use super::method::{MapKind, MapSize, Method};
+use super::texels::{self, TexelFilter, TexelFrame, TexelShadow};
 
 pub(super) static METHOD: Method = Method {
     id: "opacity-maps",
@@ -28,17 +29,21 @@ pub(super) static METHOD: Method = Method {
         })
     },
     marks: &[texels::SLICE],
+    settings: |settings| Some(&settings.opacity_maps),
+    footprint: |input, settings, bounds| {
+        TexelFrame::new(input, settings.opacity_maps.clamped().resolution, bounds)
+    },
     counts_points: |_| false,
     cpu: || Box::new(OpacityMaps::default()),
     gpu: |gpu| Ok(Box::new(TexelShadow::<Slices>::new(gpu)?)),
     shaders: TexelShadow::<Slices>::shaders,
 };
 
-/// What a user sets about opacity maps.
+/// Settings of opacity maps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OpacityMapsSettings {
-    /// Most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    /// The most texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
     pub resolution: u32,
     /// How a point reads the texels around it.
     pub filter: TexelFilter,

@@ -21,7 +21,8 @@ const MOST_PIECES: usize = 16;
 /// it is moved. With blocks, only the last one of a piece and band is partly empty.
 const BLOCK: usize = 256;
 /// Bytes per block, including its entry in a list that doubles.
-const BLOCK_BYTES: u64 = (BLOCK * size_of::<Loose>() + 2 * size_of::<Vec<Loose>>()) as u64;
+const BLOCK_BYTES: u64 =
+    (BLOCK * size_of::<UnsortedFragment>() + 2 * size_of::<Vec<UnsortedFragment>>()) as u64;
 
 /// Bytes per fragment during and after sorting, including its share of a block.
 pub(crate) const BYTES_PER_FRAGMENT: u64 = BLOCK_BYTES.div_ceil(BLOCK as u64) + size_of::<Fragment>() as u64;
@@ -33,7 +34,7 @@ pub(crate) fn needed_bytes(input: &ShadowInput, resolution: u32, count: u64) -> 
     let ends = 4 * bands * u64::from(BAND_ROWS * resolution);
     let begun = (pieces * bands).min(count).saturating_mul(BLOCK_BYTES);
     // The first block of a list allocates room for four.
-    let lists = pieces * bands * 4 * size_of::<Vec<Loose>>() as u64;
+    let lists = pieces * bands * 4 * size_of::<Vec<UnsortedFragment>>() as u64;
     count.saturating_mul(BYTES_PER_FRAGMENT).saturating_add(ends + begun + lists)
 }
 
@@ -73,7 +74,7 @@ impl Fragment {
 
 /// An unsorted fragment.
 #[derive(Clone, Copy, Debug)]
-struct Loose {
+struct UnsortedFragment {
     /// The index of its texel in the band.
     texel: u32,
     depth: f32,
@@ -136,16 +137,16 @@ fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments
 /// The fragments of one worker in one band, in blocks.
 #[derive(Clone, Debug, Default)]
 struct Blocks {
-    full: Vec<Vec<Loose>>,
+    full: Vec<Vec<UnsortedFragment>>,
     /// The last block, which is being filled.
-    open: Vec<Loose>,
+    open: Vec<UnsortedFragment>,
     /// Empty blocks of the last build, the next one last. Empty between builds.
-    spare: Vec<Vec<Loose>>,
+    spare: Vec<Vec<UnsortedFragment>>,
 }
 
 impl Blocks {
     #[inline]
-    fn push(&mut self, fragment: Loose) {
+    fn push(&mut self, fragment: UnsortedFragment) {
         if self.open.len() == self.open.capacity() {
             self.next();
         }
@@ -174,7 +175,7 @@ impl Blocks {
     }
 
     /// All fragments in the order in which they were added.
-    fn blocks(&self) -> impl Iterator<Item = &[Loose]> {
+    fn blocks(&self) -> impl Iterator<Item = &[UnsortedFragment]> {
         self.full.iter().chain([&self.open]).map(Vec::as_slice)
     }
 
@@ -184,7 +185,7 @@ impl Blocks {
 
     fn memory_bytes(&self) -> usize {
         let blocks = self.full.iter().chain([&self.open]).map(Vec::capacity).sum::<usize>();
-        blocks * size_of::<Loose>() + self.full.capacity() * size_of::<Vec<Loose>>()
+        blocks * size_of::<UnsortedFragment>() + self.full.capacity() * size_of::<Vec<UnsortedFragment>>()
     }
 }
 
@@ -227,7 +228,11 @@ impl Fragments {
             let strands = first_strand(input, at, pieces)..first_strand(input, at + 1, pieces);
             let mut put = |column: u32, row: u32, depth: f32, optical_depth: f32| {
                 let texel = (row % BAND_ROWS) * columns + column;
-                piece.bands[(row / BAND_ROWS) as usize].push(Loose { texel, depth, optical_depth });
+                piece.bands[(row / BAND_ROWS) as usize].push(UnsortedFragment {
+                    texel,
+                    depth,
+                    optical_depth,
+                });
             };
             for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put));
             piece.bands.iter_mut().for_each(|blocks| blocks.spare = Vec::new());
@@ -379,7 +384,7 @@ mod tests {
                 open: texels
                     .iter()
                     .enumerate()
-                    .map(|(i, t)| Loose { texel: *t, depth: base + i as f32, optical_depth: 1.0 })
+                    .map(|(i, t)| UnsortedFragment { texel: *t, depth: base + i as f32, optical_depth: 1.0 })
                     .collect(),
             }],
         };

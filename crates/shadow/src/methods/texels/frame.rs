@@ -203,7 +203,14 @@ mod tests {
             ..Strands::default()
         };
         let light = LightFrame::new(Vec3::new(0.3, -1.0, 0.2));
-        let input = ShadowInput { strands: &strands, strand_width: 1e-3, light, anchor, maps: 1 };
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: 1e-3,
+            extinction_scale: 0.15,
+            light,
+            anchor,
+            maps: 1,
+        };
         TexelFrame::new(&input, 64, &Bounds::of_strands(&input))
     }
 
@@ -264,7 +271,14 @@ mod tests {
         };
         let light = LightFrame::new(Vec3::NEG_Y);
         let frame = |strand_width: f32| {
-            let input = ShadowInput { strands: &strands, strand_width, light, anchor: Vec3::ZERO, maps: 1 };
+            let input = ShadowInput {
+                strands: &strands,
+                strand_width,
+                extinction_scale: 0.15,
+                light,
+                anchor: Vec3::ZERO,
+                maps: 1,
+            };
             TexelFrame::new(&input, 512, &Bounds::of_strands(&input))
         };
         // 0.4 m across: 0.8 mm at 512. Sizes are rounded up to a sixteenth of an octave.

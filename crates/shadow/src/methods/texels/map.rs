@@ -11,6 +11,7 @@ use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
 use super::method::TexelMethod;
 use crate::bounds::Bounds;
+use crate::cpu::safe_extinction;
 use crate::exp::exp_of_minus;
 use crate::{
     ColumnMap, CpuShadow, RayMark, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings,
@@ -32,11 +33,11 @@ pub struct TexelMap<M: TexelMethod> {
     slots: Vec<u32>,
     cells: Vec<M::Cell>,
     width: Width,
-    built: Option<Built<M>>,
+    built: Option<BuiltMap<M>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Built<M> {
+struct BuiltMap<M> {
     method: M,
     frame: TexelFrame,
     report: ShadowReport,
@@ -79,7 +80,7 @@ impl<M: TexelMethod> TexelMap<M> {
     }
 
     /// The texel that contains a point, and the depth of the point; `None` beside the map.
-    fn texel_of(&self, p: Vec3) -> Option<(&Built<M>, usize, f32)> {
+    fn texel_of(&self, p: Vec3) -> Option<(&BuiltMap<M>, usize, f32)> {
         let built = self.built.as_ref()?;
         let p = built.frame.texel_from_world(p);
         let end = built.frame.resolution as f32;
@@ -109,7 +110,7 @@ impl<M: TexelMethod> TexelMap<M> {
         &mut self,
         input: &ShadowInput,
         settings: &ShadowSettings,
-    ) -> Result<Built<M>, ShadowError> {
+    ) -> Result<BuiltMap<M>, ShadowError> {
         let method = M::new(settings);
         let bounds = Bounds::of_strands(input);
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
@@ -128,8 +129,10 @@ impl<M: TexelMethod> TexelMap<M> {
             *self = Self { width: self.width, ..Self::default() };
         }
 
-        let lines =
-            Lines { resolution, depth_per_texel: depth_per_texel(settings, input.strand_width, &frame) };
+        let lines = Lines {
+            resolution,
+            depth_per_texel: depth_per_texel(input.extinction_scale, input.strand_width, &frame),
+        };
         if method.prefiltered() {
             self.fragments.draw(input, &frame, (resolution, resolution), &FilteredLines(lines));
         } else {
@@ -153,7 +156,7 @@ impl<M: TexelMethod> TexelMap<M> {
             scratch_bytes: scratch,
             needed_bytes,
         };
-        Ok(Built { method, frame, report })
+        Ok(BuiltMap { method, frame, report })
     }
 
     /// Computes the records of all `in_use` texels with fragments.
@@ -186,13 +189,13 @@ impl<M: TexelMethod> TexelMap<M> {
 
 /// Optical depth of a piece of strand whose length across the light is one texel: `s w ℓ sinθ / A` with ℓ sinθ = t and
 /// A = t², for texels of edge t.
-pub(crate) fn depth_per_texel(settings: &ShadowSettings, strand_width: f32, frame: &TexelFrame) -> f32 {
-    let depth = settings.safe_extinction_scale() * strand_width / frame.texel_size;
+pub(crate) fn depth_per_texel(extinction_scale: f32, strand_width: f32, frame: &TexelFrame) -> f32 {
+    let depth = safe_extinction(extinction_scale) * strand_width / frame.texel_size;
     if depth > 0.0 { depth.min(MOST_DEPTH_PER_FRAGMENT) } else { 0.0 }
 }
 
 impl<M: TexelMethod> TexelMap<M> {
-    fn lookup<'a>(&'a self, built: &'a Built<M>) -> Lookup<'a, M> {
+    fn lookup<'a>(&'a self, built: &'a BuiltMap<M>) -> Lookup<'a, M> {
         Lookup {
             method: &built.method,
             frame: &built.frame,

@@ -1,8 +1,8 @@
-//! What the methods with a record for each light texel share.
+//! What the methods with a record per light texel share.
 //!
-//! Strands are drawn into the texels of a light ([`TexelFrame`]) as fragments, each with a depth and an optical
-//! depth. A method is then a function from the fragments of one texel to a record, and one from a record and a depth
-//! to the optical depth before it ([`TexelMethod`]); [`TexelMap`] does the rest.
+//! Strands are rasterised into the texels of a light ([`TexelFrame`]) as fragments with a depth and an optical depth. A method
+//! consists of a function from the fragments of one texel to a record, and one from a record and a depth to the optical depth before
+//! it ([`TexelMethod`]); [`TexelMap`] does the rest.
 
 pub(crate) mod fragments;
 pub(crate) mod frame;
@@ -27,31 +27,30 @@ use crate::RayMarkKind;
 
 /// Texels along each edge that a map can have; multiples of 16.
 ///
-/// A setting is the most that a map has: texels are no narrower than strands are wide, so that hair of few, wide
-/// strands has fewer.
+/// The setting is an upper limit: texels are at least as wide as strands, so hair with few, wide strands has fewer.
 pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
 
-/// A slice of even depth: of opacity maps every one, of occupancy maps those whose bit is set.
+/// A slice of equal depth: every one in opacity maps, those whose bit is set in occupancy maps.
 pub(crate) const SLICE: RayMarkKind = RayMarkKind { label: "Slice", resolves_depth: true };
 
-/// Texels along each edge to begin with.
+/// The default number of texels along each edge.
 pub(crate) const DEFAULT_RESOLUTION: u32 = 512;
 
-/// Memory that a map and its build may take together, bytes; `exact` has a limit of its own.
+/// The most memory that a map and its build may use together, bytes; `exact` has a setting instead.
 pub const MAP_MEMORY_LIMIT_BYTES: u64 = 2 << 30;
 
 /// How a point reads the texels around it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TexelFilter {
-    /// The texel that it lies in alone.
+    /// Only the texel that contains it.
     Nearest,
     /// The bilinear mean of the transmittances of the four texels around it, each at the point's depth
     /// (percentage-closer filtering over 2 × 2 texels).
     #[default]
     Bilinear,
-    /// One texel, after the point was moved by up to half a texel on each axis, by chance but the same for a place: noise
-    /// that many blended strands even out, as Sintorn and Assarsson 2009 have it.
+    /// One texel, after the point is moved by up to half a texel on each axis by a hash of its position. The noise averages out over
+    /// many blended strands (Sintorn, Assarsson 2009).
     Jitter,
 }
 

@@ -12,6 +12,7 @@ use super::layout::Layout;
 use super::lookup::{Lookup, behind_all, look_up_simd};
 use super::{CELL, VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
 use crate::bounds::{Bounds, bounds_simd};
+use crate::cpu::safe_extinction;
 use crate::exp::{DEPTH_STEPS, exp_of_minus_steps};
 use crate::{
     ColumnMap, CpuShadow, RayMark, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings,
@@ -34,11 +35,11 @@ const POINTS_PER_LOOKUP: usize = 4096;
 /// workers.
 #[derive(Clone, Debug, Default)]
 pub struct VoxelMap {
-    built: Option<Built>,
+    built: Option<BuiltMap>,
 }
 
 #[derive(Clone, Debug)]
-struct Built {
+struct BuiltMap {
     layout: Layout,
     lattice: Lattice,
     filter: VoxelFilter,
@@ -75,7 +76,7 @@ impl VoxelMap {
         let built = match self.built.take() {
             Some(built) if built.layout == layout => self.built.insert(built),
             // The old one is freed before the new one is made.
-            _ => self.built.insert(Built {
+            _ => self.built.insert(BuiltMap {
                 layout,
                 lattice,
                 filter: settings.voxel_map.filter,
@@ -106,14 +107,14 @@ impl VoxelMap {
     }
 }
 
-impl Built {
+impl BuiltMap {
     /// Clears the grids and adds the strands to them. Returns the number of samples.
     fn deposit(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> u64 {
         let (layout, width) = (self.layout, self.width);
         let deposit = Deposit {
             layout,
             lattice: self.lattice,
-            depth: fixed_point_depth(input.strand_width, settings, &self.lattice),
+            depth: fixed_point_depth((input.extinction_scale, input.strand_width), settings, &self.lattice),
             by_point: settings.voxel_map.deposit == VoxelDeposit::PointCount,
         };
         let (strands, pieces) = (input.strands, self.grids.len());
@@ -173,9 +174,13 @@ fn bounds(width: Width, input: &ShadowInput) -> Bounds {
 }
 
 /// What a segment one cell long across the light, or a point, adds to its cell, in fixed point.
-pub(super) fn fixed_point_depth(strand_width: f32, settings: &ShadowSettings, lattice: &Lattice) -> f32 {
+pub(super) fn fixed_point_depth(
+    (extinction_scale, strand_width): (f32, f32),
+    settings: &ShadowSettings,
+    lattice: &Lattice,
+) -> f32 {
     let VoxelMapSettings { deposit, point_extinction, .. } = settings.voxel_map;
-    let scale = settings.safe_extinction_scale();
+    let scale = safe_extinction(extinction_scale);
     let depth = match deposit {
         // τ = s_ext w ℓ sinθ / ds², with ℓ sinθ in units of ds.
         VoxelDeposit::Length => scale * strand_width / lattice.cell_size,
@@ -207,7 +212,7 @@ impl CpuShadow for VoxelMap {
     }
 
     fn transmittance(&self, p: Vec3) -> f32 {
-        self.built.as_ref().and_then(Built::lookup).map_or(1.0, |lookup| lookup.one(p))
+        self.built.as_ref().and_then(BuiltMap::lookup).map_or(1.0, |lookup| lookup.one(p))
     }
 
     fn transmittance_at(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
@@ -300,7 +305,14 @@ mod tests {
     fn every_instruction_set_gives_the_same_bits() {
         let strands = strands();
         let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
-        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y, maps: 1 };
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: 2e-3,
+            extinction_scale: 0.15,
+            light,
+            anchor: Vec3::Y,
+            maps: 1,
+        };
         for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
             let mut settings = ShadowSettings::default();
             settings.voxel_map.filter = filter;

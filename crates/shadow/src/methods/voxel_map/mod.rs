@@ -1,14 +1,13 @@
 //! `voxel-map`: a grid of density whose first axis runs along the light (Bertails, Ménier, Cani 2005,
 //! "A Practical Self-Shadowing Algorithm for Interactive Hair Animation").
 //!
-//! 1. Every piece of strand adds its optical depth to the cell that it lies in.
-//! 2. Along each column of cells, optical depth is summed from the light on: a cell holds the sum up to and
-//!    including itself, which belongs to its *back face*.
-//! 3. A point reads the four columns around it, interpolates optical depth along the light and transmittance
-//!    across it.
+//! 1. Every sample of a strand adds its optical depth to the cell that contains it.
+//! 2. Each column of cells is summed along the light: a cell holds the sum up to and including itself, which belongs to its
+//!    *back face*.
+//! 3. A point reads the four columns around it. It interpolates optical depth along the light and transmittance across it.
 //!
-//! `docs/shadow_methods.md` has the equations and says where and why they differ from the paper's print. The
-//! plain version is in [`mod@reference`]; [`VoxelMap`] is the same map made quickly.
+//! `docs/shadow_methods.md` has the equations and explains where they differ from the printed paper. The plain version is in
+//! [`mod@reference`]; [`VoxelMap`] is the fast version of the same map.
 
 mod cpu;
 mod deposit;
@@ -30,8 +29,9 @@ pub use crate::bounds::Bounds;
 
 use serde::{Deserialize, Serialize};
 
+use super::method::{MapKind, MapSize, Method};
+use super::texels::TexelFrame;
 use crate::RayMarkKind;
-use crate::method::{MapKind, MapSize, Method};
 
 pub(super) static METHOD: Method = Method {
     id: "voxel-map",
@@ -44,6 +44,11 @@ pub(super) static METHOD: Method = Method {
     map: MapKind::Cells,
     size: |settings| Some(MapSize { edge: settings.voxel_map.resolution, per_texel: None }),
     marks: &[CELL],
+    settings: |settings| Some(&settings.voxel_map),
+    footprint: |input, settings, bounds| {
+        let Lattice { resolution, cell_size, .. } = Lattice::new(input, &settings.voxel_map, bounds);
+        TexelFrame::with_texel_size((input.light, input.anchor), resolution, cell_size, bounds)
+    },
     counts_points: |settings| settings.voxel_map.deposit == VoxelDeposit::PointCount,
     cpu: || Box::new(VoxelMap::default()),
     gpu: |gpu| Ok(Box::new(GpuVoxelMap::new(gpu)?)),
@@ -53,11 +58,11 @@ pub(super) static METHOD: Method = Method {
 /// A cell of the column.
 pub(crate) const CELL: RayMarkKind = RayMarkKind { label: "Cell", resolves_depth: true };
 
-/// How large the map is.
+/// The extent of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MapExtent {
-    /// As large as the hair is now, with an empty cell around it.
+    /// The extent of the hair in the current frame, with an empty cell around it.
     #[default]
     Fit,
     /// The paper's constant bound: twice the longest strand plus the head.
@@ -68,12 +73,11 @@ pub enum MapExtent {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VoxelFilter {
-    /// Optical depth interpolated between a cell's faces along the light, transmittance between cell centres
-    /// across it.
+    /// Interpolates optical depth between the faces of a cell along the light, and transmittance between cell centres across it.
     #[default]
     Centred,
-    /// As printed: transmittance interpolated on all three axes as if it lay at a cell's far corner, which
-    /// displaces the shadow by half a cell on both axes across the light.
+    /// As printed: interpolates transmittance on all three axes as if it belonged to the far corner of a cell, which displaces the
+    /// shadow by half a cell on both axes across the light.
     Paper,
 }
 
@@ -81,22 +85,22 @@ pub enum VoxelFilter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VoxelDeposit {
-    /// The optical depth of each piece of strand; the shadow depends neither on the map's resolution nor on
-    /// how finely strands are sampled.
+    /// The optical depth of each piece of strand: the shadow does not depend on the resolution of the map or on the sampling of
+    /// strands.
     #[default]
     Length,
-    /// As printed: one for each point of a strand, times [`VoxelMapSettings::point_extinction`] and the cell's
-    /// size. Depends on both, by the third power of the cell's size.
+    /// As printed: one per point of a strand, times [`VoxelMapSettings::point_extinction`] and the size of the cell. Depends on both,
+    /// with the third power of the size of the cell.
     PointCount,
 }
 
-/// What a user sets about the voxel map.
+/// Settings of the voxel map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct VoxelMapSettings {
     /// Cells along each edge, a multiple of 8.
     pub resolution: u32,
-    /// How large the map is.
+    /// The extent of the map.
     pub extent: MapExtent,
     /// Size of the head for [`MapExtent::Paper`] (the paper's h with index max), metres.
     pub head_size: f32,

@@ -10,6 +10,7 @@ use super::lattice::Lattice;
 use super::samples::{sample_at, sample_count};
 use super::{VoxelDeposit, VoxelFilter};
 use crate::bounds::Bounds;
+use crate::cpu::safe_extinction;
 use crate::{ShadowInput, ShadowSettings};
 
 /// How cells are addressed. Both give the same shadow.
@@ -53,7 +54,7 @@ impl DenseMap {
         let filter = settings.voxel_map.filter;
         let mut map =
             Self { lattice, density: vec![0.0; n * n * n], depth: vec![0.0; n * n * n], addressing, filter };
-        let scale = f64::from(settings.safe_extinction_scale());
+        let scale = f64::from(safe_extinction(input.extinction_scale));
         match settings.voxel_map.deposit {
             VoxelDeposit::Length => map.deposit_lengths(input, scale),
             VoxelDeposit::PointCount => {

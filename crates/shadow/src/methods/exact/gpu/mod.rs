@@ -5,7 +5,7 @@
 
 use lovelock_gpu::ShaderPart;
 
-use super::Sorted;
+use super::SortedFragments;
 use crate::gpu::wgsl;
 use crate::methods::texels::gpu::list::{LIST_BODY, LIST_HEAD};
 use crate::methods::texels::gpu::{GpuTexelMethod, Needs, Over, Pass};
@@ -18,7 +18,7 @@ const SORT: ShaderPart = wgsl!("methods/exact/gpu/", "sort.wgsl");
 const SORT_LONG: ShaderPart = wgsl!("methods/exact/gpu/", "sort_long.wgsl");
 const QUERY: ShaderPart = wgsl!("methods/exact/gpu/", "query.wgsl");
 
-impl GpuTexelMethod for Sorted {
+impl GpuTexelMethod for SortedFragments {
     const PASSES: &'static [Pass] = &[
         Pass { name: "shadow/count", over: Over::Segments, parts: &[COUNT] },
         Pass { name: "shadow/place", over: Over::Groups, parts: &[LIST_HEAD, PLACE] },

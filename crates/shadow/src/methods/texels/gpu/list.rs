@@ -99,7 +99,7 @@ impl List {
 
     /// Reads the number of fragments back. Returns the bytes that the map needs, and whether the list was too small and has been
     /// enlarged; `None` if nothing was built since the last call.
-    pub fn settle(&mut self, gpu: &Gpu) -> Result<Option<(u64, bool)>, Unsettled> {
+    pub fn settle(&mut self, gpu: &Gpu) -> Result<Option<(u64, bool)>, SettleError> {
         let Some(share) = self.pending.take() else { return Ok(None) };
         let mut head = [0_u32; 2];
         read_buffer(gpu, self.buffer.raw(), &mut head)?;
@@ -115,18 +115,18 @@ impl List {
 
 /// Why a list could not be settled.
 #[derive(Debug)]
-pub(crate) enum Unsettled {
+pub(crate) enum SettleError {
     Shadow(ShadowError),
     Gpu(GpuError),
 }
 
-impl From<ShadowError> for Unsettled {
+impl From<ShadowError> for SettleError {
     fn from(error: ShadowError) -> Self {
         Self::Shadow(error)
     }
 }
 
-impl From<GpuError> for Unsettled {
+impl From<GpuError> for SettleError {
     fn from(error: GpuError) -> Self {
         Self::Gpu(error)
     }

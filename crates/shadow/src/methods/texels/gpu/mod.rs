@@ -17,7 +17,7 @@ use glam::Vec4;
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
 use self::kernels::KernelSets;
-use self::list::{List, Share, Unsettled};
+use self::list::{List, SettleError, Share};
 use super::{TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
     Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device,
@@ -276,7 +276,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method))?;
 
         self.scratch.fit(gpu, scratch_words);
-        let depth = depth_per_texel(settings, input.strand_width, &frame);
+        let depth = depth_per_texel(input.extinction_scale, input.strand_width, &frame);
         let segments = input.strands.segment_count;
         let uniform = TexelUniform::new(&frame, depth, segments, &needs);
         let map = self.map(gpu, slot);
@@ -355,8 +355,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
                     map.report.samples = list.found();
                     map.report.memory_bytes = map.words.bytes() + list.memory_bytes();
                 }
-                Err(Unsettled::Gpu(error)) => return Err(error.into()),
-                Err(Unsettled::Shadow(error)) => {
+                Err(SettleError::Gpu(error)) => return Err(error.into()),
+                Err(SettleError::Shadow(error)) => {
                     *map = Map::new(gpu, M::LISTS);
                     return Err(error.into());
                 }

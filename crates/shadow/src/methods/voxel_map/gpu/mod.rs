@@ -153,7 +153,7 @@ impl GpuShadow for GpuVoxelMap {
             scratch_bytes: self.full.bytes(),
             ..ShadowReport::default()
         };
-        let depth = fixed_point_depth(input.strand_width, settings, &lattice);
+        let depth = fixed_point_depth((input.extinction_scale, input.strand_width), settings, &lattice);
         let uniform = VoxelUniform::new(&lattice, depth, input, ours.filter);
         gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
 

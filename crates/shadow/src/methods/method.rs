@@ -3,9 +3,13 @@
 use std::fmt;
 use std::str::FromStr;
 
+use lovelock_base::field;
+use lovelock_base::settings::{AnySettings, Choices, Part, PartMut, Setting, Settings};
 use lovelock_gpu::{Gpu, GpuError, ShaderSource};
 
-use crate::{CpuShadow, GpuShadow, RayMarkKind, ShadowMethod, ShadowSettings};
+use super::texels::TexelFrame;
+use super::{ShadowMethod, ShadowSettings};
+use crate::{Bounds, CpuShadow, GpuShadow, RayMarkKind, ShadowInput};
 
 /// Everything about one shadow method that the rest of the program asks for. Each method's folder has one.
 #[derive(Debug)]
@@ -26,6 +30,10 @@ pub(crate) struct Method {
     pub size: fn(&ShadowSettings) -> Option<MapSize>,
     /// What a map holds along a ray of its light.
     pub marks: &'static [RayMarkKind],
+    /// Its section of the settings.
+    pub settings: fn(&ShadowSettings) -> Option<&dyn AnySettings>,
+    /// The texels over which [`converged`](crate::converged) transmittance is comparable with that of the method.
+    pub footprint: fn(&ShadowInput, &ShadowSettings, &Bounds) -> TexelFrame,
     /// Whether strands block light, with these settings, by the number of their points and not by their length.
     pub counts_points: fn(&ShadowSettings) -> bool,
     /// An empty map on the CPU.
@@ -94,6 +102,16 @@ impl ShadowMethod {
 }
 
 impl ShadowSettings {
+    /// The settings of one method; `None` if it has none.
+    pub fn of_method(&self, method: ShadowMethod) -> Option<&dyn AnySettings> {
+        (method.method().settings)(self)
+    }
+
+    /// The same, to be changed.
+    pub fn of_method_mut(&mut self, method: ShadowMethod) -> Option<&mut dyn AnySettings> {
+        self.sections_mut().into_iter().find(|(of, _)| *of == method).map(|(_, settings)| settings)
+    }
+
     /// The size of the map of the method in use; `None` where it has no map.
     pub fn map_size(&self) -> Option<MapSize> {
         (self.method.method().size)(self)
@@ -104,6 +122,11 @@ impl ShadowSettings {
         let Some(MapSize { edge, per_texel }) = self.map_size() else { return String::new() };
         let power = if self.method.map_kind() == MapKind::Cells { '³' } else { '²' };
         per_texel.map_or_else(|| format!("{edge}{power}"), |count| format!("{edge}{power} × {count}"))
+    }
+
+    /// The texels over which [`converged`](crate::converged) transmittance is comparable with that of the method in use.
+    pub(crate) fn footprint(&self, input: &ShadowInput, bounds: &Bounds) -> TexelFrame {
+        (self.method.method().footprint)(input, self, bounds)
     }
 
     /// Whether strands block light by the number of their points and not by their length: then shadows depend on how finely
@@ -133,6 +156,38 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
         (method.method().shaders)().into_iter().map(named).collect::<Vec<_>>()
     };
     ShadowMethod::ALL.iter().flat_map(of).collect()
+}
+
+impl Choices for ShadowMethod {
+    const ALL: &'static [Self] = Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        (self.id(), self.label())
+    }
+}
+
+impl ShadowMethod {
+    /// The name of its section in projects.
+    fn section(self) -> String {
+        self.id().replace('-', "_")
+    }
+}
+
+impl Settings for ShadowSettings {
+    const TABLE: &'static [Setting<Self>] = &[Setting::choice::<ShadowMethod>(
+        field!(Self, method),
+        "Method",
+        "How the light that reaches a hair through other hair is computed.",
+    )];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        let part = |method: &ShadowMethod| Some((method.section().into(), self.of_method(*method)?));
+        ShadowMethod::ALL.iter().filter_map(part).collect()
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        self.sections_mut().into_iter().map(|(of, settings)| (of.section().into(), settings)).collect()
+    }
 }
 
 impl fmt::Display for ShadowMethod {
@@ -193,6 +248,16 @@ mod tests {
     #[test]
     fn every_method_is_listed_in_order() {
         assert!(ShadowMethod::ALL.iter().enumerate().all(|(at, method)| *method as usize == at));
+    }
+
+    #[test]
+    fn every_section_can_be_changed() {
+        let mut settings = ShadowSettings::default();
+        let sections: Vec<_> = settings.parts().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(settings.parts_mut().into_iter().map(|(name, _)| name).collect::<Vec<_>>(), sections);
+        for &method in ShadowMethod::ALL {
+            assert_eq!(sections.iter().any(|name| *name == method.section()), method != ShadowMethod::None);
+        }
     }
 
     #[test]
