@@ -65,7 +65,7 @@ fn wrong_requests_are_refused_and_leave_nothing() {
     for (project, request, wanted) in [
         (seamless, request(), "a seamless loop"),
         (small_project(), FarmRequest { frames: Some(4..4), ..request() }, "an empty range"),
-        (small_project(), FarmRequest { chunk: Some(0), ..request() }, "--chunk 0"),
+        (small_project(), FarmRequest { chunk: Some(0), ..request() }, "--chunk: found 0"),
         (
             small_project(),
             FarmRequest { chunk: Some(1), frames: Some(0..5000), ..request() },
