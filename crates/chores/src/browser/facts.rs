@@ -42,7 +42,7 @@ impl Facts {
 
     /// Checks that the page loaded completely and without network requests.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
-        ensure!(self.asked.is_empty(), "the page requested {}", self.asked.join(", "));
+        ensure!(self.asked.is_empty(), "the page made network requests: {}", self.asked.join(", "));
         ensure!(self.ran, "the script of the page did not finish");
         ensure!(self.pictures > 0, "the page has no images");
         ensure!(self.broken == 0, "{} of {} images did not load", self.broken, self.pictures);
@@ -110,11 +110,11 @@ mod tests {
         let fault =
             |from: &str, to: &str| check(&PAGE.replace('\n', " ").replace(from, to), LOG).unwrap_err();
         assert!(fault("ready", "half").contains("script"));
-        assert!(fault("pictures=\"12\"", "").contains("no pictures"));
+        assert!(fault("pictures=\"12\"", "").contains("no images"));
         assert_eq!(fault("broken=\"0\"", "broken=\"3\""), "3 of 12 images did not load");
         assert!(fault("3400", "tall").contains("height"));
         let log = LOG.replace("file:///report/a.png", "http://example.org/a.png");
-        assert!(check(PAGE, &log).unwrap_err().contains("requested http://example.org/a.png"));
+        assert!(check(PAGE, &log).unwrap_err().contains("network requests: http://example.org/a.png"));
         assert!(check(PAGE, "no log").is_err());
         assert!(check("", LOG).is_err());
     }

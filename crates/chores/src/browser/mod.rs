@@ -53,12 +53,12 @@ fn controls(browser: &Browser, page: &Path, folder: &Path) -> anyhow::Result<()>
     ensure!(good.contains(policy) && good.contains("<script>"), "the page has no policy or no script");
     for (name, broken) in [
         // Outside its folder the page has no images.
-        ("pictures", good.clone()),
+        ("images", good.clone()),
         ("script", good.replacen("<script>", "<script>throw new Error('control');", 1)),
         ("network", good.replacen(policy, free, 1).replacen("</body>", &format!("{asks}</body>"), 1)),
     ] {
         // In the folder of the good page its images exist.
-        let beside = if name == "pictures" { folder } else { page.parent().unwrap_or(folder) };
+        let beside = if name == "images" { folder } else { page.parent().unwrap_or(folder) };
         let path = beside.join(format!("control_{name}.html"));
         fs::write(&path, broken)?;
         let outcome = browser.open(&path).and_then(|facts: Facts| facts.check());
