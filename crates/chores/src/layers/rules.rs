@@ -106,7 +106,32 @@ pub(crate) fn faults(graph: &Graph) -> Vec<String> {
 }
 
 /// Circles that stand, each with its crate, its modules and the reason.
-const CIRCLES: [(&str, &[&str], &str); 0] = [];
+const CIRCLES: [(&str, &[&str], &str); 8] = [
+    (
+        "app",
+        &["cli", "window"],
+        "the command line opens the window, which applies the assignments of `--set`",
+    ),
+    ("gpu", &["device", "shader"], "a device compiles shaders, whose faults are device errors"),
+    ("jobs", &["record::curves", "record::request"], "a request says which curves it exports"),
+    (
+        "panes",
+        &["live::probes", "live::reference", "live::round"],
+        "a round measures against the reference and the probes, which read the round's strands",
+    ),
+    ("project", &["tracks::curve", "tracks::section"], "a track evaluates the curve through its keys"),
+    ("render", &["cpu", "layers"], "layers are an output of the CPU renderer, whose tone mapping they use"),
+    (
+        "shadow",
+        &["bounds", "cpu", "error", "gpu", "methods"],
+        "a method is a folder with its CPU and GPU parts, and the registry of methods dispatches to them",
+    ),
+    (
+        "study",
+        &["batch::light_sweep", "batch::stability", "batch::swim", "batch::work"],
+        "the work of a study hands itself to each measurement",
+    ),
+];
 
 /// One sentence for every circle among the modules of a package that is not one of [`CIRCLES`].
 pub(crate) fn circles(package: &str, circles: &[Circle]) -> Vec<String> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::codec::DecodedChunk;
 
-/// DecodedChunk chunks up to a bound in bytes. The most recently used one is last.
+/// Decoded chunks, up to a bound in bytes. The most recently used one is last.
 pub(super) struct Cache {
     chunks: Vec<(usize, Arc<DecodedChunk>)>,
     bound: usize,
