@@ -35,7 +35,9 @@ fn renewed(text: &str, table: impl Fn(&str) -> anyhow::Result<String>) -> anyhow
     while let Some((before, after)) = rest.split_once("<!-- settings: ") {
         let (section, old) = after.split_once(" -->").context("a mark of settings without its end")?;
         let (_, after) = old.split_once("<!-- end -->").context("a table of settings without its end")?;
-        out += &format!("{before}<!-- settings: {section} -->\n\n{}\n<!-- end -->", table(section)?);
+        for part in [before, "<!-- settings: ", section, " -->\n\n", &table(section)?, "\n<!-- end -->"] {
+            out.push_str(part);
+        }
         rest = after;
     }
     Ok(out + rest)

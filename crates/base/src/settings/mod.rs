@@ -67,6 +67,10 @@ pub struct Setting<S: 'static> {
 }
 
 impl<S> Setting<S> {
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "tables read better with `field!(…)` than with a reference to it"
+    )]
     const fn new(field: Field<S>, kind: Kind, label: &'static str, text: &'static str) -> Self {
         let info = Info { name: field.name, label, text, symbol: "", unit: Unit::NONE, kind, none: None };
         Self { info, get: field.get, set: field.set }
