@@ -103,7 +103,7 @@ impl Window {
             Some(panels::recording::RecordingRequest::Resume) => self.open_path_dialog(Purpose::Resume),
             Some(panels::recording::RecordingRequest::Curves) => self.open_path_dialog(Purpose::Curves),
             Some(panels::recording::RecordingRequest::Cancel) => {
-                self.run(crate::window::Command::Record, ctx)
+                self.run(crate::window::Command::Record, ctx);
             }
             None => {}
         }

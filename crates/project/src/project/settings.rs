@@ -37,7 +37,7 @@ pub fn all_settings() -> Vec<Entry> {
     project.lights.truncate(1);
     project.compare.panes.truncate(1);
     project.hair.ties = vec![HairTie::default()];
-    project.body.colliders.shapes.insert("NAME".to_owned(), Default::default());
+    project.body.colliders.shapes.insert("NAME".to_owned(), lovelock_motion::ColliderEdit::default());
     let listed = |entry: &Entry| !entry.path.starts_with("compare.panes.0.shadow.");
     entries(&project).into_iter().filter(listed).collect()
 }

@@ -122,7 +122,8 @@ fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, Project
 fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> ProjectError {
     let settings = ShadowSettings::default();
     let of_methods = methods.iter().filter_map(|method| settings.of_method(*method));
-    let mut known: Vec<&str> = of_methods.flat_map(|own| own.infos()).map(|info| info.name).collect();
+    let mut known: Vec<&str> =
+        of_methods.flat_map(lovelock_base::settings::AnySettings::infos).map(|info| info.name).collect();
     known.sort_unstable();
     known.dedup();
     let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };

@@ -29,7 +29,7 @@ fn shake(value: &mut Value, random: &mut SplitMix64) {
             *value = Value::from(self::number(random, number.as_f64().unwrap_or(1.0)).abs().min(4e9) as u64);
         }
         Value::Number(number) => {
-            *value = Value::from(self::number(random, number.as_f64().unwrap_or(1.0)) as f32)
+            *value = Value::from(self::number(random, number.as_f64().unwrap_or(1.0)) as f32);
         }
         Value::Array(items) => items.iter_mut().for_each(|item| shake(item, random)),
         Value::Object(fields) => fields.values_mut().for_each(|field| shake(field, random)),

@@ -43,7 +43,7 @@ const NO_SETTINGS: [&str; 11] = [
 fn every_number_switch_and_choice_of_a_file_is_a_setting_of_the_same_name() {
     let mut project = Project::default();
     project.hair.ties = vec![HairTie::default()];
-    project.body.colliders.shapes.insert("neck".to_owned(), Default::default());
+    project.body.colliders.shapes.insert("neck".to_owned(), lovelock_motion::ColliderEdit::default());
     let mut file = BTreeMap::new();
     leaves("", &serde_json::to_value(&project).expect("plain data"), &mut file);
     file.retain(|path, _| {

@@ -1,4 +1,4 @@
-//! SortedFragments fragments with running sums.
+//! Sorted fragments with running sums.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
