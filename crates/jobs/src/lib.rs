@@ -1,7 +1,7 @@
 //! The work of the command line: recording, measuring, converting and describing files.
 //!
 //! - [`record`]: films, sequences of images, takes and curves.
-//! - [`bench`]: times of known scenes.
+//! - [`mod@bench`]: times of known scenes.
 //! - [`farm`]: a recording as a job for many machines.
 //! - [`convert`]: hair files from one format to another.
 //! - [`info`]: what a file holds.

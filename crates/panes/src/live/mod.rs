@@ -57,7 +57,7 @@ impl Live {
         self.jobs.put(request);
     }
 
-    /// The latest image of pane `index`; `None` past [`CompareSection::MOST_PANES`].
+    /// The latest image of pane `index`; `None` past [`MOST_PANES`](lovelock_project::project::CompareSection::MOST_PANES).
     pub fn pane(&self, index: usize) -> Option<&Latest<LivePane>> {
         self.outputs.panes.get(index)
     }
