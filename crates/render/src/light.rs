@@ -87,7 +87,7 @@ impl Light {
 impl Settings for Light {
     const TABLE: &'static [Setting<Self>] = &[
         Setting::switch(field!(Self, enabled), "Enabled", "Switches the light on."),
-        Setting::direction(
+        Setting::direction_or_zero(
             field!(Self, direction),
             "Light direction",
             "Direction in which the light travels.",
@@ -110,4 +110,11 @@ impl Settings for Light {
         )
         .unit(Unit::METRES_AS_MM),
     ];
+
+    fn reconcile(&mut self) {
+        // A vector without a direction points down, as in `normalized`.
+        if self.direction.try_normalize().is_none() {
+            self.direction = Vec3::NEG_Y;
+        }
+    }
 }

@@ -129,7 +129,7 @@ fn settings_are_set_by_path() {
     project.set("hair.preset", "curly").expect("a hairstyle");
     assert_eq!(project.look, GroomSettings::preset(Preset::Curly).look);
     let before = project.clone();
-    let error = project.set("simulation.wind.sped", "3").expect_err("no such setting").to_string();
+    let error = project.set("simulation.wind.spead", "3").expect_err("no such setting").to_string();
     assert!(error.contains("simulation.wind.speed"), "{error}");
     assert!(project.set("simulation.wind.speed", "fast").is_err());
     assert_eq!(project, before, "what is wrong changes nothing");
