@@ -87,7 +87,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::RecordTake,
             "record-take",
             "Record a take",
-            "Records the simulation, so that it can be played and lit again. A second time ends the take.",
+            "Records the simulation, to be played and lit again. A second time ends it.",
             &["R"],
             G::File,
         ),
