@@ -223,7 +223,7 @@ fn a_part_that_fails_keeps_the_old_one() {
     assert_eq!(places, [Place::Motion, Place::Hair], "{problems:?}");
     assert!(problems.iter().all(Problem::is_failure));
     assert!(
-        problems[1].message.contains("broken.hair") && problems[1].message.contains("stays"),
+        problems[1].message.contains("broken.hair") && problems[1].message.contains("is kept"),
         "{problems:?}"
     );
 }
