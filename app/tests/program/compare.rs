@@ -80,7 +80,7 @@ fn wrong_requests_are_rejected_in_one_line_without_output() {
         (&["--transparency", "magic"], "weighted-average", 2),
         (&["--backend", "magic"], "both", 2),
         (&["--frame", "1000000"], "1000000", 2),
-        (&["--frame", "18446744073709551614"], "found 18446744073709551614; must be inside the clip", 2),
+        (&["--frame", "18446744073709551614"], "18446744073709551614 is outside the clip", 2),
         (&["--frame", "18446744073709551615"], "found 18446744073709551615; must be inside the clip", 2),
         (&["--frames", "5..5"], "5..5", 2),
         (&["--frame", "1", "--frames", "1..2"], "--frame", 2),
