@@ -91,7 +91,7 @@ fn draw_all(name: &str, mut project: Project) {
 
 #[test]
 fn grown_hairstyles() {
-    for preset in Preset::ALL {
+    for &preset in lovelock_testkit::suite::cases(&[Preset::Smooth, Preset::Curly], &Preset::ALL) {
         let mut project = Project::default();
         project.set_preset(preset);
         draw_all(preset.id(), project);
@@ -101,7 +101,8 @@ fn grown_hairstyles() {
 #[test]
 fn imported_grooms() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
-    for file in ["hair/yuksel/straight.hair", "hair/tressfx/sintel_16pt.tfx"] {
+    let files = ["hair/yuksel/straight.hair", "hair/tressfx/sintel_16pt.tfx"];
+    for &file in lovelock_testkit::suite::cases(&files[..1], &files) {
         let mut project = Project::default();
         project.set_hair_file(data.join(file));
         draw_all(file, project);

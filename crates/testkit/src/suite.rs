@@ -9,3 +9,19 @@ pub fn is_long() -> bool {
 pub fn seconds(short: f64, long: f64) -> f64 {
     if is_long() { long } else { short }
 }
+
+/// The cases that a test runs through: `short` every day, `long` in the long suite.
+pub fn cases<'a, T>(short: &'a [T], long: &'a [T]) -> &'a [T] {
+    if is_long() { long } else { short }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{cases, is_long, seconds};
+
+    #[test]
+    fn the_short_suite_runs_less() {
+        let expected = if is_long() { (600.0, 3) } else { (20.0, 1) };
+        assert_eq!((seconds(20.0, 600.0), cases(&[1], &[1, 2, 3]).len()), expected);
+    }
+}

@@ -3,6 +3,7 @@
 use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
 use lovelock_simulation::SimulationSettings;
+use lovelock_testkit::suite;
 
 use crate::common::{Depths, STEP_SECS, Stage};
 
@@ -30,7 +31,7 @@ fn deepest(preset: Preset, motion: &str, colliders: bool) -> f32 {
 
 #[test]
 fn presets_enter_the_skin_by_less_than_a_millimetre_in_dance_and_backflip() {
-    for preset in Preset::ALL {
+    for &preset in suite::cases(&[Preset::Smooth, Preset::Long], &Preset::ALL) {
         for motion in ["dance", "backflip"] {
             let depth = deepest(preset, motion, true);
             assert!(depth < 1e-3, "{preset:?} in the {motion}: {depth} m");
@@ -46,7 +47,7 @@ fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
     let motion = file.to_str().expect("a name in UTF-8");
-    for preset in Preset::ALL {
+    for &preset in suite::cases(&[Preset::Smooth, Preset::Long], &Preset::ALL) {
         let depth = deepest(preset, motion, true);
         assert!(depth < 1e-3, "{preset:?}: {depth} m");
     }

@@ -5,18 +5,20 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_groom::Preset;
 use lovelock_simulation::{Simulation, SimulationSettings};
-use lovelock_testkit::data_dir;
+use lovelock_testkit::{data_dir, suite};
 
 use crate::common::{STEP_SECS, Stage, bare, distance_from_style, frame, head, straight, style};
 
 #[test]
 fn no_point_moves_by_a_hundredth_in_five_seconds_of_standing_still() {
-    let mut stages: Vec<(String, Stage, SimulationSettings)> = Preset::ALL
-        .into_iter()
-        .map(|p| (format!("{p:?}"), Stage::new(p), SimulationSettings::preset(p)))
-        .collect();
+    let mut stages: Vec<(String, Stage, SimulationSettings)> =
+        suite::cases(&[Preset::Smooth, Preset::Ponytail], &Preset::ALL)
+            .iter()
+            .map(|&p| (format!("{p:?}"), Stage::new(p), SimulationSettings::preset(p)))
+            .collect();
     if let Some(data) = data_dir() {
-        for file in ["yuksel/straight.hair", "tressfx/sintel_vk.tfx", "tressfx/TestHair1.tfx"] {
+        let files = ["tressfx/sintel_vk.tfx", "yuksel/straight.hair", "tressfx/TestHair1.tfx"];
+        for &file in suite::cases(&files[..1], &files) {
             let stage = Stage::with_file(&data.join("hair").join(file), 0);
             stages.push((file.to_owned(), stage, SimulationSettings::default()));
         }
