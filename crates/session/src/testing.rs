@@ -76,6 +76,25 @@ pub fn recorded(
     frames
 }
 
+/// The step at which the number of wisps of [`regrown`] increases.
+pub const MORE: u64 = 40;
+/// The step at which it returns to the old number.
+pub const AGAIN: u64 = 70;
+
+/// Records a take of 100 steps in which the number of guides changes twice.
+pub fn regrown(path: &Path) -> Vec<FrameSnapshot> {
+    recorded(path, &small_project(), 100, |step, project| match step {
+        MORE => project.hair.groom.wisps = 21,
+        AGAIN => project.hair.groom.wisps = 16,
+        _ => {}
+    })
+}
+
+/// How many guides a frame has.
+pub fn guides(frame: &FrameSnapshot) -> usize {
+    frame.guides.guides.count()
+}
+
 /// A take that plays without problems.
 pub fn played(path: &Path) -> TakePlayer {
     let (player, problems) = TakePlayer::open(path, &Access::new()).expect("a take that plays");

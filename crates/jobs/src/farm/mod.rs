@@ -110,11 +110,7 @@ pub fn farm(
     if let Some(problem) = problems.iter().find(|problem| problem.is_failure()) {
         return Err(ProjectError::option(format!("a part of the scene is missing: {}", problem.cause)));
     }
-    let recording = &project.recording;
-    let frames = request.frames.clone().unwrap_or_else(|| {
-        let first = recording.first_frame;
-        first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
-    });
+    let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(dance.frames()));
     check_frames(&frames)?;
     dance.check(&frames)?;
     let count = frames.end - frames.start;

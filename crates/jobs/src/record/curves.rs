@@ -117,11 +117,7 @@ pub fn record_curves(
 
     let (mut dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
     report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
-    let recording = &project.recording;
-    let frames = request.frames.clone().unwrap_or_else(|| {
-        let first = recording.first_frame;
-        first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
-    });
+    let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(dance.frames()));
     check_frames(&frames)?;
     dance.check(&frames)?;
     if request.seamless || project.recording.seamless {

@@ -86,11 +86,7 @@ pub fn record_take(
     }
     let (scene, problems) = load(&project, &request.access, progress)?;
     report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
-    let recording = &project.recording;
-    let frames = request.frames.clone().unwrap_or_else(|| {
-        recording.first_frame
-            ..recording.end_frame.unwrap_or_else(|| scene.frames(fps).max(recording.first_frame + 1))
-    });
+    let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(scene.frames(fps)));
     check_frames(&frames)?;
     let clock = FrameClock::new(fps);
     let first = clock.step_of_frame(frames.start);

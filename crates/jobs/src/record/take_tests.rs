@@ -1,15 +1,14 @@
 //! Takes recorded without a window, and takes in which the number of guides changes.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use lovelock_project::error::ProjectError;
 use lovelock_record::{SequenceFormat, frame_name};
 use lovelock_render::{Backend, CpuRenderer, Picture};
 use lovelock_session::progress::Progress;
-use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::take::project_of_take;
-use lovelock_session::testing::{played, recorded, small_project};
+use lovelock_session::testing::{AGAIN, MORE, guides, played, regrown, small_project};
 
 use super::*;
 use crate::info::info;
@@ -41,22 +40,6 @@ fn without_a_window_every_step_is_recorded_and_a_cancelled_take_leaves_nothing()
     let left: Vec<_> =
         std::fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left, ["dance.take"]);
-}
-
-/// The step at which the number of wisps increases, and the one at which it returns to the old number.
-const MORE: u64 = 40;
-const AGAIN: u64 = 70;
-
-fn regrown(path: &Path) -> Vec<FrameSnapshot> {
-    recorded(path, &small_project(), 100, |step, project| match step {
-        MORE => project.hair.groom.wisps = 21,
-        AGAIN => project.hair.groom.wisps = 16,
-        _ => {}
-    })
-}
-
-fn guides(frame: &FrameSnapshot) -> usize {
-    frame.guides.guides.count()
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! The project at a time of its timeline.
 
-use lovelock_base::settings::Settings;
+use lovelock_base::settings::{AnySettings, Settings};
 use std::borrow::Cow;
 
 use lovelock_simulation::SimulationSettings;
 
-use super::leaf::set_all;
+use super::leaf::{set_all, set_numbers};
 use crate::project::Project;
 use crate::tracks::Track;
 
@@ -25,17 +25,12 @@ impl Project {
             return project;
         }
         set_all(&mut project, values);
-        let ranged = project.clamped();
-        // Only sections that tracks can change; the rest is copied bit for bit.
-        Self {
-            look: ranged.look,
-            simulation: ranged.simulation,
-            shadow: ranged.shadow,
-            lights: ranged.lights,
-            camera: ranged.camera,
-            picture: ranged.picture,
-            ..project
-        }
+        // Only sections that tracks can change.
+        let Self { look, simulation, shadow, lights, camera, picture, .. } = &mut project;
+        let sections: [&mut dyn AnySettings; 5] = [look, simulation, shadow, camera, picture];
+        sections.into_iter().for_each(AnySettings::clamp);
+        lights.iter_mut().for_each(AnySettings::clamp);
+        project
     }
 
     /// As [`Project::at`], without a copy if no track has an effect.
@@ -47,29 +42,32 @@ impl Project {
 /// The tracks of the simulation's settings, prepared for evaluation at each step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Animation {
-    /// A project with nothing but the simulation's settings and tracks.
-    project: Box<Project>,
+    settings: SimulationSettings,
+    /// Active tracks, each with the path of its target below the simulation's settings.
+    tracks: Vec<(String, Track)>,
 }
 
 impl Animation {
     /// The simulation's tracks of a project; `None` if it has none.
     pub fn of(project: &Project) -> Option<Self> {
-        let of_simulation = |track: &&Track| track.is_active() && track.target.starts_with("simulation/");
-        let tracks: Vec<_> = project.timeline.tracks.iter().filter(of_simulation).cloned().collect();
-        if tracks.is_empty() {
-            return None;
-        }
-        let mut alone = Project { simulation: project.simulation, ..Project::default() };
-        alone.timeline.tracks = tracks;
-        Some(Self { project: Box::new(alone) })
+        let active = project.timeline.tracks.iter().filter(|track| track.is_active());
+        let tracks: Vec<_> = active
+            .filter_map(|track| {
+                let below = track.target.strip_prefix("simulation/")?;
+                Some((below.replace('/', "."), track.clone()))
+            })
+            .collect();
+        (!tracks.is_empty()).then_some(Self { settings: project.simulation, tracks })
     }
 
     /// The settings at a time of the timeline.
     pub fn simulation_at(&self, secs: f64) -> SimulationSettings {
-        let tracks = &self.project.timeline.tracks;
-        let values = tracks.iter().filter_map(|track| Some((track.target.as_str(), track.value_at(secs)?)));
-        let mut project = Project { simulation: self.project.simulation, ..Project::default() };
-        set_all(&mut project, values);
-        project.simulation.clamped()
+        let mut settings = self.settings;
+        for (path, track) in &self.tracks {
+            if let Some(numbers) = track.value_at(secs) {
+                set_numbers(&mut settings, path, &numbers);
+            }
+        }
+        settings.clamped()
     }
 }

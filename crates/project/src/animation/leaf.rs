@@ -1,8 +1,9 @@
 //! The numbers of a project by the names of their tracks.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
-use lovelock_base::settings::{entries, find, set_value};
+use lovelock_base::settings::{AnySettings, entries, find, set_value};
 
 use crate::project::Project;
 
@@ -32,44 +33,61 @@ pub(super) fn numbers_at(project: &Project, target: &str) -> Option<Vec<f64>> {
     number.map(|number| vec![number])
 }
 
-/// Sets the numbers at a target; a target that the project lacks, and a number of values that it does not have, change nothing.
-fn set_numbers(project: &mut Project, target: &str, numbers: &[f64]) {
-    let Some(mut path) = path_of(target) else { return };
-    let mut numbers = Cow::Borrowed(numbers);
-    if find(project, &path).is_none()
-        && let Some((vector, index)) = component(&path)
-        && let Some((_, value)) = find(project, vector)
+/// Sets the numbers at a path; a path that `root` lacks, and a number of values that it does not have, change nothing.
+pub(super) fn set_numbers(root: &mut dyn AnySettings, path: &str, numbers: &[f64]) {
+    let (mut path, mut numbers) = (path, Cow::Borrowed(numbers));
+    if find(root, path).is_none()
+        && let Some((vector, index)) = component(path)
+        && let Some((_, value)) = find(root, vector)
         && let ([number], mut all) = (&*numbers, value.numbers())
         && let Some(slot) = all.get_mut(index)
     {
         *slot = *number;
-        (path, numbers) = (vector.to_owned(), Cow::Owned(all));
+        (path, numbers) = (vector, Cow::Owned(all));
     }
-    if let Some(value) = find(project, &path).and_then(|(_, value)| value.with_numbers(&numbers)) {
-        set_value(project, &path, value);
+    if let Some(value) = find(root, path).and_then(|(_, value)| value.with_numbers(&numbers)) {
+        set_value(root, path, value);
     }
 }
 
 /// Sets the numbers of several targets at once; those that the project lacks are left out.
 pub(super) fn set_all<'a>(project: &mut Project, values: impl IntoIterator<Item = (&'a str, Vec<f64>)>) {
     for (target, numbers) in values {
-        set_numbers(project, target, &numbers);
+        if let Some(path) = path_of(target) {
+            set_numbers(project, &path, &numbers);
+        }
     }
 }
 
 /// Every target whose numbers differ, with those of `after`, in the order of [`SECTIONS`] and then of names.
 pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64>)> {
+    // Asked at each pass of the interface, in most of which nothing moves.
+    if !sections_differ(before, after) {
+        return Vec::new();
+    }
+    let old: HashMap<String, Vec<f64>> =
+        entries(before).into_iter().map(|entry| (entry.path, entry.value.numbers())).collect();
     // A list of another length has other parts, and no number of it has moved.
     let same_lights = before.lights.len() == after.lights.len();
     let moved = entries(after).into_iter().filter_map(|entry| {
         let section = entry.path.split('.').next()?;
         let at = SECTIONS.iter().position(|name| *name == section)?;
-        let (old, new) = (find(before, &entry.path)?.1.numbers(), entry.value.numbers());
+        let (old, new) = (old.get(&entry.path)?, entry.value.numbers());
         let finite = old.iter().chain(&new).all(|number| number.is_finite());
-        let moved = old != new && finite && (same_lights || section != "lights");
+        let moved = *old != new && finite && (same_lights || section != "lights");
         moved.then(|| (at, entry.path.replace('.', "/"), new))
     });
     let mut moved: Vec<_> = moved.collect();
     moved.sort_by(|(a, name, _), (b, other, _)| a.cmp(b).then_with(|| name.split('/').cmp(other.split('/'))));
     moved.into_iter().map(|(_, target, numbers)| (target, numbers)).collect()
+}
+
+/// Whether any of [`SECTIONS`] differs.
+fn sections_differ(a: &Project, b: &Project) -> bool {
+    a.look != b.look
+        || a.simulation != b.simulation
+        || a.shadow != b.shadow
+        || a.lights != b.lights
+        || a.camera != b.camera
+        || a.picture != b.picture
 }

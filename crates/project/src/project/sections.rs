@@ -250,6 +250,12 @@ impl Default for RecordingSection {
 }
 
 impl RecordingSection {
+    /// The frames to record of a dance of `clip_frames`: those between the in and the out point, at least one.
+    pub fn frame_range(&self, clip_frames: u64) -> std::ops::Range<u64> {
+        let first = self.first_frame;
+        first..self.end_frame.unwrap_or(clip_frames.max(first + 1))
+    }
+
     /// The most samples per frame.
     pub const MOST_SUBFRAMES: u32 = 64;
 }

@@ -1,6 +1,5 @@
 //! Takes in which the number of guides changes. No test here needs a graphics adapter.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use lovelock_project::Project;
@@ -9,24 +8,7 @@ use lovelock_record::{MOST_ERROR_M, TakeFrame, TakeReader, TakeWriter};
 
 use super::playing::TakePlayer;
 use super::tests::folder;
-use crate::snapshot::FrameSnapshot;
-use crate::testing::{farthest, played, recorded, small_project};
-
-/// The step at which the number of wisps increases, and the one at which it returns to the old number.
-const MORE: u64 = 40;
-const AGAIN: u64 = 70;
-
-fn regrown(path: &Path) -> Vec<FrameSnapshot> {
-    recorded(path, &small_project(), 100, |step, project| match step {
-        MORE => project.hair.groom.wisps = 21,
-        AGAIN => project.hair.groom.wisps = 16,
-        _ => {}
-    })
-}
-
-fn guides(frame: &FrameSnapshot) -> usize {
-    frame.guides.guides.count()
-}
+use crate::testing::{farthest, guides, played, recorded, regrown, small_project};
 
 #[test]
 fn hair_with_other_guides_is_recorded_on_and_plays_in_any_order() {
