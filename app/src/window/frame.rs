@@ -118,7 +118,7 @@ impl Window {
                                 ui.label(RichText::new("No project yet").color(theme::QUIET));
                             }
                         });
-                        ui.menu_button("Picture size", |ui| {
+                        ui.menu_button("Image size", |ui| {
                             for (scale, name) in
                                 [(0.0, "Automatic"), (1.0, "Every pixel"), (0.5, "Half"), (0.25, "Quarter")]
                             {

@@ -29,7 +29,7 @@ impl LiveShows {
             Self::Picture => "Picture",
             Self::TransmittanceError => "Error of transmittance",
             Self::TransmittanceBias => "Too dark, too bright",
-            Self::PictureError => "Difference of picture",
+            Self::PictureError => "Image difference",
         }
     }
 
@@ -44,7 +44,7 @@ impl LiveShows {
                 "The signed error: orange is too dark, violet too bright, white is correct."
             }
             Self::PictureError => {
-                "How different the picture looks from the exact one to an observer who flips between them (FLIP)."
+                "How different the image looks from the exact one to an observer who flips between them (FLIP)."
             }
         }
     }

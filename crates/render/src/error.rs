@@ -11,7 +11,7 @@ pub enum RenderError {
     Shadow(#[from] lovelock_shadow::ShadowError),
     /// The size is out of range.
     #[error(
-        "a picture of {width}x{height} pixels is out of range: each side must be 1 to {limit}, and both together at \
+        "an image of {width}x{height} pixels is out of range: each side must be 1 to {limit}, and both together at \
          most {} million pixels",
         crate::MOST_PIXELS / 1_000_000
     )]
@@ -24,12 +24,10 @@ pub enum RenderError {
         limit: u32,
     },
     /// A picture was queried before one was rendered.
-    #[error("no picture has been rendered yet")]
+    #[error("no image has been rendered yet")]
     NoPicture,
     /// The last picture has no such light.
-    #[error(
-        "there is no light {light}: the picture has {lights} lights that are switched on, counted from 0"
-    )]
+    #[error("there is no light {light}: the image has {lights} lights that are switched on, counted from 0")]
     NoLight {
         /// The index that was given.
         light: usize,
@@ -37,7 +35,7 @@ pub enum RenderError {
         lights: usize,
     },
     /// The number of given values does not match the picture.
-    #[error("the values given for the picture have {found} {of}; {needed} are needed")]
+    #[error("the values given for the image have {found} {of}; {needed} are needed")]
     Known {
         /// What the values belong to.
         of: &'static str,

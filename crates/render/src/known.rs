@@ -57,7 +57,7 @@ mod tests {
         assert!(one.check(2, 5, 3).is_err());
         assert_eq!(
             known.check(2, 6, 3).unwrap_err().to_string(),
-            "the values given for the picture have 5 strand points; 6 are needed"
+            "the values given for the image have 5 strand points; 6 are needed"
         );
     }
 }

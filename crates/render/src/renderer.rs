@@ -98,7 +98,7 @@ impl Renderer {
         }
     }
 
-    /// Renders the layers of a picture of `input`, for compositing, transparent backgrounds and motion blur. Costs about twice as much
+    /// Renders the layers of an image of `input`, for compositing, transparent backgrounds and motion blur. Costs about twice as much
     /// as a picture. `over_background` draws the background and the ground behind hair and body; without it there is nothing behind
     /// them, and no shadow on the ground.
     ///
@@ -122,7 +122,7 @@ impl Renderer {
     /// are switched on count from 0. On the GPU it has steps of 1/255.
     ///
     /// # Errors
-    /// There is no such light, no picture has been rendered or the last one failed, or the device is lost.
+    /// There is no such light, no image has been rendered or the last one failed, or the device is lost.
     pub fn transmittance(&mut self, light: usize) -> Result<Vec<f32>, RenderError> {
         match &mut self.gpu {
             Some(gpu) => gpu.transmittance(light),

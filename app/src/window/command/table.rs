@@ -158,7 +158,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::SavePicture,
             "save-picture",
-            "Save picture",
+            "Save image",
             "Saves the frame in the viewport as a PNG file.",
             &["Ctrl+P"],
             G::File,

@@ -72,7 +72,7 @@ impl LayerBuffers {
         }
     }
 
-    /// Bytes of the largest buffer for a picture of this many pixels.
+    /// Bytes of the largest buffer for an image of this many pixels.
     pub fn needed(pixels: u64) -> u64 {
         LIGHT_BYTES * pixels
     }

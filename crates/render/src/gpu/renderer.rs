@@ -50,7 +50,7 @@ pub struct GpuRenderer {
     last: FrameUniform,
     readback: Readback,
     numbers: Vec<u8>,
-    /// The bytes of a picture of which layers alone are wanted.
+    /// The bytes of an image of which layers alone are wanted.
     spare: Vec<u8>,
     /// Whether the last picture was completed.
     is_whole: bool,

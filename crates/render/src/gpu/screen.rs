@@ -99,7 +99,7 @@ impl Screen {
         [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
-    /// Threads that share the listed pixels of a picture of this many pixels.
+    /// Threads that share the listed pixels of an image of this many pixels.
     pub fn lit_threads(&self, pixels: u64) -> u64 {
         pixels.min(self.lit_threads)
     }

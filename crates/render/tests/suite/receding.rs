@@ -48,7 +48,7 @@ impl Screen {
     }
 }
 
-/// A grey tuft in uniform light, completely visible in a picture of `size` pixels.
+/// A grey tuft in uniform light, completely visible in an image of `size` pixels.
 fn grey_tuft(transparency: Transparency) -> Scene {
     let mut s = scene(&tuft(60));
     // Each strand has a hash of its own, with which opaque strands cover different samples of a pixel.

@@ -158,7 +158,7 @@ fn what_is_no_value_hides_and_counts_for_nothing() {
     assert!(picture.value.iter().all(|value| value.is_nan()) && picture.weight.iter().all(|w| *w == 0.0));
 }
 
-/// The pixel of a position in a picture of `width` by `height` pixels.
+/// The pixel of a position in an image of `width` by `height` pixels.
 fn place_of(input: &FrameInput, p: Vec3, [width, height]: [u32; 2]) -> [f32; 2] {
     let clip = input.camera.clip_from_world(width as f32 / height as f32) * p.extend(1.0);
     let at = clip / clip.w;

@@ -30,7 +30,7 @@ pub(super) const TRANSMITTANCE_ERROR: Kind = Kind {
 /// FLIP.
 pub(super) const PICTURE_ERROR: Kind = Kind {
     id: "picture-error",
-    title: "Difference of the picture as seen (FLIP)",
+    title: "Image difference as seen (FLIP)",
     short: "FLIP",
     map: ColorMap::Magma,
     largest: 0.3,

@@ -49,7 +49,7 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
     }
     let first = if report.reference.picture.is_some() { "the reference" } else { "the first" };
     format!(
-        "<div class=\"controls\"><div class=\"kinds\" role=\"group\" aria-label=\"Kind of picture\">{buttons}</div>\
+        "<div class=\"controls\"><div class=\"kinds\" role=\"group\" aria-label=\"Kind of image\">{buttons}</div>\
          <label>Left <select id=\"left\"></select></label><label>Right <select id=\"right\"></select></label>\
          <label>Zoom <select id=\"zoom\"><option>1</option><option>2</option><option>4</option></select></label></div>\
          <div class=\"box\"><div id=\"wipe\" tabindex=\"0\" role=\"slider\" aria-label=\"Split between left and right\" \

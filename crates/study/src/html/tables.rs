@@ -69,23 +69,19 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
             "Root mean square error against the same truth for all: the mean of the light over a texel of exact",
         ),
         Column("At points", AT_POINTS),
-        Column("FLIP", "Mean perceived difference of the picture, 0 to 1"),
+        Column("FLIP", "Mean perceived difference of the image, 0 to 1"),
         Column("In hair", "Mean perceived difference over the pixels that show hair"),
         Column("p99", "99th percentile of the perceived difference over the pixels"),
-        Column("PSNR", "Peak signal to noise ratio of the picture, decibels; ∞ for an equal picture"),
-        Column("SSIM", "Structural similarity of the picture; 1 for an equal picture"),
+        Column("PSNR", "Peak signal to noise ratio of the image, decibels; ∞ for an equal image"),
+        Column("SSIM", "Structural similarity of the image; 1 for an equal image"),
         Column("Build", "To make the shadow maps of all lights, milliseconds, median"),
         Column("Ask", "To ask them at every strand point and body vertex, milliseconds, median"),
         Column("Memory", "Shadow maps of all lights"),
         Column("Swim", SWIM),
     ];
     let cost = format!("Cost on the {} (times: ms)", group.backend);
-    let spans = [
-        ("Error of transmittance", 6),
-        ("Difference of the picture", 5),
-        (cost.as_str(), 3),
-        ("Stability", 1),
-    ];
+    let spans =
+        [("Error of transmittance", 6), ("Image difference", 5), (cost.as_str(), 3), ("Stability", 1)];
     let mut rows = String::new();
     for (_, method) in &group.methods {
         let _ = write!(rows, "<tr>{}", names.cell(method));

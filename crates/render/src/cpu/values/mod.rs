@@ -71,7 +71,7 @@ impl Default for ValueRenderer {
 }
 
 impl ValueRenderer {
-    /// Renders `values`, one per strand point, as a picture of `input` renders hair: with the same widths, transparency and occlusion
+    /// Renders `values`, one per strand point, as an image of `input` renders hair: with the same widths, transparency and occlusion
     /// by the body. A value that is not finite is missing: it hides what is behind it but is not part of the mean.
     ///
     /// # Errors
