@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use lovelock_groom::{HairFormat, Unit, UpAxis};
+use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::convert::written_extensions;
 use lovelock_project::project::RecordingSection;
 use lovelock_record::{FilmQuality, SequenceFormat};
@@ -219,8 +220,12 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
     /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and simulate-402 and simulate-20k, which are
-    /// simulated by each integrator and not rendered; all of them if none is named.
-    pub(crate) scenes: Vec<lovelock_jobs::bench::BenchScene>,
+    /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
+    /// shipped hairstyle and of hair of 20 to 80 cm hold together in the shipped dance; `locks-long`, for example, that of one.
+    pub(crate) scenes: Vec<BenchTarget>,
+    /// Change a setting of every scene, such as simulation.gravity=12; may be given several times.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<Assignment>,
     /// File for the numbers as comma-separated values.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
@@ -239,6 +244,25 @@ pub(crate) struct Bench {
     /// Backend to measure; both if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
+}
+
+/// What `bench` measures by one of its arguments.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum BenchTarget {
+    Scene(BenchScene),
+    Locks(Vec<LockScene>),
+}
+
+impl FromStr for BenchTarget {
+    type Err = String;
+
+    fn from_str(id: &str) -> Result<Self, String> {
+        match id {
+            "locks" => Ok(Self::Locks(LockScene::ALL.to_vec())),
+            _ if id.starts_with("locks-") => Ok(Self::Locks(vec![id.parse()?])),
+            _ => id.parse().map(Self::Scene).map_err(|error: String| format!("{error}, or locks")),
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -3,11 +3,13 @@
 use std::ops::ControlFlow;
 
 use lovelock_jobs::bench::{BenchRequest, bench};
+use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 
-use super::args::Bench;
+use super::args::{Bench, BenchTarget};
 use super::output::Output;
+use super::source::apply;
 
 /// Measures the scenes and prints the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
@@ -19,7 +21,13 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
         ..BenchRequest::default()
     };
     if !task.scenes.is_empty() {
-        request.scenes.clone_from(&task.scenes);
+        request.scenes.clear();
+        for target in &task.scenes {
+            match target {
+                BenchTarget::Scene(scene) => request.scenes.push(*scene),
+                BenchTarget::Locks(locks) => request.locks.extend(locks),
+            }
+        }
     }
     if let Some(backend) = task.backend {
         request.backends = vec![backend];
@@ -32,7 +40,8 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
             return Err(ProjectError::input(out, message));
         }
     }
-    let report = bench(&request, &mut |what| {
+    let change = |project: &mut Project| apply(&task.set, project);
+    let report = bench(&request, &change, &mut |what| {
         eprintln!("measuring {what}");
         ControlFlow::Continue(())
     })?;

@@ -4,7 +4,8 @@
 use glam::Vec3;
 use lovelock_groom::Guides;
 
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, put};
+use crate::lanes::{Lane, Lane3, ZERO, ZERO3, at, put};
+use crate::packing::{Lanes, mean_of_lock};
 
 /// The rest shape of the guides of one block. Rows are points, root first; head space.
 #[derive(Clone, Debug)]
@@ -21,11 +22,13 @@ pub(crate) struct RestShape {
     pub(crate) inv_length: Vec<Lane>,
     /// Mean link length of each guide, metres.
     pub(crate) mean_link: Lane,
+    /// Distance of each point from the middle of its lock, metres; 0 for a guide that belongs to no lock.
+    pub(crate) lock_radius: Vec<Lane>,
 }
 
 impl RestShape {
-    /// The rest shape of `guides[lane]` for every lane.
-    pub(crate) fn new(guides: &Guides, lanes: &[u32; LANES], first_free: usize) -> Self {
+    /// The rest shape of the guides in `lanes`.
+    pub(crate) fn new(guides: &Guides, lanes: &Lanes, first_free: usize) -> Self {
         let count = guides.points_per_guide;
         let mut rest = Self {
             position: vec![ZERO3; count],
@@ -35,8 +38,9 @@ impl RestShape {
             length: vec![ZERO; count],
             inv_length: vec![ZERO; count],
             mean_link: ZERO,
+            lock_radius: vec![ZERO; count],
         };
-        for (k, &guide) in lanes.iter().enumerate() {
+        for (k, &guide) in lanes.guides.iter().enumerate() {
             let points: Vec<Vec3> = (0..count).map(|i| guides.point(guide as usize, i)).collect();
             let directions = directions(&points);
             // A guide that was cut ends at its last link of non-zero length.
@@ -58,7 +62,18 @@ impl RestShape {
                 put(&mut rest.support[i], k, support);
             }
         }
+        rest.measure_locks(lanes.locks);
         rest
+    }
+
+    /// Measures how wide the locks in the first `3 * locks` lanes are.
+    pub(crate) fn measure_locks(&mut self, locks: usize) {
+        for (p, radius) in self.position.iter().zip(&mut self.lock_radius) {
+            let middle = mean_of_lock(p);
+            for k in 0..3 * locks {
+                radius[k] = (at(p, k) - at(&middle, k)).length();
+            }
+        }
     }
 }
 
@@ -113,34 +128,6 @@ fn support(direction: &[Vec3], first_free: usize) -> Vec<Vec3> {
         .collect()
 }
 
-/// Groups the guides into blocks, in the order of a Morton curve through their roots, so that neighbours on
-/// the scalp are neighbours in memory. The last block repeats its last guide.
-pub(crate) fn blocks_of(guides: &Guides) -> Vec<([u32; LANES], usize)> {
-    let roots: Vec<Vec3> = (0..guides.count()).map(|g| guides.point(g, 0)).collect();
-    let min = roots.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
-    let max = roots.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
-    let scale = 1023.0 / (max - min).max_element().max(1e-6);
-    let mut order: Vec<(u32, u32)> =
-        roots.iter().enumerate().map(|(g, p)| (morton((*p - min) * scale), g as u32)).collect();
-    order.sort_unstable();
-    order
-        .chunks(LANES)
-        .map(|chunk| {
-            let mut lanes = [chunk[chunk.len() - 1].1; LANES];
-            for (lane, (_, guide)) in lanes.iter_mut().zip(chunk) {
-                *lane = *guide;
-            }
-            (lanes, chunk.len())
-        })
-        .collect()
-}
-
-/// Interleaves ten bits of each coordinate.
-fn morton(p: Vec3) -> u32 {
-    let spread = |v: f32| (0..10).fold(0_u32, |m, bit| m | (((v as u32 >> bit) & 1) << (3 * bit)));
-    spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,19 +144,5 @@ mod tests {
     fn an_upright_guide_does_not_compress_its_links() {
         let standing = support(&[Vec3::Y; 6], 1);
         assert!(standing[1..].iter().all(|s| (*s - Vec3::Y).length() < 1e-6), "{standing:?}");
-    }
-
-    #[test]
-    fn every_guide_is_in_one_block_and_the_rest_repeats() {
-        let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
-        for g in 0..37 {
-            let p = Vec3::new((g * 7 % 37) as f32, (g * 11 % 37) as f32, 0.0);
-            guides.push(&[p, p + Vec3::Y]);
-        }
-        let blocks = blocks_of(&guides);
-        let mut seen: Vec<u32> = blocks.iter().flat_map(|(lanes, used)| lanes[..*used].to_vec()).collect();
-        seen.sort_unstable();
-        assert_eq!(seen, (0..37).collect::<Vec<_>>());
-        assert_eq!(blocks.len(), 37_usize.div_ceil(LANES));
     }
 }

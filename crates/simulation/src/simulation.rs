@@ -18,8 +18,8 @@ use crate::grid::DensityGrid;
 use crate::hash::Hasher;
 use crate::lanes::{Lane, Map, ZERO, at};
 use crate::motion::{HeadPose, Substep, rigid_between, substep};
-use crate::rest::blocks_of;
-use crate::solver::Plan;
+use crate::packing::pack;
+use crate::solver::{Plan, RowRates};
 use crate::wake::{Wakes, head_of};
 use crate::wind::{WindField, mean_of};
 use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
@@ -73,16 +73,16 @@ impl Simulation {
         let clamped_links = SimulationSettings::default().clamped_links;
         let guides = &style.guides;
         let usable = guides.points_per_guide >= 2;
-        let cut = if usable { blocks_of(guides) } else { Vec::new() };
+        let packed = if usable { pack(guides, &style.wisps) } else { Vec::new() };
         let first_free = first_free(clamped_links, guides.points_per_guide);
         let mut slots = vec![(0, 0); if usable { guides.count() } else { 0 }];
-        let mut blocks = Vec::with_capacity(cut.len());
-        for (b, (lanes, used)) in cut.into_iter().enumerate() {
-            for (lane, &guide) in lanes[..used].iter().enumerate() {
+        let mut blocks = Vec::with_capacity(packed.len());
+        for (b, lanes) in packed.iter().enumerate() {
+            for (lane, &guide) in lanes.guides[..lanes.used].iter().enumerate() {
                 slots[guide as usize] = (b as u32, lane as u32);
             }
-            let mut block = Block::new(guides, lanes, used, first_free);
-            block.tie_hold = crate::ties::rows(&style, &lanes);
+            let mut block = Block::new(guides, lanes, first_free);
+            block.tie_hold = crate::ties::rows(&style, &lanes.guides);
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }
@@ -248,10 +248,14 @@ impl Simulation {
         let others = input.sheltering.iter().filter_map(|c| Shape::new(&transformed(&c.shape, &here)));
         let wakes = Wakes::new(solids.chain(head_in_field).chain(others), along, shelter);
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
+        let points = self.style.guides.points_per_guide;
+        let along = |i: usize| i as f32 / points.saturating_sub(1).max(1) as f32;
+        let rows: Vec<RowRates> = (0..points).map(|i| RowRates::at(along(i), settings, h)).collect();
         let plan = Plan {
             wide: self.wide,
             settings: *settings,
             h,
+            rows: &rows,
             first_free,
             rebase,
             carry_all: rigid_between(&self.head, head, origin),

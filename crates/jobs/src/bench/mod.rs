@@ -1,10 +1,12 @@
 //! Measures whole frames of known scenes, stage by stage, and compares them with published figures.
 
+mod locks;
 mod memory;
 mod report;
 mod scenes;
 mod simulation;
 
+pub use locks::{LockFigures, LockReport, LockScene, Spread};
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
 
@@ -28,6 +30,8 @@ use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 pub struct BenchRequest {
     /// The scenes, in order.
     pub scenes: Vec<BenchScene>,
+    /// The hairstyles whose locks are measured in motion, in order. The rest of the request does not apply to them.
+    pub locks: Vec<LockScene>,
     /// The backends, in order; an unavailable one is skipped with a note.
     pub backends: Vec<Backend>,
     /// Number of frames to measure, after one that is not counted.
@@ -44,6 +48,7 @@ impl Default for BenchRequest {
     fn default() -> Self {
         Self {
             scenes: BenchScene::ALL.to_vec(),
+            locks: Vec::new(),
             backends: vec![Backend::Cpu, Backend::Gpu],
             frames: 15,
             size: None,
@@ -56,12 +61,14 @@ impl Default for BenchRequest {
 /// The frame at which measuring starts, when the hair is in full motion.
 const FIRST_FRAME: u64 = 40;
 
-/// Measures. `progress` is called with each scene and backend before it starts, and may cancel.
+/// Measures. `change` is applied to the project of every scene first. `progress` is called with each scene and backend before
+/// it starts, and may cancel.
 ///
 /// # Errors
-/// If the size is out of range or hair cannot be grown, or [`ProjectError::Cancelled`].
+/// If the size is out of range or hair cannot be grown, those of `change`, or [`ProjectError::Cancelled`].
 pub fn bench(
     request: &BenchRequest,
+    change: &dyn Fn(&mut Project) -> Result<(), ProjectError>,
     progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
 ) -> Result<BenchReport, ProjectError> {
     if let Some((width, height)) = request.size {
@@ -83,6 +90,7 @@ pub fn bench(
     let mut scenes = Vec::new();
     for &scene in &request.scenes {
         let mut project = scene.project();
+        change(&mut project)?;
         project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
         project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
         let loaded = load(&project)?;
@@ -103,7 +111,16 @@ pub fn bench(
             scenes.push(measure(scene, &project, &loaded, renderer, request)?);
         }
     }
-    Ok(BenchReport { machine: machine(), scenes, notes })
+    let mut locks = Vec::new();
+    for scene in &request.locks {
+        if progress(&scene.id()).is_break() {
+            return Err(ProjectError::Cancelled);
+        }
+        let mut project = scene.project();
+        change(&mut project)?;
+        locks.push(locks::measure(*scene, &project, &load(&project)?));
+    }
+    Ok(BenchReport { machine: machine(), scenes, locks, notes })
 }
 
 fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {

@@ -9,6 +9,7 @@ use lovelock_session::health::Gauge;
 use lovelock_session::stats::{Stage, StageTimes};
 use serde::Serialize;
 
+use super::locks::LockReport;
 use super::memory::peak_memory_bytes;
 use super::scenes::BenchScene;
 
@@ -19,6 +20,8 @@ pub struct BenchReport {
     pub machine: String,
     /// A report for each scene and backend.
     pub scenes: Vec<SceneReport>,
+    /// A report for each hairstyle whose locks were measured.
+    pub locks: Vec<LockReport>,
     /// Notes, such as skipped backends, as sentences.
     pub notes: Vec<String>,
 }
@@ -282,6 +285,9 @@ impl fmt::Display for BenchReport {
                 writeln!(f, "  {note}")?;
             }
         }
+        for locks in &self.locks {
+            write!(f, "\n{locks}")?;
+        }
         for note in &self.notes {
             writeln!(f, "\n{note}")?;
         }
@@ -328,6 +334,7 @@ mod tests {
         BenchReport {
             machine: "m".to_owned(),
             scenes: vec![scene("cpu", 10.0), scene("gpu", 100.0)],
+            locks: Vec::new(),
             notes: vec![],
         }
     }

@@ -10,6 +10,7 @@ use lovelock_groom::Guides;
 use crate::colliders::boxes::Boxes;
 use crate::colliders::field::{PlaneRow, Search};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
+use crate::packing::Lanes;
 use crate::rest::RestShape;
 pub(crate) use bending::{Bending, BendingKey};
 pub(crate) use coupled::Coupled;
@@ -23,6 +24,8 @@ pub(crate) struct Block {
     /// The guide in each lane. Lanes from `used` on repeat the last guide.
     pub(crate) guides: [u32; LANES],
     pub(crate) used: usize,
+    /// The first `3 * locks` lanes hold whole locks; see [`crate::packing`].
+    pub(crate) locks: usize,
     pub(crate) rest: RestShape,
     /// Signed rest distance of point `i` to collider `c` at `c * points + i`, metres.
     pub(crate) rest_distance: Vec<Lane>,
@@ -136,12 +139,13 @@ pub(crate) struct Depth {
 }
 
 impl Block {
-    pub(crate) fn new(guides: &Guides, lanes: [u32; LANES], used: usize, first_free: usize) -> Self {
+    pub(crate) fn new(guides: &Guides, lanes: &Lanes, first_free: usize) -> Self {
         let points = guides.points_per_guide;
         Self {
-            guides: lanes,
-            used,
-            rest: RestShape::new(guides, &lanes, first_free),
+            guides: lanes.guides,
+            used: lanes.used,
+            locks: lanes.locks,
+            rest: RestShape::new(guides, lanes, first_free),
             rest_distance: Vec::new(),
             tie_hold: vec![Lane::splat(-1.0); points],
             field_distance: Vec::new(),
@@ -160,6 +164,11 @@ impl Block {
 
     pub(crate) fn points(&self) -> usize {
         self.position.len()
+    }
+
+    /// The guides of the block.
+    pub(crate) fn lanes(&self) -> Lanes {
+        Lanes { guides: self.guides, used: self.used, locks: self.locks }
     }
 
     /// The guide and point from `first` on at which `of(lane, point)` is largest. NaNs are ignored.

@@ -5,7 +5,7 @@ use glam::Mat3;
 use super::direction::{friction_target, push_across};
 use super::*;
 use crate::lanes::{LANES, put};
-use crate::rest::blocks_of;
+use crate::packing::pack;
 use crate::settings::RepulsionMode;
 
 /// Straight guides of 20 cm on a square lattice of `side` by `side`, `gap` metres apart.
@@ -17,7 +17,7 @@ fn lattice(side: usize, gap: f32) -> Vec<Block> {
         guides.push(&points);
     }
     let mut blocks: Vec<Block> =
-        blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
+        pack(&guides, &[]).iter().map(|lanes| Block::new(&guides, lanes, 1)).collect();
     for block in &mut blocks {
         block.place_at_rest(&Map::IDENTITY);
     }
@@ -150,7 +150,7 @@ fn hair_of_any_length_is_in_the_grid() {
             guides.push(&points);
         }
         let blocks: Vec<Block> =
-            blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
+            pack(&guides, &[]).iter().map(|lanes| Block::new(&guides, lanes, 1)).collect();
         let grid = DensityGrid::new(&blocks);
         let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
         let want = 20.0 * f64::from(length) * f64::from(grid.lattice.units);
@@ -172,7 +172,7 @@ fn the_mass_of_a_guide_is_its_length_in_every_lane() {
                 guides.push(&(0..points).map(at).collect::<Vec<_>>());
             }
             let mut blocks: Vec<Block> =
-                blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
+                pack(&guides, &[]).iter().map(|lanes| Block::new(&guides, lanes, 1)).collect();
             let mut grid = DensityGrid::new(&blocks);
             for row in &mut blocks[0].rest.inv_length {
                 row[1 - n] = 0.0;

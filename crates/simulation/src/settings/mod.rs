@@ -45,6 +45,8 @@ pub struct SimulationSettings {
     pub layering: f32,
     /// How hair keeps other hair away.
     pub repulsion: Repulsion,
+    /// How the guides of a wisp stay together.
+    pub locks: Locks,
     /// Number of links at the root that leave the scalp in the direction of rest; 0 is a hinge.
     pub clamped_links: u32,
     /// The method that keeps links at their length.
@@ -74,6 +76,7 @@ impl Default for SimulationSettings {
             skin_margin: 0.003,
             layering: 0.35,
             repulsion: Repulsion::default(),
+            locks: Locks::default(),
             clamped_links: 1,
             integrator: Integrator::Direct,
             relaxation_sweeps: 20,
@@ -153,6 +156,24 @@ pub struct Wind {
 impl Default for Wind {
     fn default() -> Self {
         Self { direction: [1.0, 0.0, 0.0], speed: 0.0, gusts: 0.5, turbulence: 0.3, sheltering: 0.8, seed: 1 }
+    }
+}
+
+/// How the three guides of a wisp stay together as one lock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Locks {
+    /// Rate at which guides return that have left their lock, 1/s. 0 lets them go.
+    pub cohesion: f32,
+    /// The cohesion at the tips, as a multiple of that at the roots.
+    pub cohesion_tip: f32,
+    /// Rate at which the guides of a lock take on each other's velocity, 1/s.
+    pub friction: f32,
+}
+
+impl Default for Locks {
+    fn default() -> Self {
+        Self { cohesion: 60.0, cohesion_tip: 1.0, friction: 15.0 }
     }
 }
 

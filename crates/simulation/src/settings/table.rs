@@ -3,7 +3,7 @@
 use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
 
-use super::{MAX_SUBSTEPS, Repulsion, RepulsionMode, SimulationSettings, Wind};
+use super::{Locks, MAX_SUBSTEPS, Repulsion, RepulsionMode, SimulationSettings, Wind};
 use crate::integrator::{Integrator, MAX_SWEEPS};
 
 impl Settings for SimulationSettings {
@@ -146,11 +146,19 @@ impl Settings for SimulationSettings {
     ];
 
     fn parts(&self) -> Vec<Part<'_>> {
-        vec![("wind".into(), &self.wind), ("repulsion".into(), &self.repulsion)]
+        vec![
+            ("wind".into(), &self.wind),
+            ("locks".into(), &self.locks),
+            ("repulsion".into(), &self.repulsion),
+        ]
     }
 
     fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
-        vec![("wind".into(), &mut self.wind), ("repulsion".into(), &mut self.repulsion)]
+        vec![
+            ("wind".into(), &mut self.wind),
+            ("locks".into(), &mut self.locks),
+            ("repulsion".into(), &mut self.repulsion),
+        ]
     }
 }
 
@@ -193,6 +201,33 @@ impl Settings for Wind {
             "Chooses among winds that differ only by chance.",
         )
         .soft([0.0, 999.0]),
+    ];
+}
+
+impl Settings for Locks {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(
+            field!(Self, cohesion),
+            [0.0, 240.0],
+            "Lock cohesion",
+            "How firmly the hair of a lock stays together. Low values let locks fray, high ones keep \
+             them as narrow as drawn.",
+        )
+        .unit(Unit::PER_SECOND),
+        Setting::number(
+            field!(Self, cohesion_tip),
+            [0.0, 2.0],
+            "Cohesion at tips",
+            "Lock cohesion at the tips, as a share of that at the roots.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, friction),
+            [0.0, 60.0],
+            "Lock friction",
+            "How quickly the hair of a lock takes on a common motion.",
+        )
+        .unit(Unit::PER_SECOND),
     ];
 }
 

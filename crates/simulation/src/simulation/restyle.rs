@@ -88,7 +88,7 @@ impl Simulation {
         let guides = &self.style.guides;
         let first_free = first_free(clamped_links, guides.points_per_guide);
         for block in &mut self.blocks {
-            block.rest = RestShape::new(guides, &block.guides, first_free);
+            block.rest = RestShape::new(guides, &block.lanes(), first_free);
             // Contact displacements are not tracked for points that the scalp carries now.
             block.contact_push.fill(ZERO3);
             block.has_contact_push = false;
@@ -165,6 +165,7 @@ impl Simulation {
             }
             if t < 1.0 {
                 interpolate_rest(from, to, t * t * (3.0 - 2.0 * t), &mut block.rest);
+                block.rest.measure_locks(block.locks);
             } else {
                 block.rest.clone_from(to);
             }

@@ -5,7 +5,6 @@
 //! recomputed.
 
 use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec3A};
-use lovelock_groom::Guides;
 use lovelock_motion::{ColliderShape, FIELD_JOINTS, PlacedCollider};
 
 use super::{Simulation, first_free};
@@ -19,7 +18,7 @@ use crate::rest::RestShape;
 const MAGIC: [u8; 4] = *b"LLWS";
 
 /// Incremented whenever the meaning of the bytes changes.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// The largest number of colliders in a valid state.
 const MAX_COLLIDERS: u32 = 4096;
@@ -67,7 +66,7 @@ impl Simulation {
         let mut out = Writer(Vec::with_capacity(self.blocks.len() * 5 * LANES * 3 * 4 * 32));
         out.0.extend_from_slice(&MAGIC);
         out.u32(VERSION);
-        out.u64(fingerprint(&self.style.guides));
+        out.u64(self.fingerprint());
         out.floats(&self.head.turn.to_array());
         out.floats(&self.head.place.to_array());
         out.u64(self.time_secs.to_bits());
@@ -127,7 +126,7 @@ impl Simulation {
         if version != VERSION {
             return Err(RestoreError::Version { found: version });
         }
-        if input.u64()? != fingerprint(&self.style.guides) {
+        if input.u64()? != self.fingerprint() {
             return Err(RestoreError::Style);
         }
         let Some((held, check)) = bytes.split_last_chunk::<8>() else { return Err(truncated()) };
@@ -184,7 +183,7 @@ impl Simulation {
         let first_free = first_free(clamped_links, guides.points_per_guide);
         for block in &mut next.blocks {
             if clamped_links != self.clamped_links {
-                block.rest = RestShape::new(guides, &block.guides, first_free);
+                block.rest = RestShape::new(guides, &block.lanes(), first_free);
             }
             block.coupled.invalidate_factor();
             for rows in rows_of_mut(block) {
@@ -224,6 +223,24 @@ impl Simulation {
     }
 }
 
+impl Simulation {
+    /// A fingerprint of the guides at rest and of the lanes that hold them.
+    fn fingerprint(&self) -> u64 {
+        let guides = &self.style.guides;
+        let mut hasher = Hasher::default();
+        hasher.add(guides.points_per_guide as u32);
+        hasher.add(guides.x.len() as u32);
+        for v in [&guides.x, &guides.y, &guides.z].into_iter().flatten() {
+            hasher.add(v.to_bits());
+        }
+        for block in &self.blocks {
+            hasher.add(block.locks as u32);
+            block.guides.iter().for_each(|guide| hasher.add(*guide));
+        }
+        hasher.finish()
+    }
+}
+
 /// The part of a block that is state, not working memory.
 fn rows_of(block: &Block) -> [&[Lane3]; 5] {
     [&block.position, &block.velocity, &block.bend, &block.contact_push, &block.coupled.directions]
@@ -234,15 +251,6 @@ fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
     [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.contact_push, directions]
 }
 
-fn fingerprint(guides: &Guides) -> u64 {
-    let mut hasher = Hasher::default();
-    hasher.add(guides.points_per_guide as u32);
-    hasher.add(guides.x.len() as u32);
-    for v in [&guides.x, &guides.y, &guides.z].into_iter().flatten() {
-        hasher.add(v.to_bits());
-    }
-    hasher.finish()
-}
 
 fn sum(bytes: &[u8]) -> u64 {
     let mut hasher = Hasher::default();

@@ -7,11 +7,25 @@ use crate::block::Block;
 use crate::grid::GridStep;
 use crate::lanes::{LANES, Lane, ZERO3, at, direction_or, greater, lesser, put};
 
-/// Limits of the displacement along the support, as fractions of the arc length from the root. Up to the
-/// first the support is full, beyond the second it is 0. For a guide that was level they correspond to 24 and
-/// 64 degrees below it.
-const FULL_SUPPORT: f32 = 0.4;
-const NO_SUPPORT: f32 = 0.9;
+/// Distances from the place at rest between which the support fades, as fractions of the arc length from the
+/// root.
+const SUPPORT_FADES: [f32; 2] = [0.05, 0.25];
+
+/// The acceleration that carries a point at rest, faded with its displacement `d` from there; `support` is the
+/// acceleration at rest and `length` the arc length from the root.
+///
+/// Flung hair falls with its whole weight. The force has the potential `-(S . d) w(|d|)` with the smoothstep `w`
+/// from 1 down to 0: a force that faded with the direction of the guide alone would have none, and would drive
+/// the guide for ever.
+#[inline(always)]
+fn faded_support(support: Vec3, d: Vec3, length: f32) -> Vec3 {
+    let [full, none] = SUPPORT_FADES;
+    let inv_range = 1.0 / ((none - full) * length);
+    let (out, distance) = direction_or(d, Vec3::ZERO);
+    let t = lesser(greater((none * length - distance) * inv_range, 0.0), 1.0);
+    let (w, slope) = (t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t) * inv_range);
+    support * w + out * (support.dot(d) * slope)
+}
 
 /// Moves the block into the working space of this step and collects the forces on each point.
 ///
@@ -33,17 +47,10 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         let (support, rest, here) = (&block.rest.support[i], &block.rest.position[i], &block.position[i]);
         let mut push = ZERO3;
         for k in 0..LANES {
-            // The support that carries a guide at rest fades once the guide leaves its shape, so that flung
-            // hair falls with its whole weight. The remainder depends only on the displacement along the
-            // support, so the force has a potential; if it depended on the guide's direction, it would drive
-            // the guide for ever.
             let support = plan.last_head.rotate(at(support, k));
-            let (along, _) = direction_or(support, Vec3::ZERO);
-            let displacement = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
-            let arc_length = block.rest.mean_link[k] * i as f32 + 1e-6;
-            let share = (NO_SUPPORT - greater(displacement, -displacement) / arc_length)
-                * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
-            let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));
+            let d = at(here, k) - plan.last_head.apply(at(rest, k));
+            let length = block.rest.mean_link[k] * i as f32 + 1e-6;
+            let a = gravity + faded_support(support, d, length) * carried;
             put(&mut push, k, a * plan.h);
         }
         block.work.push[i] = push;

@@ -7,11 +7,12 @@
 
 mod follow;
 mod forces;
+mod lock;
 mod plan;
 mod relaxation;
 mod substep;
 
-pub(crate) use plan::Plan;
+pub(crate) use plan::{Plan, RowRates};
 
 use crate::block::{Block, Outcome, stretch_of};
 use crate::colliders::field::PlaneRow;

@@ -2,6 +2,7 @@
 
 use super::Plan;
 use super::follow::correct_velocities;
+use super::lock::{hold_together, rub};
 use super::relaxation::relax;
 use crate::Integrator;
 use crate::block::{Block, Depth, Work, project_position, project_velocity};
@@ -34,6 +35,7 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     if plan.settings.integrator == Integrator::Direct {
         apply_contact_push(block, plan);
     }
+    hold_together(block, plan);
     // One placement pass serves all integrators, so that it is compiled only once per vector width.
     let link_length = match plan.settings.integrator {
         Integrator::Direct => {
@@ -107,6 +109,9 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
             let was = at(&v, k);
             let settled = was + (substep.rigid_velocity(at(x, k)) - was) * settle;
             put(&mut v, k, settled * keep[k] + at(push, k));
+        }
+        if block.locks > 0 {
+            rub(block.locks, plan.rows[i].lock_friction, &mut v);
         }
         block.velocity[i] = v;
     }
