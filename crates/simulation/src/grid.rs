@@ -23,8 +23,11 @@ use crate::block::Block;
 use crate::lanes::{Map, at};
 use crate::settings::Repulsion;
 
-/// Cells along each axis.
-const SIDE: i32 = 48;
+/// Cells along each axis: the grid is higher than wide, because hair hangs.
+const SIDES: IVec3 = IVec3::new(44, 60, 42);
+
+/// The cell size is chosen such that hair that swings to all sides spans this many cells.
+const SWING_CELLS: f32 = 48.0;
 
 /// Smallest cell size, and the largest that is chosen for the swing of the hair as long as the hair at rest
 /// fits, metres.
@@ -99,19 +102,27 @@ impl DensityGrid {
         }
         centre /= count.max(1.0);
         let radius = lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
-        let reach = lanes()
-            .flat_map(|(b, k)| {
-                b.rest.position.iter().map(move |row| (at(row, k) - centre).abs().max_element())
-            })
-            .filter(|reach| reach.is_finite())
-            .fold(0.0, f32::max);
-        let swing = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
+        let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+        for row in lanes().flat_map(|(b, k)| b.rest.position.iter().map(move |row| at(row, k) - centre)) {
+            if row.is_finite() {
+                (low, high) = (low.min(row), high.max(row));
+            }
+        }
+        let swing = (2.0 * (radius + longest) / SWING_CELLS).clamp(CELL.0, CELL.1);
         // The outermost cells have no neighbours to interpolate with.
-        let cell = swing.max(2.0 * EXTENT * reach / (SIDE - 2) as f32);
+        let cells = (SIDES - 2).as_vec3();
+        let aside = 2.0 * high.max(-low);
+        let fits = (EXTENT * Vec3::new(aside.x, high.y - low.y, aside.z) / cells).max_element();
+        let cell = swing.max(fits);
+        // The grid is centred on the roots, and lower where the hair can swing below its lower end.
+        let half = 0.5 * cell * SIDES.as_vec3();
+        let spare = half.y - cell - high.y;
+        let lower = (radius + longest - half.y).clamp(0.0, spare.max(0.0));
+        let min = centre - half - Vec3::Y * lower;
         let link = (links / count.max(1.0)).max(1e-4);
         let points = blocks.first().map_or(0, Block::points);
         let lattice = Lattice {
-            min: centre - Vec3::splat(0.5 * cell * SIDE as f32),
+            min,
             cell,
             stride: ((MOST_CELLS * cell / link) as usize).min(MOST_LINKS).clamp(1, (points / 2).max(1)),
             units: FULL / total.max(1e-3),
@@ -177,9 +188,9 @@ impl DensityGrid {
         self.full.clamp(1.0, 2e9) as i32
     }
 
-    /// Whether the grid affects the hair.
+    /// Whether there is hair to affect.
     fn has_effect(&self) -> bool {
-        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.counts.held > 0
+        self.counts.held > 0
     }
 
     /// The contents of the cells.
@@ -207,12 +218,12 @@ impl DensityGrid {
 
 /// Offsets of the eight cells around a point from the first, x fastest.
 const OFFSETS: [usize; 8] = {
-    let (y, z) = (SIDE as usize, (SIDE * SIDE) as usize);
+    let (y, z) = (SIDES.x as usize, (SIDES.x * SIDES.y) as usize);
     [0, 1, y, y + 1, z, z + 1, z + y, z + y + 1]
 };
 
 fn index(cell: IVec3) -> usize {
-    ((cell.z * SIDE + cell.y) * SIDE + cell.x) as usize
+    ((cell.z * SIDES.y + cell.y) * SIDES.x + cell.x) as usize
 }
 
 #[cfg(test)]

@@ -22,6 +22,7 @@ mod integrator;
 mod lanes;
 mod motion;
 mod packing;
+mod rates;
 mod report;
 mod rest;
 mod settings;

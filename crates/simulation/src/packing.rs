@@ -138,8 +138,7 @@ mod tests {
     fn the_guides_of_a_wisp_lie_side_by_side_unless_another_wisp_has_them() {
         let wisps = [wisp([5, 9, 2]), wisp([9, 10, 11]), wisp([1, 1, 1]), wisp([0, 3, 99]), wisp([4, 6, 8])];
         let blocks = pack(&guides(12), &wisps);
-        let mut found: Vec<&[u32]> =
-            blocks.iter().flat_map(|b| b.guides[..3 * b.locks].chunks(3)).collect();
+        let mut found: Vec<&[u32]> = blocks.iter().flat_map(|b| b.guides[..3 * b.locks].chunks(3)).collect();
         found.sort_unstable();
         assert_eq!(found, [[4, 6, 8], [5, 9, 2]]);
     }

@@ -37,6 +37,8 @@ pub(crate) struct BendingKey {
     pub(crate) stiffness_bias: f32,
     pub(crate) damping_secs: f32,
     pub(crate) hold: f32,
+    pub(crate) weight: f32,
+    pub(crate) weight_tip: f32,
     pub(crate) first_free: usize,
 }
 
@@ -50,18 +52,24 @@ impl BendingKey {
             stiffness_bias: settings.stiffness_bias,
             damping_secs: settings.bend_damping,
             hold: settings.hold,
+            weight: settings.weight,
+            weight_tip: settings.weight_tip,
             first_free,
         }
     }
 
-    fn stiffness_at(&self, along: f32) -> f32 {
+    /// Angular frequencies of stiffness and hold at a fraction of a guide, 1/s. Both act on the mass of the hair.
+    fn frequencies_at(&self, along: f32) -> [f32; 2] {
         let ramp = SimulationSettings {
             stiffness_root: self.stiffness_root,
             stiffness_tip: self.stiffness_tip,
             stiffness_bias: self.stiffness_bias,
+            weight: self.weight,
+            weight_tip: self.weight_tip,
             ..SimulationSettings::default()
         };
-        ramp.stiffness_at(along)
+        let lighter = 1.0 / ramp.weight_at(along).sqrt();
+        [ramp.stiffness_at(along) * lighter, self.hold * lighter]
     }
 
     /// Ratio of damping to stiffness in one substep.
@@ -142,9 +150,9 @@ impl Bending {
         let gain = 1.0 + key.gamma();
         for i in 0..count {
             let along = i as f32 / (count - 1).max(1) as f32;
-            let omega = key.stiffness_at(along);
+            let [omega, hold] = key.frequencies_at(along);
             let root_b = omega * REFERENCE_LENGTH * REFERENCE_LENGTH / CANTILEVER;
-            let pull = key.h * key.hold * (1.0 - along) * (1.0 - along);
+            let pull = key.h * hold * (1.0 - along) * (1.0 - along);
             let bends = i > 0 && i + 1 < count;
             for k in 0..LANES {
                 let c = key.h * root_b / (link[k] * link[k] + 1e-12);
@@ -340,6 +348,8 @@ mod tests {
             stiffness_bias: 0.5,
             damping_secs: 0.02,
             hold: 4.0,
+            weight: 1.0,
+            weight_tip: 1.0,
             first_free,
         }
     }

@@ -63,6 +63,11 @@ pub(crate) struct Work {
     /// Velocity that the forces add per substep, and the factor by which they scale the old velocity.
     pub(crate) push: Vec<Lane3>,
     pub(crate) keep: Vec<Lane>,
+    /// How densely hair surrounds each point, 0 to 1.
+    pub(crate) inside: Vec<Lane>,
+    /// How densely hair that the head carries surrounds each point, 0 to 1: less the further the point is from its
+    /// place at rest.
+    pub(crate) carried: Vec<Lane>,
     pub(crate) next: Vec<Lane3>,
     /// The directions of the links of `next`.
     pub(crate) links: Vec<Lane3>,
@@ -94,6 +99,8 @@ impl Work {
             rows.resize(points, ZERO3);
         }
         self.keep.resize(points, ZERO);
+        self.inside.resize(points, ZERO);
+        self.carried.resize(points, ZERO);
         self.planes.resize(points, PlaneRow::unknown(PlaneRow::NO_SKIN));
         self.lengths.fit(points);
     }

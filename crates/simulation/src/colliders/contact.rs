@@ -17,8 +17,10 @@ pub(crate) struct ContactRules {
     pub(crate) margin: f32,
     /// Fraction of its rest height that a point keeps above the head's colliders.
     pub(crate) layering: f32,
-    /// Friction coefficient.
-    pub(crate) friction: f32,
+    /// Friction coefficient of the head.
+    pub(crate) skin_friction: f32,
+    /// Friction coefficient of the rest of the body.
+    pub(crate) cloth_friction: f32,
     /// Length of the substep, seconds.
     pub(crate) h: f32,
 }
@@ -46,8 +48,9 @@ const TOLERANCE: f32 = 1e-5;
 impl ContactRules {
     /// The rules that follow from the settings, with a time step of a second.
     pub(crate) fn of(settings: &SimulationSettings) -> Self {
-        let SimulationSettings { skin_margin: margin, layering, friction, .. } = *settings;
-        Self { margin, layering, friction, h: 1.0 }
+        let SimulationSettings { skin_margin: margin, layering, .. } = *settings;
+        let (skin_friction, cloth_friction) = (settings.friction, settings.cloth_friction);
+        Self { margin, layering, skin_friction, cloth_friction, h: 1.0 }
     }
 
     /// The largest distance that any point keeps from a surface, metres.
@@ -59,6 +62,14 @@ impl ContactRules {
     #[inline(always)]
     fn reach_of(&self, mover: &MovingShape) -> f32 {
         if mover.on_head { self.reach() } else { self.margin }
+    }
+
+    /// The friction coefficient of a surface of which the share `head` belongs to the head. Only the first of the
+    /// iterations over the colliders of a point rubs.
+    #[inline(always)]
+    fn friction(&self, head: f32, iteration: usize) -> f32 {
+        let both = self.cloth_friction + (self.skin_friction - self.cloth_friction) * head;
+        if iteration == 0 { both } else { 0.0 }
     }
 
     /// The same rules without margin and layering.
@@ -255,7 +266,7 @@ pub(crate) fn place_point(
                 continue;
             }
             pushed = true;
-            let friction = if iteration == 0 { rules.friction } else { 0.0 };
+            let friction = rules.friction(if mover.on_head { 1.0 } else { 0.0 }, iteration);
             for k in 0..LANES {
                 let depth = allowed[k] - nearest.distance[k];
                 let (p, from, l) = (at(&placed, k), at(before, k), length[k]);
@@ -304,8 +315,8 @@ fn push_out_of_field(
     if !any_deeper(&allowed, &row.distance, enough) {
         return false;
     }
-    let friction = if iteration == 0 { rules.friction } else { 0.0 };
     for k in 0..LANES {
+        let friction = rules.friction(row.head[k], iteration);
         let depth = allowed[k] - row.distance[k];
         let (p, from, l) = (at(placed, k), at(before, k), length[k]);
         // The sphere that approximates the surface.

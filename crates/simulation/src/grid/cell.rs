@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::SIDE;
+use super::SIDES;
 use crate::lanes::greater;
 
 /// Numbers per cell: mass, momentum along each axis, sums of directions, padding to a cache line, and two
@@ -100,10 +100,16 @@ impl KeepMask {
 }
 
 /// Number of cells that one task counts.
-const CHUNK: usize = 8 * (SIDE * SIDE) as usize;
+const CHUNK: usize = 8 * ROW * ROWS_PER_LAYER;
 
 /// Cells per row along x.
-const ROW: usize = SIDE as usize;
+const ROW: usize = SIDES.x as usize;
+
+/// Rows per layer along z.
+const ROWS_PER_LAYER: usize = SIDES.y as usize;
+
+/// Rows of the grid.
+const ROWS: usize = ROWS_PER_LAYER * SIDES.z as usize;
 
 const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
 
@@ -140,11 +146,7 @@ impl Counts {
 
 impl Cells {
     pub(super) fn new() -> Self {
-        Self {
-            each: vec![Cell::EMPTY; ROW * ROW * ROW],
-            masks: vec![0; ROW * ROW],
-            before: vec![0; ROW * ROW],
-        }
+        Self { each: vec![Cell::EMPTY; ROW * ROWS], masks: vec![0; ROWS], before: vec![0; ROWS] }
     }
 
     /// Starts a deposit: marks all cells as empty. Outdated contents stay until hair is added or everything
@@ -160,9 +162,8 @@ impl Cells {
     pub(super) fn mark(&mut self, base: usize) -> [KeepMask; 8] {
         let (row, x) = (base / ROW, base % ROW);
         let mut held = [KeepMask(0); 8];
-        for (pair, row) in
-            held.as_chunks_mut::<2>().0.iter_mut().zip([row, row + 1, row + ROW, row + ROW + 1])
-        {
+        let next = row + ROWS_PER_LAYER;
+        for (pair, row) in held.as_chunks_mut::<2>().0.iter_mut().zip([row, row + 1, next, next + 1]) {
             *pair = [KeepMask::of(self.masks[row], x), KeepMask::of(self.masks[row], x + 1)];
             self.masks[row] |= 0b11 << x;
         }
@@ -222,7 +223,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_grid_add_up_and_drop_outdated_contents() {
-        let at = |n: usize| (3 * n * ROW + 5) * ROW + 7;
+        let at = |n: usize| (3 * n * ROWS_PER_LAYER + 5) * ROW + 7;
         let mut parts = [Cells::new(), Cells::new(), Cells::new()];
         // The deposits of each round as (part, cell, mass): cells that move from part to part, that parts
         // share, that stay, and that receive nothing any more.

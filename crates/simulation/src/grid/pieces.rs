@@ -11,7 +11,7 @@ use lovelock_groom::simd_versions;
 
 use super::cell::{Cells, NUMBERS};
 use super::direction::outer;
-use super::{FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDE};
+use super::{FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDES};
 use crate::block::Block;
 use crate::lanes::{
     LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put, row_barrier,
@@ -91,12 +91,12 @@ impl Lattice {
     #[inline(always)]
     pub(super) fn corners(&self, p: &Lane3) -> Corners {
         let mut out = Corners { base: [0; LANES], fraction: ZERO3, inside: [true; LANES] };
-        let strides = [1, SIDE, SIDE * SIDE];
+        let strides = [1, SIDES.x, SIDES.x * SIDES.y];
         for k in 0..LANES {
             let q = (at(p, k) - self.min) / self.cell - 0.5;
             // Written so that NaN is outside.
-            let within = |q: f32| q >= 0.0 && q < (SIDE - 1) as f32;
-            let inside = within(q.x) & within(q.y) & within(q.z);
+            let within = |q: f32, side: i32| q >= 0.0 && q < (side - 1) as f32;
+            let inside = within(q.x, SIDES.x) & within(q.y, SIDES.y) & within(q.z, SIDES.z);
             let mut base = 0;
             for (axis, q) in q.to_array().into_iter().enumerate() {
                 let q = if inside { q } else { 0.0 };

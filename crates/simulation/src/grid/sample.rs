@@ -7,18 +7,26 @@ use glam::{IVec3, Mat3, Vec3};
 use super::cell::{NUMBERS, PARTS};
 use super::direction::{crossing, friction_target, push_across};
 use super::pieces::tangents;
-use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
+use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDES, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put, row_barrier, transposed};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, lesser, put, row_barrier, transposed};
+use crate::rates::RowRates;
 use crate::settings::RepulsionMode;
 use crate::trilinear::gradient;
+
+/// Velocities below this are not told from rest, metres per second.
+const LEAST_SPEED: f32 = 1e-3;
 
 /// The head and the time step for which [`DensityGrid::act`] computes forces.
 pub(crate) struct GridStep<'a> {
     /// Substep length, seconds.
     pub(crate) h: f32,
+    /// Fraction of the velocity relative to the surrounding hair that vanishes in a substep.
+    pub(crate) cohesion: f32,
+    /// What changes along a guide.
+    pub(crate) rows: &'a [RowRates],
     /// Carries head space to the space of the block's positions.
     pub(crate) last_head: &'a Map,
     /// The inverse of `last_head`.
@@ -34,6 +42,8 @@ struct RowSample {
     mean_velocity: Lane3,
     /// Fraction of the surrounding hair that crosses the given direction; 0 if nothing uses it.
     crossing: Lane,
+    /// How densely hair surrounds the point: 1 as at rest inside the hair or denser, 0 alone.
+    inside: Lane,
 }
 
 impl DensityGrid {
@@ -60,13 +70,20 @@ impl DensityGrid {
             around[k] = Lane(all);
         }
         let sums = transposed(&around);
-        let mut out = RowSample { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
-        let mut crowded = [false; LANES];
+        let mut out = RowSample {
+            found: [false; LANES],
+            push: ZERO3,
+            mean_velocity: ZERO3,
+            crossing: ZERO,
+            inside: ZERO,
+        };
+        let (mut crowded, inv_full) = ([false; LANES], 1.0 / self.full);
         for k in 0..LANES {
             let excess: [f32; 8] = std::array::from_fn(|n| excesses[n][k]);
             crowded[k] = excess.iter().any(|&e| e > 0.0);
             let mass = sums[0][k];
             out.found[k] = mass >= 1.0;
+            out.inside[k] = lesser(mass * inv_full, 1.0);
             let mean = Vec3::new(sums[1][k], sums[2][k], sums[3][k]) / (mass * MOMENTUM);
             put(&mut out.mean_velocity, k, mean);
             let directions = [sums[4][k], sums[5][k], sums[6][k], sums[7][k], sums[8][k], sums[9][k]];
@@ -86,9 +103,7 @@ impl DensityGrid {
     /// It is faded at the centre, where it would be singular, and at the faces, where it would jump.
     #[cold]
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
-        let cell = ((p - self.lattice.min) / self.lattice.cell)
-            .as_ivec3()
-            .clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
+        let cell = ((p - self.lattice.min) / self.lattice.cell).as_ivec3().clamp(IVec3::ZERO, SIDES - 1);
         let i = index(cell);
         let out = p - (self.lattice.min + (cell.as_vec3() + 0.5) * self.lattice.cell);
         let fade = (1.0 - 2.0 * out.abs().max_element() / self.lattice.cell).max(0.0);
@@ -96,18 +111,18 @@ impl DensityGrid {
             / (out.length().max(0.1 * self.lattice.cell) * self.lattice.cell))
     }
 
-    /// Adds the forces of the grid to a block whose positions are still those of the last step.
+    /// Adds the forces of the grid to a block whose positions are still those of the last step, and finds how
+    /// densely hair surrounds each point.
     #[inline(always)]
-    pub(crate) fn act(&self, block: &mut Block, step: &GridStep, cohesion: f32) {
-        for keep in &mut block.work.keep {
-            *keep = Lane::splat(1.0);
-        }
+    pub(crate) fn act(&self, block: &mut Block, step: &GridStep) {
+        block.work.keep.fill(Lane::splat(1.0));
+        block.work.inside.fill(ZERO);
         if !self.has_effect() {
             return;
         }
         let count = block.points();
         let (mut from, mut to) = (0, 0);
-        let mut row = GridEffect { dv: ZERO3, mean: ZERO3 };
+        let mut row = GridEffect { dv: ZERO3, mean: ZERO3, inside: ZERO };
         loop {
             let next = self.effect(block, step, to);
             if to > 0 {
@@ -117,7 +132,7 @@ impl DensityGrid {
                     to - from,
                     &row,
                     &next,
-                    cohesion,
+                    step,
                 );
             }
             if to + 1 >= count {
@@ -143,7 +158,7 @@ impl DensityGrid {
             put(&mut along, k, step.head_from_last.rotate(at(&tangent, k)));
         }
         let sample = self.sample_row(&p, &along);
-        let mut out = GridEffect { dv: ZERO3, mean: ZERO3 };
+        let mut out = GridEffect { dv: ZERO3, mean: ZERO3, inside: sample.inside };
         for k in 0..LANES {
             let (t, v) = (at(&tangent, k), at(&velocity, k));
             let push = push_across(turn * at(&sample.push, k), t, sample.crossing[k], anisotropy);
@@ -177,6 +192,7 @@ impl DensityGrid {
 struct GridEffect {
     dv: Lane3,
     mean: Lane3,
+    inside: Lane,
 }
 
 /// Interpolates the effect over `points` from `row`, at the first of them, to `next`, `run` points further
@@ -188,19 +204,24 @@ fn add_interpolated(
     run: usize,
     row: &GridEffect,
     next: &GridEffect,
-    cohesion: f32,
+    step: &GridStep,
 ) {
     for i in points.clone() {
         let t = (i - points.start) as f32 / run as f32;
-        let (mut push, mut keep) = (block.work.push[i], block.work.keep[i]);
+        let (mut push, mut keep, mut inside) = (block.work.push[i], block.work.keep[i], ZERO);
+        let (velocity, friction) = (&block.velocity[i], step.rows[i].hair_friction);
         for k in 0..LANES {
             let dv = at(&row.dv, k).lerp(at(&next.dv, k), t);
             let mean = at(&row.mean, k).lerp(at(&next.mean, k), t);
-            let relaxed = (at(&push, k) + dv) * (1.0 - cohesion) + mean * cohesion;
+            inside[k] = row.inside[k] + (next.inside[k] - row.inside[k]) * t;
+            // Coulomb's law: friction removes at most the relative velocity.
+            let relative = (mean - at(velocity, k)).length_squared().sqrt();
+            let rubbed = lesser(friction * inside[k] / (relative + LEAST_SPEED), 1.0);
+            let free = (1.0 - step.cohesion) * (1.0 - rubbed);
+            let relaxed = (at(&push, k) + dv) * free + mean * (1.0 - free);
             put(&mut push, k, relaxed);
-            keep[k] = 1.0 - cohesion;
+            keep[k] = free;
         }
-        block.work.push[i] = push;
-        block.work.keep[i] = keep;
+        (block.work.push[i], block.work.keep[i], block.work.inside[i]) = (push, keep, inside);
     }
 }

@@ -34,10 +34,24 @@ pub struct SimulationSettings {
     pub settle: f32,
     /// Drag of the air, as the rate at which hair takes on the speed of the wind, 1/s.
     pub drag: f32,
+    /// The drag at the tips, as a multiple of that at the roots.
+    pub drag_tip: f32,
+    /// Fraction of the air that the surrounding hair keeps from a point inside the hair.
+    pub air_shelter: f32,
+    /// Mass of hair per length, as a multiple of the usual one: heavy hair yields less to air, stiffness and hold.
+    pub weight: f32,
+    /// The weight at the tips, as a multiple of that at the roots.
+    pub weight_tip: f32,
     /// The wind.
     pub wind: Wind,
-    /// Friction coefficient of hair on the body.
+    /// Friction coefficient of hair on the head.
     pub friction: f32,
+    /// Friction coefficient of hair on the rest of the body and its clothes.
+    pub cloth_friction: f32,
+    /// Friction coefficient of hair on hair, which presses on it with its own weight.
+    pub hair_friction: f32,
+    /// The friction of hair on hair at the tips, as a multiple of that at the roots.
+    pub hair_friction_tip: f32,
     /// Distance that hair keeps from the body, metres. Hair that rests nearer keeps its distance of rest.
     pub skin_margin: f32,
     /// Fraction of its height above the skull that a wisp keeps when it is pressed down, so that layers keep their order and the hair its
@@ -71,8 +85,15 @@ impl Default for SimulationSettings {
             hold: 5.0,
             settle: 2.0,
             drag: 0.8,
+            drag_tip: 1.0,
+            air_shelter: 0.5,
+            weight: 1.0,
+            weight_tip: 1.0,
             wind: Wind::default(),
             friction: 0.3,
+            cloth_friction: 0.3,
+            hair_friction: 0.1,
+            hair_friction_tip: 1.0,
             skin_margin: 0.003,
             layering: 0.35,
             repulsion: Repulsion::default(),
@@ -121,6 +142,12 @@ impl SimulationSettings {
             hold: style.hold,
             ..*self
         }
+    }
+
+    /// Mass per length at a fraction `along` of a lock, 0 at the root and 1 at the tip, as a multiple of the usual one.
+    #[must_use]
+    pub fn weight_at(&self, along: f32) -> f32 {
+        self.weight * (1.0 + (self.weight_tip - 1.0) * along)
     }
 
     /// Bending stiffness at a fraction `along` of a lock, 0 at the root and 1 at the tip, 1/s: the ramp from root

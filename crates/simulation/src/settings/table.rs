@@ -82,19 +82,71 @@ impl Settings for SimulationSettings {
         )
         .unit(Unit::FRACTION),
         Setting::number(
+            field!(Self, weight),
+            [0.2, 5.0],
+            "Weight",
+            "How heavy hair is. Heavy hair hangs and swings, light hair floats and keeps its shape.",
+        )
+        .unit(Unit::TIMES),
+        Setting::number(
+            field!(Self, weight_tip),
+            [0.2, 5.0],
+            "Weight at tips",
+            "Weight at the tips, as a share of that at the roots.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.2, 2.0]),
+        Setting::number(
             field!(Self, drag),
             [0.0, 20.0],
-            "Air drag",
+            "Air",
             "How strongly the air slows hair, and how strongly wind carries it.",
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
+            field!(Self, drag_tip),
+            [0.0, 5.0],
+            "Air at tips",
+            "Effect of the air at the tips, as a share of that at the roots.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.0, 3.0]),
+        Setting::number(
+            field!(Self, air_shelter),
+            [0.0, 1.0],
+            "Air shelter",
+            "How much of the air the outer hair keeps from the hair inside.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
             field!(Self, friction),
             [0.0, 2.0],
-            "Friction",
-            "How strongly hair sticks to skin and cloth, by Coulomb's law.",
+            "Skin friction",
+            "How strongly hair sticks to the head, by Coulomb's law.",
         )
         .symbol("μ"),
+        Setting::number(
+            field!(Self, cloth_friction),
+            [0.0, 2.0],
+            "Cloth friction",
+            "How strongly hair sticks to shoulders, back and clothes, by Coulomb's law.",
+        )
+        .symbol("μ"),
+        Setting::number(
+            field!(Self, hair_friction),
+            [0.0, 2.0],
+            "Hair friction",
+            "How strongly hair sticks to other hair. Higher values bring it to rest sooner.",
+        )
+        .symbol("μ"),
+        Setting::number(
+            field!(Self, hair_friction_tip),
+            [0.0, 5.0],
+            "Hair friction at tips",
+            "Hair friction at the tips, as a share of that at the roots.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.0, 2.0]),
         Setting::number(
             field!(Self, skin_margin),
             [0.0, 0.03],

@@ -251,7 +251,6 @@ fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
     [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.contact_push, directions]
 }
 
-
 fn sum(bytes: &[u8]) -> u64 {
     let mut hasher = Hasher::default();
     hasher.add(bytes.len() as u32);

@@ -12,7 +12,7 @@ mod plan;
 mod relaxation;
 mod substep;
 
-pub(crate) use plan::{Plan, RowRates};
+pub(crate) use plan::Plan;
 
 use crate::block::{Block, Outcome, stretch_of};
 use crate::colliders::field::PlaneRow;

@@ -10,6 +10,7 @@ use crate::colliders::field::MovingField;
 use crate::grid::DensityGrid;
 use crate::lanes::Map;
 use crate::motion::Substep;
+use crate::rates::RowRates;
 use crate::wake::Wakes;
 use crate::wind::WindField;
 
@@ -41,26 +42,4 @@ pub(crate) struct Plan<'a> {
     pub(crate) grid: &'a DensityGrid,
     pub(crate) wind: &'a WindField,
     pub(crate) wakes: &'a Wakes,
-}
-
-/// What changes along a guide: fractions of a difference that vanish in a substep, at one row of points.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct RowRates {
-    /// Of the distance beyond the bound of a lock.
-    pub(crate) cohesion: f32,
-    /// Of the velocity relative to the lock.
-    pub(crate) lock_friction: f32,
-}
-
-impl RowRates {
-    /// The rates at the fraction `along` of a guide, 0 at the root and 1 at the tip, in a substep of `h` seconds.
-    pub(crate) fn at(along: f32, settings: &SimulationSettings, h: f32) -> Self {
-        let taken = |rate: f32| 1.0 - (-rate * h).exp();
-        let toward = |tip: f32| 1.0 + (tip - 1.0) * along;
-        let locks = &settings.locks;
-        Self {
-            cohesion: taken(locks.cohesion * toward(locks.cohesion_tip)),
-            lock_friction: taken(locks.friction),
-        }
-    }
 }

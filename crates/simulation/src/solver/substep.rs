@@ -89,6 +89,9 @@ fn lengths(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
+/// Velocities below this are not told from rest, metres per second.
+const LEAST_SPEED: f32 = 0.02;
+
 /// Applies forces to velocities, and sets the velocities of points that the scalp carries.
 #[inline(always)]
 fn forces(block: &mut Block, plan: &Plan, s: usize) {
@@ -104,10 +107,13 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
     }
     for i in plan.first_free..block.points() {
         let (x, push, keep) = (&block.position[i], &block.work.push[i], &block.work.keep[i]);
+        let (carried, friction) = (&block.work.carried[i], plan.rows[i].hair_friction);
         let mut v = block.velocity[i];
         for k in 0..LANES {
             let was = at(&v, k);
-            let settled = was + (substep.rigid_velocity(at(x, k)) - was) * settle;
+            let relative = substep.rigid_velocity(at(x, k)) - was;
+            let rubbed = friction * carried[k] / (relative.length_squared().sqrt() + LEAST_SPEED);
+            let settled = was + relative * greater(settle, lesser(rubbed, 1.0));
             put(&mut v, k, settled * keep[k] + at(push, k));
         }
         if block.locks > 0 {

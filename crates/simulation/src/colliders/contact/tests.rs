@@ -21,7 +21,8 @@ fn splat(p: Vec3) -> Lane3 {
     crate::lanes::splat3(p)
 }
 
-const RULES: ContactRules = ContactRules { margin: 0.0, layering: 0.0, friction: 0.0, h: 1.0 / 240.0 };
+const RULES: ContactRules =
+    ContactRules { margin: 0.0, layering: 0.0, skin_friction: 0.0, cloth_friction: 0.0, h: 1.0 / 240.0 };
 
 /// Places a point at the end of a link from `from` toward `wanted`, over one collider, without friction.
 fn place(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
