@@ -32,6 +32,54 @@ struct Link {
     normal_change: [f32; 3],
 }
 
+/// A wisp may become this much wider than at rest before its strands are kept together.
+const WIDER: f32 = 1.5;
+
+/// A wisp is at least this wide, metres: so narrow hair may open a little.
+const LEAST_RADIUS: f32 = 0.004;
+
+/// Root mean square distance of the guides of a wisp from their mean, and the mean.
+#[inline]
+fn radius(of: &[Vec3A; 3]) -> (f32, Vec3A) {
+    let mean = (of[0] + of[1] + of[2]) / 3.0;
+    let squares = of.map(|p| (p - mean).length_squared());
+    (((squares[0] + squares[1] + squares[2]) / 3.0).sqrt(), mean)
+}
+
+/// The radius up to which the guides of each wisp may open at each of their points, metres, in the layout of [`Guides`].
+/// Without a limit where a guide belongs to no wisp.
+pub(crate) fn widest_radii(rest: &Guides, wisps: &[Wisp]) -> Vec<f32> {
+    let mut out = vec![f32::MAX; rest.x.len()];
+    let points = rest.points_per_guide;
+    for wisp in wisps {
+        for p in 0..points {
+            let of = wisp.guides.map(|g| Vec3A::from(rest.point(g as usize, p)));
+            let widest = WIDER * radius(&of).0.max(LEAST_RADIUS);
+            for g in wisp.guides {
+                out[g as usize * points + p] = widest;
+            }
+        }
+    }
+    out
+}
+
+/// The limit of a wisp at point `p` of `points`; none if `widest` is empty.
+#[inline]
+fn widest_at(widest: &[f32], wisp: &Wisp, p: usize, points: usize) -> f32 {
+    widest.get(wisp.guides[0] as usize * points + p).copied().unwrap_or(f32::MAX)
+}
+
+/// The guides of a wisp, moved toward their mean if they are further apart than `widest`.
+///
+/// A strand's weights sum to 1, so this is the same as pulling the weights toward 1/3: a wisp whose guides have parted, in
+/// an old take or in a file, stays one lock.
+#[inline]
+fn narrowed(of: [Vec3A; 3], widest: f32) -> [Vec3A; 3] {
+    let (radius, mean) = radius(&of);
+    // False for NaN.
+    if radius > widest { of.map(|p| mean + (p - mean) * (widest / radius)) } else { of }
+}
+
 /// One value per lane for each of x, y, z.
 pub(crate) type Lanes<const N: usize> = [[f32; N]; 3];
 
@@ -39,20 +87,30 @@ impl WispCurve {
     /// The curve of `wisp` at rest, in head space.
     pub fn at_rest(rest: &Guides, wisp: &Wisp) -> Self {
         let mut curve = Self::default();
-        curve.place(rest, wisp, rest, Affine3A::IDENTITY);
+        curve.place(rest, wisp, &[], rest, Affine3A::IDENTITY);
         curve
     }
 
     /// Sets this to the curve of `wisp` at one instant.
     ///
     /// `rest` contains the guides at rest in head space, `moved` the same guides in world space (or in head space, with
-    /// the identity as `world_from_head`). The guides of a wisp need at least 2 points.
-    pub fn place(&mut self, rest: &Guides, wisp: &Wisp, moved: &Guides, world_from_head: Affine3A) {
+    /// the identity as `world_from_head`), and `widest` is [`Hairstyle::widest`](crate::Hairstyle::widest). The guides of a
+    /// wisp need at least 2 points.
+    pub fn place(
+        &mut self,
+        rest: &Guides,
+        wisp: &Wisp,
+        widest: &[f32],
+        moved: &Guides,
+        world_from_head: Affine3A,
+    ) {
         let points = moved.points_per_guide;
         assert!(points >= 2, "a guide needs at least 2 points");
-        let guides = wisp.guides.map(|g| g as usize);
         self.controls.clear();
-        self.controls.extend((0..points).map(|p| guides.map(|g| Vec3A::from(moved.point(g, p)))));
+        self.controls.extend((0..points).map(|p| {
+            let of = wisp.guides.map(|g| Vec3A::from(moved.point(g as usize, p)));
+            narrowed(of, widest_at(widest, wisp, p, points))
+        }));
 
         let mean = |p: usize| (self.controls[p][0] + self.controls[p][1] + self.controls[p][2]) / 3.0;
         let [root_normal, _, root_tangent] = Self::root_frame(rest, wisp);

@@ -15,6 +15,15 @@ pub struct Wisp {
     pub strand_count: u32,
 }
 
+/// Guides that a tie gathers, which stay together beyond it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rope {
+    /// Each guide with the index of its first point beyond the tie.
+    pub guides: Vec<(u32, u32)>,
+    /// How firmly they stay together: 0 loose, 1 tight.
+    pub tightness: f32,
+}
+
 /// How each rendered strand follows the guides of its wisp. Structure of arrays.
 ///
 /// A point of a strand is `sum_g(weight_g * guide_g(u)) + frame(u) * offset`. The guides are Catmull-Rom curves with
@@ -75,6 +84,11 @@ pub struct Hairstyle {
     /// negative value leaves the point to the simulation's own settings. Has the layout of [`Guides`], or is empty
     /// without ties.
     pub held: Vec<f32>,
+    /// Hair that ties gather into ropes.
+    pub ropes: Vec<Rope>,
+    /// The largest radius, metres, that the wisp of a guide has at each of its points: where its guides are further apart,
+    /// strands are drawn within a section of that radius. Has the layout of [`Guides`]; empty where nothing limits them.
+    pub widest: Vec<f32>,
     /// The rendered strands, expressed relative to the guides.
     pub strands: StrandSet,
     /// Colour and width that the style suggests; a project may override them.
@@ -93,6 +107,9 @@ pub enum HairstyleError {
     /// Strands are out of order, or have fewer than 2 points.
     #[error("strand {0} is out of order or has fewer than 2 points")]
     Strand(usize),
+    /// A rope refers to a missing guide.
+    #[error("rope {0} names a missing guide")]
+    Rope(usize),
     /// A wisp refers to missing guides, or to strands that do not follow those of the wisp before.
     #[error("wisp {0} names a missing guide or strands out of order")]
     Wisp(usize),
@@ -112,6 +129,13 @@ impl Hairstyle {
         }
         if !self.held.is_empty() && self.held.len() != n {
             return Err(HairstyleError::Length("held"));
+        }
+        if !self.widest.is_empty() && self.widest.len() != n {
+            return Err(HairstyleError::Length("widest"));
+        }
+        let missing = |rope: &Rope| rope.guides.iter().any(|(g, _)| *g as usize >= guides.count());
+        if let Some(bad) = self.ropes.iter().position(missing) {
+            return Err(HairstyleError::Rope(bad));
         }
         let set = &self.strands;
         let (count, points) = (set.count(), set.points());

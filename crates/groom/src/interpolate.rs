@@ -94,7 +94,7 @@ fn wisps_into(
     let set = &style.strands;
     let Slices { x, y, z } = out;
     for wisp in wisps.iter().filter(|w| w.strand_count > 0) {
-        scratch.curve.place(&style.guides, wisp, &frame.guides, frame.world_from_head);
+        scratch.curve.place(&style.guides, wisp, &style.widest, &frame.guides, frame.world_from_head);
         let first = wisp.first_strand as usize;
         for strand in first..first + wisp.strand_count as usize {
             scratch.curve.blend_controls(set.weights[strand], &mut scratch.controls);

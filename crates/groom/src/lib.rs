@@ -33,7 +33,7 @@ pub use frame::WispCurve;
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
 pub use haircut::{Blade, Haircut, trimmed};
-pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
+pub use hairstyle::{Hairstyle, HairstyleError, Rope, StrandSet, Wisp};
 pub use import::{
     HairInfo, ImportError, ImportSettings, PlacedGroom, Placement, hair_info, import, import_around, place,
 };

@@ -25,6 +25,7 @@ mod packing;
 mod rates;
 mod report;
 mod rest;
+mod rope;
 mod settings;
 mod simulation;
 mod solver;

@@ -87,6 +87,7 @@ impl Simulation {
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }
+        crate::rope::assign(&style.ropes, &mut blocks);
         // Non-finite guides do not affect the others.
         let known = || blocks.iter().flat_map(|b| &b.rest.mean_link[..b.used]).filter(|l| l.is_finite());
         let mean_link = known().sum::<f32>() / known().count().max(1) as f32;
@@ -252,11 +253,14 @@ impl Simulation {
         let points = self.style.guides.points_per_guide;
         let along = |i: usize| i as f32 / points.saturating_sub(1).max(1) as f32;
         let rows: Vec<RowRates> = (0..points).map(|i| RowRates::at(along(i), settings, h)).collect();
+        let grown = self.tie_blend.as_ref().map_or(1.0, TieBlend::grown);
+        let ropes = crate::rope::current(&self.style.ropes, &self.blocks, rebase, h, grown);
         let plan = Plan {
             wide: self.wide,
             settings: *settings,
             h,
             rows: &rows,
+            ropes: &ropes,
             first_free,
             rebase,
             carry_all: rigid_between(&self.head, head, origin),

@@ -30,18 +30,24 @@ pub(crate) fn ui(
             "stiffness_bias",
             "bend_damping",
             "hold",
+            "hold_reach",
             "settle",
             "clamped_links",
         ],
         simulation,
         default,
     );
+    section(ui, "Locks", false, |ui| {
+        let names = ["cohesion", "cohesion_tip", "friction", "opening"];
+        settings(ui, &names, &mut simulation.locks, &default.locks);
+    });
     section(ui, "Weight and air", false, |ui| {
-        settings(ui, &["gravity", "style_support", "drag"], simulation, default);
+        let names = ["weight", "weight_tip", "gravity", "style_support", "drag", "drag_tip", "air_shelter"];
+        settings(ui, &names, simulation, default);
     });
     section(ui, "Wind", false, |ui| wind(ui, &mut simulation.wind, &default.wind, axes));
     section(ui, "Body contact", false, |ui| {
-        settings(ui, &["friction", "skin_margin", "layering"], simulation, default);
+        settings(ui, &["friction", "cloth_friction", "skin_margin", "layering"], simulation, default);
     });
     section(ui, "Hair contact", false, |ui| repulsion(ui, simulation, default));
     section(ui, "Accuracy", false, |ui| {
@@ -119,6 +125,7 @@ fn wind(ui: &mut Ui, wind: &mut Wind, default: &Wind, axes: [Vec3; 3]) {
 }
 
 fn repulsion(ui: &mut Ui, simulation: &mut SimulationSettings, default: &SimulationSettings) {
+    settings(ui, &["hair_friction", "hair_friction_tip"], simulation, default);
     let (repulsion, default) = (&mut simulation.repulsion, &default.repulsion);
     settings(ui, &["mode", "strength", "threshold"], repulsion, default);
     let why_not = (repulsion.mode == RepulsionMode::Centre).then_some(

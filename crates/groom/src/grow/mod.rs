@@ -18,6 +18,8 @@ use lovelock_base::settings::Settings;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::frame::widest_radii;
+
 use crate::{
     Bounded, GroomSettings, Guides, Hairstyle, Obstacle, Preset, Scalp, ScalpError, ScalpIndex, StrandSet,
     Wisp,
@@ -88,9 +90,11 @@ pub fn grow(
     Ok(Hairstyle {
         name: name.map_or("Custom", Preset::label).to_owned(),
         scalp: scalp.clone(),
+        widest: widest_radii(&guides, &wisps),
         wisps,
         guides,
         held: Vec::new(),
+        ropes: Vec::new(),
         strands: set,
         look: settings.look,
     })

@@ -22,6 +22,7 @@ use glam::Vec3;
 use lovelock_base::settings::Settings;
 use thiserror::Error;
 
+use crate::frame::widest_radii;
 use crate::{HairFile, Hairstyle, Obstacle, Scalp, Wisp};
 
 pub use info::{HairInfo, hair_info};
@@ -106,9 +107,11 @@ fn hairstyle_of(
             .file_stem()
             .map_or_else(|| file.name.clone(), |stem| stem.to_string_lossy().into_owned()),
         scalp: scalp.clone(),
+        widest: widest_radii(&guides, &wisps),
         wisps,
         guides,
         held: Vec::new(),
+        ropes: Vec::new(),
         strands,
         look: colour::look(file),
     };

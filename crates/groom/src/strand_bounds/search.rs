@@ -193,7 +193,14 @@ impl Search<'_> {
                 looked_at += 1;
                 let known = curves.iter().position(|(number, _)| *number == next.wisp).unwrap_or_else(|| {
                     let mut curve = WispCurve::default();
-                    curve.place(&bounds.style.guides, &wisp.wisp, &frame.guides, frame.world_from_head);
+                    let style = &bounds.style;
+                    curve.place(
+                        &style.guides,
+                        &wisp.wisp,
+                        &style.widest,
+                        &frame.guides,
+                        frame.world_from_head,
+                    );
                     curves.push((next.wisp, curve));
                     curves.len() - 1
                 });

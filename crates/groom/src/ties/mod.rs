@@ -6,7 +6,8 @@
 //! 3. [`lay`]: the wisp's guides along that path, outside the body, with unchanged link lengths.
 //! 4. [`offsets`]: the strands' offsets, flattened before the ring.
 //!
-//! [`Hairstyle::held`] tells the simulator which points the tie holds.
+//! [`Hairstyle::held`] tells the simulator which points the tie holds, and [`Hairstyle::ropes`] which hair stays
+//! together beyond it.
 
 mod lay;
 mod offsets;
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 
 pub use settings::{HairTie, TieKind, TieReach};
 
-use crate::{Bounded, Hairstyle, Obstacle, Wisp};
+use crate::{Bounded, Hairstyle, Obstacle, Rope, Wisp};
 use route::Ring;
 
 /// How firmly a tie holds the hair inside it, 1/s: an acceleration of 300 m/s^2 moves the hair by 0.02 mm.
@@ -67,6 +68,7 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
         .collect();
     let mut caught = Vec::new();
     out.held = vec![-1.0; style.guides.x.len()];
+    out.ropes = rings.iter().map(|ring| Rope { guides: Vec::new(), tightness: ring.tie.tightness }).collect();
     for (of, laid) in gathered.iter().zip(laid) {
         let Some(laid) = laid else { continue };
         let tie = &rings[of.ring].tie;
@@ -84,8 +86,14 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
                 };
             }
         }
+        if tie.kind == TieKind::Ponytail {
+            let guides = style.wisps[of.wisp].guides;
+            let beyond = laid.ring_point.map(|i| i as u32 + 1);
+            out.ropes[of.ring].guides.extend(guides.into_iter().zip(beyond));
+        }
         caught.push((of, laid));
     }
+    out.ropes.retain(|rope| !rope.guides.is_empty());
     let moved: Vec<(usize, Vec<Vec3>)> = caught
         .par_iter()
         .map(|(of, laid)| {

@@ -186,6 +186,8 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
         },
         guides,
         held: Vec::new(),
+        ropes: Vec::new(),
+        widest: Vec::new(),
         ..style.clone()
     }
 }

@@ -35,7 +35,7 @@ impl Combing {
         let of_wisp = |wisp: &lovelock_groom::Wisp| {
             let [old, new] = [from, to].map(|style| {
                 let mut curve = WispCurve::default();
-                curve.place(&style.guides, wisp, &now.guides, now.world_from_head);
+                curve.place(&style.guides, wisp, &style.widest, &now.guides, now.world_from_head);
                 curve
             });
             let first = a.first_point[wisp.first_strand as usize] as usize;

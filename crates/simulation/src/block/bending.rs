@@ -12,7 +12,7 @@
 //! (Euler-Bernoulli beam).
 
 use crate::SimulationSettings;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put};
 
 /// The largest `c (1 + gamma)`. Beyond it single precision loses the solution, and the hair is as stiff as
 /// wire anyway.
@@ -37,6 +37,7 @@ pub(crate) struct BendingKey {
     pub(crate) stiffness_bias: f32,
     pub(crate) damping_secs: f32,
     pub(crate) hold: f32,
+    pub(crate) hold_reach: f32,
     pub(crate) weight: f32,
     pub(crate) weight_tip: f32,
     pub(crate) first_free: usize,
@@ -52,6 +53,7 @@ impl BendingKey {
             stiffness_bias: settings.stiffness_bias,
             damping_secs: settings.bend_damping,
             hold: settings.hold,
+            hold_reach: settings.hold_reach,
             weight: settings.weight,
             weight_tip: settings.weight_tip,
             first_free,
@@ -152,13 +154,15 @@ impl Bending {
             let along = i as f32 / (count - 1).max(1) as f32;
             let [omega, hold] = key.frequencies_at(along);
             let root_b = omega * REFERENCE_LENGTH * REFERENCE_LENGTH / CANTILEVER;
-            let pull = key.h * hold * (1.0 - along) * (1.0 - along);
             let bends = i > 0 && i + 1 < count;
             for k in 0..LANES {
                 let c = key.h * root_b / (link[k] * link[k] + 1e-12);
                 // The end of a guide that was cut is a tip.
                 let bends = bends && inv_length[i + 1][k] > 0.0;
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
+                let reach = lesser(key.hold_reach, link[k] * (count - 1) as f32) + 1e-6;
+                let fades = greater(1.0 - link[k] * i as f32 / reach, 0.0);
+                let pull = key.h * hold * fades * fades;
                 let pull = if tie_hold[i][k] >= 0.0 { key.h * tie_hold[i][k] } else { pull };
                 self.hold[i][k] = pull * pull;
                 let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
@@ -348,6 +352,7 @@ mod tests {
             stiffness_bias: 0.5,
             damping_secs: 0.02,
             hold: 4.0,
+            hold_reach: 2.0,
             weight: 1.0,
             weight_tip: 1.0,
             first_free,

@@ -353,6 +353,7 @@ mod tests {
             stiffness_bias: 0.5,
             damping_secs: 0.03,
             hold: 5.0,
+            hold_reach: 2.0,
             weight: 1.0,
             weight_tip: 1.0,
             first_free,

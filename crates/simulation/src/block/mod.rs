@@ -12,6 +12,7 @@ use crate::colliders::field::{PlaneRow, Search};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::packing::Lanes;
 use crate::rest::RestShape;
+use crate::rope::InRope;
 pub(crate) use bending::{Bending, BendingKey};
 pub(crate) use coupled::Coupled;
 pub(crate) use lengths::{LengthScratch, project_position, project_velocity};
@@ -36,6 +37,8 @@ pub(crate) struct Block {
 
     /// Strength with which ties hold each point, 1/s; negative where no tie holds it.
     pub(crate) tie_hold: Vec<Lane>,
+    /// The ropes that its guides belong to, if any.
+    pub(crate) in_rope: Option<Box<InRope>>,
 
     pub(crate) position: Vec<Lane3>,
     pub(crate) velocity: Vec<Lane3>,
@@ -155,6 +158,7 @@ impl Block {
             rest: RestShape::new(guides, lanes, first_free),
             rest_distance: Vec::new(),
             tie_hold: vec![Lane::splat(-1.0); points],
+            in_rope: None,
             field_distance: Vec::new(),
             skin: vec![PlaneRow::NO_SKIN; points],
             position: vec![ZERO3; points],

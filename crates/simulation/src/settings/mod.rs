@@ -28,8 +28,10 @@ pub struct SimulationSettings {
     pub stiffness_bias: f32,
     /// Damping of bending, seconds. A sway of frequency f has the damping ratio pi * f * this.
     pub bend_damping: f32,
-    /// Pull of the root half toward the style as drawn, as an angular frequency, 1/s; it falls to zero at the tips.
+    /// Pull toward the style as drawn, as an angular frequency, 1/s; it falls to zero at `hold_reach`.
     pub hold: f32,
+    /// Distance along a guide from its root up to which `hold` acts, metres; at most the whole guide.
+    pub hold_reach: f32,
     /// Rate at which motion relative to the head decays, 1/s: a stand-in for friction against the hair around.
     pub settle: f32,
     /// Drag of the air, as the rate at which hair takes on the speed of the wind, 1/s.
@@ -83,16 +85,17 @@ impl Default for SimulationSettings {
             stiffness_bias: 0.5,
             bend_damping: 0.03,
             hold: 5.0,
-            settle: 2.0,
-            drag: 0.8,
-            drag_tip: 1.0,
-            air_shelter: 0.5,
+            hold_reach: 0.3,
+            settle: 2.5,
+            drag: 1.2,
+            drag_tip: 1.5,
+            air_shelter: 0.3,
             weight: 1.0,
             weight_tip: 1.0,
             wind: Wind::default(),
             friction: 0.3,
             cloth_friction: 0.3,
-            hair_friction: 0.1,
+            hair_friction: 0.05,
             hair_friction_tip: 1.0,
             skin_margin: 0.003,
             layering: 0.35,
@@ -196,11 +199,13 @@ pub struct Locks {
     pub cohesion_tip: f32,
     /// Rate at which the guides of a lock take on each other's velocity, 1/s.
     pub friction: f32,
+    /// How much wider a lock may become that moves fast or touches the body, as a fraction of its width.
+    pub opening: f32,
 }
 
 impl Default for Locks {
     fn default() -> Self {
-        Self { cohesion: 60.0, cohesion_tip: 1.0, friction: 15.0 }
+        Self { cohesion: 60.0, cohesion_tip: 1.0, friction: 15.0, opening: 0.4 }
     }
 }
 

@@ -51,6 +51,14 @@ impl Settings for SimulationSettings {
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
+            field!(Self, hold_reach),
+            [0.02, 2.0],
+            "Hold reach",
+            "Length of a wisp from its root over which hold fades to nothing.",
+        )
+        .unit(Unit::METRES_AS_CM)
+        .soft([0.02, 1.0]),
+        Setting::number(
             field!(Self, settle),
             [0.0, 20.0],
             "Settling",
@@ -280,6 +288,14 @@ impl Settings for Locks {
             "How quickly the hair of a lock takes on a common motion.",
         )
         .unit(Unit::PER_SECOND),
+        Setting::number(
+            field!(Self, opening),
+            [0.0, 3.0],
+            "Lock opening",
+            "How much wider a lock may become while it moves fast or lies on the body.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.0, 1.0]),
     ];
 }
 

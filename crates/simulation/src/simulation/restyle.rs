@@ -34,6 +34,14 @@ pub(super) struct TieBlend {
     grown_secs: f32,
 }
 
+impl TieBlend {
+    /// The share of their strength that the ties have reached, 0 to 1.
+    pub(super) fn grown(&self) -> f32 {
+        let t = (self.grown_secs / GROWTH_SECS).min(1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+}
+
 /// Elapsed seconds, initial strengths and initial directions of [`TieBlend`].
 type TieBlendState<'a> = (f32, &'a [f32], &'a [Vec<Lane3>]);
 
@@ -152,6 +160,7 @@ impl Simulation {
         let Some(mut blend) = self.tie_blend.take() else { return };
         blend.grown_secs += dt_secs;
         let t = (blend.grown_secs / GROWTH_SECS).min(1.0);
+        let grown = blend.grown();
         let points = self.style.guides.points_per_guide;
         for ((block, from), to) in self.blocks.iter_mut().zip(&blend.from).zip(&blend.to) {
             block.tie_hold = crate::ties::rows(&self.style, &block.guides);
@@ -164,7 +173,7 @@ impl Simulation {
                 }
             }
             if t < 1.0 {
-                interpolate_rest(from, to, t * t * (3.0 - 2.0 * t), &mut block.rest);
+                interpolate_rest(from, to, grown, &mut block.rest);
                 block.rest.measure_locks(block.locks);
             } else {
                 block.rest.clone_from(to);
@@ -172,6 +181,7 @@ impl Simulation {
             // The factors are outdated.
             block.bending = Bending::new(points);
         }
+        crate::rope::measure(&self.style.ropes, &mut self.blocks);
         if t < 1.0 {
             self.tie_blend = Some(blend);
         }

@@ -11,6 +11,7 @@ use crate::grid::DensityGrid;
 use crate::lanes::Map;
 use crate::motion::Substep;
 use crate::rates::RowRates;
+use crate::rope::MiddleLine;
 use crate::wake::Wakes;
 use crate::wind::WindField;
 
@@ -22,6 +23,8 @@ pub(crate) struct Plan<'a> {
     pub(crate) h: f32,
     /// What changes along a guide, for each of its points.
     pub(crate) rows: &'a [RowRates],
+    /// The middle lines of gathered hair at the start of the step, in this step's working space.
+    pub(crate) ropes: &'a [MiddleLine],
     /// The first point that the scalp does not carry.
     pub(crate) first_free: usize,
     /// Translation from the last step's working space to this one's.

@@ -12,6 +12,7 @@ use crate::colliders::contact::{
 };
 use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use crate::motion::Substep;
+use crate::rope;
 use glam::Vec3;
 
 /// Advances the block by substep `s`.
@@ -35,7 +36,12 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     if plan.settings.integrator == Integrator::Direct {
         apply_contact_push(block, plan);
     }
-    hold_together(block, plan);
+    hold_together(block, plan, s);
+    if let Some(found) = &block.in_rope {
+        let passed = (s + 1) as f32 * plan.h;
+        let next = &mut block.work.next;
+        rope::hold(found, plan.ropes, plan.first_free.max(1), passed, plan.h, next);
+    }
     // One placement pass serves all integrators, so that it is compiled only once per vector width.
     let link_length = match plan.settings.integrator {
         Integrator::Direct => {
@@ -118,6 +124,9 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
         }
         if block.locks > 0 {
             rub(block.locks, plan.rows[i].lock_friction, &mut v);
+        }
+        if let Some(found) = &block.in_rope {
+            rope::rub(found, plan.ropes, i, &mut v);
         }
         block.velocity[i] = v;
     }

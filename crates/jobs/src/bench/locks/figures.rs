@@ -178,10 +178,7 @@ impl Figures {
         }
         let middle = sum / f32::max(count, 1.0);
         let before = |p: &Vec3| {
-            (p.x - middle).abs() < 0.055
-                && p.y < high.y - 0.06
-                && p.y > high.y - 0.24
-                && p.z > high.z - 0.015
+            (p.x - middle).abs() < 0.055 && p.y < high.y - 0.06 && p.y > high.y - 0.24 && p.z > high.z - 0.015
         };
         let guides = head.chunks(self.points);
         guides.filter(|guide| guide.iter().any(before)).count() as f32 / f32::max(count, 1.0)
@@ -241,9 +238,10 @@ fn crossing_deg(guides: &[Vec3], points: usize, out: &mut Vec<f32>) {
         .chunks_exact(points)
         .enumerate()
         .flat_map(|(g, guide)| {
-            guide.windows(2).skip(FIRST_LINK).map(move |link| {
-                (g / 3, 0.5 * (link[0] + link[1]), (link[1] - link[0]).normalize_or_zero())
-            })
+            guide
+                .windows(2)
+                .skip(FIRST_LINK)
+                .map(move |link| (g / 3, 0.5 * (link[0] + link[1]), (link[1] - link[0]).normalize_or_zero()))
         })
         .collect();
     let cell = |p: Vec3| (p / NEIGHBOUR).floor().as_ivec3();

@@ -90,15 +90,33 @@ impl fmt::Display for LockReport {
         let face = [of.first_face_share, of.face_share.p50, of.face_share.p95].map(percent);
         writeln!(f, "{scene}: {locks} locks, through the shipped dance")?;
         let rows = [
-            ("radius, outer half, p50 / p95 / p99 (at rest)", format!("{} mm ({})", of.radius_mm, of.rest_radius_mm)),
+            (
+                "radius, outer half, p50 / p95 / p99 (at rest)",
+                format!("{} mm ({})", of.radius_mm, of.rest_radius_mm),
+            ),
             ("points wider than 25 mm", percent(of.wide_share)),
-            ("before the face, first / p50 / p95 (at rest)", format!("{} ({})", face.join(" / "), percent(of.rest_face_share))),
-            ("outer half off plumb, p50 / p95 / p99 (first)", format!("{}° ({:.1}°)", of.plumb_deg, of.first_plumb_deg)),
+            (
+                "before the face, first / p50 / p95 (at rest)",
+                format!("{} ({})", face.join(" / "), percent(of.rest_face_share)),
+            ),
+            (
+                "outer half off plumb, p50 / p95 / p99 (first)",
+                format!("{}° ({:.1}°)", of.plumb_deg, of.first_plumb_deg),
+            ),
             ("crossing of neighbours, p50 / p95 / p99", format!("{}°", of.crossing_deg)),
-            ("at rest after a stop, median / 95 %", format!("{:.2} / {:.2} s", of.settle_secs, of.settle_most_secs)),
+            (
+                "at rest after a stop, median / 95 %",
+                format!("{:.2} / {:.2} s", of.settle_secs, of.settle_most_secs),
+            ),
             ("radius then, p50 / p95 / p99", format!("{} mm", of.still_radius_mm)),
             ("median step", format!("{:.2} ms", self.step_ms)),
-            ("stretch, depth in the body, reset guides", format!("{:.1e}, {:.2} mm, {}", self.max_stretch, self.max_penetration_mm, self.recovered_guides)),
+            (
+                "stretch, depth in the body, reset guides",
+                format!(
+                    "{:.1e}, {:.2} mm, {}",
+                    self.max_stretch, self.max_penetration_mm, self.recovered_guides
+                ),
+            ),
         ];
         rows.iter().try_for_each(|(name, value)| writeln!(f, "  {name:<46}{value}"))
     }
@@ -126,8 +144,10 @@ fn instant(style: &Hairstyle, frame: &GuideFrame) -> Instant {
     let head_from_world = frame.world_from_head.inverse();
     let guides = figures::guides_of_locks(style);
     let points = style.guides.points_per_guide;
-    let world: Vec<Vec3> =
-        guides.flat_map(|g| (0..points).map(move |i| (g, i))).map(|(g, i)| frame.guides.point(g, i)).collect();
+    let world: Vec<Vec3> = guides
+        .flat_map(|g| (0..points).map(move |i| (g, i)))
+        .map(|(g, i)| frame.guides.point(g, i))
+        .collect();
     let head = world.iter().map(|p| head_from_world.transform_point3(*p)).collect();
     Instant { world, head }
 }

@@ -31,6 +31,8 @@ struct CurvePoint {
 @group(0) @binding(1) var<storage, read> guides: array<f32>;
 @group(0) @binding(2) var<storage, read> wisps: array<Wisp>;
 @group(0) @binding(3) var<storage, read_write> curves: array<CurvePoint>;
+// The largest radius of the wisp of each guide at each of its points, metres.
+@group(0) @binding(8) var<storage, read> widest: array<f32>;
 
 fn guide_point(guide: u32, point: u32) -> vec3f {
     let n = instant.counts.x;
@@ -78,6 +80,26 @@ fn to_world(v: vec3f) -> vec3f {
     return (instant.turn_x.xyz * v.x + instant.turn_y.xyz * v.y) + instant.turn_z.xyz * v.z;
 }
 
+// The guides of a wisp at point `point`, moved toward their mean if they are further apart than allowed. Twin of `narrowed` in
+// lovelock-groom.
+fn narrowed_points(w: u32, point: u32) -> array<vec3f, 3> {
+    let of = wisps[w].guides;
+    var p = array(guide_point(of.x, point), guide_point(of.y, point), guide_point(of.z, point));
+    let mean = (p[0] + p[1] + p[2]) / 3.0;
+    let away = array(p[0] - mean, p[1] - mean, p[2] - mean);
+    let squares = dot3(away[0], away[0]) + dot3(away[1], away[1]) + dot3(away[2], away[2]);
+    let radius = sqrt(squares / 3.0);
+    let most = widest[of.x * instant.counts.y + point];
+    // False for NaN.
+    if (radius > most) {
+        let share = most / radius;
+        p[0] = mean + away[0] * share;
+        p[1] = mean + away[1] * share;
+        p[2] = mean + away[2] * share;
+    }
+    return p;
+}
+
 @compute @workgroup_size(64)
 fn carry_frames(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let w = id.x + id.y * groups.x * 64u;
@@ -88,29 +110,23 @@ fn carry_frames(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let points = instant.counts.y;
     var tangent = to_world(wisp.tangent);
     var normal = to_world(wisp.normal);
-    var a = guide_point(wisp.guides.x, 0u);
-    var b = guide_point(wisp.guides.y, 0u);
-    var c = guide_point(wisp.guides.z, 0u);
-    var before = (a + b + c) / 3.0;
+    var own = narrowed_points(w, 0u);
+    var before = (own[0] + own[1] + own[2]) / 3.0;
     var here = before;
     for (var p = 0u; p < points; p++) {
         // The next point; at the tip, this one.
         let after = min(p + 1u, points - 1u);
-        let next_a = guide_point(wisp.guides.x, after);
-        let next_b = guide_point(wisp.guides.y, after);
-        let next_c = guide_point(wisp.guides.z, after);
-        let next = (next_a + next_b + next_c) / 3.0;
+        let next_own = narrowed_points(w, after);
+        let next = (next_own[0] + next_own[1] + next_own[2]) / 3.0;
         if (p > 0u) {
             let turned_to = normalize_or(next - before, tangent);
             normal = transport(normal, tangent, turned_to);
             tangent = turned_to;
         }
-        curves[w * points + p] =
-            CurvePoint(vec4f(a, normal.x), vec4f(b, normal.y), vec4f(c, normal.z), vec4f(tangent, 0.0));
+        curves[w * points + p] = CurvePoint(
+            vec4f(own[0], normal.x), vec4f(own[1], normal.y), vec4f(own[2], normal.z), vec4f(tangent, 0.0));
         before = here;
         here = next;
-        a = next_a;
-        b = next_b;
-        c = next_c;
+        own = next_own;
     }
 }

@@ -62,6 +62,7 @@ pub(in crate::gpu) struct Interpolation {
     instant: wgpu::Buffer,
     guides: GrowBuffer<f32>,
     wisps: GrowBuffer<Wisp>,
+    widest: GrowBuffer<f32>,
     curves: GrowBuffer<CurvePoint>,
     strands: GrowBuffer<Strand>,
     strand_of: GrowBuffer<u32>,
@@ -88,6 +89,7 @@ impl Interpolation {
             }),
             guides: GrowBuffer::new(device, "guides", storage),
             wisps: GrowBuffer::new(device, "wisps", storage),
+            widest: GrowBuffer::new(device, "widest radii of wisps", storage),
             curves: GrowBuffer::new(device, "curves of wisps", storage),
             strands: GrowBuffer::new(device, "strands", storage),
             strand_of: GrowBuffer::new(device, "strand of point", storage),
@@ -148,6 +150,7 @@ impl Interpolation {
             (5, self.strand_of.raw().as_entire_binding()),
             (6, self.places.raw().as_entire_binding()),
             (7, points.as_entire_binding()),
+            (8, self.widest.raw().as_entire_binding()),
         ];
         let carry = self.carry_frames.bind(gpu, &resources);
         let place = self.place_points.bind(gpu, &resources);
@@ -163,6 +166,7 @@ impl Interpolation {
         let buffers = [
             self.guides.raw(),
             self.wisps.raw(),
+            self.widest.raw(),
             self.curves.raw(),
             self.strands.raw(),
             self.strand_of.raw(),
@@ -202,6 +206,11 @@ impl Interpolation {
             })
             .collect();
         self.style = None;
+        if style.widest.is_empty() {
+            self.widest.write(device, queue, &vec![f32::MAX; style.guides.x.len()]);
+        } else {
+            self.widest.write(device, queue, &style.widest);
+        }
         self.wisps.write(device, queue, &wisps);
         self.curves.reserve(device, curve_points);
         self.strands.write(device, queue, &strands);

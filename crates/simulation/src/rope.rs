@@ -1,0 +1,217 @@
+//! Gathered hair beyond a tie as one rope.
+//!
+//! A rope has a middle line: the mean position and velocity of its guides at each distance beyond the tie. Guides
+//! further from it than at rest are pulled back, and all of them take on its velocity, the more so the tighter
+//! the tie is. The line is computed once per step, always in the same order, and moves on with its velocity in the
+//! substeps. Both effects are relative to the mean of the guides, so they do not move the rope as a whole.
+
+use glam::Vec3;
+use lovelock_groom::Rope;
+
+use crate::block::Block;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, at, choose, direction_or, greater, put};
+
+/// Distance between two points of a middle line, metres.
+const SPACING: f32 = 0.02;
+
+/// A guide is free up to this multiple of its distance from the line at rest, which counts as at least
+/// [`LEAST_RADIUS`].
+const FREE: f32 = 1.25;
+
+/// A rope is at least this wide, metres.
+const LEAST_RADIUS: f32 = 0.006;
+
+/// Rate at which guides of a tight rope return into it, 1/s.
+const COHESION: f32 = 60.0;
+
+/// Rate at which guides of a tight rope take on its velocity, 1/s.
+const FRICTION: f32 = 6.0;
+
+/// Guides are pulled back at most this fast, metres per second.
+const FASTEST: f32 = 2.0;
+
+/// Where the guides of a block lie in ropes.
+#[derive(Clone, Debug)]
+pub(crate) struct InRope {
+    /// The rope of each lane; [`NO_ROPE`] for a loose guide.
+    rope: [u32; LANES],
+    /// Distance of each point beyond the tie in units of [`SPACING`]; negative before it.
+    place: Vec<Lane>,
+    /// Distance of each point from the middle line at rest, metres.
+    radius: Vec<Lane>,
+}
+
+const NO_ROPE: u32 = u32::MAX;
+
+/// A point of a middle line.
+#[derive(Clone, Copy, Debug, Default)]
+struct LinePoint {
+    position: Vec3,
+    velocity: Vec3,
+    weight: f32,
+}
+
+/// The middle line of a rope.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MiddleLine {
+    points: Vec<LinePoint>,
+    /// Fraction of the distance beyond the bound that vanishes in a substep.
+    cohesion: f32,
+    /// Fraction of the velocity relative to the line that vanishes in a substep.
+    friction: f32,
+}
+
+impl MiddleLine {
+    /// Position and velocity at a distance beyond the tie in units of [`SPACING`].
+    #[inline(always)]
+    fn at(&self, place: f32) -> (Vec3, Vec3) {
+        let Some(last) = self.points.len().checked_sub(1) else { return (Vec3::NAN, Vec3::NAN) };
+        let i = (place as usize).min(last);
+        let (a, b) = (self.points[i], self.points[(i + 1).min(last)]);
+        let t = place - i as f32;
+        (a.position + (b.position - a.position) * t, a.velocity + (b.velocity - a.velocity) * t)
+    }
+}
+
+/// Finds the guides of `ropes` in the blocks.
+pub(crate) fn assign(ropes: &[Rope], blocks: &mut [Block]) {
+    let mut of_guide = std::collections::HashMap::new();
+    for (r, rope) in ropes.iter().enumerate() {
+        of_guide.extend(rope.guides.iter().map(|&(guide, beyond)| (guide, (r as u32, beyond as usize))));
+    }
+    for block in blocks.iter_mut() {
+        let mut found = InRope {
+            rope: [NO_ROPE; LANES],
+            place: vec![Lane::splat(-1.0); block.points()],
+            radius: vec![ZERO; block.points()],
+        };
+        for k in 0..block.used {
+            let Some(&(rope, beyond)) = of_guide.get(&block.guides[k]) else { continue };
+            found.rope[k] = rope;
+            let mut place = 0.0;
+            for i in beyond.max(1)..block.points() {
+                // The end of a guide that was cut.
+                if block.rest.inv_length[i][k] <= 0.0 {
+                    break;
+                }
+                found.place[i][k] = place;
+                place += block.rest.length.get(i + 1).map_or(0.0, |length| length[k]) / SPACING;
+            }
+        }
+        let any = found.rope.iter().any(|rope| *rope != NO_ROPE);
+        block.in_rope = any.then(|| Box::new(found));
+    }
+    measure(ropes, blocks);
+}
+
+/// Measures how far the guides are from the middle lines at rest.
+pub(crate) fn measure(ropes: &[Rope], blocks: &mut [Block]) {
+    let lines = lines(ropes, blocks, |block| (&block.rest.position, None));
+    for block in blocks {
+        let Some(mut found) = block.in_rope.take() else { continue };
+        let InRope { rope, place, radius } = &mut *found;
+        for (i, (place, radius)) in place.iter().zip(radius).enumerate() {
+            for k in 0..LANES {
+                if let Some(line) = lines.get(rope[k] as usize).filter(|_| place[k] >= 0.0) {
+                    radius[k] = at(&block.rest.position[i], k).distance(line.at(place[k]).0);
+                }
+            }
+        }
+        block.in_rope = Some(found);
+    }
+}
+
+/// The middle lines of the current hair, moved by `shift`, for substeps of `h` seconds. New ties have reached the share
+/// `grown` of their strength.
+pub(crate) fn current(ropes: &[Rope], blocks: &[Block], shift: Vec3, h: f32, grown: f32) -> Vec<MiddleLine> {
+    let mut lines = lines(ropes, blocks, |block| (&block.position, Some(&block.velocity)));
+    for point in lines.iter_mut().flat_map(|line| &mut line.points) {
+        point.position += shift;
+    }
+    for (line, rope) in lines.iter_mut().zip(ropes) {
+        let taken = |rate: f32| 1.0 - (-rate * rope.tightness.clamp(0.0, 1.0) * grown * h).exp();
+        (line.cohesion, line.friction) = (taken(COHESION), taken(FRICTION));
+    }
+    lines
+}
+
+/// The middle lines of positions and velocities. A point counts for the two points of the line next to it.
+fn lines<'a>(
+    ropes: &[Rope],
+    blocks: &'a [Block],
+    state: impl Fn(&'a Block) -> (&'a [Lane3], Option<&'a [Lane3]>),
+) -> Vec<MiddleLine> {
+    let mut lines: Vec<MiddleLine> = ropes.iter().map(|_| MiddleLine::default()).collect();
+    for (block, found) in blocks.iter().filter_map(|block| Some((block, block.in_rope.as_deref()?))) {
+        let (position, velocity) = state(block);
+        for (i, place) in found.place.iter().enumerate() {
+            for k in 0..block.used {
+                let Some(line) = lines.get_mut(found.rope[k] as usize).filter(|_| place[k] >= 0.0) else {
+                    continue;
+                };
+                let p = at(&position[i], k);
+                let v = velocity.map_or(Vec3::ZERO, |rows| at(&rows[i], k));
+                if !(p.is_finite() && v.is_finite()) {
+                    continue;
+                }
+                let first = place[k] as usize;
+                let t = place[k] - first as f32;
+                if line.points.len() < first + 2 {
+                    line.points.resize(first + 2, LinePoint::default());
+                }
+                for (point, weight) in line.points[first..].iter_mut().zip([1.0 - t, t]) {
+                    point.position += p * weight;
+                    point.velocity += v * weight;
+                    point.weight += weight;
+                }
+            }
+        }
+    }
+    for line in &mut lines {
+        // The last point may have received nothing.
+        line.points.retain(|point| point.weight > 1e-3);
+        for point in &mut line.points {
+            let inv = 1.0 / point.weight;
+            (point.position, point.velocity) = (point.position * inv, point.velocity * inv);
+        }
+    }
+    lines
+}
+
+/// Pulls the points `next` of a block into their ropes; `passed` seconds have passed since the lines were
+/// computed, and a substep has `h`.
+#[inline(always)]
+pub(crate) fn hold(
+    found: &InRope,
+    lines: &[MiddleLine],
+    first_free: usize,
+    passed: f32,
+    h: f32,
+    next: &mut [Lane3],
+) {
+    for (i, row) in next.iter_mut().enumerate().skip(first_free) {
+        for k in 0..LANES {
+            let place = found.place[i][k];
+            let Some(line) = lines.get(found.rope[k] as usize).filter(|_| place >= 0.0) else { continue };
+            let (middle, velocity) = line.at(place);
+            let p = at(row, k);
+            let (out, distance) = direction_or(p - (middle + velocity * passed), Vec3::ZERO);
+            let bound = FREE * greater(found.radius[i][k], LEAST_RADIUS);
+            let back = greater((bound - distance) * line.cohesion, -FASTEST * h);
+            // False for NaN.
+            put(row, k, choose(distance > bound, p + out * back, p));
+        }
+    }
+}
+
+/// Lets the velocities `v` of the points of row `i` take on those of their ropes.
+#[inline(always)]
+pub(crate) fn rub(found: &InRope, lines: &[MiddleLine], i: usize, v: &mut Lane3) {
+    for k in 0..LANES {
+        let place = found.place[i][k];
+        let Some(line) = lines.get(found.rope[k] as usize).filter(|_| place >= 0.0) else { continue };
+        let relative = line.at(place).1 - at(v, k);
+        let slower = at(v, k) + relative * line.friction;
+        put(v, k, choose(relative.length_squared() < 1e6, slower, at(v, k)));
+    }
+}
