@@ -1,6 +1,9 @@
 //! Rates that change along a guide.
 
+use glam::Vec3;
+
 use crate::SimulationSettings;
+use crate::lanes::lesser;
 
 /// The acceleration with which surrounding hair presses on a point inside the hair, for friction: its weight,
 /// metres per second squared.
@@ -31,5 +34,59 @@ impl RowRates {
             drag: settings.drag * toward(settings.drag_tip) / settings.weight_at(along) * h,
             hair_friction: settings.hair_friction * toward(settings.hair_friction_tip) * PRESSURE * h,
         }
+    }
+}
+
+/// Velocities well below this are creep, metres per second: the bound on friction is soft there, so that hair at rest
+/// still yields to a force.
+const CREEP: f32 = 0.002;
+
+/// The fraction of a `relative` velocity that friction removes which can change it by `most`, metres per second
+/// (Coulomb's law): all of it where it is small, and `most` of a large one.
+#[inline(always)]
+pub(crate) fn rubbed(most: f32, relative: Vec3) -> f32 {
+    lesser(most / (relative.length_squared().sqrt() + CREEP), 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn friction_stops_hair_at_a_constant_rate_and_never_turns_it_round() {
+        let (h, friction) = (1.0 / 240.0_f32, 0.1);
+        let settings = SimulationSettings { hair_friction: friction, ..SimulationSettings::default() };
+        let most = RowRates::at(0.0, &settings, h).hair_friction;
+        let mut v = Vec3::new(1.0, 0.0, 0.0);
+        let mut last = v.x;
+        for n in 1..480 {
+            v -= v * rubbed(most, v);
+            assert!(v.x >= 0.0 && v.x <= last, "substep {n}: {}", v.x);
+            if v.x > 0.2 {
+                // Less than 5 % of the speed is creep there.
+                let lost = friction * 9.81 * h;
+                assert!((last - v.x - lost).abs() < 0.05 * lost, "substep {n}: {} of {lost}", last - v.x);
+            }
+            last = v.x;
+        }
+        // 1 m/s at 0.98 m/s^2: at rest within 1.1 s.
+        assert!(v.x < 1e-3, "{}", v.x);
+        assert_eq!(rubbed(0.0, Vec3::X), 0.0, "control: nothing rubs without friction");
+        assert!(rubbed(1e9, Vec3::X) <= 1.0);
+    }
+
+    #[test]
+    fn rates_follow_their_ramps() {
+        let mut settings = SimulationSettings {
+            weight: 2.0,
+            weight_tip: 0.5,
+            drag_tip: 3.0,
+            ..SimulationSettings::default()
+        };
+        settings.locks.cohesion_tip = 0.0;
+        let [root, tip] = [0.0, 1.0].map(|along| RowRates::at(along, &settings, 1e-3));
+        // Three times the air on half of the weight.
+        assert!((tip.drag / root.drag - 6.0).abs() < 1e-5);
+        assert!(root.cohesion > 0.05 && tip.cohesion == 0.0);
     }
 }

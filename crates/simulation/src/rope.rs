@@ -57,7 +57,7 @@ pub(crate) struct MiddleLine {
     points: Vec<LinePoint>,
     /// Fraction of the distance beyond the bound that vanishes in a substep.
     cohesion: f32,
-    /// Fraction of the velocity relative to the line that vanishes in a substep.
+    /// Fraction of the velocity relative to the line that vanishes in a step.
     friction: f32,
 }
 
@@ -121,16 +121,23 @@ pub(crate) fn measure(ropes: &[Rope], blocks: &mut [Block]) {
     }
 }
 
-/// The middle lines of the current hair, moved by `shift`, for substeps of `h` seconds. New ties have reached the share
+/// The middle lines of the current hair, moved by `shift`, for `substeps` of `h` seconds. New ties have reached the share
 /// `grown` of their strength.
-pub(crate) fn current(ropes: &[Rope], blocks: &[Block], shift: Vec3, h: f32, grown: f32) -> Vec<MiddleLine> {
+pub(crate) fn current(
+    ropes: &[Rope],
+    blocks: &[Block],
+    shift: Vec3,
+    substeps: u32,
+    h: f32,
+    grown: f32,
+) -> Vec<MiddleLine> {
     let mut lines = lines(ropes, blocks, |block| (&block.position, Some(&block.velocity)));
     for point in lines.iter_mut().flat_map(|line| &mut line.points) {
         point.position += shift;
     }
     for (line, rope) in lines.iter_mut().zip(ropes) {
         let taken = |rate: f32| 1.0 - (-rate * rope.tightness.clamp(0.0, 1.0) * grown * h).exp();
-        (line.cohesion, line.friction) = (taken(COHESION), taken(FRICTION));
+        (line.cohesion, line.friction) = (taken(COHESION), taken(FRICTION * substeps as f32));
     }
     lines
 }
@@ -204,14 +211,23 @@ pub(crate) fn hold(
     }
 }
 
-/// Lets the velocities `v` of the points of row `i` take on those of their ropes.
+/// Adds to `push`, the change of velocity per substep, what lets the points of row `i` with the velocities `v` take on
+/// those of their ropes over a step of `substeps`.
 #[inline(always)]
-pub(crate) fn rub(found: &InRope, lines: &[MiddleLine], i: usize, v: &mut Lane3) {
+pub(crate) fn rub(
+    found: &InRope,
+    lines: &[MiddleLine],
+    i: usize,
+    substeps: f32,
+    v: &Lane3,
+    push: &mut Lane3,
+) {
     for k in 0..LANES {
         let place = found.place[i][k];
         let Some(line) = lines.get(found.rope[k] as usize).filter(|_| place >= 0.0) else { continue };
         let relative = line.at(place).1 - at(v, k);
-        let slower = at(v, k) + relative * line.friction;
-        put(v, k, choose(relative.length_squared() < 1e6, slower, at(v, k)));
+        let pushed = at(push, k) + relative * (line.friction / substeps);
+        // False for NaN.
+        put(push, k, choose(relative.length_squared() < 1e6, pushed, at(push, k)));
     }
 }

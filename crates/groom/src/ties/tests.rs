@@ -42,6 +42,10 @@ fn a_tied_style_keeps_lengths_and_roots_and_stays_out_of_the_head() {
         let tie = HairTie { kind, ..HairTie::default() };
         let tied = tied(&style, &[tie], &PlainHead);
         tied.check().expect("sound");
+        // Hair beyond a ring is a rope; all of a bun is held in its place.
+        let in_ropes = tied.ropes.iter().flat_map(|rope| &rope.guides).count();
+        let in_rings = crossings(&tied, &tie).len();
+        assert_eq!(in_ropes, if kind == TieKind::Ponytail { in_rings } else { 0 }, "{kind:?}");
         for (a, b) in lengths(&style).iter().zip(lengths(&tied)) {
             // Positions of half a metre in f32, and links of 1 cm.
             assert!((a - b).abs() < 1e-6, "{a} became {b}");

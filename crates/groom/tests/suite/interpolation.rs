@@ -40,12 +40,24 @@ fn twin(style: &Hairstyle, frame: &GuideFrame, wisp: &Wisp, strand: usize, point
     let of = |guides: &Guides, g: u32, p: usize| guides.point(g as usize, p).as_dvec3();
     let n = style.guides.points_per_guide;
     let set = &style.strands;
+    // Guides that are further apart than half as much again as at rest are moved toward their mean.
+    let radius = |guides: &Guides, p: usize| {
+        let mean = wisp.guides.iter().map(|&g| of(guides, g, p)).sum::<DVec3>() / 3.0;
+        let squares = wisp.guides.iter().map(|&g| of(guides, g, p).distance_squared(mean));
+        ((squares.sum::<f64>() / 3.0).sqrt(), mean)
+    };
+    let control = |g: u32, p: usize| {
+        let (wide, mean) = radius(&frame.guides, p);
+        let most =
+            if style.widest.is_empty() { f64::MAX } else { 1.5 * radius(&style.guides, p).0.max(0.004) };
+        mean + (of(&frame.guides, g, p) - mean) * (most / wide).min(1.0)
+    };
     let curve = |g: u32, u: f64| {
         let p = (u.floor() as usize).min(n - 2);
         let t = u - p as f64;
-        let (a, b) = (of(&frame.guides, g, p), of(&frame.guides, g, p + 1));
-        let before = if p == 0 { 2.0 * a - b } else { of(&frame.guides, g, p - 1) };
-        let after = if p + 2 < n { of(&frame.guides, g, p + 2) } else { 2.0 * b - a };
+        let (a, b) = (control(g, p), control(g, p + 1));
+        let before = if p == 0 { 2.0 * a - b } else { control(g, p - 1) };
+        let after = if p + 2 < n { control(g, p + 2) } else { 2.0 * b - a };
         // Barry and Goldman's pyramid, which is independent of the polynomial in the code.
         let lerp = |x: DVec3, y: DVec3, from: f64, to: f64| ((to - t) * x + (t - from) * y) / (to - from);
         let (a1, a2, a3) = (lerp(before, a, -1.0, 0.0), lerp(a, b, 0.0, 1.0), lerp(b, after, 1.0, 2.0));
@@ -121,6 +133,41 @@ fn equals_the_reference_and_the_test_can_fail() {
         let error = error_against_reference(&style, &frame, &moved(&wrong, &frame));
         assert!(error > 1e-3, "swapped guides must be seen, but differ by {error} m");
     }
+}
+
+#[test]
+fn strands_of_guides_that_part_stay_one_lock() {
+    let style = preset(Preset::Long);
+    let mut frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
+    let n = style.guides.points_per_guide;
+    // The first guide of every wisp leaves it, by 30 cm at its tip.
+    for wisp in &style.wisps {
+        let first = wisp.guides[0] as usize * n;
+        (0..n).for_each(|i| frame.guides.x[first + i] += 0.3 * (i as f32 / n as f32).powi(2));
+    }
+    let strands = moved(&style, &frame);
+    assert!(error_against_reference(&style, &frame, &strands) < ROUNDING);
+    let widest = |style: &Hairstyle, strands: &Strands| {
+        let (mut most, rest) =
+            (0.0_f32, moved(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0)));
+        for wisp in &style.wisps {
+            let tips = |strands: &Strands| -> Vec<Vec3> {
+                let of = wisp.first_strand..wisp.first_strand + wisp.strand_count;
+                of.map(|s| strands.point(strands.first_point[s as usize + 1] as usize - 1)).collect()
+            };
+            let spread = |tips: &[Vec3]| {
+                let mean = tips.iter().sum::<Vec3>() / tips.len() as f32;
+                (tips.iter().map(|p| p.distance_squared(mean)).sum::<f32>() / tips.len() as f32).sqrt()
+            };
+            most = most.max(spread(&tips(strands)) / spread(&tips(&rest)).max(0.004));
+        }
+        most
+    };
+    // Half as much again as at rest, and what strands that end at different points of their guides add.
+    let (held, alone) = (widest(&style, &strands), Hairstyle { widest: Vec::new(), ..style.clone() });
+    let loose = widest(&alone, &moved(&alone, &frame));
+    println!("{held} times as wide as at rest, {loose} times without the limit");
+    assert!(held < 2.0 && loose > 4.0, "{held} times as wide as at rest, {loose} times without the limit");
 }
 
 #[test]

@@ -12,18 +12,17 @@ use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, lesser, put, row_barrier, transposed};
-use crate::rates::RowRates;
+use crate::rates::{RowRates, rubbed};
 use crate::settings::RepulsionMode;
 use crate::trilinear::gradient;
-
-/// Velocities below this are not told from rest, metres per second.
-const LEAST_SPEED: f32 = 1e-3;
 
 /// The head and the time step for which [`DensityGrid::act`] computes forces.
 pub(crate) struct GridStep<'a> {
     /// Substep length, seconds.
     pub(crate) h: f32,
-    /// Fraction of the velocity relative to the surrounding hair that vanishes in a substep.
+    /// The number of substeps in a step.
+    pub(crate) substeps: f32,
+    /// Fraction of the velocity relative to the surrounding hair that vanishes in a step.
     pub(crate) cohesion: f32,
     /// What changes along a guide.
     pub(crate) rows: &'a [RowRates],
@@ -115,7 +114,6 @@ impl DensityGrid {
     /// densely hair surrounds each point.
     #[inline(always)]
     pub(crate) fn act(&self, block: &mut Block, step: &GridStep) {
-        block.work.keep.fill(Lane::splat(1.0));
         block.work.inside.fill(ZERO);
         if !self.has_effect() {
             return;
@@ -208,20 +206,20 @@ fn add_interpolated(
 ) {
     for i in points.clone() {
         let t = (i - points.start) as f32 / run as f32;
-        let (mut push, mut keep, mut inside) = (block.work.push[i], block.work.keep[i], ZERO);
-        let (velocity, friction) = (&block.velocity[i], step.rows[i].hair_friction);
+        let (mut push, mut inside) = (block.work.push[i], ZERO);
+        let (velocity, friction) = (&block.velocity[i], step.rows[i].hair_friction * step.substeps);
         for k in 0..LANES {
             let dv = at(&row.dv, k).lerp(at(&next.dv, k), t);
             let mean = at(&row.mean, k).lerp(at(&next.mean, k), t);
             inside[k] = row.inside[k] + (next.inside[k] - row.inside[k]) * t;
-            // Coulomb's law: friction removes at most the relative velocity.
-            let relative = (mean - at(velocity, k)).length_squared().sqrt();
-            let rubbed = lesser(friction * inside[k] / (relative + LEAST_SPEED), 1.0);
-            let free = (1.0 - step.cohesion) * (1.0 - rubbed);
-            let relaxed = (at(&push, k) + dv) * free + mean * (1.0 - free);
-            put(&mut push, k, relaxed);
-            keep[k] = free;
+            // The mean is that at the start of the step. Hair takes on part of its difference from it, spread over the
+            // substeps: if hair were drawn toward the mean itself, it would not take part in what the neighbours
+            // gain or lose meanwhile, and friction would add energy.
+            let relative = mean - at(velocity, k);
+            let taken = 1.0 - (1.0 - step.cohesion) * (1.0 - rubbed(friction * inside[k], relative));
+            let pushed = at(&push, k) + dv + relative * (taken / step.substeps);
+            put(&mut push, k, pushed);
         }
-        (block.work.push[i], block.work.keep[i], block.work.inside[i]) = (push, keep, inside);
+        (block.work.push[i], block.work.inside[i]) = (push, inside);
     }
 }

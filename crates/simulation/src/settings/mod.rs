@@ -95,7 +95,7 @@ impl Default for SimulationSettings {
             wind: Wind::default(),
             friction: 0.3,
             cloth_friction: 0.3,
-            hair_friction: 0.05,
+            hair_friction: 0.03,
             hair_friction_tip: 1.0,
             skin_margin: 0.003,
             layering: 0.35,
@@ -110,7 +110,7 @@ impl Default for SimulationSettings {
 }
 
 impl SimulationSettings {
-    /// How a shipped hairstyle moves: the usual settings with the stiffness, the damping and the hold of that style.
+    /// How a shipped hairstyle moves: the usual settings with the stiffness, the damping, the hold and the settling of that style.
     #[must_use]
     pub fn preset(preset: Preset) -> Self {
         let usual = Self::default();
@@ -121,11 +121,13 @@ impl SimulationSettings {
             // Curls are springs: nearly as stiff at their tips, and sway on for longer.
             Preset::Curly => Self { stiffness_root: 16.0, stiffness_tip: 10.0, bend_damping: 0.02, ..usual },
             // Long hair hangs by its weight.
-            Preset::Long => Self { stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, ..usual },
+            Preset::Long => {
+                Self { stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, settle: 3.0, ..usual }
+            }
         }
     }
 
-    /// The same settings with the stiffness, the damping and the hold of `to` in place of those of `from`; where they are neither
+    /// The same settings with the stiffness, the damping, the hold and the settling of `to` in place of those of `from`; where they are neither
     /// those nor the usual ones somebody has chosen them, and they stay.
     #[must_use]
     pub fn restyled(&self, from: &Self, to: &Self) -> Self {
@@ -143,6 +145,7 @@ impl SimulationSettings {
             stiffness_bias: style.stiffness_bias,
             bend_damping: style.bend_damping,
             hold: style.hold,
+            settle: style.settle,
             ..*self
         }
     }
@@ -199,7 +202,7 @@ pub struct Locks {
     pub cohesion_tip: f32,
     /// Rate at which the guides of a lock take on each other's velocity, 1/s.
     pub friction: f32,
-    /// How much wider a lock may become that moves fast or touches the body, as a fraction of its width.
+    /// How much wider a lock may become that moves fast, as a fraction of its width.
     pub opening: f32,
 }
 

@@ -292,7 +292,7 @@ impl Settings for Locks {
             field!(Self, opening),
             [0.0, 3.0],
             "Lock opening",
-            "How much wider a lock may become while it moves fast or lies on the body.",
+            "How much wider a lock may become while it moves fast.",
         )
         .unit(Unit::FRACTION)
         .soft([0.0, 1.0]),

@@ -2,15 +2,16 @@
 //!
 //! Cohesion bounds the distance of each guide from the middle of its lock. A guide beyond the bound is pulled back
 //! with a time constant, so that a lock splits on an obstacle and closes again behind it. Friction inside the lock
-//! lets its guides take on each other's velocity. The bound is wider for a lock that moves fast or touches the body.
+//! lets its guides take on each other's velocity. The bound is wider for a lock that moves fast. Contacts
+//! come after cohesion and always win, so that an obstacle parts a lock for as long as it is in between.
 //! Cohesion and friction keep the momentum of the lock: they add nothing to its mean.
 
 use glam::Vec3;
 
 use super::Plan;
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, ZERO3, at, choose, direction_or, greater, lesser, put};
-use crate::packing::mean_of_lock;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
+use crate::packing::{LOCK, mean_of_lock};
 
 /// A guide is free up to this multiple of its distance at rest.
 const FREE: f32 = 1.2;
@@ -35,25 +36,36 @@ pub(super) fn hold_together(block: &mut Block, plan: &Plan, s: usize) {
     }
     let (substep, opening) = (&plan.substeps[s], plan.settings.locks.opening);
     for i in plan.first_free.max(1)..block.points() {
-        let (row, radius) = (&plan.rows[i], &block.rest.lock_radius[i]);
-        let p = &mut block.work.next[i];
+        let (radius, p) = (&block.rest.lock_radius[i], &mut block.work.next[i]);
         let middle = mean_of_lock(p);
-        let (velocity, touch) = (mean_of_lock(&block.velocity[i]), mean_of_lock(&block.contact_push[i]));
-        let mut pull = ZERO3;
+        let velocity = mean_of_lock(&block.velocity[i]);
+        let mut bound = ZERO;
         for k in 0..LANES {
-            let (out, distance) = direction_or(at(p, k) - at(&middle, k), Vec3::ZERO);
             let relative = at(&velocity, k) - substep.rigid_velocity(at(&middle, k));
             let fast = lesser(relative.length_squared() * (1.0 / (FAST * FAST)), 1.0);
-            let touched = if at(&touch, k).length_squared() > 0.0 { 1.0 } else { 0.0 };
-            let opened = 1.0 + opening * greater(fast, touched);
-            let bound = greater(FREE * radius[k], LEAST_RADIUS) * opened;
-            // False for NaN.
-            let held = distance > bound && distance < LOST && k < 3 * block.locks;
-            let back = (bound - distance) * row.cohesion;
-            put(&mut pull, k, choose(held, out * back, Vec3::ZERO));
+            bound[k] = greater(FREE * radius[k], LEAST_RADIUS) * (1.0 + opening * fast);
         }
-        *p = without_mean(p, &pull);
+        *p = pulled(p, &middle, &bound, plan.rows[i].cohesion, block.locks);
     }
+}
+
+/// The guides `p` of the first `locks` locks, each moved by the fraction `share` of its distance beyond `bound` from
+/// the `middle` of its lock, less the mean of these movements.
+#[inline(always)]
+fn pulled(p: &Lane3, middle: &Lane3, bound: &Lane, share: f32, locks: usize) -> Lane3 {
+    let mut pull = ZERO3;
+    for k in 0..LANES {
+        let (out, distance) = direction_or(at(p, k) - at(middle, k), Vec3::ZERO);
+        // False for NaN.
+        let held = distance > bound[k] && distance < LOST && k < LOCK * locks;
+        put(&mut pull, k, choose(held, out * ((bound[k] - distance) * share), Vec3::ZERO));
+    }
+    let mean = mean_of_lock(&pull);
+    let mut out = ZERO3;
+    for axis in 0..3 {
+        out[axis] = p[axis].plus(pull[axis].minus(mean[axis]));
+    }
+    out
 }
 
 /// Damps the velocities `v` of the guides of each lock relative to each other, by the fraction `share`.
@@ -69,13 +81,74 @@ pub(super) fn rub(locks: usize, share: f32, v: &mut Lane3) {
     }
 }
 
-/// `p` plus what `change` differs from its mean over each lock.
-#[inline(always)]
-fn without_mean(p: &Lane3, change: &Lane3) -> Lane3 {
-    let mean = mean_of_lock(change);
-    let mut out = ZERO3;
-    for axis in 0..3 {
-        out[axis] = p[axis].plus(change[axis].minus(mean[axis]));
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three guides 10 mm from their middle and one 40 mm from it, in the first lock.
+    fn split() -> Lane3 {
+        let mut p = ZERO3;
+        for (k, x) in [(0, -0.02), (1, -0.02), (2, 0.04)] {
+            put(&mut p, k, Vec3::new(x, 0.1, 0.0));
+        }
+        p
     }
-    out
+
+    #[test]
+    fn a_split_lock_closes_at_its_rate_and_does_not_move_as_a_whole() {
+        let (rate, h, bound) = (60.0_f32, 1.0 / 240.0, Lane::splat(0.01));
+        let share = 1.0 - (-rate * h).exp();
+        let mut p = split();
+        for _ in 0..12 {
+            p = pulled(&p, &mean_of_lock(&p), &bound, share, 1);
+        }
+        // All guides lie on a line, 10 and 30 mm beyond the bound: the mean of the pulls is taken from each, so that the
+        // far guide keeps 30 (1 - share)^n + what the others give, which the sum of the excesses shows: it decays
+        // at two thirds of the far one's pull and a third of the near ones'.
+        assert!((at(&mean_of_lock(&p), 0) - Vec3::new(0.0, 0.1, 0.0)).length() < 1e-7, "the middle stays");
+        let excess = at(&p, 2).x - 0.01;
+        let (mut near, mut far) = (0.02_f32, 0.04_f32);
+        for _ in 0..12 {
+            let pull = [-(near - 0.01).max(0.0) * share, (far - 0.01).max(0.0) * share];
+            // Near guides are pulled by +x, the far one by -x.
+            let mean = (-2.0 * pull[0] - pull[1]) / 3.0;
+            (near, far) = (near + pull[0] + mean, far - pull[1] - mean);
+        }
+        assert!((excess - (far - 0.01)).abs() < 1e-6, "{excess} against {}", far - 0.01);
+        assert!(excess < 0.012, "three time constants of a twentieth of a second: {excess}");
+        // Controls: without cohesion, and in lanes that hold no lock.
+        assert_eq!(pulled(&split(), &mean_of_lock(&split()), &bound, 0.0, 1), split());
+        assert_eq!(pulled(&split(), &mean_of_lock(&split()), &bound, share, 0), split());
+    }
+
+    #[test]
+    fn an_impulse_on_one_guide_becomes_common_and_is_not_lost() {
+        let mut v = ZERO3;
+        put(&mut v, 1, Vec3::new(3.0, 0.0, 0.0));
+        let (rate, h) = (15.0_f32, 1.0 / 240.0);
+        let share = 1.0 - (-rate * h).exp();
+        for _ in 0..48 {
+            rub(1, share, &mut v);
+        }
+        // After 0.2 s the difference to the mean of 1 m/s has decayed to e^-3.
+        let left = (-rate * 0.2).exp();
+        for (k, v0) in [(0, 0.0), (1, 3.0), (2, 0.0)] {
+            let want = 1.0 + (v0 - 1.0) * left;
+            assert!((at(&v, k).x - want).abs() < 1e-4, "guide {k}: {} against {want}", at(&v, k).x);
+        }
+        assert!((0..3).map(|k| at(&v, k).x).sum::<f32>() - 3.0 < 1e-5);
+        assert_eq!(at(&v, 4), Vec3::ZERO, "the next lock does not notice");
+    }
+
+    #[test]
+    fn a_guide_that_is_not_finite_leaves_the_others_alone() {
+        let mut p = split();
+        put(&mut p, 1, Vec3::NAN);
+        let (bound, middle) = (Lane::splat(0.001), mean_of_lock(&p));
+        let now = pulled(&p, &middle, &bound, 0.5, 1);
+        assert_eq!((at(&now, 0), at(&now, 2)), (at(&p, 0), at(&p, 2)));
+        let mut v = p;
+        rub(1, 0.5, &mut v);
+        assert_eq!((at(&v, 0), at(&v, 2)), (at(&p, 0), at(&p, 2)));
+    }
 }

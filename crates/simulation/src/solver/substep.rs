@@ -12,6 +12,7 @@ use crate::colliders::contact::{
 };
 use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use crate::motion::Substep;
+use crate::rates::rubbed;
 use crate::rope;
 use glam::Vec3;
 
@@ -95,9 +96,6 @@ fn lengths(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
-/// Velocities below this are not told from rest, metres per second.
-const LEAST_SPEED: f32 = 0.02;
-
 /// Applies forces to velocities, and sets the velocities of points that the scalp carries.
 #[inline(always)]
 fn forces(block: &mut Block, plan: &Plan, s: usize) {
@@ -116,17 +114,14 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
         let (carried, friction) = (&block.work.carried[i], plan.rows[i].hair_friction);
         let mut v = block.velocity[i];
         for k in 0..LANES {
-            let was = at(&v, k);
-            let relative = substep.rigid_velocity(at(x, k)) - was;
-            let rubbed = friction * carried[k] / (relative.length_squared().sqrt() + LEAST_SPEED);
-            let settled = was + relative * greater(settle, lesser(rubbed, 1.0));
-            put(&mut v, k, settled * keep[k] + at(push, k));
+            let (was, head) = (at(&v, k), substep.rigid_velocity(at(x, k)));
+            let pushed = (was + (head - was) * settle) * keep[k] + at(push, k);
+            // Friction comes last, because it also resists what the forces have just added.
+            let relative = head - pushed;
+            put(&mut v, k, pushed + relative * rubbed(friction * carried[k], relative));
         }
         if block.locks > 0 {
             rub(block.locks, plan.rows[i].lock_friction, &mut v);
-        }
-        if let Some(found) = &block.in_rope {
-            rope::rub(found, plan.ropes, i, &mut v);
         }
         block.velocity[i] = v;
     }

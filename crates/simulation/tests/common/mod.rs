@@ -180,6 +180,7 @@ pub fn bare() -> SimulationSettings {
         hold: 0.0,
         settle: 0.0,
         drag: 0.0,
+        hair_friction: 0.0,
         clamped_links: 0,
         ..SimulationSettings::default()
     };

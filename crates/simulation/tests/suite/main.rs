@@ -14,6 +14,7 @@ mod drives;
 mod imported;
 mod integrators;
 mod kinks;
+mod locks;
 mod long_dances;
 mod physics;
 mod snapshots;

@@ -84,6 +84,7 @@ fn a_non_finite_guide_is_counted_and_does_not_affect_the_others() {
         let mut settings = SimulationSettings::default();
         // Guides interact through the grid only.
         (settings.repulsion.strength, settings.repulsion.cohesion) = (0.0, 0.0);
+        (settings.hair_friction, settings.air_shelter) = (0.0, 0.0);
         let recovered =
             (1..30).map(|s| simulation.step(&input(s, &[]), &settings, STEP_SECS).recovered_guides).sum();
         // One in the same block of sixteen, and one in another block.

@@ -83,13 +83,13 @@ fn to_world(v: vec3f) -> vec3f {
 // The guides of a wisp at point `point`, moved toward their mean if they are further apart than allowed. Twin of `narrowed` in
 // lovelock-groom.
 fn narrowed_points(w: u32, point: u32) -> array<vec3f, 3> {
-    let of = wisps[w].guides;
-    var p = array(guide_point(of.x, point), guide_point(of.y, point), guide_point(of.z, point));
+    let own = wisps[w].guides;
+    var p = array(guide_point(own.x, point), guide_point(own.y, point), guide_point(own.z, point));
     let mean = (p[0] + p[1] + p[2]) / 3.0;
     let away = array(p[0] - mean, p[1] - mean, p[2] - mean);
     let squares = dot3(away[0], away[0]) + dot3(away[1], away[1]) + dot3(away[2], away[2]);
     let radius = sqrt(squares / 3.0);
-    let most = widest[of.x * instant.counts.y + point];
+    let most = widest[own.x * instant.counts.y + point];
     // False for NaN.
     if (radius > most) {
         let share = most / radius;
