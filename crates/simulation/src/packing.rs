@@ -7,7 +7,7 @@
 use glam::Vec3;
 use lovelock_groom::{Guides, Wisp};
 
-use crate::lanes::{LANES, Lane3, ZERO3};
+use crate::lanes::{LANES, Lane, Lane3, ZERO3};
 
 /// Guides per lock.
 pub(crate) const LOCK: usize = 3;
@@ -25,28 +25,29 @@ pub(crate) struct Lanes {
     pub(crate) locks: usize,
 }
 
-/// For each lane the next lane of the same lock, in a circle; the last lane, which belongs to none, itself.
-pub(crate) const NEXT: [usize; LANES] = {
-    let mut next = [0; LANES];
-    let mut k = 0;
-    while k < LANES {
-        next[k] = if k >= LOCK * LOCKS { k } else { k - k % LOCK + (k + 1) % LOCK };
-        k += 1;
-    }
-    next
-};
+/// The row with each lane replaced by the next lane of the same lock, in a circle; the last lane, which belongs to none,
+/// stays. Written out, because the compiler makes one permutation of it, and gathers of a loop.
+#[inline(always)]
+fn next_in_lock(a: &Lane) -> Lane {
+    Lane([
+        a[1], a[2], a[0], a[4], a[5], a[3], a[7], a[8], a[6], a[10], a[11], a[9], a[13], a[14], a[12], a[15],
+    ])
+}
+
+/// The row with each lane replaced by the lane before it in the same lock.
+#[inline(always)]
+fn last_in_lock(a: &Lane) -> Lane {
+    Lane([
+        a[2], a[0], a[1], a[5], a[3], a[4], a[8], a[6], a[7], a[11], a[9], a[10], a[14], a[12], a[13], a[15],
+    ])
+}
 
 /// The mean over the lanes of each lock. Lanes that hold no lock contain numbers without a meaning.
 #[inline(always)]
 pub(crate) fn mean_of_lock(row: &Lane3) -> Lane3 {
     let mut mean = ZERO3;
     for (mean, of) in mean.iter_mut().zip(row) {
-        for k in 0..LANES {
-            // Summed in the order of the lanes, so that all guides of a lock get the same bits.
-            let first = k - if k < LOCK * LOCKS { k % LOCK } else { 0 };
-            let (second, third) = (NEXT[first], NEXT[NEXT[first]]);
-            mean[k] = (of[first] + of[second] + of[third]) * (1.0 / LOCK as f32);
-        }
+        *mean = of.plus(next_in_lock(of)).plus(last_in_lock(of)).times(Lane::splat(1.0 / LOCK as f32));
     }
     mean
 }
