@@ -2,7 +2,7 @@
 //! the front, the side and behind.
 //!
 //! `swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS]
-//! [--set '{"settings": "as JSON"}'] [--ties '[{"kind": "Bun"}]']`
+//! [--motion dance|backflip|FILE.bvh] [--set '{"settings": "as JSON"}'] [--ties '[{"kind": "Bun"}]']`
 
 use glam::Vec3;
 use image::{Rgb, RgbImage};
@@ -20,12 +20,13 @@ const VIEW_HEIGHT: f32 = 1.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
-    let usage = "swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS] [--set JSON] [--ties JSON]";
+    let usage = "swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS] [--motion M] [--set JSON] [--ties JSON]";
     let style = args.next().ok_or(usage)?;
     let out = args.next().ok_or(usage)?;
     let (mut still, mut from, mut frames, mut every) = (false, 0.0, 10_u32, 0.2_f64);
     let mut settings = settings_of(&style);
     let (mut ties, mut wisps): (Option<Vec<HairTie>>, _) = (None, None);
+    let mut motion = "dance".to_owned();
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or(usage);
         match arg.as_str() {
@@ -33,6 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--from" => from = value()?.parse()?,
             "--frames" => frames = value()?.parse()?,
             "--every" => every = value()?.parse()?,
+            "--motion" => motion = value()?,
             "--wisps" => wisps = Some(value()?.parse()?),
             "--ties" => ties = Some(serde_json::from_str(&value()?)?),
             "--set" => settings = serde_json::from_str(&value()?)?,
@@ -40,6 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     let mut stage = Stage::named(&style, wisps);
+    stage.play(&motion)?;
     if let Some(ties) = ties {
         stage.tie(&ties);
     }

@@ -8,7 +8,7 @@
 use glam::Vec3;
 use lovelock_groom::Rope;
 
-use crate::block::Block;
+use crate::block::{Block, InRope, NO_ROPE};
 use crate::lanes::{LANES, Lane, Lane3, ZERO, at, choose, direction_or, greater, put};
 
 /// Distance between two points of a middle line, metres.
@@ -29,19 +29,6 @@ const FRICTION: f32 = 6.0;
 
 /// Guides are pulled back at most this fast, metres per second.
 const FASTEST: f32 = 2.0;
-
-/// Where the guides of a block lie in ropes.
-#[derive(Clone, Debug)]
-pub(crate) struct InRope {
-    /// The rope of each lane; [`NO_ROPE`] for a loose guide.
-    rope: [u32; LANES],
-    /// Distance of each point beyond the tie in units of [`SPACING`]; negative before it.
-    place: Vec<Lane>,
-    /// Distance of each point from the middle line at rest, metres.
-    radius: Vec<Lane>,
-}
-
-const NO_ROPE: u32 = u32::MAX;
 
 /// A point of a middle line.
 #[derive(Clone, Copy, Debug, Default)]

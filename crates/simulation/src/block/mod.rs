@@ -2,6 +2,7 @@
 
 mod bending;
 mod coupled;
+mod in_rope;
 mod lengths;
 
 use glam::Vec3;
@@ -12,9 +13,9 @@ use crate::colliders::field::{PlaneRow, Search};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::packing::Lanes;
 use crate::rest::RestShape;
-use crate::rope::InRope;
 pub(crate) use bending::{Bending, BendingKey};
 pub(crate) use coupled::Coupled;
+pub(crate) use in_rope::{InRope, NO_ROPE};
 pub(crate) use lengths::{LengthScratch, project_position, project_velocity};
 
 /// A block of `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the

@@ -150,7 +150,7 @@ impl Settings for SimulationSettings {
         Setting::number(
             field!(Self, hair_friction_tip),
             [0.0, 5.0],
-            "Hair friction at tips",
+            "Friction at tips",
             "Hair friction at the tips, as a share of that at the roots.",
         )
         .unit(Unit::FRACTION)

@@ -63,7 +63,7 @@ fn a_ponytail_stays_one_rope() {
     stage.tie(&[HairTie::default()]);
     let settings = settings_of("ponytail");
     // The width of the tail twelve points beyond the tie: the distance of the furthest guide from their mean.
-    let mut width = |stage: &mut Stage| {
+    let width = |stage: &mut Stage| {
         let mut simulation = stage.simulation(Some(0.0));
         let rope: Vec<(u32, u32)> = tied_guides(&stage.style);
         let (mut most, mut rest) = (0.0_f32, 0.0);

@@ -72,7 +72,7 @@ fn controls_name_their_symbols() {
         ("Tip stiffness", "√B"),
         ("Bend damping", "γ h"),
         ("Wind speed", "w"),
-        ("Friction", "μ"),
+        ("Hair friction", "μ"),
         ("Repulsion strength", "k"),
         ("Density threshold", "τ"),
         ("Anisotropy", "a"),
