@@ -101,3 +101,23 @@ fn wrong_requests_are_rejected_before_any_work() {
         assert!(said.contains(wanted), "{args:?}: {said}");
     }
 }
+
+#[test]
+fn locks_are_measured_through_the_dance_with_changed_settings() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let of = |cohesion: &str| {
+        let set = format!("simulation.locks.cohesion={cohesion}");
+        let args = ["bench", "locks-long", "--set", "hair.groom.wisps=8", "--set", &set, "--json"];
+        let json = run(dir.path(), args).done().json();
+        assert_eq!(
+            (json["scenes"].as_array().map(Vec::len), &json["locks"][0]["scene"]),
+            (Some(0), &"locks-long".into())
+        );
+        assert_eq!(json["locks"][0]["locks"], 8);
+        json["locks"][0]["figures"]["radius_mm"]["p95"].as_f64().expect("a number")
+    };
+    let (held, loose) = (of("60"), of("0"));
+    assert!(loose > 1.2 * held, "{held} mm with cohesion, {loose} mm without");
+    let unknown = run(dir.path(), ["bench", "locks-wig"]);
+    assert!(unknown.refused(2).contains("locks-80cm"));
+}

@@ -151,7 +151,7 @@ impl Figures {
             }
         }
         self.face.push(self.face_share(&now.head));
-        let angles: Vec<f32> = now.world.chunks(n).map(|guide| off_plumb_deg(guide)).collect();
+        let angles: Vec<f32> = now.world.chunks(n).map(off_plumb_deg).collect();
         if frame == 0 {
             self.first_plumb = percentile(&angles, 0.5).unwrap_or(0.0);
         }
@@ -259,5 +259,91 @@ fn crossing_deg(guides: &[Vec3], points: usize, out: &mut Vec<f32>) {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_groom::Guides;
+
+    use super::*;
+
+    const POINTS: usize = 13;
+
+    /// Three guides of 12 cm that hang from `root`, 10 mm from the middle of their lock, or run along X.
+    fn lock(root: Vec3, along: Vec3) -> Vec<Vec3> {
+        let out = [Vec3::X, Vec3::new(-0.5, 0.0, 0.866_025_4), Vec3::new(-0.5, 0.0, -0.866_025_4)];
+        out.iter()
+            .flat_map(|out| (0..POINTS).map(move |i| root + *out * 0.01 + along * (0.01 * i as f32)))
+            .collect()
+    }
+
+    fn style(points: &[Vec3]) -> Hairstyle {
+        let mut guides = Guides { points_per_guide: POINTS, ..Guides::default() };
+        points.chunks(POINTS).for_each(|guide| guides.push(guide));
+        let wisp = |w: u32| Wisp { guides: [3 * w, 3 * w + 1, 3 * w + 2], first_strand: 0, strand_count: 0 };
+        let wisps = (0..guides.count() as u32 / 3).map(wisp).collect();
+        Hairstyle { guides, wisps, ..Hairstyle::default() }
+    }
+
+    fn still(points: &[Vec3]) -> Instant {
+        Instant { world: points.to_vec(), head: points.to_vec() }
+    }
+
+    #[test]
+    fn a_hanging_lock_is_plumb_and_as_wide_as_drawn() {
+        let rest = lock(Vec3::ZERO, Vec3::NEG_Y);
+        let mut figures = Figures::new(&style(&rest));
+        assert_eq!(figures.locks(), 1);
+        figures.add(&still(&rest), 0);
+        // Opened five times as wide, and level.
+        let wide: Vec<Vec3> =
+            lock(Vec3::ZERO, Vec3::X).iter().map(|p| Vec3::new(p.x, p.y, 5.0 * p.z)).collect();
+        figures.add(&still(&wide), 1);
+        let found = figures.finish(1.0 / 30.0);
+        assert!((found.rest_radius_mm.p50 - 10.0).abs() < 1e-3, "{found:?}");
+        // Half of the instants: the larger one is the 95th percentile.
+        assert!((found.radius_mm.p50 - 10.0).abs() < 1e-3 && found.radius_mm.p95 > 30.0, "{found:?}");
+        assert!((found.wide_share - 0.5).abs() < 1e-6);
+        assert!(found.first_plumb_deg < 0.1 && (found.plumb_deg.p99 - 90.0).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn only_near_links_of_other_locks_cross() {
+        let level = lock(Vec3::new(-0.06, 0.0, 0.0), Vec3::X);
+        let crossing = |height: f32| {
+            let mut both = level.clone();
+            both.extend(lock(Vec3::new(0.0, height, -0.06), Vec3::Z));
+            let mut angles = Vec::new();
+            crossing_deg(&both, POINTS, &mut angles);
+            angles
+        };
+        let near = crossing(0.004);
+        assert!(!near.is_empty() && near.iter().all(|angle| (angle - 90.0).abs() < 0.1), "{near:?}");
+        assert!(crossing(0.05).is_empty(), "control: locks that pass at 5 cm");
+    }
+
+    #[test]
+    fn hair_in_front_of_the_face_is_counted() {
+        // A lock at the crown, and one that is rooted at the brow and hangs before the face.
+        let mut rest = lock(Vec3::new(0.0, 0.2, -0.05), Vec3::NEG_Z);
+        rest.extend(lock(Vec3::new(0.0, 0.15, 0.1), Vec3::NEG_Y));
+        let figures = Figures::new(&style(&rest));
+        assert_eq!(figures.face_share(&rest), 0.5);
+    }
+
+    #[test]
+    fn hair_is_at_rest_after_its_last_quick_instant() {
+        let rest = lock(Vec3::ZERO, Vec3::NEG_Y);
+        let mut figures = Figures::new(&style(&rest));
+        for frame in 0..10 {
+            // 0.3 m/s for four instants, then 1 cm/s.
+            let moved = 0.01 * f32::min(frame as f32, 4.0) + 3e-4 * (frame as f32 - 4.0).max(0.0);
+            let now: Vec<Vec3> = rest.iter().map(|p| *p + Vec3::X * moved).collect();
+            figures.add_still(&still(&now));
+        }
+        let found = figures.finish(1.0 / 30.0);
+        assert!((found.settle_secs - 4.0 / 30.0).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.settle_most_secs, found.settle_secs);
     }
 }

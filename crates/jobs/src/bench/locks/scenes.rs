@@ -67,3 +67,18 @@ impl FromStr for LockScene {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_read_back_and_others_are_refused() {
+        for scene in LockScene::ALL {
+            assert_eq!(scene.id().parse(), Ok(scene));
+        }
+        assert!("locks-wig".parse::<LockScene>().unwrap_err().contains("locks-80cm"));
+        assert_eq!(LockScene::Long(40).project().hair.groom.length, 0.4);
+        assert!(!LockScene::Shipped(Preset::Ponytail).project().hair.ties.is_empty());
+    }
+}
