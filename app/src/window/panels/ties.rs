@@ -32,8 +32,8 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
     ui.horizontal_wrapped(|ui| {
         let full = ties.len() >= HairTie::MOST;
         for (kind, words) in [
-            (TieKind::Ponytail, "Gathered the hair at the back of the head and lets it hang."),
-            (TieKind::Bun, "Gathered the hair on top of the head and winds it up."),
+            (TieKind::Ponytail, "Gathers the hair at the back of the head and lets it hang."),
+            (TieKind::Bun, "Gathers the hair on top of the head and winds it up."),
         ] {
             let button = ui.add_enabled(!full, egui::Button::new(format!("+ {}", label(kind))));
             if button.on_hover_text(words).on_disabled_hover_text(FULL).clicked() {

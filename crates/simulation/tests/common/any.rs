@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{Guides, Hairstyle, StrandSet};
+use lovelock_groom::{Guides, Hairstyle, StrandSet, Wisp};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RepulsionMode, SimulationSettings};
 
@@ -69,7 +69,12 @@ pub fn style(input: &mut Bytes) -> Arc<Hairstyle> {
         guides.push(&line);
     }
     let strands = StrandSet { first_point: vec![0], ..StrandSet::default() };
-    Arc::new(Hairstyle { guides, strands, ..Hairstyle::default() })
+    // Some styles have locks, and guides that belong to none.
+    let locks = if points % 2 == 1 { count / 3 } else { 0 };
+    let wisps = (0..locks)
+        .map(|w| Wisp { guides: [3 * w, 3 * w + 1, 3 * w + 2], first_strand: 0, strand_count: 0 })
+        .collect();
+    Arc::new(Hairstyle { guides, wisps, strands, ..Hairstyle::default() })
 }
 
 pub fn any_settings(input: &mut Bytes) -> SimulationSettings {
@@ -81,7 +86,7 @@ pub fn any_settings(input: &mut Bytes) -> SimulationSettings {
 }
 
 pub fn one_setting(input: &mut Bytes, s: &mut SimulationSettings) {
-    let which = input.byte() % 27;
+    let which = input.byte() % 39;
     let v = input.number();
     match which {
         0 => s.gravity = v,
@@ -116,6 +121,18 @@ pub fn one_setting(input: &mut Bytes, s: &mut SimulationSettings) {
         23 => s.stiffness_bias = v,
         24 => s.wind.sheltering = v,
         25 => s.repulsion.anisotropy = v,
+        26 => s.weight = v,
+        27 => s.weight_tip = v,
+        28 => s.drag_tip = v,
+        29 => s.air_shelter = v,
+        30 => s.cloth_friction = v,
+        31 => s.hair_friction = v,
+        32 => s.hair_friction_tip = v,
+        33 => s.hold_reach = v,
+        34 => s.locks.cohesion = 10.0 * v,
+        35 => s.locks.cohesion_tip = v,
+        36 => s.locks.friction = v,
+        37 => s.locks.opening = v,
         _ => s.relaxation_sweeps = input.byte().into(),
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_base::settings::Settings;
-use lovelock_groom::Hairstyle;
+use lovelock_groom::{Hairstyle, Wisp};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RepulsionMode, Simulation, SimulationSettings, StepInput, StepReport};
 use proptest::prelude::*;
@@ -241,24 +241,36 @@ fn settings_of(v: &[f32], n: [u32; 5]) -> SimulationSettings {
     (s.wind.speed, s.wind.gusts, s.wind.turbulence, s.wind.seed) = (v[14], v[15], v[16], n[2]);
     (s.wind.sheltering, s.repulsion.anisotropy) = (v[22], v[23]);
     (s.repulsion.strength, s.repulsion.threshold, s.repulsion.cohesion) = (v[17], v[18], v[19]);
+    (s.weight, s.weight_tip, s.drag_tip, s.air_shelter) = (v[24], v[25], v[26], v[27]);
+    (s.cloth_friction, s.hair_friction, s.hair_friction_tip) = (v[28], v[29], v[30]);
+    (s.hold_reach, s.locks.opening) = (v[31], v[32]);
+    (s.locks.cohesion, s.locks.cohesion_tip, s.locks.friction) = (v[33], v[34], v[35]);
     s.repulsion.mode = if n[2].is_multiple_of(2) { RepulsionMode::Pressure } else { RepulsionMode::Centre };
     s
 }
 
 /// The least and the greatest value of each of those numbers.
-const LEAST: [f32; 24] = {
-    let mut least = [0.0; 24];
+const LEAST: [f32; NUMBERS] = {
+    let mut least = [0.0; NUMBERS];
     (least[18], least[21]) = (1.0, 0.05);
+    (least[24], least[25], least[31]) = (0.2, 0.2, 0.02);
     least
 };
-const GREATEST: [f32; 24] = [
+const GREATEST: [f32; NUMBERS] = [
     30.0, 1.0, 200.0, 200.0, 0.2, 60.0, 20.0, 20.0, 2.0, 0.03, 1.0, 1.0, 1.0, 1.0, 30.0, 1.0, 1.0, 1.0, 10.0,
-    20.0, 1.0, 0.95, 1.0, 1.0,
+    20.0, 1.0, 0.95, 1.0, 1.0, 5.0, 5.0, 5.0, 1.0, 2.0, 2.0, 5.0, 2.0, 3.0, 240.0, 2.0, 60.0,
 ];
+
+/// How many of the settings are numbers.
+const NUMBERS: usize = 36;
 
 /// A swaying guide on a skull survives 40 steps with the settings `s`.
 fn survives(s: &SimulationSettings) -> Result<(), TestCaseError> {
-    let mut simulation = Simulation::new(style(&guides(17)));
+    // Five locks, and two guides that belong to none.
+    let lock = |w: u32| Wisp { guides: [3 * w, 3 * w + 1, 3 * w + 2], first_strand: 0, strand_count: 0 };
+    let wisps = (0..5).map(lock).collect();
+    let hair = Hairstyle { wisps, ..Hairstyle::clone(&style(&guides(17))) };
+    let mut simulation = Simulation::new(Arc::new(hair));
     simulation.reset(&input(0, &[skull(0.08)]));
     for step in 1..40 {
         let report = simulation.step(&input(step, &[skull(0.08)]), s, STEP_SECS);
@@ -279,12 +291,12 @@ fn survives(s: &SimulationSettings) -> Result<(), TestCaseError> {
 
 #[test]
 fn the_tested_ranges_are_those_of_the_settings() {
-    let most = settings_of(&[f32::MAX; 24], [u32::MAX; 5]).clamped();
+    let most = settings_of(&[f32::MAX; NUMBERS], [u32::MAX; 5]).clamped();
     let mut v = GREATEST;
     // An infinite wind direction is replaced by the default, because the direction has no range.
     (v[11], v[12], v[13]) = (1.0, 0.0, 0.0);
     assert_eq!(most, settings_of(&v, [16, 2, u32::MAX, u32::MAX, 200]));
-    let least = settings_of(&[f32::MIN; 24], [0; 5]).clamped();
+    let least = settings_of(&[f32::MIN; NUMBERS], [0; 5]).clamped();
     v = LEAST;
     v[11] = 1.0;
     assert_eq!(least, settings_of(&v, [1, 0, 0, 0, 1]));
@@ -293,16 +305,16 @@ fn the_tested_ranges_are_those_of_the_settings() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
     #[test]
-    fn no_setting_breaks_the_motion(v in prop::collection::vec(number(), 24), n in any::<[u32; 5]>()) {
+    fn no_setting_breaks_the_motion(v in prop::collection::vec(number(), NUMBERS), n in any::<[u32; 5]>()) {
         survives(&settings_of(&v, n))?;
     }
 
     #[test]
     fn every_setting_s_whole_range_is_safe(
-        share in prop::collection::vec(prop_oneof![0.0_f32..=1.0, Just(0.0), Just(1.0)], 24),
+        share in prop::collection::vec(prop_oneof![0.0_f32..=1.0, Just(0.0), Just(1.0)], NUMBERS),
         n in (1_u32..=16, 0_u32..=2, any::<u32>(), 0_u32..3, 1_u32..=200),
     ) {
-        let v: Vec<f32> = (0..24).map(|i| LEAST[i] * (1.0 - share[i]) + GREATEST[i] * share[i]).collect();
+        let v: Vec<f32> = (0..NUMBERS).map(|i| LEAST[i] * (1.0 - share[i]) + GREATEST[i] * share[i]).collect();
         let s = settings_of(&v, [n.0, n.1, n.2, n.3, n.4]);
         prop_assert_eq!(s, s.clamped());
         survives(&s)?;

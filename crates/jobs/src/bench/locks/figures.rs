@@ -325,11 +325,12 @@ mod tests {
 
     #[test]
     fn hair_in_front_of_the_face_is_counted() {
-        // A lock at the crown, and one that is rooted at the brow and hangs before the face.
+        // A lock at the crown, and one that is rooted at the brow and hangs before the face, where one of its guides is behind
+        // the others.
         let mut rest = lock(Vec3::new(0.0, 0.2, -0.05), Vec3::NEG_Z);
         rest.extend(lock(Vec3::new(0.0, 0.15, 0.1), Vec3::NEG_Y));
         let figures = Figures::new(&style(&rest));
-        assert_eq!(figures.face_share(&rest), 0.5);
+        assert_eq!(figures.face_share(&rest), 2.0 / 6.0);
     }
 
     #[test]
