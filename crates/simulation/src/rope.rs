@@ -30,6 +30,9 @@ const FRICTION: f32 = 6.0;
 /// Guides are pulled back at most this fast, metres per second.
 const FASTEST: f32 = 2.0;
 
+/// A point of a middle line with less has received nothing but rounding errors.
+const LEAST_WEIGHT: f32 = 1e-3;
+
 /// A point of a middle line.
 #[derive(Clone, Copy, Debug, Default)]
 struct LinePoint {
@@ -162,11 +165,26 @@ fn lines<'a>(
         }
     }
     for line in &mut lines {
-        // The last point may have received nothing.
-        line.points.retain(|point| point.weight > 1e-3);
-        for point in &mut line.points {
-            let inv = 1.0 / point.weight;
-            (point.position, point.velocity) = (point.position * inv, point.velocity * inv);
+        // The last point may have received nothing, and between the points of long links there may be gaps.
+        while line.points.pop_if(|point| point.weight < LEAST_WEIGHT).is_some() {}
+        let mut last: Option<usize> = None;
+        for n in 0..line.points.len() {
+            let LinePoint { position, velocity, weight } = line.points[n];
+            if weight < LEAST_WEIGHT {
+                continue;
+            }
+            let here = LinePoint { position: position / weight, velocity: velocity / weight, weight };
+            line.points[n] = here;
+            let before = last.map_or((n, here), |m| (n - m, line.points[m]));
+            for gap in last.map_or(0, |m| m + 1)..n {
+                let t = (n - gap) as f32 / before.0 as f32;
+                line.points[gap] = LinePoint {
+                    position: here.position.lerp(before.1.position, t),
+                    velocity: here.velocity.lerp(before.1.velocity, t),
+                    weight: LEAST_WEIGHT,
+                };
+            }
+            last = Some(n);
         }
     }
     lines
@@ -216,5 +234,70 @@ pub(crate) fn rub(
         let pushed = at(push, k) + relative * (line.friction / substeps);
         // False for NaN.
         put(push, k, choose(relative.length_squared() < 1e6, pushed, at(push, k)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_groom::Guides;
+
+    use super::*;
+    use crate::packing::pack;
+
+    /// Two guides of `links` links of `link` metres along X, 2 cm apart, tied at their roots.
+    fn block(links: usize, link: f32) -> (Vec<Rope>, Vec<Block>) {
+        let mut guides = Guides { points_per_guide: links + 1, ..Guides::default() };
+        for z in [-0.01, 0.01] {
+            let points: Vec<Vec3> = (0..=links).map(|i| Vec3::new(link * i as f32, 0.0, z)).collect();
+            guides.push(&points);
+        }
+        let ropes = vec![Rope { guides: vec![(0, 1), (1, 1)], tightness: 1.0 }];
+        let mut blocks: Vec<Block> =
+            pack(&guides, &[]).iter().map(|lanes| Block::new(&guides, lanes, 1)).collect();
+        for block in &mut blocks {
+            block.place_at_rest(&crate::lanes::Map::IDENTITY);
+        }
+        assign(&ropes, &mut blocks);
+        (ropes, blocks)
+    }
+
+    #[test]
+    fn the_middle_line_lies_between_the_guides_also_where_links_are_long() {
+        // Links shorter and longer than the spacing of the line; the last ones leave gaps in it.
+        for link in [0.007, 0.02, 0.05, 0.13] {
+            let (ropes, blocks) = block(8, link);
+            let lines = current(&ropes, &blocks, Vec3::Y, 4, 1.0 / 240.0, 1.0);
+            let found = blocks[0].in_rope.as_deref().expect("a rope");
+            for i in 1..=8 {
+                let (p, v) = lines[0].at(found.place[i][0]);
+                let want = Vec3::new(link * i as f32, 1.0, 0.0);
+                assert!(p.distance(want) < 1e-5 && v == Vec3::ZERO, "{link}, point {i}: {p} against {want}");
+                assert!((found.radius[i][1] - 0.01).abs() < 1e-5);
+            }
+            assert!(found.place[0][0] < 0.0, "the root is before the tie");
+        }
+    }
+
+    #[test]
+    fn a_guide_that_left_its_rope_returns_and_the_middle_stays() {
+        let (ropes, mut blocks) = block(8, 0.02);
+        for i in 1..9 {
+            put(&mut blocks[0].position[i], 0, Vec3::new(0.02 * i as f32, 0.0, -0.05));
+            put(&mut blocks[0].position[i], 1, Vec3::new(0.02 * i as f32, 0.0, 0.05));
+        }
+        let h = 1.0 / 240.0;
+        let lines = current(&ropes, &blocks, Vec3::ZERO, 4, h, 1.0);
+        let found = blocks[0].in_rope.clone().expect("a rope");
+        let mut next = blocks[0].position.clone();
+        hold(&found, &lines, 1, 0.0, h, &mut next);
+        let [a, b] = [at(&next[5], 0), at(&next[5], 1)];
+        assert!((a + b).z.abs() < 1e-6, "the middle stays");
+        // 37.5 mm beyond the bound, by e^(-60 h) but at most 2 m/s.
+        let want = (0.05 - 0.0125) * (1.0 - (-60.0 * h).exp());
+        assert!((0.05 - b.z - want.min(2.0 * h)).abs() < 1e-5, "{}", 0.05 - b.z);
+        let loose = current(&[Rope { tightness: 0.0, ..ropes[0].clone() }], &blocks, Vec3::ZERO, 4, h, 1.0);
+        let mut next = blocks[0].position.clone();
+        hold(&found, &loose, 1, 0.0, h, &mut next);
+        assert_eq!(next, blocks[0].position, "control: a loose tie pulls nothing");
     }
 }

@@ -65,6 +65,7 @@ pub struct Simulation {
     culling: bool,
     substeps: Vec<Substep>,
     shapes: Vec<MovingShape>,
+    rows: Vec<RowRates>,
 }
 
 impl Simulation {
@@ -111,6 +112,7 @@ impl Simulation {
             culling: true,
             substeps: Vec::new(),
             shapes: Vec::new(),
+            rows: Vec::new(),
         }
     }
 
@@ -252,14 +254,15 @@ impl Simulation {
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
         let points = self.style.guides.points_per_guide;
         let along = |i: usize| i as f32 / points.saturating_sub(1).max(1) as f32;
-        let rows: Vec<RowRates> = (0..points).map(|i| RowRates::at(along(i), settings, h)).collect();
+        self.rows.clear();
+        self.rows.extend((0..points).map(|i| RowRates::at(along(i), settings, h)));
         let grown = self.tie_blend.as_ref().map_or(1.0, TieBlend::grown);
         let ropes = crate::rope::current(&self.style.ropes, &self.blocks, rebase, count, h, grown);
         let plan = Plan {
             wide: self.wide,
             settings: *settings,
             h,
-            rows: &rows,
+            rows: &self.rows,
             ropes: &ropes,
             first_free,
             rebase,

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::generic::unknown_fields;
 use super::version_1::Version1;
-use super::{PROJECT_VERSION, Project};
+use super::{PROJECT_VERSION, Project, version_2};
 use crate::error::{Place, Problem, ProblemKind, ProjectError};
 use crate::files::{Access, folder_of, write_whole};
 
@@ -112,6 +112,9 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
     let is_version_1 = header.version < 2;
     if is_version_1 {
         options.from_str::<Version1>(text).map_err(refuse)?.migrate(&mut project);
+    }
+    if header.version < 3 {
+        version_2::migrate(&mut project);
     }
     let mut problems = Vec::new();
     let known = options

@@ -13,6 +13,7 @@ mod settings;
 mod tables;
 mod trim;
 mod version_1;
+mod version_2;
 
 pub use contender::{Contender, backend_label};
 pub use file::{
@@ -34,7 +35,7 @@ use serde::{Deserialize, Serialize};
 use crate::files::FileRef;
 
 /// Version of the project file that this program writes, and the newest version that it reads.
-pub const PROJECT_VERSION: u32 = 2;
+pub const PROJECT_VERSION: u32 = 3;
 
 /// Everything that is saved and undone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -232,6 +232,27 @@ fn the_extinction_scale_of_version_1_is_that_of_the_hair() {
 }
 
 #[test]
+fn old_defaults_of_motion_become_those_of_the_style_and_chosen_values_stay() {
+    let read = |version: u32, drag: f32, settle: f32| {
+        let text = format!(
+            "(version: {version}, hair: (preset: long), simulation: (stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, \
+             drag: {drag:?}, settle: {settle:?}))"
+        );
+        let (project, problems) = parse_project(Path::new("p"), &text).expect("reads");
+        assert_eq!(problems, []);
+        project
+    };
+    let mut old = read(2, 0.8, 2.0);
+    assert_eq!(old.simulation, SimulationSettings::preset(Preset::Long));
+    old.set_preset(Preset::Curly);
+    assert_eq!(old.simulation, SimulationSettings::preset(Preset::Curly), "it follows the style again");
+    let chosen = read(2, 0.9, 7.0).simulation;
+    assert_eq!((chosen.drag, chosen.settle), (0.9, 7.0));
+    let new = read(3, 0.8, 2.0).simulation;
+    assert_eq!((new.drag, new.settle), (0.8, 2.0), "chosen in a new project");
+}
+
+#[test]
 fn panes_are_limited_in_number_and_range() {
     let text = "(version: 1, compare: (panes: [(scale: 9.0), (scale: NaN, shadow: (method: \"exact\", \
                 exact: (resolution: 3))), (), (), (), (), (), ()]))";
