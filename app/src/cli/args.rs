@@ -221,7 +221,7 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 pub(crate) struct Bench {
     /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and simulate-402 and simulate-20k, which are
     /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
-    /// shipped hairstyle and of hair of 20 to 80 cm hold together in the shipped dance; `locks-long`, for example, that of one.
+    /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
     pub(crate) scenes: Vec<BenchTarget>,
     /// Change a setting of every scene, such as simulation.gravity=12; may be given several times.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]

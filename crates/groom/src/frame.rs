@@ -80,6 +80,23 @@ fn narrowed(of: [Vec3A; 3], widest: f32) -> [Vec3A; 3] {
     if radius > widest { of.map(|p| mean + (p - mean) * (widest / radius)) } else { of }
 }
 
+/// The guides of a wisp as its strands follow them, if they are further apart than allowed anywhere; `None` if the strands
+/// follow the guides themselves.
+pub(crate) fn narrowed_guides(moved: &Guides, wisp: &Wisp, widest: &[f32]) -> Option<[Vec<Vec3>; 3]> {
+    let points = moved.points_per_guide;
+    let mut out = [const { Vec::new() }; 3];
+    let mut any = false;
+    for p in 0..points {
+        let of = wisp.guides.map(|g| Vec3A::from(moved.point(g as usize, p)));
+        let now = narrowed(of, widest_at(widest, wisp, p, points));
+        any |= now != of && now.iter().all(|p| p.is_finite());
+        for (guide, p) in out.iter_mut().zip(now) {
+            guide.push(p.into());
+        }
+    }
+    any.then_some(out)
+}
+
 /// One value per lane for each of x, y, z.
 pub(crate) type Lanes<const N: usize> = [[f32; N]; 3];
 

@@ -114,10 +114,10 @@ impl DensityGrid {
         let aside = 2.0 * high.max(-low);
         let fits = (EXTENT * Vec3::new(aside.x, high.y - low.y, aside.z) / cells).max_element();
         let cell = swing.max(fits);
-        // The grid is centred on the roots, and lower where the hair can swing below its lower end.
+        // The grid is centred on the roots, lower where the hair can swing below its lower end, and higher where hair stands up.
         let half = 0.5 * cell * SIDES.as_vec3();
         let spare = half.y - cell - high.y;
-        let lower = (radius + longest - half.y).clamp(0.0, spare.max(0.0));
+        let lower = (radius + longest - half.y).max(0.0).min(spare);
         let min = centre - half - Vec3::Y * lower;
         let link = (links / count.max(1.0)).max(1e-4);
         let points = blocks.first().map_or(0, Block::points);

@@ -5,10 +5,6 @@ use glam::Vec3;
 use crate::SimulationSettings;
 use crate::lanes::lesser;
 
-/// The acceleration with which surrounding hair presses on a point inside the hair, for friction: its weight,
-/// metres per second squared.
-const PRESSURE: f32 = 9.81;
-
 /// What changes along a guide: fractions of a difference that vanish in a substep, at one row of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RowRates {
@@ -18,7 +14,7 @@ pub(crate) struct RowRates {
     pub(crate) lock_friction: f32,
     /// The drag of slow air times the substep.
     pub(crate) drag: f32,
-    /// The largest change of velocity by friction on other hair, metres per second.
+    /// The largest change of velocity by friction on other hair, which presses on a point with its weight, metres per second.
     pub(crate) hair_friction: f32,
 }
 
@@ -32,13 +28,13 @@ impl RowRates {
             cohesion: taken(locks.cohesion * toward(locks.cohesion_tip)),
             lock_friction: taken(locks.friction),
             drag: settings.drag * toward(settings.drag_tip) / settings.weight_at(along) * h,
-            hair_friction: settings.hair_friction * toward(settings.hair_friction_tip) * PRESSURE * h,
+            hair_friction: settings.hair_friction * toward(settings.hair_friction_tip) * settings.gravity * h,
         }
     }
 }
 
-/// Velocities well below this are creep, metres per second: the bound on friction is soft there, so that hair at rest
-/// still yields to a force.
+/// Velocities well below this are creep, metres per second: the bound on friction is soft there, so that a
+/// small force still moves hair at rest.
 const CREEP: f32 = 0.002;
 
 /// The fraction of a `relative` velocity that friction removes which can change it by `most`, metres per second

@@ -3,7 +3,7 @@
 //! A rope has a middle line: the mean position and velocity of its guides at each distance beyond the tie. Guides
 //! further from it than at rest are pulled back, and all of them take on its velocity, the more so the tighter
 //! the tie is. The line is computed once per step, always in the same order, and moves on with its velocity in the
-//! substeps. Both effects are relative to the mean of the guides, so they do not move the rope as a whole.
+//! substeps. Guides within their bound are not moved.
 
 use glam::Vec3;
 use lovelock_groom::Rope;
@@ -13,6 +13,9 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, at, choose, direction_or, greater, 
 
 /// Distance between two points of a middle line, metres.
 const SPACING: f32 = 0.02;
+
+/// The longest rope, in spacings: 20 m. Points beyond it are loose.
+const LONGEST: f32 = 1000.0;
 
 /// A guide is free up to this multiple of its distance from the line at rest, which counts as at least
 /// [`LEAST_RADIUS`].
@@ -82,6 +85,9 @@ pub(crate) fn assign(ropes: &[Rope], blocks: &mut [Block]) {
             for i in beyond.max(1)..block.points() {
                 // The end of a guide that was cut.
                 if block.rest.inv_length[i][k] <= 0.0 {
+                    break;
+                }
+                if !(place <= LONGEST) {
                     break;
                 }
                 found.place[i][k] = place;

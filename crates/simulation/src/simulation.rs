@@ -256,7 +256,7 @@ impl Simulation {
         let along = |i: usize| i as f32 / points.saturating_sub(1).max(1) as f32;
         self.rows.clear();
         self.rows.extend((0..points).map(|i| RowRates::at(along(i), settings, h)));
-        let grown = self.tie_blend.as_ref().map_or(1.0, TieBlend::grown);
+        let grown = self.tie_blend.as_ref().map_or(1.0, TieBlend::ropes_grown);
         let ropes = crate::rope::current(&self.style.ropes, &self.blocks, rebase, count, h, grown);
         let plan = Plan {
             wide: self.wide,

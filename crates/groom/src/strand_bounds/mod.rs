@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
-use crate::frame::locate;
+use crate::frame::{locate, narrowed_guides};
 use crate::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use polygon::Polygon;
 
@@ -88,9 +88,15 @@ impl StrandBounds {
             return None;
         }
         let sizes = search::sizes_of_guides(moved);
+        let narrowed: Vec<_> = self
+            .wisps
+            .par_iter()
+            .with_min_len(32)
+            .map(|reach| narrowed_guides(moved, &reach.wisp, &self.style.widest))
+            .collect();
         let mut spans = [None; 3];
         spans.par_iter_mut().zip(axes).for_each(|(span, axis)| {
-            *span = search::span(self, frame, &sizes, axis, anchor);
+            *span = search::span(self, frame, &sizes, &narrowed, axis, anchor);
         });
         let [(low_x, high_x), (low_y, high_y), (low_z, high_z)] = [spans[0]?, spans[1]?, spans[2]?];
         Some((Vec3::new(low_x, low_y, low_z), Vec3::new(high_x, high_y, high_z)))

@@ -25,10 +25,7 @@ impl Polygon {
     /// Bounds the weights of a wisp's strands; `None` if no strand has finite weights.
     pub fn of_wisp(set: &StrandSet, wisp: &Wisp) -> Option<Self> {
         let all = set.weights[strands_of(wisp)].iter();
-        let mut all = all.copied().filter(|weights| weights.iter().sum::<f32>().is_finite()).peekable();
-        all.peek()?;
-        // Where the guides part, strands are drawn as if their weights were nearer to the middle.
-        Self::around(all.chain([[1.0 / 3.0; 3]]))
+        Self::around(all.copied().filter(|weights| weights.iter().sum::<f32>().is_finite()))
     }
 
     fn around(weights: impl Iterator<Item = [f32; 3]>) -> Option<Self> {

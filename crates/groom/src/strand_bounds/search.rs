@@ -84,6 +84,7 @@ pub(super) fn span(
     bounds: &StrandBounds,
     frame: &GuideFrame,
     sizes: &[Size],
+    narrowed: &[Option<[Vec<Vec3>; 3]>],
     way: Vec3,
     anchor: Vec3,
 ) -> Option<(f32, f32)> {
@@ -96,8 +97,8 @@ pub(super) fn span(
     let back: Vec<f32> = along.iter().map(|along| -along).collect();
     let extents_back: Vec<_> = extents.iter().map(|extent| extent.turned()).collect();
     let (high, low) = rayon::join(
-        || Search { bounds, frame, sizes, way, anchor, along: &along }.farthest(&extents),
-        || Search { bounds, frame, sizes, way: -way, anchor, along: &back }.farthest(&extents_back),
+        || Search { bounds, frame, sizes, narrowed, way, anchor, along: &along }.farthest(&extents),
+        || Search { bounds, frame, sizes, narrowed, way: -way, anchor, along: &back }.farthest(&extents_back),
     );
     Some((-low?, high?))
 }
@@ -161,6 +162,8 @@ struct Search<'a> {
     bounds: &'a StrandBounds,
     frame: &'a GuideFrame,
     sizes: &'a [Size],
+    /// For each wisp the guides that its strands follow where these are not its own.
+    narrowed: &'a [Option<[Vec<Vec3>; 3]>],
     way: Vec3,
     anchor: Vec3,
     /// Coordinate of every guide point along the direction.
@@ -174,7 +177,10 @@ impl Search<'_> {
         let whole = guides.iter().fold(Extent::NONE, |whole, guide| whole.join(*guide));
         let tolerance = (TOLERANCE * (whole.max - whole.min)).max(0.0);
         let wisps = (0..).zip(&bounds.wisps).map(|(number, wisp)| Candidate {
-            at_most: self.reach_of_wisp(wisp, wisp.wisp.guides.map(|g| guides[g as usize])),
+            at_most: match self.narrowed_along(number) {
+                Some(along) => self.reach_of_wisp(wisp, along.map(|along| Extent::of_guide(&along))),
+                None => self.reach_of_wisp(wisp, wisp.wisp.guides.map(|g| guides[g as usize])),
+            },
             wisp: number,
             link: None,
         });
@@ -206,7 +212,7 @@ impl Search<'_> {
                 });
                 found = found.max(self.reach_of_points(wisp, links[link as usize], &curves[known].1));
             } else {
-                self.reach_of_links(wisp, links, |link, at_most| {
+                self.reach_of_links(next.wisp, wisp, links, |link, at_most| {
                     if at_most > found {
                         candidates.push(Candidate { at_most, wisp: next.wisp, link: Some(link) });
                     }
@@ -214,6 +220,13 @@ impl Search<'_> {
             }
         }
         (found > f32::NEG_INFINITY).then_some(found)
+    }
+
+    /// Coordinates along the direction of the guides that the strands of wisp `number` follow, if these are not its own.
+    fn narrowed_along(&self, number: u32) -> Option<[Vec<f32>; 3]> {
+        let guides = self.narrowed[number as usize].as_ref()?;
+        let along = |guide: &Vec<Vec3>| guide.iter().map(|p| (*p - self.anchor).dot(self.way)).collect();
+        Some(guides.each_ref().map(along))
     }
 
     fn points_per_guide(&self) -> usize {
@@ -253,9 +266,19 @@ impl Search<'_> {
     }
 
     /// Upper bound of the reach of each link that has points, from the hull of its curves.
-    fn reach_of_links(&self, wisp: &WispReach, links: &[LinkReach], mut tell: impl FnMut(u32, f32)) {
+    fn reach_of_links(
+        &self,
+        number: u32,
+        wisp: &WispReach,
+        links: &[LinkReach],
+        mut tell: impl FnMut(u32, f32),
+    ) {
         let n = self.points_per_guide();
-        let [a, b, c] = wisp.wisp.guides.map(|g| &self.along[g as usize * n..][..n]);
+        let narrowed = self.narrowed_along(number);
+        let [a, b, c] = match &narrowed {
+            Some(along) => along.each_ref().map(Vec::as_slice),
+            None => wisp.wisp.guides.map(|g| &self.along[g as usize * n..][..n]),
+        };
         let finite = wisp.wisp.guides.iter().all(|&g| self.sizes[g as usize].finite);
         let weights: [[f32; CORNERS]; 3] =
             std::array::from_fn(|g| std::array::from_fn(|corner| wisp.weights.corners[corner][g]));

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 pub use settings::{HairTie, TieKind, TieReach};
 
+use crate::frame::widest_radii;
 use crate::{Bounded, Hairstyle, Obstacle, Rope, Wisp};
 use route::Ring;
 
@@ -94,6 +95,12 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
         caught.push((of, laid));
     }
     out.ropes.retain(|rope| !rope.guides.is_empty());
+    // The larger limit, so that strands neither narrow at once when a tie is made, nor at rest in a wide bun.
+    if !out.widest.is_empty() {
+        for (widest, tied) in out.widest.iter_mut().zip(widest_radii(&out.guides, &out.wisps)) {
+            *widest = widest.max(tied);
+        }
+    }
     let moved: Vec<(usize, Vec<Vec3>)> = caught
         .par_iter()
         .map(|(of, laid)| {

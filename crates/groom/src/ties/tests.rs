@@ -1,8 +1,8 @@
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use lovelock_base::settings::Settings;
 
 use super::*;
-use crate::{GroomSettings, PlainHead, Preset, Scalp, grow};
+use crate::{GroomSettings, GuideFrame, PlainHead, Preset, Scalp, Strands, grow, interpolate};
 
 fn long() -> Hairstyle {
     let settings = GroomSettings { wisps: 60, strands_per_wisp: 6, ..GroomSettings::preset(Preset::Long) };
@@ -42,6 +42,14 @@ fn a_tied_style_keeps_lengths_and_roots_and_stays_out_of_the_head() {
         let tie = HairTie { kind, ..HairTie::default() };
         let tied = tied(&style, &[tie], &PlainHead);
         tied.check().expect("sound");
+        // At rest no strand is drawn narrower than its guides lie.
+        let at_rest = GuideFrame::at_rest(&tied.guides, Affine3A::IDENTITY, 0.0);
+        let drawn = |style: &Hairstyle| {
+            let mut strands = Strands::default();
+            interpolate(style, &at_rest, &mut strands);
+            [strands.x, strands.y, strands.z]
+        };
+        assert!(drawn(&tied) == drawn(&Hairstyle { widest: Vec::new(), ..tied.clone() }), "{kind:?}");
         // Hair beyond a ring is a rope; all of a bun is held in its place.
         let in_ropes = tied.ropes.iter().flat_map(|rope| &rope.guides).count();
         let in_rings = crossings(&tied, &tie).len();

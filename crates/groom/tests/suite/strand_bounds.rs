@@ -173,7 +173,10 @@ fn any_style(seed: u64) -> Arc<Hairstyle> {
     for _ in 0..9 {
         guides.push(&(0..points_per_guide).map(|_| 0.2 * random.cube()).collect::<Vec<_>>());
     }
-    let mut style = Hairstyle { guides, ..Hairstyle::default() };
+    // Some styles limit how wide their wisps may be, from a millimetre to 20 cm.
+    let limited = random.unit() < 0.7;
+    let widest = (0..if limited { guides.x.len() } else { 0 }).map(|_| 0.001 + 0.2 * random.unit()).collect();
+    let mut style = Hairstyle { guides, widest, ..Hairstyle::default() };
     let set = &mut style.strands;
     set.first_point.push(0);
     for number in 0..6 {

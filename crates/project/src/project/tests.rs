@@ -246,6 +246,9 @@ fn old_defaults_of_motion_become_those_of_the_style_and_chosen_values_stay() {
     assert_eq!(old.simulation, SimulationSettings::preset(Preset::Long));
     old.set_preset(Preset::Curly);
     assert_eq!(old.simulation, SimulationSettings::preset(Preset::Curly), "it follows the style again");
+    let text = "(version: 2, simulation: (friction: 0.8))";
+    let sticky = parse_project(Path::new("p"), text).expect("reads").0.simulation;
+    assert_eq!((sticky.friction, sticky.cloth_friction), (0.8, 0.8), "one coefficient was for both");
     let chosen = read(2, 0.9, 7.0).simulation;
     assert_eq!((chosen.drag, chosen.settle), (0.9, 7.0));
     let new = read(3, 0.8, 2.0).simulation;

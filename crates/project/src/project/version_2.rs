@@ -9,6 +9,8 @@ const OLD_SETTLE: f32 = 2.0;
 /// Replaces drag and settling that had their old defaults by those of the project's style. Values that somebody chose stay.
 /// Otherwise the old defaults would count as chosen, and the simulation would no longer follow the style.
 pub(super) fn migrate(project: &mut Project) {
+    // One coefficient was that of skin and clothes.
+    project.simulation.cloth_friction = project.simulation.friction;
     let style = project.hair.simulation();
     if project.simulation.drag == OLD_DRAG {
         project.simulation.drag = style.drag;

@@ -41,7 +41,8 @@ struct RowSample {
     mean_velocity: Lane3,
     /// Fraction of the surrounding hair that crosses the given direction; 0 if nothing uses it.
     crossing: Lane,
-    /// How densely hair surrounds the point: 1 as at rest inside the hair or denser, 0 alone.
+    /// How densely hair surrounds the point: 1 as at rest inside the hair or denser. A lock alone in the air has
+    /// its own density, a small part of that.
     inside: Lane,
 }
 

@@ -40,7 +40,7 @@ pub struct SimulationSettings {
     pub drag_tip: f32,
     /// Fraction of the air that the surrounding hair keeps from a point inside the hair.
     pub air_shelter: f32,
-    /// Mass of hair per length, as a multiple of the usual one: heavy hair yields less to air, stiffness and hold.
+    /// Mass of hair per length, as a multiple of the default: heavy hair yields less to air, stiffness and hold.
     pub weight: f32,
     /// The weight at the tips, as a multiple of that at the roots.
     pub weight_tip: f32,
@@ -110,25 +110,27 @@ impl Default for SimulationSettings {
 }
 
 impl SimulationSettings {
-    /// How a shipped hairstyle moves: the usual settings with the stiffness, the damping, the hold and the settling of that style.
+    /// How a shipped hairstyle moves: the defaults with the stiffness, the damping, the hold and the settling of that style.
     #[must_use]
     pub fn preset(preset: Preset) -> Self {
-        let usual = Self::default();
+        let default = Self::default();
         match preset {
             // Locks that lie close carry each other: a bob swings as one and opens little.
-            Preset::Smooth => usual,
-            Preset::Ponytail | Preset::Bun => Self { stiffness_root: 14.0, ..usual },
+            Preset::Smooth => default,
+            Preset::Ponytail | Preset::Bun => Self { stiffness_root: 14.0, ..default },
             // Curls are springs: nearly as stiff at their tips, and sway on for longer.
-            Preset::Curly => Self { stiffness_root: 16.0, stiffness_tip: 10.0, bend_damping: 0.02, ..usual },
+            Preset::Curly => {
+                Self { stiffness_root: 16.0, stiffness_tip: 10.0, bend_damping: 0.02, ..default }
+            }
             // Long hair hangs by its weight.
             Preset::Long => {
-                Self { stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, settle: 3.0, ..usual }
+                Self { stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, settle: 3.0, ..default }
             }
         }
     }
 
     /// The same settings with the stiffness, the damping, the hold and the settling of `to` in place of those of `from`; where they are neither
-    /// those nor the usual ones somebody has chosen them, and they stay.
+    /// those nor the defaults somebody has chosen them, and they stay.
     #[must_use]
     pub fn restyled(&self, from: &Self, to: &Self) -> Self {
         if ![*from, Self::default()].iter().any(|style| self.of_style(style) == *self) {
@@ -150,7 +152,7 @@ impl SimulationSettings {
         }
     }
 
-    /// Mass per length at a fraction `along` of a lock, 0 at the root and 1 at the tip, as a multiple of the usual one.
+    /// Mass per length at a fraction `along` of a lock, 0 at the root and 1 at the tip, as a multiple of the default.
     #[must_use]
     pub fn weight_at(&self, along: f32) -> f32 {
         self.weight * (1.0 + (self.weight_tip - 1.0) * along)

@@ -54,7 +54,7 @@ impl Settings for SimulationSettings {
             field!(Self, hold_reach),
             [0.02, 2.0],
             "Hold reach",
-            "Length of a wisp from its root over which hold fades to nothing.",
+            "How far from the roots hold acts. Longer values keep more of the style.",
         )
         .unit(Unit::METRES_AS_CM)
         .soft([0.02, 1.0]),
@@ -77,7 +77,7 @@ impl Settings for SimulationSettings {
             field!(Self, gravity),
             [0.0, 30.0],
             "Gravity",
-            "Acceleration by gravity. Higher values make hair heavier.",
+            "Acceleration by gravity. Higher values make hair fall faster.",
         )
         .symbol("g")
         .unit(Unit::METRES_PER_SECOND2),
@@ -150,7 +150,7 @@ impl Settings for SimulationSettings {
         Setting::number(
             field!(Self, hair_friction_tip),
             [0.0, 5.0],
-            "Friction at tips",
+            "Hair friction tips",
             "Hair friction at the tips, as a share of that at the roots.",
         )
         .unit(Unit::FRACTION)

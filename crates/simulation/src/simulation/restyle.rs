@@ -32,18 +32,25 @@ pub(super) struct TieBlend {
     /// For each block the rest shape that the ties demand.
     to: Vec<RestShape>,
     grown_secs: f32,
+    /// Whether the hair was gathered before, as while a tie is dragged: its ropes then keep their strength.
+    had_ropes: bool,
 }
 
 impl TieBlend {
-    /// The share of their strength that the ties have reached, 0 to 1.
-    pub(super) fn grown(&self) -> f32 {
+    /// The share of their strength that ropes have reached, 0 to 1.
+    pub(super) fn ropes_grown(&self) -> f32 {
+        if self.had_ropes { 1.0 } else { self.grown() }
+    }
+
+    /// The share of the way from the old rest shape to the new one, 0 to 1.
+    fn grown(&self) -> f32 {
         let t = (self.grown_secs / GROWTH_SECS).min(1.0);
         t * t * (3.0 - 2.0 * t)
     }
 }
 
-/// Elapsed seconds, initial strengths and initial directions of [`TieBlend`].
-type TieBlendState<'a> = (f32, &'a [f32], &'a [Vec<Lane3>]);
+/// Elapsed seconds, whether there were ropes, initial strengths and initial directions of [`TieBlend`].
+type TieBlendState<'a> = (f32, bool, &'a [f32], &'a [Vec<Lane3>]);
 
 impl Simulation {
     /// Changes the hairstyle. If the numbers of guides and points are unchanged, the motion continues: every
@@ -80,7 +87,13 @@ impl Simulation {
         if retied {
             let from = next.blocks.iter().map(|block| directions(block, &from_head)).collect();
             let to = next.blocks.iter().map(|block| block.rest.clone()).collect();
-            next.tie_blend = Some(TieBlend { held: self.initial_holds(&next), from, to, grown_secs: 0.0 });
+            next.tie_blend = Some(TieBlend {
+                held: self.initial_holds(&next),
+                from,
+                to,
+                grown_secs: 0.0,
+                had_ropes: !self.style.ropes.is_empty(),
+            });
         }
         next.field = self.field.take();
         next.measure_rest_distances();
@@ -102,20 +115,26 @@ impl Simulation {
             block.has_contact_push = false;
         }
         if let Some(blend) = blend {
-            self.restore_tie_blend(blend.grown_secs, blend.held, blend.from);
+            self.restore_tie_blend(blend.grown_secs, blend.had_ropes, blend.held, blend.from);
         }
     }
 
     /// The state of the growing ties, for a snapshot.
     pub(super) fn tie_blend_state(&self) -> Option<TieBlendState<'_>> {
         let blend = self.tie_blend.as_ref()?;
-        Some((blend.grown_secs, &blend.held, &blend.from))
+        Some((blend.grown_secs, blend.had_ropes, &blend.held, &blend.from))
     }
 
     /// Restores the state returned by [`Simulation::tie_blend_state`]; all ties must be at full strength.
-    pub(super) fn restore_tie_blend(&mut self, grown_secs: f32, held: Vec<f32>, from: Vec<Vec<Lane3>>) {
+    pub(super) fn restore_tie_blend(
+        &mut self,
+        grown_secs: f32,
+        had_ropes: bool,
+        held: Vec<f32>,
+        from: Vec<Vec<Lane3>>,
+    ) {
         let to = self.blocks.iter().map(|block| block.rest.clone()).collect();
-        self.tie_blend = Some(TieBlend { held, from, to, grown_secs });
+        self.tie_blend = Some(TieBlend { held, from, to, grown_secs, had_ropes });
         self.advance_ties(0.0);
     }
 

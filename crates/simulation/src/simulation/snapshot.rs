@@ -101,8 +101,9 @@ impl Simulation {
             }
         }
         out.u32(u32::from(self.tie_blend_state().is_some()));
-        if let Some((grown_secs, held, from)) = self.tie_blend_state() {
+        if let Some((grown_secs, had_ropes, held, from)) = self.tie_blend_state() {
             out.floats(&[grown_secs]);
+            out.u32(u32::from(had_ropes));
             out.floats(held);
             for axis in from.iter().flatten().flatten() {
                 out.floats(&axis[..]);
@@ -203,6 +204,7 @@ impl Simulation {
         }
         if input.u32()? != 0 {
             let [grown_secs] = input.floats()?;
+            let had_ropes = input.u32()? != 0;
             let mut held = vec![0.0; guides.x.len()];
             for hold in &mut held {
                 [*hold] = input.floats()?;
@@ -211,7 +213,7 @@ impl Simulation {
             for axis in from.iter_mut().flatten().flatten() {
                 *axis = Lane(input.floats()?);
             }
-            next.restore_tie_blend(grown_secs, held, from);
+            next.restore_tie_blend(grown_secs, had_ropes, held, from);
         }
         if input.0.len() != 8 {
             return Err(damaged("there are bytes after its end"));

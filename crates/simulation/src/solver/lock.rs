@@ -3,7 +3,7 @@
 //! Cohesion bounds the distance of each guide from the middle of its lock. A guide beyond the bound is pulled back
 //! with a time constant, so that a lock splits on an obstacle and closes again behind it. Friction inside the lock
 //! lets its guides take on each other's velocity. The bound is wider for a lock that moves fast. Contacts
-//! come after cohesion and always win, so that an obstacle parts a lock for as long as it is in between.
+//! come after cohesion and override it, so that an obstacle parts a lock for as long as it is in between.
 //! Cohesion and friction keep the momentum of the lock: they add nothing to its mean.
 
 use glam::Vec3;
@@ -54,10 +54,10 @@ pub(super) fn hold_together(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn pulled(p: &Lane3, middle: &Lane3, bound: &Lane, share: f32, locks: usize) -> Lane3 {
     let mut pull = ZERO3;
+    let whole = all_within(p, middle, LOST);
     for k in 0..LANES {
         let (out, distance) = direction_or(at(p, k) - at(middle, k), Vec3::ZERO);
-        // False for NaN.
-        let held = distance > bound[k] && distance < LOST && k < LOCK * locks;
+        let held = distance > bound[k] && whole[k] && k < LOCK * locks;
         put(&mut pull, k, choose(held, out * ((bound[k] - distance) * share), Vec3::ZERO));
     }
     let mean = mean_of_lock(&pull);
@@ -68,14 +68,30 @@ fn pulled(p: &Lane3, middle: &Lane3, bound: &Lane, share: f32, locks: usize) -> 
     out
 }
 
+/// For each lane whether all guides of its lock are nearer than `most` to `middle`; not if one of them is not a number.
+#[inline(always)]
+fn all_within(p: &Lane3, middle: &Lane3, most: f32) -> [bool; LANES] {
+    let mut squares = ZERO3;
+    for k in 0..LANES {
+        squares[0][k] = (at(p, k) - at(middle, k)).length_squared();
+    }
+    // A mean within a third of the bound has no square beyond it, and NaN stays.
+    let mean = mean_of_lock(&squares);
+    let mut within = [false; LANES];
+    for k in 0..LANES {
+        within[k] = mean[0][k] < most * most * (1.0 / LOCK as f32);
+    }
+    within
+}
+
 /// Damps the velocities `v` of the guides of each lock relative to each other, by the fraction `share`.
 #[inline(always)]
 pub(super) fn rub(locks: usize, share: f32, v: &mut Lane3) {
     let mean = mean_of_lock(v);
+    let whole = all_within(v, &mean, FASTEST);
     for k in 0..LANES {
         let relative = at(&mean, k) - at(v, k);
-        // False for NaN.
-        let rubs = relative.length_squared() < FASTEST * FASTEST && k < 3 * locks;
+        let rubs = whole[k] && k < LOCK * locks;
         let slower = at(v, k) + choose(rubs, relative * share, Vec3::ZERO);
         put(v, k, slower);
     }
@@ -85,7 +101,7 @@ pub(super) fn rub(locks: usize, share: f32, v: &mut Lane3) {
 mod tests {
     use super::*;
 
-    /// Three guides 10 mm from their middle and one 40 mm from it, in the first lock.
+    /// Two guides 20 mm from the middle of the first lock, and one 40 mm from it.
     fn split() -> Lane3 {
         let mut p = ZERO3;
         for (k, x) in [(0, -0.02), (1, -0.02), (2, 0.04)] {
@@ -102,9 +118,7 @@ mod tests {
         for _ in 0..12 {
             p = pulled(&p, &mean_of_lock(&p), &bound, share, 1);
         }
-        // All guides lie on a line, 10 and 30 mm beyond the bound: the mean of the pulls is taken from each, so that the
-        // far guide keeps 30 (1 - share)^n + what the others give, which the sum of the excesses shows: it decays
-        // at two thirds of the far one's pull and a third of the near ones'.
+        // All guides lie on a line, 10 and 30 mm beyond the bound, and the mean of the three pulls is taken from each.
         assert!((at(&mean_of_lock(&p), 0) - Vec3::new(0.0, 0.1, 0.0)).length() < 1e-7, "the middle stays");
         let excess = at(&p, 2).x - 0.01;
         let (mut near, mut far) = (0.02_f32, 0.04_f32);
@@ -115,7 +129,7 @@ mod tests {
             (near, far) = (near + pull[0] + mean, far - pull[1] - mean);
         }
         assert!((excess - (far - 0.01)).abs() < 1e-6, "{excess} against {}", far - 0.01);
-        assert!(excess < 0.012, "three time constants of a twentieth of a second: {excess}");
+        assert!(excess < 0.012, "30 mm before, three time constants of a sixtieth of a second ago: {excess}");
         // Controls: without cohesion, and in lanes that hold no lock.
         assert_eq!(pulled(&split(), &mean_of_lock(&split()), &bound, 0.0, 1), split());
         assert_eq!(pulled(&split(), &mean_of_lock(&split()), &bound, share, 0), split());
@@ -136,8 +150,9 @@ mod tests {
             let want = 1.0 + (v0 - 1.0) * left;
             assert!((at(&v, k).x - want).abs() < 1e-4, "guide {k}: {} against {want}", at(&v, k).x);
         }
-        assert!((0..3).map(|k| at(&v, k).x).sum::<f32>() - 3.0 < 1e-5);
-        assert_eq!(at(&v, 4), Vec3::ZERO, "the next lock does not notice");
+        let sum: f32 = (0..3).map(|k| at(&v, k).x).sum();
+        assert!((sum - 3.0).abs() < 1e-5, "the momentum stays: {sum}");
+        assert_eq!(at(&v, 4), Vec3::ZERO, "the next lock is unchanged");
     }
 
     #[test]

@@ -51,7 +51,7 @@ fn locks_of_long_hair_stay_as_narrow_as_at_rest() {
     (alone.locks.cohesion, alone.locks.friction) = (0.0, 0.0);
     let loose = radius_in_dance(&mut stage, &alone, secs);
     println!("p95: {rest} m at rest, {held} m in motion, {loose} m without cohesion");
-    // Measured: 36 mm at rest (40 wide wisps), 35 mm in motion, 110 mm without cohesion.
+    // Measured: 32 mm at rest (40 wide wisps), 31 mm in motion, 97 mm without cohesion.
     assert!(held < 1.15 * rest, "{held} m in motion, {rest} m at rest");
     assert!(loose > 1.6 * rest, "control: {loose} m without cohesion, {rest} m at rest");
 }
@@ -144,8 +144,8 @@ fn energy_never_rises_without_drive() {
     let worst = energy.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MIN, f32::max);
     let (first, last) = (energy[0], energy[energy.len() - 1]);
     println!("{first} to {last} J/kg, rises by at most {worst}");
-    // Of 1 J/kg that a fall of a tenth of a metre sets free.
-    assert!(worst < 2e-3, "energy rises by {worst} J/kg in a step");
+    // Measured: at least 3.8e-4 J/kg are lost in every step.
+    assert!(worst < 0.0, "energy rises by {worst} J/kg in a step");
     assert!(first - last > 0.5, "control: it falls by {} J/kg", first - last);
     // Control: wind drives it.
     settings.wind.speed = 20.0;
@@ -209,9 +209,13 @@ fn two_locks_that_cross_hinder_each_other() {
         (30..60).map(|g| 0.03 - now.point(g, 10).y).sum::<f32>() / 30.0
     };
     let free = bare();
-    let mut rubbing = free;
-    (rubbing.hair_friction, rubbing.repulsion.strength) = (0.5, 0.2);
-    let (held, through) = (spread(&rubbing), spread(&free));
-    println!("the middle falls by {held} m, and by {through} m without contact");
-    assert!(held < 0.95 * through, "{held} m against {through} m");
+    let (mut rubbing, mut pushing) = (free, free);
+    rubbing.hair_friction = 0.5;
+    pushing.repulsion.strength = 0.5;
+    let through = spread(&free);
+    for (name, settings) in [("friction", rubbing), ("repulsion", pushing)] {
+        let held = spread(&settings);
+        println!("{name}: the middle falls by {held} m, and by {through} m without it");
+        assert!(held < 0.98 * through, "{name}: {held} m against {through} m");
+    }
 }

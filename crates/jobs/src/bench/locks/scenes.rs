@@ -17,16 +17,18 @@ pub enum LockScene {
 
 impl LockScene {
     /// All of them: the shipped ones, and lengths that the slider offers.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Shipped(Preset::Smooth),
         Self::Shipped(Preset::Curly),
         Self::Shipped(Preset::Long),
         Self::Shipped(Preset::Ponytail),
         Self::Shipped(Preset::Bun),
+        Self::Long(10),
         Self::Long(20),
         Self::Long(40),
         Self::Long(60),
         Self::Long(80),
+        Self::Long(90),
     ];
 
     /// The stable name for the command line and reports.
