@@ -87,7 +87,7 @@ pub(crate) fn assign(ropes: &[Rope], blocks: &mut [Block]) {
                 if block.rest.inv_length[i][k] <= 0.0 {
                     break;
                 }
-                if !(place <= LONGEST) {
+                if place > LONGEST {
                     break;
                 }
                 found.place[i][k] = place;
