@@ -210,7 +210,7 @@ fn the_extinction_scale_of_version_1_is_that_of_the_hair() {
             (target: \"camera/distance\", keys: [(secs: 0.0, value: [1.0])])]))";
     let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
     assert_eq!(problems, []);
-    assert_eq!((project.version, project.look.extinction_scale), (2, 0.3));
+    assert_eq!((project.version, project.look.extinction_scale), (PROJECT_VERSION, 0.3));
     assert_eq!(project.shadow.deep_opacity_maps.layers, 6);
     let targets: Vec<_> = project.timeline.tracks.iter().map(|track| track.target.as_str()).collect();
     assert_eq!(targets, ["look/extinction_scale", "camera/distance"]);

@@ -19,6 +19,8 @@ const COMB_SECS: f64 = 0.7;
 pub(super) struct Combing {
     /// Offsets of strands at the start, in the frames of the new wisps.
     from: Vec<Vec3>,
+    /// How wide wisps may be at the start, in the layout of guides.
+    from_widest: Vec<f32>,
     secs: f64,
 }
 
@@ -51,7 +53,7 @@ impl Combing {
         for (first, offsets) in from.wisps.par_iter().map(of_wisp).collect::<Vec<_>>() {
             all[first..first + offsets.len()].copy_from_slice(&offsets);
         }
-        Some(Self { from: all, secs: 0.0 })
+        Some(Self { from: all, from_widest: from.widest.clone(), secs: 0.0 })
     }
 
     /// Advances the time. Returns whether the transition continues.
@@ -75,6 +77,9 @@ impl Combing {
         for (((x, y), z), from) in rows.zip(&self.from) {
             let now = from.lerp(Vec3::new(*x, *y, *z), t);
             (*x, *y, *z) = (now.x, now.y, now.z);
+        }
+        for (widest, from) in style.widest.iter_mut().zip(&self.from_widest) {
+            *widest = from + (*widest - from) * t;
         }
         Arc::new(style)
     }
