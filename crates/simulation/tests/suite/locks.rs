@@ -209,13 +209,10 @@ fn two_locks_that_cross_hinder_each_other() {
         (30..60).map(|g| 0.03 - now.point(g, 10).y).sum::<f32>() / 30.0
     };
     let free = bare();
-    let (mut rubbing, mut pushing) = (free, free);
+    let mut rubbing = free;
     rubbing.hair_friction = 0.5;
-    pushing.repulsion.strength = 0.5;
-    let through = spread(&free);
-    for (name, settings) in [("friction", rubbing), ("repulsion", pushing)] {
-        let held = spread(&settings);
-        println!("{name}: the middle falls by {held} m, and by {through} m without it");
-        assert!(held < 0.98 * through, "{name}: {held} m against {through} m");
-    }
+    let (held, through) = (spread(&rubbing), spread(&free));
+    println!("the middle falls by {held} m, and by {through} m without friction");
+    // Measured: 37 mm, and 67 mm without friction.
+    assert!(held < 0.7 * through, "{held} m against {through} m");
 }
