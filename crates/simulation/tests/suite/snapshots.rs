@@ -1,7 +1,7 @@
 //! A saved and restored state continues with the same bits, and invalid bytes are refused.
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{GroomSettings, Preset};
+use lovelock_groom::{GroomSettings, HairTie, Preset, TieReach};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RestoreError, Simulation, SimulationSettings, StepInput};
 
@@ -146,6 +146,7 @@ fn a_simulation_without_hair_can_be_saved() {
 fn a_restored_state_on_the_dancer_continues_with_the_same_bits_for_any_number_of_threads() {
     let mut stage = Stage::grown(&GroomSettings { wisps: 12, ..GroomSettings::preset(Preset::Long) });
     assert!(stage.field.is_some(), "the shipped dancer has a field");
+    stage.tie(&[HairTie { reach: TieReach::BehindEars, ..HairTie::default() }]);
     let settings = SimulationSettings::default();
     let on = |threads: usize, work: &mut (dyn FnMut() + Send)| {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(work);
