@@ -33,15 +33,15 @@ impl RowRates {
     }
 }
 
-/// Velocities well below this are creep, metres per second: the bound on friction is soft there, so that a
-/// small force still moves hair at rest.
-const CREEP: f32 = 0.002;
+/// Below this speed friction is viscous, so that hair at rest yields to a small force and returns to its style, metres per
+/// second.
+const CREEP: f32 = 0.03;
 
 /// The fraction of a `relative` velocity that friction removes which can change it by `most`, metres per second
-/// (Coulomb's law): all of it where it is small, and `most` of a large one.
+/// (Coulomb's law): `most` of a fast one, and in proportion to it of a slow one.
 #[inline(always)]
 pub(crate) fn rubbed(most: f32, relative: Vec3) -> f32 {
-    lesser(most / (relative.length_squared().sqrt() + CREEP), 1.0)
+    lesser(most / (relative.length_squared() + CREEP * CREEP).sqrt(), 1.0)
 }
 
 #[cfg(test)]

@@ -115,10 +115,11 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
         let mut v = block.velocity[i];
         for k in 0..LANES {
             let (was, head) = (at(&v, k), substep.rigid_velocity(at(x, k)));
-            let pushed = (was + (head - was) * settle) * keep[k] + at(push, k);
-            // Friction comes last, because it also resists what the forces have just added.
-            let relative = head - pushed;
-            put(&mut v, k, pushed + relative * rubbed(friction * carried[k], relative));
+            // Friction acts on the velocity before the forces: what these add is partly balanced by the tension of the
+            // links, and hair would drift if friction took some of it away first.
+            let relative = head - was;
+            let settled = was + relative * greater(settle, rubbed(friction * carried[k], relative));
+            put(&mut v, k, settled * keep[k] + at(push, k));
         }
         if block.locks > 0 {
             rub(block.locks, plan.rows[i].lock_friction, &mut v);
