@@ -154,7 +154,9 @@ impl Dance {
                 *seam = Some(Seam::of(scene, frames, frame_secs)?);
             }
             Source::Take { player, fps, seam } => {
-                *seam = Some(SeamOfTake::of(player, frames.start as f64 / *fps, count as f64 / *fps)?);
+                let frame_secs = 1.0 / *fps;
+                let (start, length) = (frames.start as f64 * frame_secs, count as f64 * frame_secs);
+                *seam = Some(SeamOfTake::of(player, start, length, frame_secs)?);
             }
         }
         Ok(())
