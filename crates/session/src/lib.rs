@@ -22,6 +22,7 @@ pub mod new_folders;
 pub mod prepare;
 pub mod progress;
 pub mod render_thread;
+pub mod resolution;
 pub mod scene;
 pub mod snapshot;
 pub mod stats;
@@ -30,6 +31,7 @@ pub mod take;
 pub mod testing;
 pub mod threads;
 pub mod totals;
+pub mod window_device;
 pub mod worker;
 
 #[cfg(test)]

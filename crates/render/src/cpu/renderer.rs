@@ -242,6 +242,7 @@ impl CpuRenderer {
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
+            ..FrameStats::default()
         }
     }
 

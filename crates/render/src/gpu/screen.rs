@@ -1,7 +1,7 @@
 //! The final pixels of a picture: hair over the body over the background.
 
 use glam::Vec4;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, constants, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, wgpu};
 
 use super::eye::Area;
 use super::frame_resources::FrameResources;
@@ -63,15 +63,14 @@ pub(super) struct Screen {
 
 impl Screen {
     pub fn new(gpu: &Gpu) -> Self {
-        let device = &gpu.device;
         let usage = wgpu::BufferUsages::STORAGE;
         Self {
-            pixels: GrowBuffer::new(device, "screen", usage),
-            plain: GrowBuffer::new(device, "plain background", usage),
+            pixels: GrowBuffer::new(gpu, "screen", usage),
+            plain: GrowBuffer::new(gpu, "plain background", usage),
             plain_of: None,
-            cells: GrowBuffer::new(device, "light of cells", usage),
-            listed: GrowBuffer::new(device, "listed pixels", usage),
-            list_count: device.create_buffer(&wgpu::BufferDescriptor {
+            cells: GrowBuffer::new(gpu, "light of cells", usage),
+            listed: GrowBuffer::new(gpu, "listed pixels", usage),
+            list_count: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("numbers of listed pixels"),
                 size: 4 * LISTS as u64,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
@@ -84,10 +83,10 @@ impl Screen {
     /// Resizes the buffers for a picture.
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
-        self.pixels.reserve(&gpu.device, pixels);
-        self.plain.reserve(&gpu.device, pixels);
-        self.listed.reserve(&gpu.device, LISTS / 2 * pixels);
-        self.cells.reserve(&gpu.device, cells(width, height));
+        self.pixels.reserve(gpu, pixels);
+        self.plain.reserve(gpu, pixels);
+        self.listed.reserve(gpu, LISTS / 2 * pixels);
+        self.cells.reserve(gpu, cells(width, height));
     }
 
     /// Red, green, blue and alpha of each pixel, row after row.
@@ -138,7 +137,7 @@ impl Screen {
     ) {
         let ScreenInput { targets, area, figure, .. } = *input;
         let area_of =
-            |label, area: Area| constants(gpu, label, &[area.left, area.top, area.columns, area.rows]);
+            |label, area: Area| commands.constants(label, &[area.left, area.top, area.columns, area.rows]);
         let (hair_area, figure_area) = (area_of("hair area", area), area_of("area of the figure", figure));
         let own = |screen| {
             frame.with([
