@@ -96,7 +96,11 @@ impl Window {
             self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        // Any command to the window makes it paint again.
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
             let shown = if compares { self.compare.has_pictures() } else { self.session.painted.is_some() };

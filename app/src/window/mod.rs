@@ -142,6 +142,8 @@ pub(crate) struct Window {
     textures: Textures,
     /// Whether the options of text that were changed to draw all glyphs anew must be set back.
     sharpen_text: bool,
+    /// The title that was set last.
+    title: String,
     /// The context of the window, and its place on the screen, points.
     ctx: Option<egui::Context>,
     place: Option<egui::Rect>,
@@ -290,6 +292,7 @@ impl Window {
             device,
             textures,
             sharpen_text: false,
+            title: String::new(),
             ctx: None,
             place: None,
             loses_device: std::env::var(LOSE_DEVICE)
@@ -310,6 +313,7 @@ impl Window {
         self.textures.attach(painter.cloned());
         if self.is_reopening {
             self.is_reopening = false;
+            self.title.clear();
             self.viewport.forget_image();
             self.compare.forget_images();
             self.thumbnails.forget();

@@ -23,9 +23,12 @@ enum Chore {
     Browser,
     /// Measures how long the window takes from an input to the screen
     Latency {
-        /// Inputs that are timed for each of three windows
+        /// Inputs that are timed for each of four windows
         #[arg(long)]
         inputs: usize,
+        /// Another build of the program, measured in turn with this one
+        #[arg(long, value_name = "PROGRAM")]
+        beside: Option<std::path::PathBuf>,
     },
     /// Makes the shipped assets again
     Assets {
@@ -40,7 +43,7 @@ fn main() -> ExitCode {
         Chore::Layers => layers::run(),
         Chore::Interchange => interchange::run(),
         Chore::Browser => browser::run(),
-        Chore::Latency { inputs } => latency::run(inputs),
+        Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };
     match done {

@@ -57,9 +57,12 @@ enum Chore {
     Layers,
     /// Measures how long the window takes from an input to the screen, on a screen of its own (Linux, Xvfb)
     Latency {
-        /// Inputs that are timed for each of three windows
+        /// Inputs that are timed for each of four windows
         #[arg(long, default_value_t = 50)]
         inputs: usize,
+        /// Another build of the program, measured in turn with this one
+        #[arg(long, value_name = "PROGRAM")]
+        beside: Option<std::path::PathBuf>,
     },
     /// Makes the shipped assets again
     Assets {
@@ -82,7 +85,10 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(),
         Chore::Docs => docs::run(),
         Chore::Layers => chore("layers", []),
-        Chore::Latency { inputs } => chore("latency", ["--inputs".into(), inputs.to_string().into()]),
+        Chore::Latency { inputs, beside } => {
+            let beside = beside.into_iter().flat_map(|program| ["--beside".into(), program.into_os_string()]);
+            chore("latency", ["--inputs".into(), inputs.to_string().into()].into_iter().chain(beside))
+        }
         Chore::Assets { preview } => chore(
             "assets",
             preview.into_iter().flat_map(|folder| ["--preview".into(), folder.into_os_string()]),
