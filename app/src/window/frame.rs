@@ -86,6 +86,7 @@ impl Window {
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
         let rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate.0);
+        self.session.thins = self.layout.view_thins.0;
         let again = self.session.send(self.history.project(), &seen, size, rate);
         if let Some(after) = again {
             ctx.request_repaint_after(after);
@@ -142,6 +143,11 @@ impl Window {
                                     "While something moves, fewer pixels are rendered if that is needed for this many \
                                      images per second. At rest every pixel is rendered.",
                                 );
+                                ui.checkbox(&mut self.layout.view_thins.0, "Fewer strands while moving")
+                                    .on_hover_text(
+                                        "While something moves, strands that are narrower than a pixel are replaced by \
+                                         fewer and wider ones.",
+                                    );
                             });
                         });
                         if let Some(label) = self.history.undo_label() {

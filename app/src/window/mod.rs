@@ -79,6 +79,8 @@ struct Layout {
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
     view_rate: ViewRate,
+    /// Whether strands narrower than a pixel are thinned while something moves.
+    view_thins: Thins,
     compare: CompareLayout,
     timeline: timeline::Zoom,
 }
@@ -90,6 +92,16 @@ struct ViewRate(f32);
 impl Default for ViewRate {
     fn default() -> Self {
         Self(resolution::DEFAULT_RATE)
+    }
+}
+
+/// A switch that is on at first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Thins(bool);
+
+impl Default for Thins {
+    fn default() -> Self {
+        Self(true)
     }
 }
 

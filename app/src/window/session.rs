@@ -60,6 +60,8 @@ pub(crate) struct Session {
     pub(crate) backwards: bool,
     /// Whether the progress of a load is shown.
     pub(crate) load_is_seen: bool,
+    /// Whether strands narrower than a pixel are thinned while something moves.
+    pub(crate) thins: bool,
     /// Whether the passes of images are shown and must be measured.
     pub(crate) measured: bool,
     pub(crate) draw_error: Option<String>,
@@ -121,6 +123,7 @@ impl Session {
             display_hz: 0.0,
             backwards: false,
             load_is_seen: false,
+            thins: true,
             measured: false,
             draw_error: None,
             done: Vec::new(),
@@ -289,14 +292,15 @@ impl Session {
             snapshot: Arc::clone(frame),
             size: size.map(side),
             still: still && automatic,
+            thinned: self.thins && automatic && !still,
             measured: self.measured,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = self.drawn.as_ref().is_some_and(|drawn| {
             Arc::ptr_eq(&drawn.project, seen)
                 && Arc::ptr_eq(&drawn.snapshot, frame)
-                && drawn.measured == request.measured
-                && (drawn.still, drawn.size) == (request.still, request.size)
+                && (drawn.still, drawn.size, drawn.measured)
+                    == (request.still, request.size, request.measured)
         });
         if !fresh {
             self.painter.request(request.clone());

@@ -17,6 +17,7 @@ use lovelock_render::{
 use crate::latest::{Latest, LatestJob};
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
+use crate::thinning::Thinning;
 use crate::window_device::WindowDevice;
 use samples::{Samples, jitter};
 
@@ -31,6 +32,8 @@ pub struct RenderRequest {
     pub size: [u32; 2],
     /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
     pub still: bool,
+    /// Whether strands narrower than a pixel are replaced by fewer and wider ones.
+    pub thinned: bool,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
 }
@@ -133,6 +136,7 @@ impl RenderThread {
             textures: None,
             last: None,
             samples: Samples::default(),
+            thinning: Thinning::default(),
             picture: Picture::default(),
             finished: (0.0, 1.0),
             failed: 0,
@@ -206,6 +210,7 @@ struct Worker {
     /// The request that was rendered last, and its samples so far.
     last: Option<RenderRequest>,
     samples: Samples,
+    thinning: Thinning,
     picture: Picture,
     /// The last finished image: its time, milliseconds, and the mean transmittance that was measured last.
     finished: (f64, f32),
@@ -370,7 +375,13 @@ impl Worker {
             (Image::on(textures, picture), stats)
         } else {
             self.samples.forget();
-            renderer.image(&snapshot.frame_input(project, &camera), *size, *measured, textures)?
+            let head = snapshot.guides.world_from_head.translation.into();
+            let thinned = request.thinned.then(|| {
+                self.thinning.choose(&snapshot.scene.style, &project.look, (&camera, size[1], head))
+            });
+            let mut input = snapshot.frame_input(project, &camera);
+            input.style = thinned.as_ref().unwrap_or(input.style);
+            renderer.image(&input, *size, *measured, textures)?
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {
             // Its own time is not known yet: that of the last finished one stands for it.

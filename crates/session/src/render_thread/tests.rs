@@ -57,6 +57,7 @@ impl Rig {
             snapshot,
             size: [64, 48],
             still: false,
+            thinned: false,
             measured: false,
         });
         while self.thread.busy().load(Ordering::Relaxed) {
@@ -240,6 +241,7 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         snapshot: Arc::clone(&rig.snapshot),
         size: [64, 48],
         still,
+        thinned: false,
         measured: false,
     };
     let wait = |samples: u32| loop {
