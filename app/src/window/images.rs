@@ -143,3 +143,9 @@ impl ShownImage {
         self.0 = None;
     }
 }
+
+/// Asks for one pass of the window, for threads with a new result. egui answers a plain request with two passes, each of which paints
+/// the whole window: without a graphics card that costs as much as an image.
+pub(crate) fn wake(ctx: &Context) {
+    ctx.request_repaint_after(std::time::Duration::from_micros(1));
+}

@@ -81,11 +81,11 @@ impl Session {
     ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
         let painter =
-            RenderThread::start(device.clone(), move || wake.request_repaint()).map_err(|error| {
+            RenderThread::start(device.clone(), move || super::images::wake(&wake)).map_err(|error| {
                 ProjectError::work(format!("the render thread could not be started: {error}"))
             })?;
         let wake = ctx.clone();
-        let live = Live::start(device.clone(), move || wake.request_repaint()).map_err(|error| {
+        let live = Live::start(device.clone(), move || super::images::wake(&wake)).map_err(|error| {
             ProjectError::work(format!("the comparison thread could not be started: {error}"))
         })?;
         // While an image is rendered, its end repaints the window anyway. A repaint per step of the simulation would slow down
@@ -93,7 +93,7 @@ impl Session {
         let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
         let wake = move || {
             if !busy.iter().any(|busy| busy.load(std::sync::atomic::Ordering::Relaxed)) {
-                wake.request_repaint();
+                super::images::wake(&wake);
             }
         };
         let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(wake))?;

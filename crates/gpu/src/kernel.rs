@@ -159,6 +159,20 @@ impl Kernel {
         group
     }
 
+    /// Dispatches as many workgroups as three words of `groups` say, `offset` bytes after its start, which the device itself may have
+    /// written.
+    pub fn run_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        group: &wgpu::BindGroup,
+        groups: &wgpu::Buffer,
+        offset: u64,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups_indirect(groups, offset);
+    }
+
     /// Dispatches at least `threads` threads; the kernel must return early in the surplus ones. The number of a thread is
     /// `id.x + id.y * groups.x * 64`.
     pub fn run(&self, pass: &mut wgpu::ComputePass, group: &wgpu::BindGroup, threads: u64) {

@@ -9,8 +9,8 @@ pub const RATES: [f32; 2] = [15.0, 120.0];
 /// The rate that is wanted unless the user chooses another one.
 pub const DEFAULT_RATE: f32 = 30.0;
 
-/// The least scale: below it hair is no longer hair.
-const LEAST: f64 = 0.3;
+/// The least scale: below it hair is no longer hair, and most of the time of an image does not depend on its size.
+const LEAST: f64 = 0.5;
 /// Scales are multiples of this, so that textures of the same size are used again.
 const STEP: f64 = 1.0 / 48.0;
 /// Weight of the newest image in the average.
@@ -41,7 +41,7 @@ impl Default for Resolution {
 }
 
 impl Resolution {
-    /// Pixels of an image per pixel of the screen along each side, 0.3 to 1.
+    /// Pixels of an image per pixel of the screen along each side, 0.5 to 1.
     pub fn scale(&self) -> f32 {
         self.scale as f32
     }
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn the_scale_is_found_soon_and_then_rests() {
         let mut resolution = Resolution::default();
-        let all = scales(&mut resolution, [10.0, 90.0], 0.1, 400);
+        let all = scales(&mut resolution, [10.0, 40.0], 0.1, 400);
         let last = all[399];
         // Within half a second it is near.
         assert!((all[15] - last).abs() < 0.12, "{} and {last}", all[15]);

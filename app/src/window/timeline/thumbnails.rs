@@ -63,7 +63,7 @@ impl Thumbnails {
         textures: &Textures,
     ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
-        let strip = Filmstrip::start(device.clone(), move || wake.request_repaint());
+        let strip = Filmstrip::start(device.clone(), move || crate::window::images::wake(&wake));
         let strip = strip.map_err(|error| {
             ProjectError::work(format!("the thread for thumbnails could not be started: {error}"))
         })?;

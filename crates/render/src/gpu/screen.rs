@@ -9,8 +9,8 @@ use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
 
-/// Threads that share the listed pixels: enough to fill a GPU, and few enough that idle threads cost little on software adapters.
-const LIT_THREADS: [u64; 2] = [1 << 18, 1 << 15];
+/// Bytes of the workgroups of one kernel.
+const GROUPS_BYTES: u64 = 12;
 
 /// The kernels that classify pixels.
 #[derive(Debug)]
@@ -19,6 +19,7 @@ pub(super) struct ScreenKernels {
     plain_background: Kernel,
     list_cells: Kernel,
     list_pixels: Kernel,
+    size_lists: Kernel,
 }
 
 impl ScreenKernels {
@@ -27,6 +28,7 @@ impl ScreenKernels {
             plain_background: Kernel::new(gpu, "plain background", source, "plain_background")?,
             list_cells: Kernel::new(gpu, "cells", source, "list_cells")?,
             list_pixels: Kernel::new(gpu, "pixels of the figure", source, "list_pixels")?,
+            size_lists: Kernel::new(gpu, "sizes of lists", source, "size_lists")?,
         })
     }
 }
@@ -58,7 +60,8 @@ pub(super) struct Screen {
     /// Lists of pixels. Two lists share a buffer of the size of the picture.
     listed: GrowBuffer<u32>,
     list_count: wgpu::Buffer,
-    lit_threads: u64,
+    /// Workgroups of the kernels that draw each list, three words each.
+    list_groups: wgpu::Buffer,
 }
 
 impl Screen {
@@ -76,7 +79,12 @@ impl Screen {
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            lit_threads: LIT_THREADS[usize::from(gpu.is_software())],
+            list_groups: gpu.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("workgroups of lists"),
+                size: GROUPS_BYTES * LISTS as u64,
+                usage: usage | wgpu::BufferUsages::INDIRECT,
+                mapped_at_creation: false,
+            }),
         }
     }
 
@@ -98,9 +106,15 @@ impl Screen {
         [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
-    /// Threads that share the listed pixels of an image of this many pixels.
-    pub fn lit_threads(&self, pixels: u64) -> u64 {
-        pixels.min(self.lit_threads)
+    /// Runs a kernel with a thread for each pixel of a list of the last picture. The device knows how many these are.
+    pub fn run_list(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        kernel: &Kernel,
+        group: &wgpu::BindGroup,
+        list: usize,
+    ) {
+        kernel.run_indirect(pass, group, &self.list_groups, GROUPS_BYTES * list as u64);
     }
 
     /// The buffers of the last picture that the kernels of layers read. `hair_area` is its area that may contain hair.
@@ -152,6 +166,7 @@ impl Screen {
                 (12, self.listed.raw().as_entire_binding()),
                 (13, self.list_count.as_entire_binding()),
                 (14, figure_area.as_entire_binding()),
+                (18, self.list_groups.as_entire_binding()),
             ])
         };
         let pixels = self.pixels.len() as u64;
@@ -165,8 +180,11 @@ impl Screen {
         let encoder = commands.encoder();
         encoder.copy_buffer_to_buffer(self.plain.raw(), 0, self.pixels.raw(), 0, 4 * pixels);
         encoder.clear_buffer(&self.list_count, 0, None);
-        let passes =
-            [(&kernels.list_cells, self.cells.len() as u64), (&kernels.list_pixels, figure.pixels())];
+        let passes = [
+            (&kernels.list_cells, self.cells.len() as u64),
+            (&kernels.list_pixels, figure.pixels()),
+            (&kernels.size_lists, 1),
+        ];
         let groups = passes.map(|(kernel, _)| kernel.bind(gpu, &own));
         commands.compute("draw/picture", |pass| {
             for ((kernel, threads), group) in passes.iter().zip(&groups) {
@@ -175,8 +193,8 @@ impl Screen {
         });
         let groups = lit.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
         commands.compute("draw/lit", |pass| {
-            for (kernel, group) in lit.picture_lit.iter().zip(&groups) {
-                kernel.run(pass, group, self.lit_threads(pixels));
+            for (list, (kernel, group)) in lit.picture_lit.iter().zip(&groups).enumerate() {
+                self.run_list(pass, kernel, group, list);
             }
         });
     }

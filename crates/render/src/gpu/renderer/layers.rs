@@ -68,8 +68,8 @@ impl GpuRenderer {
         drop(all);
         commands.compute("draw/layer-light", |pass| {
             kernels.background.run(pass, &background, pixels);
-            for (kernel, group) in kernels.lit.iter().zip(&lit) {
-                kernel.run(pass, group, self.screen.lit_threads(pixels));
+            for (list, (kernel, group)) in kernels.lit.iter().zip(&lit).enumerate() {
+                self.screen.run_list(pass, kernel, group, list);
             }
         });
 
