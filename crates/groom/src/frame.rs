@@ -84,17 +84,24 @@ fn narrowed(of: [Vec3A; 3], widest: f32) -> [Vec3A; 3] {
 /// follow the guides themselves.
 pub(crate) fn narrowed_guides(moved: &Guides, wisp: &Wisp, widest: &[f32]) -> Option<[Vec<Vec3>; 3]> {
     let points = moved.points_per_guide;
-    let mut out = [const { Vec::new() }; 3];
-    let mut any = false;
-    for p in 0..points {
+    let at = |p: usize| {
         let of = wisp.guides.map(|g| Vec3A::from(moved.point(g as usize, p)));
-        let now = narrowed(of, widest_at(widest, wisp, p, points));
-        any |= now != of && now.iter().all(|p| p.is_finite());
-        for (guide, p) in out.iter_mut().zip(now) {
-            guide.push(p.into());
+        (of, narrowed(of, widest_at(widest, wisp, p, points)))
+    };
+    // Most wisps are not wider than they may be: those need no memory.
+    let changes = |p: usize| {
+        let (of, now) = at(p);
+        now != of && now.iter().all(|p| p.is_finite())
+    };
+    (0..points).any(changes).then(|| {
+        let mut out = [(); 3].map(|()| Vec::with_capacity(points));
+        for p in 0..points {
+            for (guide, p) in out.iter_mut().zip(at(p).1) {
+                guide.push(p.into());
+            }
         }
-    }
-    any.then_some(out)
+        out
+    })
 }
 
 /// One value per lane for each of x, y, z.

@@ -1,5 +1,6 @@
 //! The default project on both backends: a skinned body with hair, in the middle of the dance.
 
+use std::alloc::System;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -10,7 +11,9 @@ use lovelock_project::files::Access;
 use lovelock_render::{Backend, DeviceImages, FrameInput, Picture, Renderer, Traffic};
 use lovelock_session::engine::Engine;
 use lovelock_session::scene::{LoadControl, SceneLoader};
+use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_testkit::flip;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 /// Bound of FLIP between the two images. Measured on a software adapter: mean 0.0057, 99th percentile 0.124 (at the edges of the
 /// eyes and the body). The control, an image 1/60 s later, has 0.025 and 0.376.
@@ -85,4 +88,67 @@ fn the_default_project_looks_the_same_on_both() {
     println!("{bytes_up} bytes up, {bytes_back} back, {waits} waits");
     assert!(bytes_up < 2 << 20 && bytes_up > 1 << 19, "{bytes_up}");
     assert!(bytes_back < 256 && waits == 0, "{bytes_back} {waits}");
+}
+
+/// Counts the allocations of this program.
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Frames of the dance that are drawn twice; the second time allocations are counted.
+const COUNTED: u64 = 6;
+
+#[test]
+fn frames_reuse_their_memory() {
+    let project = Project::default();
+    let cancelled = AtomicBool::new(false);
+    let mut silent = |_: &str, _: f32| {};
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
+    let (scene, _) = SceneLoader::new().load(&project, &Access::new(), &mut control).expect("the dancer");
+    let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+    let snapshots: Vec<_> = (0..COUNTED)
+        .map(|step| {
+            engine.advance_to_step(60 + step);
+            FrameSnapshot::clone(&engine.snapshot())
+        })
+        .collect();
+    let mut picture = Picture::default();
+    let counted = |draw: &mut dyn FnMut(&FrameInput)| {
+        let mut per_frame = Vec::new();
+        for snapshot in snapshots.iter().chain(&snapshots) {
+            let camera = snapshot.camera(&project.camera);
+            let region = Region::new(ALLOCATOR);
+            draw(&snapshot.frame_input(&project, &camera));
+            per_frame.push((region.change().bytes_allocated, region.change().allocations));
+        }
+        let last = &per_frame[COUNTED as usize..];
+        let mean = last.iter().map(|(bytes, _)| bytes).sum::<usize>() / last.len();
+        let calls = last.iter().map(|(_, calls)| calls).sum::<usize>() / last.len();
+        (per_frame[0].0, mean, calls)
+    };
+    // The pixels, strands, maps and lists stay: measured 374 KB a frame in 51 allocations by the processor, mostly the transmittance
+    // behind the hair of each light, where the first frame takes 84 MB.
+    let mut cpu = Renderer::open(Backend::Cpu).expect("the processor");
+    let (first, bytes, calls) = counted(&mut |input| {
+        cpu.picture(input, 480, 270, &mut picture).expect("a picture");
+    });
+    println!("processor: {first} bytes, then {bytes} a frame in {calls} allocations");
+    assert!(bytes < 500_000 && calls < 100 && first > 100 * bytes, "{bytes} in {calls} after {first}");
+    let mut gpu = match Renderer::open(Backend::Gpu) {
+        Ok(renderer) => renderer,
+        Err(error) => return lovelock_testkit::skip_without_adapter(&error),
+    };
+    let mut images = DeviceImages::new(gpu.gpu().expect("a device"));
+    let mut created = Vec::new();
+    let (first, bytes, calls) = counted(&mut |input| {
+        let (_, stats) = gpu.image(input, [480, 270], false, Some(&mut images)).expect("an image");
+        created.push(stats.traffic.created);
+        while gpu.in_flight() > 0 && gpu.finished().expect("no error").is_none() {
+            gpu.wait_for_oldest(Duration::from_millis(50));
+        }
+    });
+    println!("card: {first} bytes, then {bytes} a frame in {calls} allocations; created {created:?}");
+    // wgpu keeps the books of the commands: measured 3.2 MB in 1,222 allocations, none of 150 KB.
+    assert!(bytes < 5_000_000 && calls < 2500, "{bytes} in {calls}");
+    assert_eq!(created[COUNTED as usize..], [0; COUNTED as usize], "nothing is created on the card");
+    assert!(created[0] > 20, "control: {created:?}");
 }
