@@ -1,5 +1,7 @@
 //! Copying buffers and textures from the device to memory.
 
+use std::sync::mpsc::Receiver;
+
 use bytemuck::Pod;
 
 use crate::{Gpu, GpuError};
@@ -10,6 +12,8 @@ pub struct Readback {
     buffer: Option<wgpu::Buffer>,
     /// Bytes of each part.
     parts: Vec<u64>,
+    /// The answer of the device, once it was asked.
+    arrives: Option<Arrival>,
 }
 
 impl Readback {
@@ -35,16 +39,27 @@ impl Readback {
         self.buffer = Some(buffer);
     }
 
-    /// Waits for the device, then writes the bytes of each buffer of [`Readback::copy`] into the vector at the same place.
+    /// Asks for the copy, whose commands have been submitted. [`Readback::read`] waits only if it has not arrived by then.
+    pub fn ask(&mut self, gpu: &Gpu) {
+        if let Some(buffer) = &self.buffer {
+            gpu.counters.back(buffer.size());
+            self.arrives = Some(ask(buffer));
+        }
+    }
+
+    /// Waits for the device if necessary, then writes the bytes of each buffer of [`Readback::copy`] into the vector at the same place.
     ///
     /// # Errors
     /// The device is lost or the buffer cannot be mapped.
     pub fn read(&mut self, gpu: &Gpu, into: &mut [&mut Vec<u8>]) -> Result<(), GpuError> {
+        if self.arrives.is_none() {
+            self.ask(gpu);
+        }
         // Kept only on success: a buffer that stays mapped after an error cannot be used again.
-        let Some(buffer) = self.buffer.take() else {
+        let (Some(buffer), Some(arrives)) = (self.buffer.take(), self.arrives.take()) else {
             return Err(GpuError::Readback("nothing was copied".to_owned()));
         };
-        map(gpu, &buffer)?;
+        arrived(gpu, &arrives)?;
         {
             let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
             let mut rest = &bytes[..];
@@ -127,13 +142,32 @@ pub fn read_buffer<T: Pod>(gpu: &Gpu, from: &wgpu::Buffer, out: &mut [T]) -> Res
 
 /// Waits until the device has finished, then maps a buffer.
 fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
-    // An earlier error of the device explains the failure better than the failure itself.
-    let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
+    gpu.counters.back(buffer.size());
+    arrived(gpu, &ask(buffer))
+}
+
+type Arrival = Receiver<Result<(), wgpu::BufferAsyncError>>;
+
+/// Asks for mapping a buffer.
+fn ask(buffer: &wgpu::Buffer) -> Arrival {
     let (sender, receiver) = std::sync::mpsc::sync_channel(1);
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
         let _ = sender.send(result);
     });
-    gpu.counters.back(buffer.size());
-    gpu.wait()?;
-    receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))
+    receiver
+}
+
+/// Waits for a mapping, if the device has not finished already.
+fn arrived(gpu: &Gpu, arrives: &Arrival) -> Result<(), GpuError> {
+    // An earlier error of the device explains the failure better than the failure itself.
+    let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
+    let _ = gpu.device.poll(wgpu::PollType::Poll);
+    let result = match arrives.try_recv() {
+        Ok(result) => result,
+        Err(_) => {
+            gpu.wait()?;
+            arrives.recv().map_err(|error| failed(error.to_string()))?
+        }
+    };
+    result.map_err(|error| failed(error.to_string()))
 }

@@ -8,7 +8,7 @@ use lovelock_gpu::{Gpu, GpuError};
 
 use crate::{
     Backend, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image, Layers,
-    MOST_IN_FLIGHT, Picture, RayStructure, RenderError,
+    MOST_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -131,6 +131,34 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.picture(input, width, height, picture),
             None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+        }
+    }
+
+    /// Starts to render a picture on the GPU without waiting for it; `None` on the CPU, which has nothing to wait for.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn begin_picture(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+    ) -> Result<Option<PendingPicture>, RenderError> {
+        self.gpu.as_mut().map(|gpu| gpu.begin_picture(input, width, height)).transpose()
+    }
+
+    /// Finishes a picture of [`Renderer::begin_picture`]; `None` if it must be rendered again because lists were too short.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn finish_picture(
+        &mut self,
+        pending: PendingPicture,
+        picture: &mut Picture,
+    ) -> Result<Option<FrameStats>, RenderError> {
+        match &mut self.gpu {
+            Some(gpu) => gpu.finish_picture(pending, picture),
+            None => Ok(None),
         }
     }
 

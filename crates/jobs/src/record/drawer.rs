@@ -6,7 +6,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_panes::live::FilmOfPanes;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{FrameStats, Layers, Picture, Renderer};
+use lovelock_render::{FrameStats, Layers, PendingPicture, Picture, Renderer};
 use lovelock_session::prepare::open_renderer;
 use lovelock_session::snapshot::FrameSnapshot;
 
@@ -61,6 +61,45 @@ impl Drawer {
                 Ok(FrameStats { draw_ms: watch.ms(), ..FrameStats::default() })
             }
         }
+    }
+
+    /// Whether frames can be begun before the one before is finished.
+    pub(super) fn begins(&self) -> bool {
+        matches!(self, Self::One(renderer) if renderer.gpu().is_some())
+    }
+
+    /// Starts to render a frame without waiting for it; `None` where frames are rendered at once.
+    ///
+    /// # Errors
+    /// As [`Drawer::picture`].
+    pub(super) fn begin(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+    ) -> Result<Option<PendingPicture>, ProjectError> {
+        let Self::One(renderer) = self else { return Ok(None) };
+        let camera = snapshot.camera(&project.camera);
+        Ok(renderer.begin_picture(&snapshot.frame_input(project, &camera), width, height)?)
+    }
+
+    /// Finishes a frame that was begun with the same project, snapshot and size.
+    ///
+    /// # Errors
+    /// As [`Drawer::picture`].
+    pub(super) fn finish(
+        &mut self,
+        pending: PendingPicture,
+        (project, snapshot): (&Project, &Arc<FrameSnapshot>),
+        size: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<FrameStats, ProjectError> {
+        if let Self::One(renderer) = self
+            && let Some(stats) = renderer.finish_picture(pending, picture)?
+        {
+            return Ok(stats);
+        }
+        self.picture(project, snapshot, size, picture)
     }
 
     /// Renders the layers of a frame, with or without background.

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
@@ -9,11 +10,12 @@ use lovelock_project::error::ProjectError;
 use lovelock_record::{
     FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
 };
-use lovelock_render::{FrameStats, Layers, Picture};
+use lovelock_render::{FrameStats, Layers, PendingPicture, Picture};
 use lovelock_session::dance::Dance;
 use lovelock_session::new_folders::NewFolders;
 use lovelock_session::prepare::check_frames;
 use lovelock_session::progress::{Progress, report_progress};
+use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
 use super::burn_in::{burn_in, burn_in_light};
@@ -64,6 +66,16 @@ pub fn record(
     let (mut history, mut passes) = (StageHistory::new(most_times), PassHistory::new(most_times));
     let (mut shadow_bytes, mut draw_bytes) = (0, 0);
     let mut whole = Vec::new();
+    let mut in_flight: Option<Begun> = None;
+    let mut write = |drawn: &Drawn, (mut times, stats): (StageTimes, FrameStats), sink: &mut PictureSink| {
+        let encoding = Stopwatch::start();
+        job.push(drawn, sink).map_err(refused)?;
+        times.encode = encoding.ms();
+        history.push(times);
+        passes.push(&stats.passes);
+        (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
+        Ok::<_, ProjectError>(())
+    };
     for frame in frames.clone() {
         let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
         if sink.next_is_kept() {
@@ -76,15 +88,28 @@ pub fn record(
             dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
         }
         let watch = Stopwatch::start();
-        let (mut times, stats) = job.draw(frame, &mut dance, &mut drawer, &mut drawn)?;
-        let encoding = Stopwatch::start();
-        job.push(&drawn, &mut sink).map_err(refused)?;
-        times.encode = encoding.ms();
-        history.push(times);
-        passes.push(&stats.passes);
-        (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
+        // While a graphics card draws this frame, the one before is encoded.
+        let next = job.begin(frame, &mut dance, &mut drawer)?;
+        let finished = match (in_flight.take(), next) {
+            (None, Some(begun)) => {
+                in_flight = Some(begun);
+                None
+            }
+            (Some(before), next) => {
+                in_flight = next;
+                Some(job.finish(before, &mut drawer, &mut drawn)?)
+            }
+            (None, None) => Some(job.draw(frame, &mut dance, &mut drawer, &mut drawn)?),
+        };
+        if let Some(finished) = finished {
+            write(&drawn, finished, &mut sink)?;
+        }
         whole.push(watch.ms());
         report_progress(progress, Progress::Frame { done, total, steps_per_frame: dance.steps_per_frame() })?;
+    }
+    if let Some(last) = in_flight.take() {
+        let finished = job.finish(last, &mut drawer, &mut drawn)?;
+        write(&drawn, finished, &mut sink)?;
     }
     report_progress(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
@@ -262,6 +287,39 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Starts to render a frame on a graphics card; `None` where frames are rendered at once by [`Job::draw`].
+    fn begin(
+        &self,
+        frame: u64,
+        dance: &mut Dance,
+        drawer: &mut Drawer,
+    ) -> Result<Option<Begun>, ProjectError> {
+        if self.is_layered() || !drawer.begins() {
+            return Ok(None);
+        }
+        let snapshot = dance.snapshot(frame)?;
+        let project = self.project.seen_at(snapshot.position_secs).into_owned();
+        let pending = drawer.begin(&project, &snapshot, [self.width, self.height])?;
+        Ok(pending.map(|pending| Begun { frame, project, snapshot, pending }))
+    }
+
+    /// Finishes a frame that was begun.
+    fn finish(
+        &self,
+        Begun { frame, project, snapshot, pending }: Begun,
+        drawer: &mut Drawer,
+        drawn: &mut Drawn,
+    ) -> Result<(StageTimes, FrameStats), ProjectError> {
+        let size = [self.width, self.height];
+        let stats = drawer.finish(pending, (&project, &snapshot), size, &mut drawn.picture)?;
+        if self.options.label {
+            burn_in(&mut drawn.picture, &self.label(frame));
+        }
+        let mut times = snapshot.times;
+        times.take_picture(&stats);
+        Ok((times, stats))
+    }
+
     /// Renders a frame: one image, or the mean of the samples while the shutter is open.
     fn draw(
         &self,
@@ -342,6 +400,14 @@ fn refused(request: &RecordRequest, error: &RecordError) -> ProjectError {
     } else {
         ProjectError::Work { file, message: error.to_string() }
     }
+}
+
+/// A frame that a graphics card draws.
+struct Begun {
+    frame: u64,
+    project: Project,
+    snapshot: Arc<FrameSnapshot>,
+    pending: PendingPicture,
 }
 
 /// Buffers of a frame: its bytes, its layers, and the layers of one sample.

@@ -17,5 +17,5 @@ mod surface;
 mod targets;
 
 pub use pipelines::all_shaders;
-pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT};
+pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;

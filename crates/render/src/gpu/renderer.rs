@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
-use lovelock_gpu::{Commands, Gpu, GpuError, PassTime, PassTimer, Readback, wgpu};
-use lovelock_shadow::{GpuList, SUM_WORDS};
+use lovelock_gpu::{Commands, Gpu, GpuError, PassTime, PassTimer, Readback, Traffic, wgpu};
+use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
 use super::eye::{Area, Eye, EyeInput, HairOutput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
@@ -53,7 +53,8 @@ pub struct GpuRenderer {
     layers: LayerBuffers,
     /// What the last picture knew of itself.
     last: FrameUniform,
-    readback: Readback,
+    /// Readbacks of finished pictures.
+    readbacks: Vec<Readback>,
     numbers: Vec<u8>,
     heads: Vec<u8>,
     flights: Flights,
@@ -106,7 +107,7 @@ impl GpuRenderer {
             screen: Screen::new(&gpu),
             layers: LayerBuffers::new(&gpu),
             last: FrameUniform::default(),
-            readback: Readback::default(),
+            readbacks: Vec::new(),
             numbers: Vec::new(),
             heads: Vec::new(),
             flights: Flights::default(),
@@ -133,6 +134,28 @@ impl GpuRenderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
+        let before = self.gpu.traffic();
+        for _ in 0..=MOST_ATTEMPTS {
+            let pending = self.begin_picture(input, width, height)?;
+            if let Some(stats) = self.finish_picture(pending, picture)? {
+                return Ok(FrameStats { traffic: self.gpu.traffic().since(before), ..stats });
+            }
+        }
+        let reason = "the lists of fragments did not settle; draw by the processor".to_owned();
+        Err(GpuError::Input(reason).into())
+    }
+
+    /// Starts to render `input` and to read the picture back, without waiting. Pictures are finished in the order in which they began,
+    /// each by [`GpuRenderer::finish_picture`], so that the device draws while the caller prepares the next one.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::picture`].
+    pub fn begin_picture(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+    ) -> Result<PendingPicture, RenderError> {
         check_size_for(width, height, self.gpu.max_picture_side())?;
         if input.known.is_some() {
             return Err(RenderError::KnownOnGpu);
@@ -140,45 +163,67 @@ impl GpuRenderer {
         self.is_whole = false;
         let gpu = Arc::clone(&self.gpu);
         let (watch, before) = (Stopwatch::start(), gpu.traffic());
-        for attempt in 0.. {
-            let mut timer = std::mem::take(&mut self.timer);
-            let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height, Output::Memory);
-            if let Err(error) = drawn {
-                // The incomplete timings are dropped, and errors of the driver belong to this picture.
-                self.timer = PassTimer::new(&gpu)?;
-                let _ = gpu.check();
-                return Err(error);
-            }
-            self.timer = timer;
-            self.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
-            gpu.check()?;
-            let mut heads = [[0_u32; 2]; MOST_LISTS];
-            for (head, bytes) in heads.iter_mut().zip(self.heads.chunks_exact(HEAD_BYTES as usize)) {
-                let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
-                *head = [words[0], words[1]];
-            }
-            let method = self.shadow.method();
-            let [image, maps @ ..] = &heads;
-            let maps = &maps[..self.shadow.lists().count().min(maps.len())];
-            if [self.shadow.settle(&gpu, method, maps)?, self.eye.settle(&gpu, *image)?] == [false, false] {
-                break;
-            }
-            if attempt == MOST_ATTEMPTS {
-                let reason = "the lists of fragments did not settle; draw by the processor".to_owned();
-                return Err(GpuError::Input(reason).into());
-            }
+        let mut timer = std::mem::take(&mut self.timer);
+        let mut readback = self.readbacks.pop().unwrap_or_default();
+        let output = Output::Memory(&mut readback);
+        let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height, output);
+        if let Err(error) = drawn {
+            // The incomplete timings are dropped, and errors of the driver belong to this picture.
+            self.timer = PassTimer::new(&gpu)?;
+            let _ = gpu.check();
+            return Err(error);
         }
-        (picture.width, picture.height) = (width, height);
+        self.timer = timer;
+        readback.ask(&gpu);
+        Ok(PendingPicture {
+            readback,
+            size: [width, height],
+            method: self.shadow.method(),
+            maps: self.shadow.lists().count(),
+            points: self.hair.strands().point_count,
+            begun_ms: watch.ms(),
+            before,
+        })
+    }
+
+    /// Waits for a picture if the device has not finished it. `None` if lists were too short: they have been enlarged, and the picture
+    /// must be begun again.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::picture`].
+    pub fn finish_picture(
+        &mut self,
+        mut pending: PendingPicture,
+        picture: &mut Picture,
+    ) -> Result<Option<FrameStats>, RenderError> {
+        let gpu = Arc::clone(&self.gpu);
+        let watch = Stopwatch::start();
+        pending.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
+        self.readbacks.push(pending.readback);
+        gpu.check()?;
+        let mut heads = [[0_u32; 2]; MOST_LISTS];
+        for (head, bytes) in heads.iter_mut().zip(self.heads.chunks_exact(HEAD_BYTES as usize)) {
+            let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
+            *head = [words[0], words[1]];
+        }
+        let [image, maps @ ..] = &heads;
+        let maps = &maps[..pending.maps.min(maps.len())];
+        let again = [self.shadow.settle(&gpu, pending.method, maps)?, self.eye.settle(&gpu, *image)?];
+        if again != [false, false] {
+            return Ok(None);
+        }
+        [picture.width, picture.height] = pending.size;
         self.is_whole = true;
         let passes = self.timer.times(&gpu);
         let mut stats = self.stats(passes);
-        stats.draw_ms = (watch.ms() - stats.interpolate_ms - stats.shadow_ms).max(0.0);
-        stats.traffic = gpu.traffic().since(before);
-        let points = f64::from(self.hair.strands().point_count.max(1));
+        let whole_ms = pending.begun_ms + watch.ms();
+        stats.draw_ms = (whole_ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
+        stats.traffic = gpu.traffic().since(pending.before);
         if self.shadow.has_light() {
+            let points = f64::from(pending.points.max(1));
             stats.mean_transmittance = (number_of_bytes(&self.numbers) / (255.0 * points)) as f32;
         }
-        Ok(stats)
+        Ok(Some(stats))
     }
 
     /// Statistics of the last picture without its whole time, its traffic and its mean transmittance.
@@ -283,13 +328,13 @@ impl GpuRenderer {
         let present = &self.pipelines.present;
         present.collect(commands.encoder(), &lists);
         let report = match output {
-            Output::Memory => {
+            Output::Memory(readback) => {
                 let wanted = [
                     (self.screen.pixels(), 4 * pixels),
                     (self.shadow.sum(), 4 * SUM_WORDS),
                     (present.heads(), present.heads().size()),
                 ];
-                self.readback.copy(gpu, commands.encoder(), &wanted);
+                readback.copy(gpu, commands.encoder(), &wanted);
                 None
             }
             Output::Texture { shown, before, measured, report } => {
@@ -349,10 +394,23 @@ impl GpuRenderer {
     }
 }
 
+/// A picture that the device draws: see [`GpuRenderer::begin_picture`].
+#[derive(Debug)]
+pub struct PendingPicture {
+    readback: Readback,
+    size: [u32; 2],
+    method: ShadowMethod,
+    /// The number of maps with lists, and of strand points.
+    maps: usize,
+    points: u32,
+    begun_ms: f64,
+    before: Traffic,
+}
+
 /// Where a finished picture goes.
 enum Output<'a> {
     /// To memory, with what the frame reports.
-    Memory,
+    Memory(&'a mut Readback),
     /// Into the texture `shown`, or that of the image `before` if a list was too short. `report` is a spare buffer for what the frame
     /// reports.
     Texture {
