@@ -29,6 +29,7 @@ const ARROWS: [(&str, &[&str]); 18] = [
             "session",
             "project",
             "render",
+            "shadow",
             "simulation",
             "motion",
             "groom",
