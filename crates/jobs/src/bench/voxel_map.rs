@@ -35,7 +35,7 @@ const ROUNDS: [u32; 2] = [2, 12];
 /// Seconds after which no further round begins.
 const SECS: f64 = 2.0;
 /// Milliseconds for which a loop repeats within a round; a longer loop runs once.
-const ROUND_MS: f64 = 10.0;
+const ROUND_MS: f64 = 20.0;
 
 /// The paper's *f* for the fewest points and 128³ cells.
 const EXTINCTION: f32 = 50.0;
@@ -168,7 +168,8 @@ struct Loops<'a> {
     printed: ShadowSettings,
     /// The program's own.
     by_length: ShadowSettings,
-    maps: [VoxelMap; 2],
+    /// The map on all threads as printed, the same on one thread, and by length. Each keeps its memory.
+    maps: [VoxelMap; 3],
     published: [PublishedMap; 2],
     out: Vec<f32>,
 }
@@ -194,14 +195,14 @@ impl<'a> Loops<'a> {
         };
         let orders = [CellOrder::AsPrinted, CellOrder::AlongLight];
         let published = orders.map(|order| PublishedMap::new(resolution, order));
-        let maps = [VoxelMap::default(), VoxelMap::default()];
+        let maps = std::array::from_fn(|_| VoxelMap::default());
         Self { input, printed, by_length, maps, published, out: vec![0.0; strands.points()] }
     }
 
-    /// Runs the map as printed, or as the program uses it.
-    fn run_map(&mut self, by_length: bool) -> Result<(), ProjectError> {
-        let settings = if by_length { &self.by_length } else { &self.printed };
-        let map = &mut self.maps[usize::from(by_length)];
+    /// Runs one of the maps: as printed (0, and 1 for one thread), or as the program uses it (2).
+    fn run_map(&mut self, which: usize) -> Result<(), ProjectError> {
+        let settings = if which == 2 { &self.by_length } else { &self.printed };
+        let map = &mut self.maps[which];
         map.build(&self.input, settings).map_err(ProjectError::work)?;
         let Strands { x, y, z, .. } = self.input.strands;
         map.transmittance_at(x, y, z, &mut self.out);
@@ -220,7 +221,7 @@ impl<'a> Loops<'a> {
 
     /// The largest difference between the loops.
     fn difference(&mut self) -> Result<f32, ProjectError> {
-        self.run_map(false)?;
+        self.run_map(0)?;
         let wanted = self.out.clone();
         let mut largest = 0.0_f32;
         for order in 0..self.published.len() {
@@ -248,8 +249,9 @@ impl<'a> Loops<'a> {
                     let watch = Stopwatch::start();
                     match which {
                         0 | 1 => self.run_published(which),
-                        2 => one.install(|| self.run_map(false))?,
-                        _ => self.run_map(which == 4)?,
+                        2 => one.install(|| self.run_map(1))?,
+                        3 => self.run_map(0)?,
+                        _ => self.run_map(2)?,
                     }
                     *least = least.min(watch.ms());
                     if round.ms() > ROUND_MS {

@@ -3,6 +3,7 @@
 //! This is the program that the paper describes in sections 3.1 to 3.3, for `lovelock bench voxel-map`, which times
 //! [`VoxelMap`](super::VoxelMap) against it. [`mod@super::reference`] is the same map in double precision, for tests.
 
+use glam::Vec3;
 use lovelock_groom::Strands;
 
 use super::lattice::Lattice;
@@ -39,7 +40,8 @@ impl PublishedMap {
         let n = self.resolution;
         self.density.fill(0.0);
         for point in 0..strands.points() {
-            let at = self.address(lattice.psi(strands.point(point)));
+            let (cell, _) = cell(lattice, strands.point(point));
+            let at = self.address(cell);
             self.density[at] += 1.0;
         }
         let first = lattice.wrapped(lattice.first)[0];
@@ -62,11 +64,9 @@ impl PublishedMap {
     /// The filtered transmittance of every point of `strands`: trilinear, between a cell and those before it on each axis.
     pub fn filter(&self, lattice: &Lattice, strands: &Strands, out: &mut [f32]) {
         for (point, out) in out.iter_mut().enumerate() {
-            let p = strands.point(point);
-            let cell = lattice.psi(p);
+            let (cell, within) = cell(lattice, strands.point(point));
             let before = cell.map(|c| if c == 0 { self.resolution - 1 } else { c - 1 });
-            let at = lattice.lattice_from_world(p);
-            let [x, y, z] = (at - at.floor()).to_array();
+            let [x, y, z] = within.to_array();
             let mut sum = 0.0;
             for (i, a) in [(before[0], 1.0 - x), (cell[0], x)] {
                 for (j, b) in [(before[1], 1.0 - y), (cell[1], y)] {
@@ -88,11 +88,17 @@ impl PublishedMap {
     }
 }
 
+/// The cell of `p` by the paper's mapping Ψ, and the position within it, 0 to 1. Coordinates are rounded as in
+/// [`VoxelMap`](super::VoxelMap), so that a point on the border of two cells falls into the same one.
+fn cell(lattice: &Lattice, p: Vec3) -> ([usize; 3], Vec3) {
+    let window = lattice.window_from_world(p);
+    let whole = window.floor();
+    (lattice.wrapped(lattice.first + whole.as_ivec3()), window - whole)
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
-
-    use glam::Vec3;
 
     use super::*;
     use crate::voxel_map::reference::{Addressing, DenseMap};
