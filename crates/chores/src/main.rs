@@ -1,9 +1,10 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, count and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
 mod assets;
 mod browser;
+mod count;
 mod interchange;
 mod latency;
 mod layers;
@@ -27,6 +28,12 @@ enum Chore {
         #[arg(long)]
         inputs: usize,
     },
+    /// Counts instructions by valgrind and compares them with the counts in the tree
+    Count {
+        /// Replace the counts in the tree
+        #[arg(long)]
+        write: bool,
+    },
     /// Makes the shipped assets again
     Assets {
         /// Also write images of the dancer into this folder
@@ -41,6 +48,7 @@ fn main() -> ExitCode {
         Chore::Interchange => interchange::run(),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs } => latency::run(inputs),
+        Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };
     match done {
