@@ -110,7 +110,8 @@ impl Running {
             for lane in 0..LANES {
                 let d = [points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z];
                 along[lane] = d[0] * axis.x + d[1] * axis.y + d[2] * axis.z;
-                far[lane] |= if along[lane].abs() <= FARTHEST { 0 } else { 1 };
+                let is_near = along[lane].abs() <= FARTHEST;
+                far[lane] |= u32::from(!is_near);
             }
         }
         for ((along, min), max) in along.iter().zip(&mut self.min).zip(&mut self.max) {

@@ -35,13 +35,14 @@ pub(super) struct Amounts {
 
 /// The bound of each stage and pass. A row applies to the stages whose name begins with it; the first row that does counts.
 /// `docs/performance.md` contains this table with the least work per item.
-const BOUNDS: [(&str, Bound, Item); 15] = [
+const BOUNDS: [(&str, Bound, Item); 16] = [
     ("motion", Bound::MultiplyAdds, Item::Vertex),
     ("simulate", Bound::MultiplyAdds, Item::SimulatedPoint),
     ("interpolate", Bound::Copy, Item::StrandPoint),
     ("shadow", Bound::ScatteredAdds, Item::LitPoint),
     ("draw/body", Bound::MultiplyAdds, Item::Vertex),
     ("draw/points", Bound::MultiplyAdds, Item::StrandPoint),
+    ("draw/sort-and-blend", Bound::MultiplyAdds, Item::StrandPoint),
     ("draw/sort", Bound::Copy, Item::StrandPoint),
     ("draw/scatter", Bound::ScatteredAdds, Item::StrandPoint),
     ("draw/clear", Bound::Copy, Item::Pixel),
