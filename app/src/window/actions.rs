@@ -234,12 +234,16 @@ impl Window {
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };
-                let picture = &painted.picture;
-                match recording::write_png(path, picture.width, picture.height, &picture.rgba) {
+                let written =
+                    painted.image.picture().map_err(|error| error.to_string()).and_then(|picture| {
+                        recording::write_png(path, picture.width, picture.height, &picture.rgba)
+                            .map_err(|error| error.to_string())
+                    });
+                match written {
                     Ok(()) => {
                         self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
                     }
-                    Err(error) => self.warn([error.to_string()]),
+                    Err(error) => self.warn([error]),
                 }
             }
         }
@@ -305,7 +309,7 @@ impl Window {
     /// Handles a request to close the window: asks first if changes would be lost.
     pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && !self.quitting && self.history.is_modified() {
+        if asked && !self.quitting && !self.is_reopening && self.history.is_modified() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.pending = Some(Pending::Quit);
         }

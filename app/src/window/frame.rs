@@ -4,6 +4,7 @@ use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Scro
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_session::resolution;
 
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::{self, Viewport};
@@ -84,14 +85,23 @@ impl Window {
         let compares = self.layout.compare.shown;
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
-        self.session.send(self.history.project(), &seen, size);
+        let rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate.0);
+        self.session.thins = self.layout.view_thins.0;
+        let again = self.session.send(self.history.project(), &seen, size, rate);
+        if let Some(after) = again {
+            ctx.request_repaint_after(after);
+        }
         if compares {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
             self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        // Any command to the window makes it paint again.
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
             let shown = if compares { self.compare.has_pictures() } else { self.session.painted.is_some() };
@@ -124,6 +134,21 @@ impl Window {
                             {
                                 ui.radio_value(&mut self.layout.view_scale, scale, name);
                             }
+                            ui.separator();
+                            ui.add_enabled_ui(self.layout.view_scale <= 0.0, |ui| {
+                                let [least, most] = resolution::RATES;
+                                let rate = &mut self.layout.view_rate.0;
+                                let slider = egui::Slider::new(rate, least..=most).integer();
+                                ui.add(slider.suffix(" images/s").text("while moving")).on_hover_text(
+                                    "While something moves, fewer pixels are rendered if that is needed for this many \
+                                     images per second. At rest every pixel is rendered.",
+                                );
+                                ui.checkbox(&mut self.layout.view_thins.0, "Fewer strands while moving")
+                                    .on_hover_text(
+                                        "While something moves, strands that are narrower than a pixel are replaced by \
+                                         fewer and wider ones.",
+                                    );
+                            });
                         });
                         if let Some(label) = self.history.undo_label() {
                             ui.label(
@@ -190,8 +215,8 @@ impl Window {
 
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let most_pixels = viewport::most_pixels(self.session.painter().adapter().as_deref());
-            let painted = self.session.painted.as_ref();
+            let most_pixels = viewport::most_pixels_at_rest(self.session.painter().adapter().as_deref());
+            let painted = (self.session.painted.as_deref(), &self.textures);
             let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
             if self.tools(ui, &response, project) {
                 camera_control::apply(&mut project.camera, &response);
@@ -203,9 +228,30 @@ impl Window {
             let ms = self.session.stages.median_total();
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
-            Viewport::caption(ui, rect, Align2::RIGHT_TOP, &format!("{ms:.0} ms · {name}"), theme::QUIET);
+            let size = self.size_label();
+            Viewport::caption(
+                ui,
+                rect,
+                Align2::RIGHT_TOP,
+                &format!("{ms:.0} ms{size} · {name}"),
+                theme::QUIET,
+            );
             self.running(ui, rect);
         });
+    }
+
+    /// What the automatic size of images does at present, after a separator.
+    fn size_label(&self) -> String {
+        let Some(painted) = self.session.painted.as_deref() else { return String::new() };
+        if self.layout.view_scale > 0.0 {
+            return String::new();
+        }
+        let share = painted.image.size()[0] as f32 / self.viewport.wanted[0].max(1) as f32;
+        match painted.samples {
+            _ if share < 0.98 => format!(" · {:.0} % size", 100.0 * share),
+            samples if samples > 1 => format!(" · {samples} samples"),
+            _ => String::new(),
+        }
     }
 
     /// Shows background work over the image as well, because the panels may be hidden.

@@ -2,6 +2,7 @@
 
 use egui::Ui;
 use lovelock_project::Project;
+use lovelock_render::{Backend, Traffic};
 use lovelock_session::clock::STEP_SECS;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::RenderedImage;
@@ -76,9 +77,10 @@ impl Window {
     pub(super) fn facts(&self) -> Vec<panels::statistics::Fact> {
         let mut facts = Vec::new();
         let mut fact = |name, tip, value| facts.push(panels::statistics::Fact { name, tip, value });
-        if let Some(RenderedImage { picture, stats, .. }) = self.session.painted.as_deref() {
+        if let Some(RenderedImage { image, stats, .. }) = self.session.painted.as_deref() {
             let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
-            let size = format!("{} × {}", picture.width, picture.height);
+            let [width, height] = image.size();
+            let size = format!("{width} × {height}");
             fact("Picture", "Size of the rendered image in pixels.", size);
             fact("Segments drawn", "Segments of all strands in the image.", stats.segments.to_string());
             fact("Shadow maps", "Memory of the shadow maps of all lights.", mib(stats.shadow_bytes));
@@ -87,11 +89,34 @@ impl Window {
                 "Memory for the interpolated strands and for blending them in each pixel.",
                 mib(stats.draw_bytes),
             );
-            fact(
-                "Mean transmittance",
-                "Mean fraction of the first light that reaches a point of the hair through other hair.",
-                format!("{:.3}", stats.mean_transmittance),
-            );
+            let by_card =
+                self.session.painter().adapter().is_some_and(|adapter| adapter.backend == Backend::Gpu);
+            if !by_card || self.session.measured {
+                fact(
+                    "Mean transmittance",
+                    "Mean fraction of the first light that reaches a point of the hair through other hair.",
+                    format!("{:.3}", stats.mean_transmittance),
+                );
+            }
+            if by_card {
+                let Traffic { bytes_up, bytes_back, waits, created } = stats.traffic;
+                let kib = |bytes: u64| format!("{:.1} KiB", bytes as f64 / 1024.0);
+                fact(
+                    "To the card",
+                    "Copied from memory to the graphics device for the last image: guides, body and constants.",
+                    kib(bytes_up),
+                );
+                fact(
+                    "From the card",
+                    "Copied back to memory for the last image: lengths of lists, and what unfolding the passes measures.",
+                    kib(bytes_back),
+                );
+                fact(
+                    "Waits, new buffers",
+                    "How often the last image waited for the graphics device, and what it created there.",
+                    format!("{waits}, {created}"),
+                );
+            }
         }
         if let Some(frame) = &self.session.frame {
             fact(

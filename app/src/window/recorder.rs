@@ -43,7 +43,7 @@ impl Recorder {
         let request =
             RecordRequest { out: out.to_owned(), access, panes, resume, ..RecordRequest::default() };
         let ctx = ctx.clone();
-        match RecordJob::start(project, request, Arc::new(move || ctx.request_repaint())) {
+        match RecordJob::start(project, request, Arc::new(move || super::images::wake(&ctx))) {
             Ok(job) => {
                 self.state =
                     State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };

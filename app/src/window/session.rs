@@ -2,21 +2,28 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_panes::live::Live;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage};
+use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_session::stats::{PassHistory, StageHistory};
+use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
+use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
 use super::panels::{body, hair};
 
 /// Number of frames in the plot of stage times.
 const PLOTTED_FRAMES: usize = 240;
+
+/// Time without any change after which an image is rendered at its full size, and then with further samples.
+const AT_REST: Duration = Duration::from_millis(250);
 
 /// The engine's threads and their latest results.
 pub(crate) struct Session {
@@ -26,8 +33,14 @@ pub(crate) struct Session {
     access: Access,
     /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
-    /// The last request to the render thread: project, frame and size.
-    pub(crate) drawn: Option<(Arc<Project>, Arc<FrameSnapshot>, [u32; 2])>,
+    /// The last request to the render thread.
+    pub(crate) drawn: Option<RenderRequest>,
+    resolution: Resolution,
+    /// What was last shown, and since when it has been the same.
+    shown: Option<(Arc<Project>, Arc<FrameSnapshot>)>,
+    /// The rate that images keep, images per second; 0 if their size is fixed.
+    rate_wanted: f32,
+    same_since: Stopwatch,
     seen_painted: u64,
     seen_notices: u64,
     pub(crate) scene: Option<Arc<Scene>>,
@@ -47,6 +60,10 @@ pub(crate) struct Session {
     pub(crate) backwards: bool,
     /// Whether the progress of a load is shown.
     pub(crate) load_is_seen: bool,
+    /// Whether strands narrower than a pixel are thinned while something moves.
+    pub(crate) thins: bool,
+    /// Whether the passes of images are shown and must be measured.
+    pub(crate) measured: bool,
     pub(crate) draw_error: Option<String>,
     /// Messages that have not been shown yet.
     pub(crate) done: Vec<String>,
@@ -55,18 +72,20 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Starts the threads for `project`. Each requests a repaint of `ctx` when it has a new result.
+    /// Starts the threads for `project`, which draw on `device` where possible. Each requests a repaint of `ctx` when it has a new result.
     pub(crate) fn start(
         project: &Arc<Project>,
         access: Access,
         ctx: &egui::Context,
+        device: &WindowDevice,
     ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
-        let painter = RenderThread::start(move || wake.request_repaint()).map_err(|error| {
-            ProjectError::work(format!("the render thread could not be started: {error}"))
-        })?;
+        let painter =
+            RenderThread::start(device.clone(), move || super::images::wake(&wake)).map_err(|error| {
+                ProjectError::work(format!("the render thread could not be started: {error}"))
+            })?;
         let wake = ctx.clone();
-        let live = Live::start(move || wake.request_repaint()).map_err(|error| {
+        let live = Live::start(device.clone(), move || super::images::wake(&wake)).map_err(|error| {
             ProjectError::work(format!("the comparison thread could not be started: {error}"))
         })?;
         // While an image is rendered, its end repaints the window anyway. A repaint per step of the simulation would slow down
@@ -74,7 +93,7 @@ impl Session {
         let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
         let wake = move || {
             if !busy.iter().any(|busy| busy.load(std::sync::atomic::Ordering::Relaxed)) {
-                wake.request_repaint();
+                super::images::wake(&wake);
             }
         };
         let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(wake))?;
@@ -85,6 +104,10 @@ impl Session {
             access,
             simulated: Arc::clone(project),
             drawn: None,
+            resolution: Resolution::default(),
+            shown: None,
+            rate_wanted: 0.0,
+            same_since: Stopwatch::start(),
             seen_painted: 0,
             seen_notices: 0,
             scene: None,
@@ -100,6 +123,8 @@ impl Session {
             display_hz: 0.0,
             backwards: false,
             load_is_seen: false,
+            thins: true,
+            measured: false,
             draw_error: None,
             done: Vec::new(),
             saved_take: None,
@@ -210,6 +235,10 @@ impl Session {
         }
         if let Some(painted) = self.painter.images().newer_than(&mut self.seen_painted) {
             self.stages.push(painted.times);
+            if self.drawn.as_ref().is_some_and(|drawn| !drawn.still && drawn.size == painted.image.size()) {
+                let StageTimes { interpolate, shadow, draw, .. } = painted.times;
+                self.resolution.take(interpolate + shadow + draw, self.rate_wanted);
+            }
             self.passes.push(&painted.stats.passes);
             self.painted = Some(painted);
         }
@@ -218,9 +247,21 @@ impl Session {
         said
     }
 
+    /// Draws the current frame again, because its image was on a device that is lost.
+    pub(crate) fn draw_again(&mut self) {
+        (self.drawn, self.painted) = (None, None);
+    }
+
     /// Sends changes on: the project to the simulation, and the frame to the render thread, with the project `seen` at the current
-    /// time.
-    pub(crate) fn send(&mut self, project: &Arc<Project>, seen: &Arc<Project>, size: [u32; 2]) {
+    /// time. Images have the size `size`; with a `rate`, images per second, fewer pixels while something moves. Returns after which time
+    /// it must be called again even if nothing happens.
+    pub(crate) fn send(
+        &mut self,
+        project: &Arc<Project>,
+        seen: &Arc<Project>,
+        size: [u32; 2],
+        rate: Option<f32>,
+    ) -> Option<Duration> {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
@@ -228,20 +269,44 @@ impl Session {
         if self.backwards && project.take.file.is_none() {
             self.set_backwards(false);
         }
-        let Some(frame) = &self.frame else { return };
-        // Frames are compared by identity and not by their step: seeking, settling and other hair make new frames of the same step.
-        let fresh = self.drawn.as_ref().is_some_and(|(drawn, drawn_frame, drawn_size)| {
-            Arc::ptr_eq(drawn, seen) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
-        });
-        if !fresh && size[0] > 0 && size[1] > 0 {
-            self.painter.request(RenderRequest {
-                project: Arc::clone(seen),
-                snapshot: Arc::clone(frame),
-                width: size[0],
-                height: size[1],
-            });
-            self.drawn = Some((Arc::clone(seen), Arc::clone(frame), size));
+        let frame = self.frame.as_ref()?;
+        if size[0] == 0 || size[1] == 0 {
+            return None;
         }
+        // Frames are compared by identity and not by their step: seeking, settling and other hair make new frames of the same step.
+        let same = self
+            .shown
+            .as_ref()
+            .is_some_and(|(shown, shown_frame)| Arc::ptr_eq(shown, seen) && Arc::ptr_eq(shown_frame, frame));
+        if !same {
+            self.shown = Some((Arc::clone(seen), Arc::clone(frame)));
+            self.same_since = Stopwatch::start();
+        }
+        let still = !self.playing && self.same_since.elapsed() >= AT_REST;
+        let automatic = rate.is_some();
+        self.rate_wanted = rate.unwrap_or_default();
+        let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };
+        let side = |side: u32| ((side as f32 * scale).round() as u32).clamp(16, side.max(16));
+        let request = RenderRequest {
+            project: Arc::clone(seen),
+            snapshot: Arc::clone(frame),
+            size: size.map(side),
+            still: still && automatic,
+            thinned: self.thins && automatic && !still,
+            measured: self.measured,
+        };
+        // At rest an image is only replaced by a better one; its scale follows the next movement.
+        let fresh = self.drawn.as_ref().is_some_and(|drawn| {
+            Arc::ptr_eq(&drawn.project, seen)
+                && Arc::ptr_eq(&drawn.snapshot, frame)
+                && (drawn.still, drawn.size, drawn.measured)
+                    == (request.still, request.size, request.measured)
+        });
+        if !fresh {
+            self.painter.request(request.clone());
+            self.drawn = Some(request);
+        }
+        (automatic && !still && !self.playing).then(|| AT_REST.saturating_sub(self.same_since.elapsed()))
     }
 
     /// Loads again although the project has not changed, because a file was picked that it could not read before.

@@ -92,7 +92,8 @@ impl Window {
                         super::control::note(ui, "Of the single image, before the comparison was opened.");
                     }
                     let session = &self.session;
-                    panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
+                    self.session.measured =
+                        panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
                 });
             });
         });

@@ -1,14 +1,13 @@
 //! The image in the window.
 
-use egui::{
-    Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
-};
+use egui::{Align2, Color32, FontId, Rect, Response, Sense, Ui, Vec2, pos2};
 use lovelock_render::Backend;
 use lovelock_session::render_thread::{Adapter, RenderedImage};
 
+use super::images::{ShownImage, Textures};
 use super::theme;
 
-/// The most pixels that are rendered for the window, so that the image updates often enough for styling: a graphics card renders
+/// The most pixels that are rendered for a pane, so that the image updates often enough for styling: a graphics card renders
 /// every pixel, the CPU fewer, and a software adapter fewer still.
 pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
     match adapter {
@@ -18,11 +17,18 @@ pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
     }
 }
 
-/// The image as a texture of the window.
+/// The most pixels that are rendered while nothing moves. Only a software adapter is too slow for every pixel even then.
+pub(crate) fn most_pixels_at_rest(adapter: Option<&Adapter>) -> f32 {
+    match adapter {
+        Some(adapter) if adapter.software && adapter.backend == Backend::Gpu => 1280.0 * 720.0,
+        _ => f32::INFINITY,
+    }
+}
+
+/// The image in the window.
 #[derive(Default)]
 pub(crate) struct Viewport {
-    texture: Option<TextureHandle>,
-    shown: Option<(u64, usize)>,
+    shown: ShownImage,
     /// Requested size of images, pixels.
     pub(crate) wanted: [u32; 2],
 }
@@ -33,7 +39,7 @@ impl Viewport {
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
-        painted: Option<&std::sync::Arc<RenderedImage>>,
+        (painted, textures): (Option<&RenderedImage>, &Textures),
         most_pixels: f32,
         scale: f32,
     ) -> Response {
@@ -41,33 +47,16 @@ impl Viewport {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
         if let Some(painted) = painted {
-            // In slow motion several images belong to one step.
-            let key = (painted.snapshot.time_secs.to_bits(), std::sync::Arc::as_ptr(painted) as usize);
-            if self.shown != Some(key) && !painted.picture.rgba.is_empty() {
-                let size = [painted.picture.width as usize, painted.picture.height as usize];
-                let image = ColorImage::from_rgba_unmultiplied(size, &painted.picture.rgba);
-                match &mut self.texture {
-                    Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                    None => {
-                        self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR));
-                    }
-                }
-                self.shown = Some(key);
-            }
+            self.shown.set(ui.ctx(), textures, "picture", &painted.image, false);
         }
         let painter = ui.painter_at(rect);
-        let place = self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect));
+        let place = self.place(rect);
         // No background is painted if the image fills the viewport.
         if place.is_none_or(|place| !place.expand(1.0).contains_rect(rect)) {
             painter.rect_filled(rect, 0.0, theme::PAGE);
         }
-        if let (Some(texture), Some(place)) = (&self.texture, place) {
-            painter.image(
-                texture.id(),
-                place,
-                Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
-                Color32::WHITE,
-            );
+        if let (Some(texture), Some(place)) = (self.shown.texture(), place) {
+            painter.image(texture, place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
         } else {
             painter.text(
                 rect.center(),
@@ -82,7 +71,12 @@ impl Viewport {
 
     /// The position of the image in `rect`; `None` before there is one.
     pub(crate) fn place(&self, rect: Rect) -> Option<Rect> {
-        self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect))
+        self.shown.size().map(|size| fit(size, rect))
+    }
+
+    /// Forgets the image, whose device is lost.
+    pub(crate) fn forget_image(&mut self) {
+        self.shown.forget();
     }
 
     /// A line of text in a corner of the image.

@@ -24,9 +24,12 @@ enum Chore {
     Browser,
     /// Measures how long the window takes from an input to the screen
     Latency {
-        /// Inputs that are timed for each of three windows
+        /// Inputs that are timed for each of four windows
         #[arg(long)]
         inputs: usize,
+        /// Another build of the program, measured in turn with this one
+        #[arg(long, value_name = "PROGRAM")]
+        beside: Option<std::path::PathBuf>,
     },
     /// Counts instructions by valgrind and compares them with the counts in the tree
     Count {
@@ -47,7 +50,7 @@ fn main() -> ExitCode {
         Chore::Layers => layers::run(),
         Chore::Interchange => interchange::run(),
         Chore::Browser => browser::run(),
-        Chore::Latency { inputs } => latency::run(inputs),
+        Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };

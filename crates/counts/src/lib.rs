@@ -177,7 +177,7 @@ impl Drawn {
             lights: Light::default_rig(),
             shadow: ShadowSettings { method: ShadowMethod::None, ..ShadowSettings::default() },
             settings: PictureSettings { transparency, ground: false, ..PictureSettings::default() },
-            renderer: CpuRenderer::default(),
+            renderer: CpuRenderer::default().keeping_nothing(),
             picture: Picture::default(),
         };
         made.draw();

@@ -2,6 +2,8 @@
 
 use bytemuck::Pod;
 
+use crate::Gpu;
+
 /// A buffer of `T` whose whole content is written at once. It grows when more is written than it holds.
 #[derive(Debug)]
 pub struct GrowBuffer<T> {
@@ -14,15 +16,15 @@ pub struct GrowBuffer<T> {
 
 impl<T: Pod> GrowBuffer<T> {
     /// An empty buffer with the given `usage`, to which `COPY_DST` and `COPY_SRC` are added.
-    pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+    pub fn new(gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        let buffer = make(device, label, usage, size_of::<T>().max(16) as u64);
+        let buffer = make(gpu, label, usage, size_of::<T>().max(16) as u64);
         Self { label, usage, buffer, len: 0, _of: std::marker::PhantomData }
     }
 
     /// Makes room for `len` items without writing any. Returns whether the buffer was replaced: then bind groups that use
     /// it must be made again.
-    pub fn reserve(&mut self, device: &wgpu::Device, len: usize) -> bool {
+    pub fn reserve(&mut self, gpu: &Gpu, len: usize) -> bool {
         self.len = len;
         let size = ((len * size_of::<T>()).max(16) as u64).next_multiple_of(16);
         if size <= self.buffer.size() {
@@ -30,19 +32,17 @@ impl<T: Pod> GrowBuffer<T> {
         }
         // Half as much again, so that dragging a slider does not replace the buffer at every step; but no more than can be
         // bound, because buffers are bound whole.
-        let limits = device.limits();
+        let limits = gpu.device.limits();
         let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let grown = (size + size / 2).next_multiple_of(16).min(limit).max(size);
-        self.buffer = make(device, self.label, self.usage, grown);
+        self.buffer = make(gpu, self.label, self.usage, grown);
         true
     }
 
     /// Replaces the content by `items`. Returns what [`Self::reserve`] returns.
-    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, items: &[T]) -> bool {
-        let new = self.reserve(device, items.len());
-        if !items.is_empty() {
-            queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(items));
-        }
+    pub fn write(&mut self, gpu: &Gpu, items: &[T]) -> bool {
+        let new = self.reserve(gpu, items.len());
+        gpu.upload(&self.buffer, 0, items);
         new
     }
 
@@ -62,26 +62,6 @@ impl<T: Pod> GrowBuffer<T> {
     }
 }
 
-fn make(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage,
-        mapped_at_creation: false,
-    })
-}
-
-/// A uniform buffer with a constant value.
-pub fn constants<T: Pod>(gpu: &crate::Gpu, label: &str, value: &T) -> wgpu::Buffer {
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: (size_of::<T>() as u64).next_multiple_of(16),
-        usage: wgpu::BufferUsages::UNIFORM,
-        mapped_at_creation: true,
-    });
-    if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
-        bytes.slice(..size_of::<T>()).copy_from_slice(bytemuck::bytes_of(value));
-    }
-    buffer.unmap();
-    buffer
+fn make(gpu: &Gpu, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
+    gpu.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }

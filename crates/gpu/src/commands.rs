@@ -1,9 +1,11 @@
 //! The passes of one frame and their durations.
 
+use bytemuck::Pod;
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
 
 use lovelock_base::clock::Stopwatch;
 
+use crate::constants::constants;
 use crate::{Gpu, GpuError};
 
 /// The duration of one pass on the device. Passes with the same name are added up.
@@ -22,6 +24,7 @@ pub struct PassTimer(Clock);
 enum Clock {
     Timestamps(Box<GpuProfiler>),
     Wall(Vec<PassTime>),
+    Off,
 }
 
 impl std::fmt::Debug for PassTimer {
@@ -56,8 +59,14 @@ impl PassTimer {
         Ok(Self(Clock::Timestamps(Box::new(profiler))))
     }
 
+    /// A timer that measures nothing, so that all passes are submitted at once and nothing is waited for or read back.
+    pub const fn off() -> Self {
+        Self(Clock::Off)
+    }
+
     /// Begins a frame.
     pub fn begin<'a>(&'a mut self, gpu: &'a Gpu, label: &'static str) -> Commands<'a> {
+        gpu.begin_frame();
         if let Clock::Wall(times) = &mut self.0 {
             times.clear();
         }
@@ -67,6 +76,7 @@ impl PassTimer {
     /// The times of the last finished frame in the order of its passes; empty if none was measured. Wait for the device first.
     pub fn times(&mut self, gpu: &Gpu) -> Vec<PassTime> {
         match &mut self.0 {
+            Clock::Off => Vec::new(),
             Clock::Wall(times) => std::mem::take(times),
             Clock::Timestamps(profiler) => {
                 let mut newest = Vec::new();
@@ -153,6 +163,7 @@ impl Commands<'_> {
                 encode(&mut self.encoder, Some(&query));
                 profiler.end_query(&mut self.encoder, query);
             }
+            Clock::Off => encode(&mut self.encoder, None),
             Clock::Wall(times) => {
                 let watch = Stopwatch::start();
                 encode(&mut self.encoder, None);
@@ -160,10 +171,15 @@ impl Commands<'_> {
                 let done = std::mem::replace(&mut self.encoder, next);
                 self.gpu.queue.submit([done.finish()]);
                 // The loss of the device is reported when the frame is read back.
-                let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+                let _ = self.gpu.wait();
                 add(times, name, watch.ms());
             }
         }
+    }
+
+    /// A uniform buffer that holds `value` in this frame. It is kept for the same pass of the next frame.
+    pub fn constants<T: Pod>(&self, label: &str, value: &T) -> wgpu::Buffer {
+        constants(self.gpu, label, bytemuck::bytes_of(value))
     }
 
     /// The encoder, for commands between passes.

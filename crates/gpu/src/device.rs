@@ -2,6 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use bytemuck::Pod;
+
+use crate::constants::ConstantPool;
+use crate::traffic::{Counters, Traffic};
 use crate::{ShaderSource, check_shader};
 
 /// An error of the graphics device.
@@ -35,8 +39,9 @@ pub enum GpuError {
     Readback(String),
 }
 
-/// A graphics device, its queue and a description of its adapter.
-#[derive(Clone, Debug)]
+/// A handle of a graphics device: the device, its queue, a description of its adapter, and what goes through this handle.
+/// Several handles may share a device, one for each renderer ([`Gpu::handle`]).
+#[derive(Debug)]
 pub struct Gpu {
     /// Creates resources.
     pub device: wgpu::Device,
@@ -44,19 +49,24 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name, type and backend of the adapter.
     pub info: wgpu::AdapterInfo,
-    /// The first error since the last [`Gpu::check`], or the loss of the device.
     fault: Fault,
+    pub(crate) counters: Counters,
+    pub(crate) constants: Mutex<ConstantPool>,
 }
 
-type Fault = Arc<Mutex<Option<GpuError>>>;
+/// The errors of a device that have not been reported.
+#[derive(Debug, Default)]
+struct Faults {
+    /// The first rejected command since the last [`Gpu::check`].
+    refused: Option<String>,
+    /// Why the device was lost. It stays lost.
+    lost: Option<String>,
+}
 
-fn note(fault: &Fault, error: GpuError) {
-    tracing::error!(%error, "graphics device");
-    let mut fault = fault.lock().unwrap_or_else(PoisonError::into_inner);
-    // A lost device rejects every command: the loss is the cause of the other errors.
-    if fault.is_none() || matches!(error, GpuError::Lost(_)) {
-        *fault = Some(error);
-    }
+type Fault = Arc<Mutex<Faults>>;
+
+fn note(fault: &Fault, change: impl FnOnce(&mut Faults)) {
+    change(&mut fault.lock().unwrap_or_else(PoisonError::into_inner));
 }
 
 impl Gpu {
@@ -89,40 +99,142 @@ impl Gpu {
         }))
         .map_err(|error| GpuError::NoAdapter(error.to_string()))?;
         let info = adapter.get_info();
-        // The highest limits of the adapter where size matters; the defaults elsewhere.
+        let (device, queue) = pollster::block_on(adapter.request_device(&Self::device_descriptor(&adapter)))
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        Ok(Self::adopt(device, queue, info))
+    }
+
+    /// What a device of `adapter` must offer to render: the highest limits of the adapter where size matters, the defaults elsewhere,
+    /// and timestamps if there are any.
+    pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         let has = adapter.limits();
-        let required_limits = wgpu::Limits {
-            max_texture_dimension_2d: has.max_texture_dimension_2d,
-            max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
-            max_buffer_size: has.max_buffer_size,
-            ..wgpu::Limits::default()
-        };
-        // Timestamps are the only optional feature that is used.
-        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        wgpu::DeviceDescriptor {
             label: Some("lovelock"),
-            required_features,
-            required_limits,
+            // Timestamps are the only optional feature that is used.
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: wgpu::Limits {
+                max_texture_dimension_2d: has.max_texture_dimension_2d,
+                max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
+                max_buffer_size: has.max_buffer_size,
+                ..wgpu::Limits::default()
+            },
             ..Default::default()
-        }))
-        .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        }
+    }
+
+    /// Takes a device that somebody else opened, such as the window, with what [`Gpu::device_descriptor`] asks for. Its errors are
+    /// reported by [`Gpu::check`] from now on.
+    pub fn adopt(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Arc<Self> {
         tracing::info!(adapter = %info.name, backend = %info.backend, "graphics device");
         let fault = Fault::default();
         let noted = Arc::clone(&fault);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            note(&noted, GpuError::Refused(error.to_string()));
+            tracing::error!(%error, "graphics device");
+            note(&noted, |faults| {
+                faults.refused.get_or_insert_with(|| error.to_string());
+            });
         }));
         let noted = Arc::clone(&fault);
-        device.set_device_lost_callback(move |_, reason| note(&noted, GpuError::Lost(reason)));
-        Ok(Arc::new(Self { device, queue, info, fault }))
+        device.set_device_lost_callback(move |_, reason| {
+            tracing::error!(reason, "the graphics device was lost");
+            note(&noted, |faults| faults.lost = Some(reason));
+        });
+        Arc::new(Self {
+            device,
+            queue,
+            info,
+            fault,
+            counters: Counters::default(),
+            constants: Mutex::default(),
+        })
     }
 
-    /// Returns the error that occurred since the last call, if any.
+    /// Another handle of the same device, with counters and constants of its own.
+    #[must_use]
+    pub fn handle(&self) -> Arc<Self> {
+        Arc::new(Self {
+            device: self.device.clone(),
+            queue: self.queue.clone(),
+            info: self.info.clone(),
+            fault: Arc::clone(&self.fault),
+            counters: Counters::default(),
+            constants: Mutex::default(),
+        })
+    }
+
+    /// Returns the error that occurred since the last call of any handle, if any.
     ///
     /// # Errors
-    /// The first command that the driver rejected, or the loss of the device.
+    /// The loss of the device, from then on in every call; or the first command that the driver rejected.
     pub fn check(&self) -> Result<(), GpuError> {
-        self.fault.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+        let mut faults = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
+        // A lost device rejects every command: the loss is the cause of the other errors.
+        let refused = faults.refused.take();
+        match &faults.lost {
+            Some(reason) => Err(GpuError::Lost(reason.clone())),
+            None => refused.map_or(Ok(()), |reason| Err(GpuError::Refused(reason))),
+        }
+    }
+
+    /// Whether the device was lost. Does not wait.
+    pub fn is_lost(&self) -> bool {
+        // A loss is reported when the device is polled.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.fault.lock().unwrap_or_else(PoisonError::into_inner).lost.is_some()
+    }
+
+    /// What has gone through this handle so far.
+    pub fn traffic(&self) -> Traffic {
+        self.counters.totals()
+    }
+
+    /// Starts a frame of this handle: its passes get the constant buffers of the last frame again, in order.
+    pub(crate) fn begin_frame(&self) {
+        self.constants.lock().unwrap_or_else(PoisonError::into_inner).begin();
+    }
+
+    /// Writes `items` to a buffer, `offset` bytes after its start, before the next submitted commands.
+    pub fn upload<T: Pod>(&self, buffer: &wgpu::Buffer, offset: u64, items: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(items);
+        if !bytes.is_empty() {
+            self.counters.up(bytes.len() as u64);
+            self.queue.write_buffer(buffer, offset, bytes);
+        }
+    }
+
+    /// Writes all rows of a texture of four bytes per pixel, before the next submitted commands.
+    pub fn upload_texture(&self, texture: &wgpu::Texture, rgba: &[u8], width: u32) {
+        self.counters.up(rgba.len() as u64);
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        self.queue.write_texture(texture.as_image_copy(), rgba, layout, texture.size());
+    }
+
+    /// Counts bytes that come back to memory without [`Readback`](crate::Readback).
+    pub fn note_read_back(&self, bytes: u64) {
+        self.counters.back(bytes);
+    }
+
+    /// Creates a buffer.
+    pub fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor) -> wgpu::Buffer {
+        self.counters.created();
+        self.device.create_buffer(descriptor)
+    }
+
+    /// Creates a texture.
+    pub fn create_texture(&self, descriptor: &wgpu::TextureDescriptor) -> wgpu::Texture {
+        self.counters.created();
+        self.device.create_texture(descriptor)
+    }
+
+    /// Waits until the device has finished everything that was submitted.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.counters.wait();
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        polled.map(|_| ()).map_err(|error| self.check().err().unwrap_or(GpuError::Lost(error.to_string())))
     }
 
     /// Whether the device can measure the duration of passes.

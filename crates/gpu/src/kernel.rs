@@ -1,6 +1,7 @@
 //! Compute kernels: a pipeline and the bindings that it uses.
 
 use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
 
 use crate::{Gpu, GpuError, ShaderSource, shader};
 
@@ -26,6 +27,58 @@ pub struct Kernel {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     used: BTreeSet<u32>,
+    groups: Mutex<BoundGroups>,
+}
+
+/// A bind group that was not used for this many bindings of its kernel is dropped: it keeps its buffers alive.
+const KEPT_FOR: u64 = 32;
+
+/// The bind groups of the last frames, with the resources that they bind.
+#[derive(Debug, Default)]
+struct BoundGroups {
+    kept: Vec<Bound>,
+    /// Number of bindings so far.
+    now: u64,
+}
+
+#[derive(Debug)]
+struct Bound {
+    resources: Vec<(u32, Resource)>,
+    group: wgpu::BindGroup,
+    last: u64,
+}
+
+/// A resource that can be compared.
+#[derive(Clone, Debug, PartialEq)]
+enum Resource {
+    Buffer(wgpu::Buffer, u64, Option<wgpu::BufferSize>),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Resource {
+    /// `None` for the kinds that no kernel uses.
+    fn of(resource: &wgpu::BindingResource) -> Option<Self> {
+        match resource {
+            wgpu::BindingResource::Buffer(part) => {
+                Some(Self::Buffer(part.buffer.clone(), part.offset, part.size))
+            }
+            wgpu::BindingResource::TextureView(view) => Some(Self::View((*view).clone())),
+            wgpu::BindingResource::Sampler(sampler) => Some(Self::Sampler((*sampler).clone())),
+            _ => None,
+        }
+    }
+
+    fn is(&self, resource: &wgpu::BindingResource) -> bool {
+        match (self, resource) {
+            (Self::Buffer(buffer, offset, size), wgpu::BindingResource::Buffer(part)) => {
+                (buffer, *offset, *size) == (part.buffer, part.offset, part.size)
+            }
+            (Self::View(known), wgpu::BindingResource::TextureView(view)) => known == *view,
+            (Self::Sampler(known), wgpu::BindingResource::Sampler(sampler)) => known == *sampler,
+            _ => false,
+        }
+    }
 }
 
 impl Kernel {
@@ -66,22 +119,58 @@ impl Kernel {
                 cache: None,
             });
             let layout = pipeline.get_bind_group_layout(0);
-            Self { label, pipeline, layout, used }
+            Self { label, pipeline, layout, used, groups: Mutex::default() }
         })
     }
 
-    /// Binds resources by their binding numbers. Those that the kernel does not use are ignored.
+    /// Binds resources by their binding numbers. Those that the kernel does not use are ignored. The bind group of an earlier frame is
+    /// used again if its resources are the same.
     pub fn bind(&self, gpu: &Gpu, resources: &[(u32, wgpu::BindingResource)]) -> wgpu::BindGroup {
-        let entries: Vec<_> = resources
-            .iter()
-            .filter(|(binding, _)| self.used.contains(binding))
+        let wanted = || resources.iter().filter(|(binding, _)| self.used.contains(binding));
+        let mut groups = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
+        groups.now += 1;
+        let now = groups.now;
+        let same = |bound: &Bound| {
+            bound.resources.len() == wanted().count()
+                && bound
+                    .resources
+                    .iter()
+                    .zip(wanted())
+                    .all(|((at, known), (binding, resource))| at == binding && known.is(resource))
+        };
+        if let Some(bound) = groups.kept.iter_mut().find(|bound| same(bound)) {
+            bound.last = now;
+            return bound.group.clone();
+        }
+        groups.kept.retain(|bound| bound.last + KEPT_FOR > now);
+        let entries: Vec<_> = wanted()
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
             .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        gpu.counters.created();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.label),
             layout: &self.layout,
             entries: &entries,
-        })
+        });
+        let known = wanted().map(|(binding, resource)| Some((*binding, Resource::of(resource)?)));
+        if let Some(resources) = known.collect() {
+            groups.kept.push(Bound { resources, group: group.clone(), last: now });
+        }
+        group
+    }
+
+    /// Dispatches as many workgroups as three words of `groups` say, `offset` bytes after its start, which the device itself may have
+    /// written.
+    pub fn run_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        group: &wgpu::BindGroup,
+        groups: &wgpu::Buffer,
+        offset: u64,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups_indirect(groups, offset);
     }
 
     /// Dispatches at least `threads` threads; the kernel must return early in the surplus ones. The number of a thread is

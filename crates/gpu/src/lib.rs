@@ -2,15 +2,18 @@
 
 mod buffer;
 mod commands;
+mod constants;
 mod device;
 mod kernel;
 mod readback;
 mod shader;
+mod traffic;
 
-pub use buffer::{GrowBuffer, constants};
+pub use buffer::GrowBuffer;
 pub use commands::{Commands, PassTime, PassTimer};
 pub use device::{Gpu, GpuError};
 pub use kernel::{Constant, Kernel, THREADS};
 pub use readback::{Readback, read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
+pub use traffic::Traffic;
 pub use wgpu;

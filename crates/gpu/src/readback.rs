@@ -20,7 +20,7 @@ impl Readback {
         let size = self.parts.iter().sum::<u64>();
         let buffer = match self.buffer.take() {
             Some(buffer) if buffer.size() == size => buffer,
-            _ => gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            _ => gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
                 size,
                 usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -69,7 +69,7 @@ pub fn read_texture_rgba8(gpu: &Gpu, texture: &wgpu::Texture, out: &mut Vec<u8>)
     let (width, height) = (texture.width(), texture.height());
     let row = width * 4;
     let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
         size: u64::from(padded_row) * u64::from(height),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -110,7 +110,7 @@ pub fn read_buffer<T: Pod>(gpu: &Gpu, from: &wgpu::Buffer, out: &mut [T]) -> Res
     if size == 0 {
         return Ok(());
     }
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
         size,
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
@@ -133,7 +133,7 @@ fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
         let _ = sender.send(result);
     });
-    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    polled.map_err(|error| failed(error.to_string()))?;
+    gpu.counters.back(buffer.size());
+    gpu.wait()?;
     receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))
 }

@@ -24,6 +24,7 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strands;
+mod thin;
 mod ties;
 mod whole_part;
 

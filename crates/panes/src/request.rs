@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_project::project::Contender;
-use lovelock_render::{Camera, FrameStats, Picture};
+use lovelock_render::{Camera, FrameStats, Image};
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;
 
@@ -61,6 +61,15 @@ impl LiveTimes {
     }
 }
 
+impl LiveTimes {
+    /// These times with a whole time that became known later. Without times of passes everything else stays unknown.
+    #[must_use]
+    pub fn with_whole(self, whole: f64) -> Self {
+        let draw = self.build.zip(self.ask).map(|(build, ask)| (whole - build - ask).max(0.0));
+        Self { draw, whole, ..self }
+    }
+}
+
 /// Error of a pane's transmittance against the exact method, over all strand points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LiveError {
@@ -101,8 +110,9 @@ pub struct LivePane {
     pub project: Arc<Project>,
     /// The requested size, pixels.
     pub asked_size: [u32; 2],
-    /// The image; empty if there is a `problem` or a `colors_problem`.
-    pub picture: Picture,
+    /// The image; empty if there is a `problem` or a `colors_problem`. On the window's device it may still be drawn; later commands of
+    /// the window wait for it there.
+    pub image: Image,
     /// Why there is no image, as a sentence.
     pub problem: Option<String>,
     /// Why there are no false colours although the pane was rendered, as a sentence.

@@ -182,7 +182,9 @@ impl Sheet {
 
 /// Draws the columns `from` of a pane's image, resized to its rectangle.
 fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, from: std::ops::Range<u32>) {
-    let mut drawn = pane.picture.clone();
+    // Without its pixels, for example those of a lost device, the rectangle stays empty.
+    let Ok(drawn) = pane.image.picture() else { return };
+    let mut drawn = Picture::clone(&drawn);
     resize(&mut drawn, width, height);
     let columns = from.start.min(width)..from.end.min(width);
     if drawn.rgba.is_empty() || (drawn.width, drawn.height) != (width, height) || columns.is_empty() {
@@ -220,9 +222,11 @@ pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usi
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use lovelock_metrics::ColorMap;
     use lovelock_project::project::Contender;
-    use lovelock_render::{Backend, Camera};
+    use lovelock_render::{Backend, Camera, Image as Shown};
     use lovelock_session::render_thread::Adapter;
 
     use super::*;
@@ -236,7 +240,11 @@ mod tests {
             contender: Contender::default(),
             project: std::sync::Arc::default(),
             asked_size: [width, height],
-            picture: Picture { width, height, rgba: [r, g, b, 255].repeat((width * height) as usize) },
+            image: Shown::Memory(Arc::new(Picture {
+                width,
+                height,
+                rgba: [r, g, b, 255].repeat((width * height) as usize),
+            })),
             problem: None,
             colors_problem: None,
             camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
@@ -331,7 +339,7 @@ mod tests {
         let drawn = pane(COLORS[0], [64, 48]);
         let broken = LivePane {
             problem: Some("It needs 9 GiB; the limit is 1 GiB.".to_owned()),
-            picture: Picture::default(),
+            image: Shown::default(),
             ..drawn.clone()
         };
         let shown = [(0, &drawn, 1.0), (1, &broken, 2.0), (2, &drawn, 3.0)];

@@ -1,6 +1,6 @@
 //! The camera.
 
-use glam::{Mat4, Vec3, camera::rh};
+use glam::{Mat4, Vec2, Vec3, camera::rh};
 
 /// Distance of the near plane, metres: closer than any view of a head needs.
 pub(crate) const NEAR_METRES: f32 = 0.02;
@@ -31,6 +31,17 @@ impl Camera {
             * self.view_from_world()
     }
 
+    /// The camera turned so that everything moves by `pixels` to the left and up in an image `height` pixels high: exactly in the middle,
+    /// and by a little more toward the edges. For fractions of a pixel.
+    #[must_use]
+    pub fn moved_by_pixels(&self, pixels: Vec2, height: u32) -> Self {
+        let rows = self.view_from_world().transpose();
+        let (right, up) = (rows.x_axis.truncate(), rows.y_axis.truncate());
+        let distance = self.eye.distance(self.target);
+        let metres = pixels * distance / self.pixels_per_metre_at_one_metre(height);
+        Self { target: self.target + metres.x * right - metres.y * up, ..*self }
+    }
+
     /// Pixels per metre at a distance of one metre, for an image `height` pixels high.
     pub fn pixels_per_metre_at_one_metre(&self, height: u32) -> f32 {
         height as f32 * 0.5 / (self.fov_y.clamp(0.01, 3.0) * 0.5).tan()
@@ -39,6 +50,8 @@ impl Camera {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec4;
+
     use super::*;
 
     #[test]
@@ -61,5 +74,13 @@ mod tests {
         let level = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5 };
         let top = level.clip_from_world(2.0) * Vec3::new(0.0, 0.25_f32.tan(), 0.0).extend(1.0);
         assert!((top.y / top.w - 1.0).abs() < 1e-5, "half the angle reaches the upper edge");
+    }
+
+    #[test]
+    fn a_camera_moves_by_pixels() {
+        let camera = Camera { eye: Vec3::new(1.0, 1.0, 2.0), target: Vec3::ZERO, fov_y: 0.5 };
+        let moved = camera.moved_by_pixels(Vec2::new(0.5, -0.25), 100).clip_from_world(2.0) * Vec4::W;
+        let pixels = Vec2::new(moved.x, -moved.y) / moved.w * Vec2::new(100.0, 50.0);
+        assert!((pixels - Vec2::new(-0.5, 0.25)).length() < 1e-3, "{pixels}");
     }
 }

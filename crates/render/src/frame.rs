@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_gpu::PassTime;
+use lovelock_gpu::{PassTime, Traffic};
 use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
 
@@ -75,6 +75,8 @@ pub struct FrameStats {
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
+    /// What the frame moved between memory and the graphics device; nothing on the CPU.
+    pub traffic: Traffic,
 }
 
 impl FrameStats {

@@ -10,6 +10,7 @@ mod cpu;
 mod error;
 mod frame;
 mod gpu;
+mod image;
 mod known;
 mod layers;
 mod light;
@@ -26,11 +27,12 @@ pub use camera::Camera;
 pub use cpu::{CpuRenderer, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
-pub use gpu::{GpuRenderer, all_shaders};
+pub use gpu::{Finished, GpuRenderer, MOST_IN_FLIGHT, Shrinker, all_shaders};
+pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use light::{Light, MAX_LIGHTS};
-pub use lovelock_gpu::{Gpu, GpuError, PassTime, check_shader};
+pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,

@@ -1,12 +1,14 @@
 //! The renderer, independent of the backend.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::Vec3;
-use lovelock_gpu::Gpu;
+use lovelock_gpu::{Gpu, GpuError};
 
 use crate::{
-    Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Layers, Picture, RayStructure, RenderError,
+    Backend, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image, Layers,
+    MOST_IN_FLIGHT, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -17,6 +19,8 @@ pub struct Renderer {
     cpu: Option<Box<CpuRenderer>>,
     /// The name of the device.
     adapter: String,
+    /// The pixels of images that are copied to another device.
+    spare: Picture,
 }
 
 impl Renderer {
@@ -39,6 +43,32 @@ impl Renderer {
         }
     }
 
+    /// As [`Renderer::open`], on the device of a window if that is a graphics device that `choice` allows: its images are then shown
+    /// without a copy.
+    ///
+    /// # Errors
+    /// As there, or the device of the window is lost.
+    pub fn open_for(choice: Backend, window: Option<&Arc<Gpu>>) -> Result<Self, RenderError> {
+        match (choice, window) {
+            (Backend::Gpu, Some(gpu)) => Self::on_window(gpu, choice),
+            (Backend::Auto, Some(gpu)) if !gpu.is_software() => match Self::on_window(gpu, choice) {
+                Err(error) if !gpu.is_lost() => {
+                    tracing::warn!(%error, "the graphics card cannot be used");
+                    Ok(Self::on_processor(choice))
+                }
+                opened => opened,
+            },
+            _ => Self::open(choice),
+        }
+    }
+
+    fn on_window(gpu: &Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
+        if gpu.is_lost() {
+            return Err(GpuError::Lost("the window opens it again".to_owned()).into());
+        }
+        Self::on(Arc::clone(gpu), choice)
+    }
+
     /// A renderer on an open device.
     ///
     /// # Errors
@@ -49,11 +79,17 @@ impl Renderer {
 
     fn on(gpu: Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
         let adapter = gpu.info.name.clone();
-        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapter })
+        Ok(Self { choice, gpu: Some(GpuRenderer::new(&gpu)?), cpu: None, adapter, spare: Picture::default() })
     }
 
     fn on_processor(choice: Backend) -> Self {
-        Self { choice, gpu: None, cpu: Some(Box::default()), adapter: CpuRenderer::adapter() }
+        Self {
+            choice,
+            gpu: None,
+            cpu: Some(Box::default()),
+            adapter: CpuRenderer::adapter(),
+            spare: Picture::default(),
+        }
     }
 
     /// The backend that was chosen.
@@ -95,6 +131,60 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.picture(input, width, height, picture),
             None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+        }
+    }
+
+    /// Renders `input` for a window, whose textures are `window`; into memory without them. On the window's own device nothing is waited
+    /// for: the image is finished before later commands of the window see it, and [`Renderer::finished`] tells when. `measured` asks for
+    /// the times of passes and the mean transmittance, for which a device is read back.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn image(
+        &mut self,
+        input: &FrameInput,
+        [width, height]: [u32; 2],
+        measured: bool,
+        window: Option<&mut DeviceImages>,
+    ) -> Result<(Image, FrameStats), RenderError> {
+        if let (Some(gpu), Some(images)) = (&mut self.gpu, &window)
+            && gpu.gpu().device == images.gpu().device
+            && let Some(images) = window
+        {
+            let (image, stats) = gpu.image(input, [width, height], measured, images)?;
+            return Ok((Image::Device(image), stats));
+        }
+        let mut picture = std::mem::take(&mut self.spare);
+        let drawn = self.picture(input, width, height, &mut picture);
+        let image = drawn.is_ok().then(|| Image::on(window, &mut picture));
+        self.spare = picture;
+        Ok((image.unwrap_or_default(), drawn?))
+    }
+
+    /// Whether as many images of [`Renderer::image`] are in flight as may be.
+    pub fn is_full(&self) -> bool {
+        // On a software adapter the frames would only wait for each other.
+        let most = if self.is_software() { 1 } else { MOST_IN_FLIGHT };
+        self.in_flight() >= most
+    }
+
+    /// The number of images of [`Renderer::image`] that the device may not have finished.
+    pub fn in_flight(&self) -> usize {
+        self.gpu.as_ref().map_or(0, GpuRenderer::in_flight)
+    }
+
+    /// The oldest image in flight, if it is finished. Does not wait.
+    ///
+    /// # Errors
+    /// The shadow needs too much memory, or the device is lost.
+    pub fn finished(&mut self) -> Result<Option<Finished>, RenderError> {
+        self.gpu.as_mut().map_or(Ok(None), GpuRenderer::finished)
+    }
+
+    /// Waits for the oldest image in flight, but not longer than `most`.
+    pub fn wait_for_oldest(&self, most: Duration) {
+        if let Some(gpu) = &self.gpu {
+            gpu.wait_for_oldest(most);
         }
     }
 

@@ -8,11 +8,12 @@ use std::thread::JoinHandle;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_render::{CpuRenderer, Picture};
+use lovelock_render::{CpuRenderer, DeviceImages, Image, Picture};
 
 use crate::latest::LatestJob;
 use crate::take::TakePlayer;
 use crate::threads::lower_priority;
+use crate::window_device::WindowDevice;
 
 /// Which thumbnails to render.
 #[derive(Clone, Debug)]
@@ -32,8 +33,8 @@ pub struct FilmstripRequest {
 pub struct FilmstripPicture {
     /// Its time, seconds.
     pub secs: f64,
-    /// The image.
-    pub picture: Picture,
+    /// The image, in a texture of the window's device if there is one.
+    pub image: Image,
     /// The project that it shows.
     pub project: Arc<Project>,
 }
@@ -51,11 +52,17 @@ impl Filmstrip {
     ///
     /// # Errors
     /// If the system cannot create a thread.
-    pub fn start(on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    pub fn start(window: WindowDevice, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
         let left = Arc::new(Mutex::new(Vec::new()));
-        let worker =
-            Worker { jobs: jobs.clone(), left: Arc::clone(&left), on_drawn: Box::new(on_drawn), open: None };
+        let worker = Worker {
+            jobs: jobs.clone(),
+            left: Arc::clone(&left),
+            on_drawn: Box::new(on_drawn),
+            open: None,
+            window,
+            textures: None,
+        };
         let thread = std::thread::Builder::new().name("filmstrip".to_owned()).spawn(move || worker.run())?;
         Ok(Self { jobs, left, thread: Some(thread) })
     }
@@ -86,6 +93,8 @@ struct Worker {
     left: Arc<Mutex<Vec<FilmstripPicture>>>,
     on_drawn: Box<dyn Fn() + Send>,
     open: Option<(PathBuf, Access, Box<TakePlayer>)>,
+    window: WindowDevice,
+    textures: Option<DeviceImages>,
 }
 
 impl Worker {
@@ -148,7 +157,8 @@ impl Worker {
                 request.size[1],
                 &mut picture,
             )?;
-            let drawn = FilmstripPicture { secs, picture, project: Arc::clone(&request.project) };
+            let image = Image::on(self.window.images(&mut self.textures), &mut picture);
+            let drawn = FilmstripPicture { secs, image, project: Arc::clone(&request.project) };
             self.left.lock().unwrap_or_else(PoisonError::into_inner).push(drawn);
             (self.on_drawn)();
         }
@@ -171,7 +181,7 @@ mod tests {
         project.set_take(&path);
         let mut access = Access::new();
         access.pick(&path);
-        let strip = Filmstrip::start(|| {}).expect("a thread");
+        let strip = Filmstrip::start(WindowDevice::default(), || {}).expect("a thread");
         let wanted = [1.5, 0.0, 0.5];
         let project = Arc::new(project);
         let request = FilmstripRequest {
@@ -199,8 +209,11 @@ mod tests {
             let mut picture = Picture::default();
             let input = snapshot.frame_input(&project, &camera);
             CpuRenderer::default().picture(&input, 64, 36, &mut picture).expect("a picture");
-            assert!(drawn.secs == secs && drawn.picture == picture, "{secs}");
+            assert!(drawn.secs == secs && *drawn.image.picture().expect("pixels") == picture, "{secs}");
         }
-        assert!(pictures[0].picture != pictures[1].picture, "the dance goes on");
+        assert!(
+            pictures[0].image.picture().expect("pixels") != pictures[1].image.picture().expect("pixels"),
+            "the dance goes on"
+        );
     }
 }

@@ -22,14 +22,17 @@ pub mod new_folders;
 pub mod prepare;
 pub mod progress;
 pub mod render_thread;
+pub mod resolution;
 pub mod scene;
 pub mod snapshot;
 pub mod stats;
 pub mod take;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
+pub mod thinning;
 pub mod threads;
 pub mod totals;
+pub mod window_device;
 pub mod worker;
 
 #[cfg(test)]

@@ -21,7 +21,9 @@ pub use bounds::Bounds;
 pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converged};
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport};
 pub use error::ShadowError;
-pub use gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS};
+pub use gpu::{
+    GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS,
+};
 pub use light::LightFrame;
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
 pub use methods::density_clustering::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};

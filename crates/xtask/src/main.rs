@@ -57,9 +57,12 @@ enum Chore {
     Layers,
     /// Measures how long the window takes from an input to the screen, on a screen of its own (Linux, Xvfb)
     Latency {
-        /// Inputs that are timed for each of three windows
+        /// Inputs that are timed for each of four windows
         #[arg(long, default_value_t = 50)]
         inputs: usize,
+        /// Another build of the program, measured in turn with this one
+        #[arg(long, value_name = "PROGRAM")]
+        beside: Option<std::path::PathBuf>,
     },
     /// Counts the instructions of the inner loops by valgrind, and names counts that differ from those in the tree by over 5 % (Linux)
     Count {
@@ -88,7 +91,10 @@ fn main() -> ExitCode {
         Chore::Ci => ci::run(),
         Chore::Docs => docs::run(),
         Chore::Layers => chore("layers", []),
-        Chore::Latency { inputs } => chore("latency", ["--inputs".into(), inputs.to_string().into()]),
+        Chore::Latency { inputs, beside } => {
+            let beside = beside.into_iter().flat_map(|program| ["--beside".into(), program.into_os_string()]);
+            chore("latency", ["--inputs".into(), inputs.to_string().into()].into_iter().chain(beside))
+        }
         Chore::Count { write } => chore("count", write.then(|| "--write".into())),
         Chore::Assets { preview } => chore(
             "assets",

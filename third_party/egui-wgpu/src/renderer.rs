@@ -255,6 +255,8 @@ pub struct Renderer {
     /// sampler.
     textures: HashMap<epaint::TextureId, Texture>,
     next_user_texture_id: u64,
+    /// Changed by Lovelock: whether the last buffers could not be written because the device is lost.
+    unusable: bool,
     samplers: HashMap<epaint::textures::TextureOptions, wgpu::Sampler>,
 
     options: RendererOptions,
@@ -497,6 +499,7 @@ impl Renderer {
             texture_flag_buffers,
             textures: HashMap::default(),
             next_user_texture_id: 0,
+            unusable: false,
             samplers: HashMap::default(),
             options,
             callback_resources: CallbackResources::default(),
@@ -520,6 +523,11 @@ impl Renderer {
         screen_descriptor: &ScreenDescriptor,
     ) {
         profiling::function_scope!();
+
+        // Changed by Lovelock: see the field.
+        if self.unusable {
+            return;
+        }
 
         let pixels_per_point = screen_descriptor.pixels_per_point;
         let size_in_pixels = screen_descriptor.size_in_pixels;
@@ -980,6 +988,8 @@ impl Renderer {
         screen_descriptor: &ScreenDescriptor,
     ) -> Vec<wgpu::CommandBuffer> {
         profiling::function_scope!();
+        // Changed by Lovelock: see the field.
+        self.unusable = false;
 
         let screen_size_in_points = screen_descriptor.screen_size_in_points();
 
@@ -1039,12 +1049,10 @@ impl Renderer {
                 NonZeroU64::new(required_index_buffer_size).unwrap(),
             );
 
+            // Changed by Lovelock: a lost device has no staging buffer. The window then paints nothing until it has another device.
             let Some(mut index_buffer_staging) = index_buffer_staging else {
-                panic!(
-                    "Failed to create staging buffer for index data. Index count: {index_count}. Required index buffer size: {required_index_buffer_size}. Actual size {} and capacity: {} (bytes)",
-                    self.index_buffer.buffer.size(),
-                    self.index_buffer.capacity
-                );
+                self.unusable = true;
+                return Vec::new();
             };
 
             let mut index_offset = 0;
@@ -1085,12 +1093,10 @@ impl Renderer {
                 NonZeroU64::new(required_vertex_buffer_size).unwrap(),
             );
 
+            // Changed by Lovelock: as above.
             let Some(mut vertex_buffer_staging) = vertex_buffer_staging else {
-                panic!(
-                    "Failed to create staging buffer for vertex data. Vertex count: {vertex_count}. Required vertex buffer size: {required_vertex_buffer_size}. Actual size {} and capacity: {} (bytes)",
-                    self.vertex_buffer.buffer.size(),
-                    self.vertex_buffer.capacity
-                );
+                self.unusable = true;
+                return Vec::new();
             };
 
             let mut vertex_offset = 0;

@@ -141,7 +141,7 @@ fn is_same_but_for_panes(a: &Arc<Project>, b: &Arc<Project>) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use lovelock_panes::view::LiveShows;
-    use lovelock_render::{Camera, Picture};
+    use lovelock_render::{Camera, Image};
 
     use super::*;
 
@@ -155,7 +155,7 @@ pub(super) mod tests {
             contender,
             project: Arc::default(),
             asked_size: [640, 360],
-            picture: Picture::default(),
+            image: Image::default(),
             problem: None,
             colors_problem: None,
             step: 0,

@@ -120,6 +120,13 @@ impl Compare {
         [self.probed.as_ref().map_or(0, |probed| probed.number), self.place.map_or(0, |place| place.number)]
     }
 
+    /// Forgets all images, whose device is lost, and asks for them again.
+    pub(crate) fn forget_images(&mut self) {
+        self.textures.keep(0);
+        self.panes = Default::default();
+        self.sent = None;
+    }
+
     /// Requested size of panes, pixels.
     pub(crate) fn wanted(&self) -> [u32; 2] {
         self.wanted
@@ -127,7 +134,7 @@ impl Compare {
 
     /// Whether any pane has an image.
     pub(crate) fn has_pictures(&self) -> bool {
-        self.panes.iter().flatten().any(|pane| !pane.picture.rgba.is_empty())
+        self.panes.iter().flatten().any(|pane| !pane.image.is_empty())
     }
 
     /// Requests a probe of the hair at a position in the images, as fractions from the left and the top.

@@ -186,14 +186,14 @@ impl Window {
         };
         let zoom = compare.zoom;
         let points = ui.ctx().pixels_per_point();
-        let magnified = place.width() * points * zoom.factor() / pane.picture.width.max(1) as f32;
-        compare.textures.take(ui.ctx(), index, &pane, magnified);
+        let magnified = place.width() * points * zoom.factor() / pane.image.size()[0].max(1) as f32;
+        compare.textures.take(ui.ctx(), &self.textures, index, &pane, magnified);
         // An image with another aspect ratio was rendered before the page changed.
         let whole = compare.textures.size(index).map_or(place, |size| viewport::fit(size, place));
         let near = (whole.size() - place.size()).abs().max_elem() < 3.0;
         let whole = if near { place } else { whole };
         // An older image below a colour scale would be mistaken for an error.
-        if pane.shows.colors().is_none() || !pane.picture.rgba.is_empty() {
+        if pane.shows.colors().is_none() || !pane.image.is_empty() {
             compare.textures.paint(&painter, index, whole, zoom.shown());
         }
         if compare.probed.is_some() {

@@ -26,7 +26,8 @@ const GROUPS: [(&str, &str, &str); 2] = [
 ];
 
 /// Shows the plot of stage times, the passes and the facts.
-pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, facts: &[Fact]) {
+/// Returns whether the passes are unfolded; only then they need to be measured.
+pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, facts: &[Fact]) -> bool {
     Plot::new("stage times")
         .height(112.0)
         .allow_zoom(false)
@@ -60,7 +61,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
             ui.end_row();
         }
     });
-    egui::CollapsingHeader::new(RichText::new("Passes").small()).show(ui, |ui| {
+    let unfolded = egui::CollapsingHeader::new(RichText::new("Passes").small()).show(ui, |ui| {
         let medians = passes.medians();
         if !medians.is_empty() {
             passes_ui(ui, &medians);
@@ -68,6 +69,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
             note(ui, "This device does not measure its passes.");
         }
     });
+    let measured = unfolded.body_response.is_some();
     ui.separator();
     egui::Grid::new("facts").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for Fact { name, tip, value } in facts {
@@ -76,6 +78,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
             ui.end_row();
         }
     });
+    measured
 }
 
 /// Medians of the passes, grouped, with a sum per group.

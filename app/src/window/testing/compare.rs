@@ -45,7 +45,7 @@ fn panes_are_drawn_with_their_cost_and_error() {
     for (index, method) in panes.iter().enumerate() {
         let pane = of(&harness).compare.pane(index).expect("a pane");
         assert_eq!(pane.contender.shadow.method, *method);
-        assert!(pane.times.whole > 0.0 && !pane.picture.rgba.is_empty());
+        assert!(pane.times.whole > 0.0 && !pane.image.is_empty());
         // On the GPU the exact method has an error too.
         let by_processor = pane.adapter.backend == lovelock_render::Backend::Cpu;
         match &pane.error {
@@ -215,7 +215,7 @@ fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     let bytes = std::fs::read(&path).expect("a file");
     assert_eq!(&bytes[1..4], b"PNG");
     let side = |at: usize| u32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-    let pane = of(&harness).compare.pane(0).expect("a pane").picture.clone();
+    let pane = of(&harness).compare.pane(0).expect("a pane").image.picture().expect("pixels");
     assert!(side(16) >= 2 * pane.width && side(20) >= 2 * pane.height, "four panes and their labels");
 
     let window = of_mut(&mut harness);

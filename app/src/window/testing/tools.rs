@@ -89,7 +89,7 @@ fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
     key(&mut harness, CTRL, Key::Z);
     wait(&mut harness, "the picture of before", |window| {
         window.session.painted.as_ref().is_some_and(|now| now.camera.fov_y == painted.camera.fov_y)
-            && window.session.drawn.as_ref().is_some_and(|(drawn, ..)| drawn.camera == before.camera)
+            && window.session.drawn.as_ref().is_some_and(|drawn| drawn.project.camera == before.camera)
     });
     key(&mut harness, Modifiers::NONE, Key::X);
     assert!(of(&harness).scissors.held);

@@ -49,10 +49,11 @@ fn a_slider_moved_during_playback_becomes_a_track() {
     // The image and the panel follow the track.
     key(&mut harness, Modifiers::NONE, Key::W);
     wait(&mut harness, "a picture at another value", |window| {
-        window.session.drawn.as_ref().is_some_and(|(drawn, frame, _)| {
+        window.session.drawn.as_ref().is_some_and(|drawn| {
             let track = &window.history.project().timeline.tracks[0];
-            let at = track.value_at(frame.position_secs).map_or(0.0, |value| value[0]);
-            (f64::from(drawn.look.extinction_scale) - at).abs() < 1e-5 && at > low + 0.5 * (high - low)
+            let at = track.value_at(drawn.snapshot.position_secs).map_or(0.0, |value| value[0]);
+            (f64::from(drawn.project.look.extinction_scale) - at).abs() < 1e-5
+                && at > low + 0.5 * (high - low)
         })
     });
     let shown = of(&harness).seen.as_ref().map(|seen| seen.project.look.extinction_scale);

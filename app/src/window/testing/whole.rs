@@ -183,7 +183,7 @@ fn the_image_follows_the_timeline_and_the_hair_while_paused() {
     // Playback has stopped when two consecutive frames are the same.
     let position = |window: &Window| window.session.frame.as_ref().map_or(-1.0, |frame| frame.position_secs);
     let drawn = |window: &Window| match (&window.session.drawn, &window.session.frame) {
-        (Some((_, drawn, _)), Some(frame)) => Arc::ptr_eq(drawn, frame),
+        (Some(drawn), Some(frame)) => Arc::ptr_eq(&drawn.snapshot, frame),
         _ => false,
     };
     wait(&mut harness, "the pause", |window| {

@@ -2,17 +2,19 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Context, Rect, TextureHandle, TextureId, TextureOptions, Ui, pos2, vec2};
+use egui::{Color32, Context, Rect, TextureId, Ui, pos2, vec2};
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_render::Picture;
+use lovelock_render::{Image, Picture, Shrinker};
 use lovelock_session::filmstrip::{Filmstrip, FilmstripRequest};
 use lovelock_session::render_thread::RenderedImage;
+use lovelock_session::window_device::WindowDevice;
 
 use super::Zoom;
 use super::scale::Scale;
+use crate::window::images::{ShownImage, Textures};
 use crate::window::theme;
 
 /// Size of a thumbnail, in pixels and on the screen in points.
@@ -27,7 +29,7 @@ const STILL_SECS: f64 = 0.6;
 /// A thumbnail and its time.
 pub(crate) struct Thumb {
     secs: f64,
-    texture: TextureHandle,
+    image: ShownImage,
 }
 
 /// The inputs of a request for thumbnails of a take.
@@ -36,6 +38,9 @@ type Asked = (Arc<Project>, Vec<u64>);
 /// All thumbnails.
 pub(crate) struct Thumbnails {
     strip: Filmstrip,
+    textures: Textures,
+    /// Makes thumbnails of images on the window's device.
+    shrinker: Option<Shrinker>,
     thumbs: Vec<Thumb>,
     /// The project of the thumbnails: other hair, body, motion or another take makes them outdated.
     of: Option<Arc<Project>>,
@@ -48,17 +53,37 @@ pub(crate) struct Thumbnails {
 }
 
 impl Thumbnails {
-    /// Starts without thumbnails. `ctx` is repainted when those of a take are rendered.
+    /// Starts without thumbnails, which will be shown through `textures`. `ctx` is repainted when those of a take are rendered.
     ///
     /// # Errors
     /// The thread cannot be started.
-    pub(crate) fn new(ctx: &Context) -> Result<Self, ProjectError> {
+    pub(crate) fn new(
+        ctx: &Context,
+        device: &WindowDevice,
+        textures: &Textures,
+    ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
-        let strip = Filmstrip::start(move || wake.request_repaint());
+        let strip = Filmstrip::start(device.clone(), move || crate::window::images::wake(&wake));
         let strip = strip.map_err(|error| {
             ProjectError::work(format!("the thread for thumbnails could not be started: {error}"))
         })?;
-        Ok(Self { strip, thumbs: Vec::new(), of: None, seen: None, filled: None, wanted: None, asked: None })
+        Ok(Self {
+            strip,
+            textures: textures.clone(),
+            shrinker: None,
+            thumbs: Vec::new(),
+            of: None,
+            seen: None,
+            filled: None,
+            wanted: None,
+            asked: None,
+        })
+    }
+
+    /// Forgets all thumbnails, whose device is lost, and asks for those of a take again.
+    pub(crate) fn forget(&mut self) {
+        self.thumbs.clear();
+        (self.shrinker, self.filled, self.asked, self.wanted) = (None, None, None, None);
     }
 
     /// Collects thumbnails from the window and from the background thread, and requests those that a take still lacks. The lane is
@@ -90,12 +115,14 @@ impl Thumbnails {
             let slot = (painted.position_secs / slot_secs).floor() as i64;
             if self.filled != Some(slot) {
                 self.filled = Some(slot);
-                self.put(ctx, painted.position_secs, &painted.picture, 0.5 * slot_secs);
+                if let Some(small) = self.shrunk(&painted.image) {
+                    self.put(ctx, painted.position_secs, &small, 0.5 * slot_secs);
+                }
             }
         }
         for drawn in self.strip.pictures() {
             if self.of.as_ref().is_some_and(|of| !moves(of, &drawn.project)) {
-                self.put(ctx, drawn.secs, &drawn.picture, 0.25 * slot_secs);
+                self.put(ctx, drawn.secs, &drawn.image, 0.25 * slot_secs);
             }
         }
         self.request(ctx, project, access, &slots);
@@ -128,19 +155,32 @@ impl Thumbnails {
     }
 
     /// Adds a thumbnail and removes those that are nearer than `near_secs`.
-    fn put(&mut self, ctx: &Context, secs: f64, picture: &Picture, near_secs: f64) {
-        let Some(image) = small(picture) else { return };
+    fn put(&mut self, ctx: &Context, secs: f64, image: &Image, near_secs: f64) {
+        let mut shown = ShownImage::default();
+        shown.set(ctx, &self.textures, "thumbnail", image, false);
         self.thumbs.retain(|thumb| (thumb.secs - secs).abs() > near_secs);
         if self.thumbs.len() >= MOST {
             self.thumbs.remove(0);
         }
-        let texture = ctx.load_texture("thumbnail", image, TextureOptions::LINEAR);
-        self.thumbs.push(Thumb { secs, texture });
+        self.thumbs.push(Thumb { secs, image: shown });
+    }
+
+    /// A thumbnail of an image of the window, made where the image is.
+    fn shrunk(&mut self, image: &Image) -> Option<Image> {
+        match image {
+            Image::Memory(picture) => small(picture).map(|small| Image::Memory(Arc::new(small))),
+            Image::Device(image) => {
+                if self.shrinker.as_ref().is_none_or(|known| known.gpu().device != image.gpu().device) {
+                    self.shrinker = Shrinker::new(image.gpu()).ok();
+                }
+                Some(Image::Device(self.shrinker.as_mut()?.shrink(image, SIZE)))
+            }
+        }
     }
 
     /// Times and textures of all thumbnails.
     pub(crate) fn shown(&self) -> Vec<(f64, TextureId)> {
-        self.thumbs.iter().map(|thumb| (thumb.secs, thumb.texture.id())).collect()
+        self.thumbs.iter().filter_map(|thumb| Some((thumb.secs, thumb.image.texture()?))).collect()
     }
 }
 
@@ -161,7 +201,7 @@ fn slots(zoom: Zoom, duration: f64, width: f32) -> Vec<f64> {
 }
 
 /// The middle of an image in the aspect ratio of thumbnails, scaled down by averaging.
-fn small(picture: &Picture) -> Option<ColorImage> {
+fn small(picture: &Picture) -> Option<Picture> {
     const SAMPLES: u32 = 4;
     let (width, height) = (picture.width, picture.height);
     if width == 0 || height == 0 || picture.rgba.len() < (width * height * 4) as usize {
@@ -190,7 +230,7 @@ fn small(picture: &Picture) -> Option<ColorImage> {
             bytes.push(255);
         }
     }
-    Some(ColorImage::from_rgba_premultiplied(SIZE.map(|side| side as usize), &bytes))
+    Some(Picture { width: SIZE[0], height: SIZE[1], rgba: bytes })
 }
 
 /// Shows the lane: in each slot the thumbnail that is nearest to its middle.
@@ -242,9 +282,9 @@ mod tests {
         };
         let rgba = (0..width * height).flat_map(pixel).collect();
         let image = small(&Picture { width, height, rgba }).expect("a picture");
-        assert_eq!(image.size, [64, 36]);
-        assert!(image.pixels.iter().all(|pixel| pixel.g() == 0), "the edges are cut");
-        assert_eq!((image.pixels[0].r(), image.pixels[63].b()), (200, 100));
+        assert_eq!([image.width, image.height], [64, 36]);
+        assert!(image.rgba.chunks_exact(4).all(|pixel| pixel[1] == 0), "the edges are cut");
+        assert_eq!((image.rgba[0], image.rgba[4 * 63 + 2]), (200, 100));
         assert!(small(&Picture::default()).is_none());
     }
 }

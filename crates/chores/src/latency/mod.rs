@@ -7,6 +7,7 @@ use lovelock_metrics::Spread;
 use lovelock_xtask::{system, tool};
 use screen::{Place, Screen};
 use std::fs;
+use std::path::Path;
 use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::Duration;
@@ -17,36 +18,62 @@ const WINDOW: (u16, u16) = (1960, 1240);
 const MENU: Place = Place { x: 6, y: 2, width: 30, height: 14 };
 const BESIDE: (i16, i16) = (1000, 9);
 
-/// Opens the window three times (one view while the dance plays, six panes while it plays, six panes while it is paused),
-/// moves the pointer on and off a menu at irregular times, and prints the time until the menu changes.
-pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
+/// What the window shows while it is measured.
+struct Case {
+    what: &'static str,
+    backend: &'static str,
+    panes: bool,
+    paused: bool,
+}
+
+const CASES: [Case; 4] = [
+    Case { what: "one view by the processor, playing", backend: "cpu", panes: false, paused: false },
+    Case { what: "one view by the graphics device, playing", backend: "gpu", panes: false, paused: false },
+    Case { what: "six panes, playing", backend: "cpu", panes: true, paused: false },
+    Case { what: "six panes, paused", backend: "cpu", panes: true, paused: true },
+];
+
+/// Opens the window for each case, moves the pointer on and off a menu at irregular times, and prints the time until the menu
+/// changes. With `beside`, another build of the program, both are measured twice in turn.
+pub(crate) fn run(inputs: usize, beside: Option<&Path>) -> anyhow::Result<()> {
     ensure!(inputs > 0, "--inputs: found 0; must be at least 1");
+    if let Some(beside) = beside {
+        ensure!(beside.is_file(), "--beside: {} is not a program", beside.display());
+    }
     system::prepare()?;
     system::prepare_screen()?;
     tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let folder = tool::root().join("target/latency");
-    for (what, panes, paused) in [
-        ("one view, playing", false, false),
-        ("six panes, playing", true, false),
-        ("six panes, paused", true, true),
-    ] {
-        let mut times = window(panes, paused, inputs, &folder).with_context(|| what.to_owned())?;
-        times.sort_unstable_by(f64::total_cmp);
-        let spread = Spread::of(&times).context("no inputs were measured")?;
-        println!(
-            "{what}: {:.0} ms median, {:.0} to {:.0} for the middle 80 %, {:.0} at most, {} inputs",
-            spread.median,
-            spread.low,
-            spread.high,
-            times.last().copied().unwrap_or_default(),
-            spread.count
-        );
+    let own = tool::target().join("release/lovelock");
+    for case in CASES {
+        let rounds = if beside.is_some() { 2 } else { 1 };
+        let mut times = [Vec::new(), Vec::new()];
+        for _ in 0..rounds {
+            for (program, times) in [Some(own.as_path()), beside].into_iter().zip(&mut times) {
+                let Some(program) = program else { continue };
+                let found = window(program, &case, inputs.div_ceil(rounds), &folder);
+                times.extend(found.with_context(|| case.what.to_owned())?);
+            }
+        }
+        for (name, times) in ["", " (beside)"].into_iter().zip(&mut times) {
+            times.sort_unstable_by(f64::total_cmp);
+            let Some(spread) = Spread::of(times) else { continue };
+            println!(
+                "{}{name}: {:.0} ms median, {:.0} to {:.0} for the middle 80 %, {:.0} at most, {} inputs",
+                case.what,
+                spread.median,
+                spread.low,
+                spread.high,
+                times.last().copied().unwrap_or_default(),
+                spread.count
+            );
+        }
     }
     Ok(())
 }
 
 /// Time from each input to the screen, in milliseconds.
-fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) -> anyhow::Result<Vec<f64>> {
+fn window(program: &Path, case: &Case, inputs: usize, folder: &Path) -> anyhow::Result<Vec<f64>> {
     // An empty home folder: the window has the layout of a first start, and the user's own settings are not touched.
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not empty {}", folder.display()))?;
@@ -55,9 +82,9 @@ fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) ->
     let project = folder.join("six.lovelock");
     fs::write(&project, include_str!("six.lovelock"))?;
     let screen = Screen::start(WINDOW.0 + 40, WINDOW.1 + 40)?;
-    let program = tool::root().join("target/release/lovelock");
-    let child = Command::new(&program)
+    let child = Command::new(program)
         .arg(&project)
+        .args(["--set", &format!("picture.backend={}", case.backend)])
         .env("DISPLAY", screen.name())
         .env_remove("WAYLAND_DISPLAY")
         .env("HOME", folder)
@@ -69,11 +96,11 @@ fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) ->
     sleep(Duration::from_secs(4));
     screen.size(window, WINDOW)?;
     sleep(Duration::from_secs(2));
-    if panes {
+    if case.panes {
         screen.key(window, screen::KEY_C)?;
         sleep(Duration::from_secs(6));
     }
-    if paused {
+    if case.paused {
         screen.key(window, screen::KEY_SPACE)?;
         sleep(Duration::from_secs(3));
     }

@@ -7,7 +7,7 @@ use lovelock_base::statistics::median;
 use lovelock_metrics::{Image, flip};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Picture, Renderer, Transparency};
+use lovelock_render::{Backend, Picture, Renderer, Transparency};
 use lovelock_session::clock::FrameClock;
 use lovelock_session::engine::Engine;
 use lovelock_session::scene::Scene;
@@ -60,8 +60,8 @@ pub struct OrderTimes {
     pub draw_bytes: u64,
 }
 
-/// Draws the frames of a scene in both modes, alternating. Each mode draws a frame twice and the second time counts, because the first
-/// one may create buffers.
+/// Draws the frames of a scene in both modes, alternating, after one that is not counted. Each mode has a renderer of its own, because a
+/// renderer keeps what has not changed since its last frame.
 pub(super) fn measure(
     scene: BenchScene,
     project: &Project,
@@ -77,21 +77,28 @@ pub(super) fn measure(
         project.picture.transparency = mode;
         project
     });
+    let mut other = match renderer.gpu() {
+        Some(gpu) => Renderer::on_device(Arc::clone(gpu))?,
+        None => Renderer::open(Backend::Cpu)?,
+    };
+    let mut renderers = [&mut other, renderer];
     let mut pictures = [Picture::default(), Picture::default()];
     let mut draws: [Vec<f64>; 2] = Default::default();
     let mut wholes: [Vec<f64>; 2] = Default::default();
     let (mut bytes, mut error) = ([0; 2], 0.0);
-    for frame in 0..u64::from(request.frames.max(1)) {
+    for frame in 0..=u64::from(request.frames.max(1)) {
         engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + frame));
         let snapshot = engine.snapshot();
         for (mode, project) in projects.iter().enumerate() {
             let camera = snapshot.camera(&project.camera);
             let input = snapshot.frame_input(project, &camera);
-            renderer.picture(&input, width, height, &mut pictures[mode])?;
-            let stats = renderer.picture(&input, width, height, &mut pictures[mode])?;
-            draws[mode].push(stats.draw_ms);
-            wholes[mode].push(stats.interpolate_ms + stats.shadow_ms + stats.draw_ms);
-            bytes[mode] = stats.draw_bytes;
+            let stats = renderers[mode].picture(&input, width, height, &mut pictures[mode])?;
+            // The first frame creates buffers.
+            if frame > 0 {
+                draws[mode].push(stats.draw_ms);
+                wholes[mode].push(stats.interpolate_ms + stats.shadow_ms + stats.draw_ms);
+                bytes[mode] = stats.draw_bytes;
+            }
         }
         if frame == 0 {
             let [exact, occupancy] =
@@ -100,6 +107,7 @@ pub(super) fn measure(
             error = map.mean();
         }
     }
+    let [_, renderer] = renderers;
     let middle = |times: &[f64]| median(times.iter().copied()).unwrap_or(0.0);
     let [exact, occupancy] = [0, 1].map(|mode| OrderTimes {
         draw_ms: middle(&draws[mode]),
@@ -169,8 +177,6 @@ impl OrderReport {
 
 #[cfg(test)]
 mod tests {
-    use lovelock_render::Backend;
-
     use super::*;
 
     #[test]

@@ -7,6 +7,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_render::{Picture, Renderer};
 use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::window_device::WindowDevice;
 
 use super::renderers::Renderers;
 use super::round::Rounds;
@@ -24,7 +25,7 @@ pub struct FilmOfPanes {
 impl FilmOfPanes {
     /// For the panes of `project`, composed by `sheet`, with takes that `access` allows.
     pub fn new(project: &Project, sheet: Sheet, access: Access) -> Self {
-        let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open)));
+        let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open_for), WindowDevice::default()));
         Self { rounds, sheet, project: Arc::new(project.clone()), access }
     }
 

@@ -19,6 +19,7 @@ use std::thread::JoinHandle;
 
 use lovelock_render::Renderer;
 use lovelock_session::latest::{Latest, LatestJob};
+use lovelock_session::window_device::WindowDevice;
 use renderers::{Open, Renderers};
 use thread::Outputs;
 
@@ -34,19 +35,23 @@ pub struct Live {
 }
 
 impl Live {
-    /// Starts the thread, which calls `on_drawn` after each pane and at the end of a round.
+    /// Starts the thread, which calls `on_drawn` after each pane and at the end of a round. Images are textures of `window`.
     ///
     /// # Errors
     /// If the system cannot create a thread.
-    pub fn start(on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        Self::start_with(Box::new(Renderer::open), on_drawn)
+    pub fn start(window: WindowDevice, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        Self::start_with(Box::new(Renderer::open_for), window, on_drawn)
     }
 
     /// As [`Live::start`], with renderers from `open`.
-    fn start_with(open: Open, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    fn start_with(
+        open: Open,
+        window: WindowDevice,
+        on_drawn: impl Fn() + Send + 'static,
+    ) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
         let outputs = Outputs::default();
-        let renderers = Renderers::new(open);
+        let renderers = Renderers::new(open, window);
         let worker = thread::Worker::new(jobs.clone(), outputs.clone(), Box::new(on_drawn), renderers);
         let thread = std::thread::Builder::new().name("compare".to_owned()).spawn(move || worker.run())?;
         Ok(Self { jobs, outputs, thread: Some(thread) })

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use lovelock_project::project::Contender;
 use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
+use lovelock_session::window_device::WindowDevice;
 
 /// Number of consecutive device failures by a pane after which it is no longer rendered on the GPU.
 const MOST_FAILURES: u32 = 3;
 
-/// Opens a renderer on the chosen backend.
-pub(super) type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> + Send>;
+/// Opens a renderer on the chosen backend, on the window's device if that is one.
+pub(super) type Open = Box<dyn FnMut(Backend, Option<&Arc<Gpu>>) -> Result<Renderer, RenderError> + Send>;
 
 /// The consequences of a renderer's failure.
 pub(super) struct Broken {
@@ -22,6 +23,7 @@ pub(super) struct Broken {
 /// One renderer per pane, so that each keeps its maps while another one renders.
 pub(super) struct Renderers {
     open: Open,
+    pub(super) window: WindowDevice,
     panes: Vec<Option<Renderer>>,
     /// The device that all panes on the GPU share.
     gpu: Option<Arc<Gpu>>,
@@ -32,9 +34,9 @@ pub(super) struct Renderers {
 }
 
 impl Renderers {
-    /// Renderers from `open`.
-    pub(super) fn new(open: Open) -> Self {
-        Self { open, panes: Vec::new(), gpu: None, auto: None, failed: Vec::new() }
+    /// Renderers from `open`, on the device of `window` where possible.
+    pub(super) fn new(open: Open, window: WindowDevice) -> Self {
+        Self { open, window, panes: Vec::new(), gpu: None, auto: None, failed: Vec::new() }
     }
 
     /// The renderer of a pane; opened if there is none for its backend.
@@ -69,12 +71,20 @@ impl Renderers {
             Backend::Auto => false,
             wanted => renderer.backend() == wanted,
         };
+        let window = self.window.get();
+        if let (Some(window), Some(gpu)) = (&window, &self.gpu)
+            && window.device != gpu.device
+            && gpu.is_lost()
+        {
+            // The window has another device by now.
+            self.gpu = None;
+        }
         if !self.panes[pane].as_ref().is_some_and(fits) {
             // Drop the old one first, because two may not fit into memory.
             self.panes[pane] = None;
             let opened = match (&self.gpu, wanted) {
                 (Some(gpu), Backend::Gpu) => Renderer::on_device(Arc::clone(gpu))?,
-                _ => (self.open)(wanted)?,
+                _ => (self.open)(wanted, window.as_ref())?,
             };
             if choice == Backend::Auto {
                 self.auto = Some(opened.backend());

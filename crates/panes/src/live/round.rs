@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
@@ -9,7 +10,8 @@ use lovelock_metrics::errors;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Camera, FrameInput, HairPose, Light, Picture, RayStructure, RenderError, Transparency, ValueRenderer,
+    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, Picture, RayStructure, RenderError,
+    Transparency, ValueRenderer,
 };
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -36,6 +38,16 @@ pub(super) struct Rounds {
     reference: ExactReference,
     probes: Probes,
     takes: PaneTakes,
+    /// The textures of each pane on the window's device.
+    textures: Vec<Option<DeviceImages>>,
+}
+
+/// How long [`Rounds::finish`] waits at a time.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+fn take_stats(pane: &mut LivePane, stats: &FrameStats) {
+    pane.times = LiveTimes::of(stats);
+    (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
 }
 
 impl Rounds {
@@ -50,6 +62,7 @@ impl Rounds {
             reference: ExactReference::default(),
             probes: Probes::default(),
             takes: PaneTakes::default(),
+            textures: Vec::new(),
         }
     }
 
@@ -85,7 +98,7 @@ impl Rounds {
             contender: contender.clone(),
             project: Arc::clone(project),
             asked_size: [request.width, request.height],
-            picture: Picture::default(),
+            image: Image::default(),
             problem: None,
             colors_problem: None,
             camera,
@@ -121,7 +134,7 @@ impl Rounds {
             }
         };
         if pane.problem.is_some() {
-            pane.picture = Picture::default();
+            pane.image = Image::default();
         }
         (pane, broken)
     }
@@ -133,6 +146,7 @@ impl Rounds {
         contender: &Contender,
         pane: &mut LivePane,
     ) -> Result<(), RenderError> {
+        let window_device = self.renderers.window.clone();
         let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
@@ -140,24 +154,59 @@ impl Rounds {
         let shared = (&request.snapshot, &self.strands);
         let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
         let input = input_of(snapshot, &project, strands, &pane.camera);
-        let [width, height] = pixels(request, contender);
-        let stats = renderer.picture(&input, width, height, &mut pane.picture)?;
-        pane.times = LiveTimes::of(&stats);
-        (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
-        if !request.view.measures {
+        let size = pixels(request, contender);
+        if self.textures.len() <= index {
+            self.textures.resize_with(index + 1, || None);
+        }
+        let window = window_device.images(&mut self.textures[index]);
+        let colored = request.view.measures && request.view.shows.colors().is_some();
+        if !colored {
+            // The image stays where it is drawn.
+            let (image, stats) = renderer.image(&input, size, true, window)?;
+            pane.image = image;
+            take_stats(pane, &stats);
+            if request.view.measures {
+                // A missing light has no transmittance, and the image does not need it.
+                let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
+                let _ = found.and_then(|found| {
+                    self.measure(request, index, (&project, &found), pane, &mut Picture::default())
+                });
+            }
             return Ok(());
         }
-        // A missing light has no transmittance, and the image does not need it.
+        let mut picture = Picture::default();
+        let stats = renderer.picture(&input, size[0], size[1], &mut picture)?;
+        take_stats(pane, &stats);
         let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
-        let measured = found.and_then(|found| self.measure(request, index, (&project, &found), pane));
-        // The plain image beside a colour scale would be mistaken for errors.
-        if let Err(why) = measured
-            && request.view.shows.colors().is_some()
-        {
-            pane.colors_problem = Some(why);
-            pane.picture = Picture::default();
+        let measured =
+            found.and_then(|found| self.measure(request, index, (&project, &found), pane, &mut picture));
+        match measured {
+            Ok(()) => {
+                let window = self.renderers.window.images(&mut self.textures[index]);
+                pane.image = Image::on(window, &mut picture);
+            }
+            // The plain image beside a colour scale would be mistaken for errors.
+            Err(why) => pane.colors_problem = Some(why),
         }
         Ok(())
+    }
+
+    /// Waits until the device has finished the image of a pane. Returns its time, milliseconds, and whether it must be rendered again;
+    /// `None` if it was finished before.
+    pub(super) fn finish(&mut self, index: usize) -> Option<(f64, bool)> {
+        let renderer = self.renderers.last(index)?;
+        let mut found: Option<(f64, bool)> = None;
+        while renderer.in_flight() > 0 {
+            match renderer.finished() {
+                Ok(Some(done)) => {
+                    found = Some((done.ms, done.again || found.is_some_and(|(_, again)| again)))
+                }
+                Ok(None) => renderer.wait_for_oldest(PATIENCE),
+                // The next image of the pane reports the error.
+                Err(_) => return None,
+            }
+        }
+        found
     }
 
     /// Compares the transmittance of a pane with the exact one, and shows the difference if requested.
@@ -170,6 +219,7 @@ impl Rounds {
         index: usize,
         (drawn, found): (&Project, &[f32]),
         pane: &mut LivePane,
+        picture: &mut Picture,
     ) -> Result<(), String> {
         let shared = &request.project;
         let own = self.takes.instant(index).and_then(Result::ok);
@@ -196,8 +246,8 @@ impl Rounds {
             let exact = self.reference.picture(shared, snapshot, strands, size)?;
             let is_itself = pane.error == LiveError::Reference
                 && pane.contender.transparency == Transparency::Exact
-                && pane.picture == *exact;
-            let mean = heat::of_pictures(&exact, largest, &mut pane.picture)?;
+                && *picture == *exact;
+            let mean = heat::of_pictures(&exact, largest, picture)?;
             pane.flip = (!is_itself).then_some(mean);
             return Ok(());
         }
@@ -209,7 +259,7 @@ impl Rounds {
         let mut shown = drawn.clone();
         shown.picture.transparency = Transparency::Sorted;
         let input = input_of(snapshot, &shown, strands, &pane.camera);
-        let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), &mut pane.picture);
+        let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), picture);
         colored.map_err(|error| error.to_string())
     }
 

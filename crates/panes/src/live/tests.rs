@@ -16,6 +16,7 @@ use lovelock_session::engine::Engine;
 use lovelock_session::scene::SceneLoader;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::testing::small_project;
+use lovelock_session::window_device::WindowDevice;
 
 use super::*;
 use crate::probe::{ProbePlace, ProbedHair};
@@ -45,7 +46,7 @@ impl Rig {
         let wake = move || {
             let _ = sender.try_send(());
         };
-        let live = Live::start_with(open, wake).expect("a thread");
+        let live = Live::start_with(open, WindowDevice::default(), wake).expect("a thread");
         Self { live, project, snapshot, finished }
     }
 
@@ -78,7 +79,12 @@ impl Rig {
 }
 
 fn on_processor(methods: &[ShadowMethod]) -> Rig {
-    Rig::new(Box::new(Renderer::open), Backend::Cpu, methods)
+    Rig::new(Box::new(Renderer::open_for), Backend::Cpu, methods)
+}
+
+/// The pixels of a pane.
+fn pixels(pane: &LivePane) -> Picture {
+    Picture::clone(&pane.image.picture().expect("pixels"))
 }
 
 /// The image that the window would show without panes.
@@ -101,9 +107,9 @@ fn each_pane_equals_the_single_image_with_its_settings() {
         assert_eq!(pane.contender, rig.project.compare.panes[index]);
         assert_eq!((pane.step, pane.adapter.backend), (rig.snapshot.step, Backend::Cpu));
         assert!(pane.times.whole > 0.0);
-        assert!(pane.picture == alone(&rig, index, 64, 48), "pane {index}");
+        assert!(pixels(&pane) == alone(&rig, index, 64, 48), "pane {index}");
     }
-    assert!(rig.pane(0).picture != rig.pane(1).picture, "shadows are visible");
+    assert!(pixels(&rig.pane(0)) != pixels(&rig.pane(1)), "shadows are visible");
     assert!(rig.pane(0).shadow_bytes > 0 && rig.pane(1).shadow_bytes == 0);
 }
 
@@ -114,7 +120,7 @@ fn a_pane_of_lower_scale_is_rendered_smaller_and_others_are_unchanged() {
     rig.draw(rig.request(&[1, 7]));
     assert!(rig.live.pane(0).expect("a slot").latest().is_none(), "it was not requested");
     assert!(rig.live.pane(7).is_none());
-    let picture = &rig.pane(1).picture;
+    let picture = &pixels(&rig.pane(1));
     assert_eq!((picture.width, picture.height), (32, 24));
     assert!(*picture == alone(&rig, 1, 32, 24));
 }
@@ -125,8 +131,8 @@ fn panes_use_the_extinction_of_the_hair() {
     let before = alone(&rig, 0, 64, 48);
     rig.project.look.extinction_scale = 4.0;
     rig.draw(rig.request(&[0]));
-    assert!(rig.pane(0).picture == alone(&rig, 0, 64, 48));
-    assert!(rig.pane(0).picture != before, "control: extinction is visible");
+    assert!(pixels(&rig.pane(0)) == alone(&rig, 0, 64, 48));
+    assert!(pixels(&rig.pane(0)) != before, "control: extinction is visible");
 }
 
 #[test]
@@ -137,7 +143,7 @@ fn a_failing_pane_says_why_and_the_others_are_rendered() {
     rig.draw(wide);
     let problem = rig.pane(0).problem.clone().expect("a sentence");
     assert!(problem.contains("8192") && !problem.contains('\n'), "{problem}");
-    assert!(rig.pane(0).picture.rgba.is_empty());
+    assert!(rig.pane(0).image.is_empty());
     assert_eq!(rig.pane(1).problem, None);
     rig.draw(rig.request(&[0, 1]));
     assert_eq!(rig.pane(0).problem, None, "it is rendered as soon as possible");
@@ -171,8 +177,8 @@ fn panes_of_a_round_can_be_published_together() {
 fn a_lost_device_is_opened_again_for_all_panes_on_it() {
     let devices = Arc::new(Mutex::new(Vec::<Arc<Gpu>>::new()));
     let noted = Arc::clone(&devices);
-    let open = move |choice| {
-        let renderer = Renderer::open(choice)?;
+    let open = move |choice, window: Option<&Arc<Gpu>>| {
+        let renderer = Renderer::open_for(choice, window)?;
         noted.lock().expect("a list").extend(renderer.gpu().cloned());
         Ok(renderer)
     };
@@ -190,15 +196,15 @@ fn a_lost_device_is_opened_again_for_all_panes_on_it() {
     for (index, before) in before.iter().enumerate() {
         let pane = rig.pane(index);
         assert_eq!(pane.problem, None, "rendered again without another request");
-        assert!(pane.picture == before.picture, "pane {index}");
+        assert!(pixels(&pane) == pixels(&before), "pane {index}");
     }
 }
 
 #[test]
 fn a_gpu_that_always_fails_leaves_its_panes_to_the_cpu_or_says_so() {
     for (backend, drawn) in [(Backend::Auto, true), (Backend::Gpu, false)] {
-        let open = |choice| match choice {
-            Backend::Cpu => Renderer::open(choice),
+        let open = |choice, window: Option<&Arc<Gpu>>| match choice {
+            Backend::Cpu => Renderer::open_for(choice, window),
             _ => Err::<_, RenderError>(GpuError::Lost("for this test".to_owned()).into()),
         };
         let rig = Rig::new(Box::new(open), backend, &[ShadowMethod::None]);
@@ -212,11 +218,11 @@ fn a_gpu_that_always_fails_leaves_its_panes_to_the_cpu_or_says_so() {
 fn a_pane_that_always_loses_the_device_stops_retrying_beside_one_that_works() {
     let opened = Arc::new(std::sync::atomic::AtomicUsize::new(0));
     let counted = Arc::clone(&opened);
-    let open: Open = Box::new(move |choice| {
+    let open: Open = Box::new(move |choice, window: Option<&Arc<Gpu>>| {
         counted.fetch_add(1, Ordering::Relaxed);
-        Renderer::open(choice)
+        Renderer::open_for(choice, window)
     });
-    let mut renderers = super::Renderers::new(open);
+    let mut renderers = super::Renderers::new(open, WindowDevice::default());
     let [healthy, broken] = [ShadowMethod::None, ShadowMethod::Exact].map(|method| {
         let mut pane = Contender { backend: Backend::Gpu, ..Contender::default() };
         pane.shadow.method = method;

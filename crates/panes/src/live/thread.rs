@@ -99,8 +99,26 @@ impl Worker {
         for (slot, pane) in finished {
             slot.put(Arc::new(pane));
         }
+        again |= self.take_times(request);
         if let Some(probe) = self.rounds.probe(request) {
             self.outputs.probe.put(Arc::new(probe));
+        }
+        again
+    }
+
+    /// Waits for the panes whose images are still drawn by a device, and publishes them again with their times. Returns whether one must
+    /// be rendered again.
+    fn take_times(&mut self, request: &LiveRequest) -> bool {
+        let mut again = false;
+        for &index in &request.panes {
+            let Some(slot) = self.outputs.panes.get(index) else { continue };
+            let (Some((ms, short)), Some(pane)) = (self.rounds.finish(index), slot.latest()) else {
+                continue;
+            };
+            again |= short;
+            let mut pane = LivePane::clone(&pane);
+            pane.times = pane.times.with_whole(ms);
+            slot.put(Arc::new(pane));
         }
         again
     }

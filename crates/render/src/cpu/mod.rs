@@ -20,6 +20,7 @@ mod bins;
 mod body_depth;
 mod finish;
 mod hair;
+mod kept;
 mod layers;
 mod math;
 mod placed;

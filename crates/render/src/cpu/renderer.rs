@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::backdrop::{Ground, ground_simd};
 use super::body_depth::{self, DepthMap};
 use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
+use super::kept::{KeptInputs, Unchanged};
 use super::layers::{LayerTiles, finish_light};
 use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of};
 use super::pool::Pool;
@@ -22,7 +23,7 @@ use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, Layers, MAX_LIGHTS, Picture, RenderError};
+use crate::{FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -30,7 +31,11 @@ const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 /// Renders pictures on the CPU. Keeps buffers from picture to picture.
 #[derive(Debug)]
 pub struct CpuRenderer {
+    /// Interpolated strands, kept while nothing moves them.
     strands: Strands,
+    kept: KeptInputs,
+    keeps: bool,
+    maps: Vec<LightMaps>,
     shadow: ShadowStage,
     placed: PlacedScene,
     depth: Vec<DepthMap>,
@@ -66,6 +71,9 @@ impl Default for CpuRenderer {
     fn default() -> Self {
         Self {
             strands: Strands::default(),
+            kept: KeptInputs::default(),
+            keeps: true,
+            maps: Vec::new(),
             shadow: ShadowStage::default(),
             placed: PlacedScene::new(Width::widest()),
             depth: Vec::new(),
@@ -85,6 +93,12 @@ impl CpuRenderer {
     pub fn with_width(width: Width) -> Self {
         assert!(width.is_available(), "{width:?} on a processor without");
         Self { placed: PlacedScene::new(width), ..Self::default() }
+    }
+
+    /// A renderer that computes everything anew for each picture, also what has not changed since the one before.
+    #[must_use]
+    pub fn keeping_nothing(self) -> Self {
+        Self { keeps: false, ..self }
     }
 
     /// The name of the device: the vector width in use.
@@ -130,12 +144,22 @@ impl CpuRenderer {
         target: Target,
     ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
-        let mut made = std::mem::take(&mut self.strands);
         let watch = Stopwatch::start();
-        let strands = input.hair.strands(input.style, &mut made);
+        let mut unchanged = self.kept.follow(input);
+        if !self.keeps {
+            unchanged = Unchanged { body: false, hair: false };
+        }
+        let mut made = std::mem::take(&mut self.strands);
+        let strands = match input.hair {
+            HairPose::Guides(_) if unchanged.hair => &made,
+            _ => input.hair.strands(input.style, &mut made),
+        };
         let interpolate_ms = watch.ms();
-        let stats = self.draw(input, strands, width, height, target);
+        let stats = self.draw(input, strands, unchanged, width, height, target);
         self.strands = made;
+        if stats.is_err() {
+            self.kept.forget();
+        }
         stats.map(|stats| FrameStats { interpolate_ms, ..stats })
     }
 
@@ -143,12 +167,17 @@ impl CpuRenderer {
         &mut self,
         input: &FrameInput,
         strands: &Strands,
+        unchanged: Unchanged,
         width: u32,
         height: u32,
         target: Target,
     ) -> Result<FrameStats, RenderError> {
         let watch = Stopwatch::start();
-        self.shadow.run(input, strands)?;
+        if unchanged.hair {
+            self.shadow.passes.clear();
+        } else {
+            self.shadow.run(input, strands)?;
+        }
         let shadow_ms = watch.ms();
 
         let watch = Stopwatch::start();
@@ -157,10 +186,14 @@ impl CpuRenderer {
             passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
         };
         let part = Stopwatch::start();
-        let maps = self.draw_depth(input);
-        let uniform = FrameUniform::new(input, width, height, &maps, DEPTH_TEXELS);
+        if !unchanged.body {
+            self.maps = self.draw_depth(input);
+        }
+        let uniform = FrameUniform::new(input, width, height, &self.maps, DEPTH_TEXELS);
         let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
-        passed("draw/body-depth", &part);
+        if !unchanged.body {
+            passed("draw/body-depth", &part);
+        }
 
         let part = Stopwatch::start();
         self.placed.shade(&view, input, strands, &self.shadow.at_points);
@@ -242,6 +275,7 @@ impl CpuRenderer {
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
+            ..FrameStats::default()
         }
     }
 

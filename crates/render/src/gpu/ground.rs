@@ -19,13 +19,13 @@ pub(super) fn cells(width: u32, height: u32) -> usize {
 
 impl Ground {
     pub fn new(gpu: &Gpu) -> Self {
-        Self(GrowBuffer::new(&gpu.device, "light on the ground", wgpu::BufferUsages::STORAGE))
+        Self(GrowBuffer::new(gpu, "light on the ground", wgpu::BufferUsages::STORAGE))
     }
 
     /// Resizes the buffer for the corners of a picture.
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let count = (width.div_ceil(CELL) + 1) * (height.div_ceil(CELL) + 1);
-        self.0.reserve(&gpu.device, count as usize);
+        self.0.reserve(gpu, count as usize);
     }
 
     pub fn corners(&self) -> &wgpu::Buffer {

@@ -36,16 +36,15 @@ pub(super) struct HairBuffers {
 impl HairBuffers {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
-        let device = &gpu.device;
         Ok(Self {
             style: StrandDetails::default(),
             extent: None,
             interpolation: Interpolation::new(gpu)?,
-            points: GrowBuffer::new(device, "strand points", storage),
-            details: GrowBuffer::new(device, "strand details", storage),
-            segments: GrowBuffer::new(device, "segments", storage),
-            transmittance: GrowBuffer::new(device, "transmittance", storage),
-            shaded: GrowBuffer::new(device, "shaded points", storage),
+            points: GrowBuffer::new(gpu, "strand points", storage),
+            details: GrowBuffer::new(gpu, "strand details", storage),
+            segments: GrowBuffer::new(gpu, "segments", storage),
+            transmittance: GrowBuffer::new(gpu, "transmittance", storage),
+            shaded: GrowBuffer::new(gpu, "shaded points", storage),
             staging: Vec::new(),
         })
     }
@@ -55,7 +54,6 @@ impl HairBuffers {
     /// # Errors
     /// The hairstyle needs a larger buffer than the device supports.
     pub fn write(&mut self, gpu: &Gpu, commands: &mut Commands, input: &FrameInput) -> Result<(), GpuError> {
-        let (device, queue) = (&gpu.device, &gpu.queue);
         let points = input.style.strands.points();
         let needed = points as u64 * size_of::<ShadedPoint>() as u64;
         if needed > gpu.most_storage_bytes() {
@@ -67,13 +65,13 @@ impl HairBuffers {
             )));
         }
         if self.style.follow(input.style) {
-            self.details.write(device, queue, &self.style.words);
-            self.segments.write(device, queue, &self.style.segments);
+            self.details.write(gpu, &self.style.words);
+            self.segments.write(gpu, &self.style.segments);
             self.extent = None;
         }
-        self.points.reserve(device, points);
-        self.transmittance.reserve(device, points);
-        self.shaded.reserve(device, points);
+        self.points.reserve(gpu, points);
+        self.transmittance.reserve(gpu, points);
+        self.shaded.reserve(gpu, points);
         match input.hair {
             HairPose::Guides(guides) => {
                 self.interpolation.run(gpu, commands, input.style, guides, self.points.raw())?;
@@ -88,7 +86,7 @@ impl HairBuffers {
                     .collect_into_vec(&mut self.staging);
                 // Strands and hairstyle should have the same size.
                 self.staging.resize(points, [f32::NAN; 4]);
-                self.points.write(device, queue, &self.staging);
+                self.points.write(gpu, &self.staging);
             }
         }
         Ok(())

@@ -62,11 +62,11 @@ pub(super) struct LayerBuffers {
 
 impl LayerBuffers {
     pub fn new(gpu: &Gpu) -> Self {
-        let (device, storage) = (&gpu.device, wgpu::BufferUsages::STORAGE);
+        let storage = wgpu::BufferUsages::STORAGE;
         Self {
             kernels: Vec::new(),
-            light: GrowBuffer::new(device, "light layer", storage),
-            data: GrowBuffer::new(device, "data layer", storage),
+            light: GrowBuffer::new(gpu, "light layer", storage),
+            data: GrowBuffer::new(gpu, "data layer", storage),
             readback: Readback::default(),
             bytes: [const { Vec::new() }; 2],
         }
@@ -88,8 +88,8 @@ impl LayerBuffers {
         pixels: u64,
         (lights, over_background): (usize, bool),
     ) -> Result<(), GpuError> {
-        self.light.reserve(&gpu.device, pixels as usize);
-        self.data.reserve(&gpu.device, pixels as usize);
+        self.light.reserve(gpu, pixels as usize);
+        self.data.reserve(gpu, pixels as usize);
         let variant = (lights.min(MAX_LIGHTS), over_background);
         if !self.kernels.iter().any(|(known, _)| *known == variant) {
             let kernels = LayerKernels::compile(gpu, shaders, variant.0, over_background)?;

@@ -8,11 +8,14 @@ mod interpolate;
 mod layers;
 mod light_kernels;
 mod pipelines;
+mod present;
 mod renderer;
 mod screen;
 mod shadow;
+mod shrink;
 mod surface;
 mod targets;
 
 pub use pipelines::all_shaders;
-pub use renderer::GpuRenderer;
+pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT};
+pub use shrink::Shrinker;

@@ -4,6 +4,7 @@ use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use super::layers::LayerShaders;
 use super::light_kernels::{LightShaders, LightVariants};
+use super::present::Present;
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
 use super::{eye, interpolate};
@@ -30,9 +31,11 @@ const TONE_MAP: ShaderPart = part!("tone_map.wgsl");
 const PICTURE: ShaderPart = part!("picture.wgsl");
 const LAYERS: ShaderPart = part!("layers.wgsl");
 const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
+const PRESENT: ShaderPart = part!("present.wgsl");
+const SHRINK: ShaderPart = part!("shrink.wgsl");
 
 /// The shaders of these kernels and pipelines.
-fn own_shaders() -> [(&'static str, ShaderSource); 7] {
+fn own_shaders() -> [(&'static str, ShaderSource); 8] {
     [
         ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
@@ -41,14 +44,21 @@ fn own_shaders() -> [(&'static str, ShaderSource); 7] {
         ("depth", &[DEPTH]),
         ("layers", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS]),
         ("values of points", &[FRAME, STRAND_SHADING, STRAND_POINTS, VALUE_POINTS]),
+        ("present", &[PRESENT]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
+}
+
+/// The shader of [`Shrinker`](super::Shrinker).
+pub(super) fn shrink_source() -> ShaderSource {
+    ShaderSource::new(&[SHRINK])
 }
 
 /// Every composed shader with its label, so that a test can validate them without a device.
 pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
-    own.chain(eye::shaders()).chain(interpolate::shaders()).collect()
+    let shrink = std::iter::once(("shrink".to_owned(), shrink_source()));
+    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.
@@ -57,6 +67,7 @@ pub(super) struct Pipelines {
     /// The kernels that evaluate lights.
     pub lit: LightVariants,
     pub screen: ScreenKernels,
+    pub present: Present,
     /// The parts of the kernels for layers, which are compiled on demand.
     pub layers: LayerShaders,
     /// A uniform for the vertices.
@@ -78,7 +89,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, values] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, values, present] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -100,6 +111,7 @@ impl Pipelines {
         let (surface, depth) = (gpu.shader(surface.0, &surface.1)?, gpu.shader(depth.0, &depth.1)?);
         Ok(Self {
             screen: ScreenKernels::new(gpu, &picture.1)?,
+            present: Present::new(gpu, &present.1)?,
             layers: LayerShaders { layers: layers.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),

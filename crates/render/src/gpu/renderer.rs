@@ -1,5 +1,6 @@
 //! The GPU renderer.
 
+mod flight;
 mod inspect;
 mod layers;
 
@@ -7,8 +8,8 @@ use std::sync::Arc;
 
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
-use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, wgpu};
-use lovelock_shadow::SUM_WORDS;
+use lovelock_gpu::{Commands, Gpu, GpuError, PassTime, PassTimer, Readback, wgpu};
+use lovelock_shadow::{GpuList, SUM_WORDS};
 
 use super::eye::{Area, Eye, EyeInput, HairOutput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
@@ -16,14 +17,18 @@ use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
 use super::layers::LayerBuffers;
 use super::pipelines::Pipelines;
+use super::present::{HEAD_BYTES, MOST_LISTS};
 use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
+use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size_for;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
+use flight::Flights;
+pub use flight::{Finished, MOST_IN_FLIGHT};
 
 /// The most attempts to render a frame whose lists were too short. Each attempt has longer lists or half as many rows per band.
 const MOST_ATTEMPTS: u32 = 16;
@@ -50,6 +55,8 @@ pub struct GpuRenderer {
     last: FrameUniform,
     readback: Readback,
     numbers: Vec<u8>,
+    heads: Vec<u8>,
+    flights: Flights,
     /// The bytes of an image of which layers alone are wanted.
     spare: Vec<u8>,
     /// Whether the last picture was completed.
@@ -61,7 +68,9 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// A shader that does not compile, by file and line.
-    pub fn new(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
+        // What other renderers on the same device do is not counted here.
+        let gpu = gpu.handle();
         let pipelines = gpu.checked(|| Pipelines::new(&gpu))??;
         let device = &gpu.device;
         let linear = wgpu::SamplerDescriptor {
@@ -69,7 +78,7 @@ impl GpuRenderer {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         };
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        let uniform = gpu.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: size_of::<FrameUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -99,6 +108,8 @@ impl GpuRenderer {
             last: FrameUniform::default(),
             readback: Readback::default(),
             numbers: Vec::new(),
+            heads: Vec::new(),
+            flights: Flights::default(),
             spare: Vec::new(),
             is_whole: false,
             pipelines,
@@ -128,21 +139,28 @@ impl GpuRenderer {
         }
         self.is_whole = false;
         let gpu = Arc::clone(&self.gpu);
-        let watch = Stopwatch::start();
+        let (watch, before) = (Stopwatch::start(), gpu.traffic());
         for attempt in 0.. {
             let mut timer = std::mem::take(&mut self.timer);
-            let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height);
-            if drawn.is_err() {
+            let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height, Output::Memory);
+            if let Err(error) = drawn {
                 // The incomplete timings are dropped, and errors of the driver belong to this picture.
                 self.timer = PassTimer::new(&gpu)?;
                 let _ = gpu.check();
-                return drawn.map(|()| FrameStats::default());
+                return Err(error);
             }
             self.timer = timer;
-            self.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers])?;
+            self.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
             gpu.check()?;
-            let again = [self.shadow.settle(&gpu)?, self.eye.settle(&gpu)?];
-            if again == [false, false] {
+            let mut heads = [[0_u32; 2]; MOST_LISTS];
+            for (head, bytes) in heads.iter_mut().zip(self.heads.chunks_exact(HEAD_BYTES as usize)) {
+                let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
+                *head = [words[0], words[1]];
+            }
+            let method = self.shadow.method();
+            let [image, maps @ ..] = &heads;
+            let maps = &maps[..self.shadow.lists().count().min(maps.len())];
+            if [self.shadow.settle(&gpu, method, maps)?, self.eye.settle(&gpu, *image)?] == [false, false] {
                 break;
             }
             if attempt == MOST_ATTEMPTS {
@@ -153,6 +171,18 @@ impl GpuRenderer {
         (picture.width, picture.height) = (width, height);
         self.is_whole = true;
         let passes = self.timer.times(&gpu);
+        let mut stats = self.stats(passes);
+        stats.draw_ms = (watch.ms() - stats.interpolate_ms - stats.shadow_ms).max(0.0);
+        stats.traffic = gpu.traffic().since(before);
+        let points = f64::from(self.hair.strands().point_count.max(1));
+        if self.shadow.has_light() {
+            stats.mean_transmittance = (number_of_bytes(&self.numbers) / (255.0 * points)) as f32;
+        }
+        Ok(stats)
+    }
+
+    /// Statistics of the last picture without its whole time, its traffic and its mean transmittance.
+    fn stats(&self, passes: Vec<PassTime>) -> FrameStats {
         let of = |stage: &str| {
             passes
                 .iter()
@@ -160,27 +190,22 @@ impl GpuRenderer {
                 .map(|pass| pass.ms)
                 .fold(0.0, |sum, ms| sum + ms)
         };
-        let (interpolate_ms, shadow_ms) = (of("interpolate"), of("shadow/"));
-        let strands = self.hair.strands();
-        let points = f64::from(strands.point_count.max(1));
-        let words = self.numbers.as_chunks::<4>().0.iter();
-        let sum = words.map(|&bytes| f64::from(u32::from_le_bytes(bytes))).fold(0.0, |sum, word| sum + word);
-        Ok(FrameStats {
-            interpolate_ms,
-            shadow_ms,
-            draw_ms: (watch.ms() - interpolate_ms - shadow_ms).max(0.0),
-            segments: u64::from(strands.segment_count),
+        FrameStats {
+            interpolate_ms: of("interpolate"),
+            shadow_ms: of("shadow/"),
+            segments: u64::from(self.hair.strands().segment_count),
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
                 + self.screen.memory_bytes()
                 + self.targets.as_ref().map_or(0, Targets::memory_bytes),
-            mean_transmittance: if self.shadow.has_light() { (sum / (255.0 * points)) as f32 } else { 1.0 },
+            mean_transmittance: 1.0,
             passes,
-        })
+            ..FrameStats::default()
+        }
     }
 
-    /// Encodes a whole picture and submits it.
+    /// Encodes a whole picture and submits it. Returns the buffer of what the frame reports, if it goes to a texture and has something to report.
     fn draw(
         &mut self,
         gpu: &Gpu,
@@ -188,8 +213,8 @@ impl GpuRenderer {
         input: &FrameInput,
         width: u32,
         height: u32,
-    ) -> Result<(), RenderError> {
-        let device = &gpu.device;
+        output: Output,
+    ) -> Result<Option<wgpu::Buffer>, RenderError> {
         let pixels = u64::from(width) * u64::from(height);
         if 4 * pixels > gpu.most_storage_bytes() {
             return Err(too_large(gpu, 4 * pixels).into());
@@ -197,7 +222,7 @@ impl GpuRenderer {
         if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
             // The old buffers are freed first.
             self.targets = None;
-            self.targets = Some(Targets::new(device, width, height));
+            self.targets = Some(Targets::new(gpu, width, height));
         }
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
@@ -213,10 +238,10 @@ impl GpuRenderer {
             maps.push(LightMaps { columns_from_world, ..view });
         }
         let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        gpu.upload(&self.uniform, 0, &[uniform]);
         self.last = uniform;
         let seen = self.seen_hair(input, &uniform, [width, height]);
-        let Some(targets) = &self.targets else { return Ok(()) };
+        let Some(targets) = &self.targets else { return Err(RenderError::NoPicture) };
         let frame = FrameResources {
             uniform: &self.uniform,
             body_depth: &self.surface.depth,
@@ -253,10 +278,30 @@ impl GpuRenderer {
             ],
         };
         self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);
-        let wanted = [(self.screen.pixels(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
-        self.readback.copy(gpu, commands.encoder(), &wanted);
+        let image_list = self.eye.list().map(|(buffer, room)| GpuList { buffer, room });
+        let lists: Vec<_> = std::iter::once(image_list).chain(self.shadow.lists().map(Some)).collect();
+        let present = &self.pipelines.present;
+        present.collect(commands.encoder(), &lists);
+        let report = match output {
+            Output::Memory => {
+                let wanted = [
+                    (self.screen.pixels(), 4 * pixels),
+                    (self.shadow.sum(), 4 * SUM_WORDS),
+                    (present.heads(), present.heads().size()),
+                ];
+                self.readback.copy(gpu, commands.encoder(), &wanted);
+                None
+            }
+            Output::Texture { shown, before, measured, report } => {
+                present.show(gpu, &mut commands, self.screen.pixels(), (shown, before), &lists);
+                let sum = (measured && self.shadow.has_light()).then(|| self.shadow.sum());
+                // Where no list can be too short and nothing is measured, nothing is read back.
+                let told = measured || lists.iter().any(Option::is_some);
+                told.then(|| flight::report(gpu, commands.encoder(), present.heads(), sum, report))
+            }
+        };
         commands.submit();
-        Ok(())
+        Ok(report)
     }
 
     /// The area that may contain hair, and the largest width of a strand.
@@ -302,6 +347,26 @@ impl GpuRenderer {
             self.surface.draw(&self.pipelines, pass, &self.uniform_group);
         });
     }
+}
+
+/// Where a finished picture goes.
+enum Output<'a> {
+    /// To memory, with what the frame reports.
+    Memory,
+    /// Into the texture `shown`, or that of the image `before` if a list was too short. `report` is a spare buffer for what the frame
+    /// reports.
+    Texture {
+        shown: &'a DeviceImage,
+        before: Option<&'a DeviceImage>,
+        measured: bool,
+        report: Option<wgpu::Buffer>,
+    },
+}
+
+/// The sum of the words of [`GpuShadowStage::sum`].
+fn number_of_bytes(bytes: &[u8]) -> f64 {
+    let words = bytes.as_chunks::<4>().0.iter();
+    words.map(|&bytes| f64::from(u32::from_le_bytes(bytes))).fold(0.0, |sum, word| sum + word)
 }
 
 /// See [`EyeInput`].

@@ -1,7 +1,7 @@
 //! The final pixels of a picture: hair over the body over the background.
 
 use glam::Vec4;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, constants, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, wgpu};
 
 use super::eye::Area;
 use super::frame_resources::FrameResources;
@@ -9,8 +9,8 @@ use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
 
-/// Threads that share the listed pixels: enough to fill a GPU, and few enough that idle threads cost little on software adapters.
-const LIT_THREADS: [u64; 2] = [1 << 18, 1 << 15];
+/// Bytes of the workgroups of one kernel.
+const GROUPS_BYTES: u64 = 12;
 
 /// The kernels that classify pixels.
 #[derive(Debug)]
@@ -19,6 +19,7 @@ pub(super) struct ScreenKernels {
     plain_background: Kernel,
     list_cells: Kernel,
     list_pixels: Kernel,
+    size_lists: Kernel,
 }
 
 impl ScreenKernels {
@@ -27,6 +28,7 @@ impl ScreenKernels {
             plain_background: Kernel::new(gpu, "plain background", source, "plain_background")?,
             list_cells: Kernel::new(gpu, "cells", source, "list_cells")?,
             list_pixels: Kernel::new(gpu, "pixels of the figure", source, "list_pixels")?,
+            size_lists: Kernel::new(gpu, "sizes of lists", source, "size_lists")?,
         })
     }
 }
@@ -58,36 +60,41 @@ pub(super) struct Screen {
     /// Lists of pixels. Two lists share a buffer of the size of the picture.
     listed: GrowBuffer<u32>,
     list_count: wgpu::Buffer,
-    lit_threads: u64,
+    /// Workgroups of the kernels that draw each list, three words each.
+    list_groups: wgpu::Buffer,
 }
 
 impl Screen {
     pub fn new(gpu: &Gpu) -> Self {
-        let device = &gpu.device;
         let usage = wgpu::BufferUsages::STORAGE;
         Self {
-            pixels: GrowBuffer::new(device, "screen", usage),
-            plain: GrowBuffer::new(device, "plain background", usage),
+            pixels: GrowBuffer::new(gpu, "screen", usage),
+            plain: GrowBuffer::new(gpu, "plain background", usage),
             plain_of: None,
-            cells: GrowBuffer::new(device, "light of cells", usage),
-            listed: GrowBuffer::new(device, "listed pixels", usage),
-            list_count: device.create_buffer(&wgpu::BufferDescriptor {
+            cells: GrowBuffer::new(gpu, "light of cells", usage),
+            listed: GrowBuffer::new(gpu, "listed pixels", usage),
+            list_count: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("numbers of listed pixels"),
                 size: 4 * LISTS as u64,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            lit_threads: LIT_THREADS[usize::from(gpu.is_software())],
+            list_groups: gpu.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("workgroups of lists"),
+                size: GROUPS_BYTES * LISTS as u64,
+                usage: usage | wgpu::BufferUsages::INDIRECT,
+                mapped_at_creation: false,
+            }),
         }
     }
 
     /// Resizes the buffers for a picture.
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
-        self.pixels.reserve(&gpu.device, pixels);
-        self.plain.reserve(&gpu.device, pixels);
-        self.listed.reserve(&gpu.device, LISTS / 2 * pixels);
-        self.cells.reserve(&gpu.device, cells(width, height));
+        self.pixels.reserve(gpu, pixels);
+        self.plain.reserve(gpu, pixels);
+        self.listed.reserve(gpu, LISTS / 2 * pixels);
+        self.cells.reserve(gpu, cells(width, height));
     }
 
     /// Red, green, blue and alpha of each pixel, row after row.
@@ -99,9 +106,15 @@ impl Screen {
         [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
-    /// Threads that share the listed pixels of an image of this many pixels.
-    pub fn lit_threads(&self, pixels: u64) -> u64 {
-        pixels.min(self.lit_threads)
+    /// Runs a kernel with a thread for each pixel of a list of the last picture. The device knows how many these are.
+    pub fn run_list(
+        &self,
+        pass: &mut wgpu::ComputePass,
+        kernel: &Kernel,
+        group: &wgpu::BindGroup,
+        list: usize,
+    ) {
+        kernel.run_indirect(pass, group, &self.list_groups, GROUPS_BYTES * list as u64);
     }
 
     /// The buffers of the last picture that the kernels of layers read. `hair_area` is its area that may contain hair.
@@ -138,7 +151,7 @@ impl Screen {
     ) {
         let ScreenInput { targets, area, figure, .. } = *input;
         let area_of =
-            |label, area: Area| constants(gpu, label, &[area.left, area.top, area.columns, area.rows]);
+            |label, area: Area| commands.constants(label, &[area.left, area.top, area.columns, area.rows]);
         let (hair_area, figure_area) = (area_of("hair area", area), area_of("area of the figure", figure));
         let own = |screen| {
             frame.with([
@@ -153,6 +166,7 @@ impl Screen {
                 (12, self.listed.raw().as_entire_binding()),
                 (13, self.list_count.as_entire_binding()),
                 (14, figure_area.as_entire_binding()),
+                (18, self.list_groups.as_entire_binding()),
             ])
         };
         let pixels = self.pixels.len() as u64;
@@ -166,8 +180,11 @@ impl Screen {
         let encoder = commands.encoder();
         encoder.copy_buffer_to_buffer(self.plain.raw(), 0, self.pixels.raw(), 0, 4 * pixels);
         encoder.clear_buffer(&self.list_count, 0, None);
-        let passes =
-            [(&kernels.list_cells, self.cells.len() as u64), (&kernels.list_pixels, figure.pixels())];
+        let passes = [
+            (&kernels.list_cells, self.cells.len() as u64),
+            (&kernels.list_pixels, figure.pixels()),
+            (&kernels.size_lists, 1),
+        ];
         let groups = passes.map(|(kernel, _)| kernel.bind(gpu, &own));
         commands.compute("draw/picture", |pass| {
             for ((kernel, threads), group) in passes.iter().zip(&groups) {
@@ -176,8 +193,8 @@ impl Screen {
         });
         let groups = lit.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
         commands.compute("draw/lit", |pass| {
-            for (kernel, group) in lit.picture_lit.iter().zip(&groups) {
-                kernel.run(pass, group, self.lit_threads(pixels));
+            for (list, (kernel, group)) in lit.picture_lit.iter().zip(&groups).enumerate() {
+                self.run_list(pass, kernel, group, list);
             }
         });
     }

@@ -7,7 +7,8 @@ use std::fmt;
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
-    GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod, gpu_shadow,
+    GpuColumns, GpuList, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
+    gpu_shadow,
 };
 
 use super::hair::HairBuffers;
@@ -47,7 +48,7 @@ impl GpuShadowStage {
             methods: BTreeMap::new(),
             method: ShadowMethod::None,
             frames: Vec::new(),
-            sum: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            sum: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("sum of transmittances"),
                 size: 4 * SUM_WORDS,
                 usage: wgpu::BufferUsages::STORAGE
@@ -55,7 +56,7 @@ impl GpuShadowStage {
                     | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
-            columns: Columns::new(&gpu.device, 1),
+            columns: Columns::new(gpu, 1),
             lights: 0,
         }
     }
@@ -139,7 +140,7 @@ impl GpuShadowStage {
             self.columns.clear();
         }
         let most = (0..lights.len()).map(|slot| shadow.columns_size(slot)).max().unwrap_or(0);
-        self.columns.fit(&gpu.device, most.max(1));
+        self.columns.fit(gpu, most.max(1));
         for slot in 0..lights.len() {
             let written = shadow.columns(slot, gpu, commands, &self.columns.layers[slot]);
             self.columns.written[slot] = written;
@@ -147,10 +148,29 @@ impl GpuShadowStage {
         Ok(())
     }
 
-    /// See [`GpuShadow::settle`].
-    pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, RenderError> {
-        let settled = self.methods.get_mut(&self.method).map(|shadow| shadow.settle(gpu));
+    /// The lists of the maps of the last frame, which come first among its slots.
+    pub fn lists(&self) -> impl Iterator<Item = GpuList<'_>> {
+        let shadow = self.methods.get(&self.method);
+        (0..self.lights).map_while(move |slot| shadow?.list(slot))
+    }
+
+    /// See [`GpuShadow::settle`]. Heads of a frame of another method are ignored.
+    pub fn settle(
+        &mut self,
+        gpu: &Gpu,
+        method: ShadowMethod,
+        heads: &[[u32; 2]],
+    ) -> Result<bool, RenderError> {
+        if method != self.method {
+            return Ok(false);
+        }
+        let settled = self.methods.get_mut(&self.method).map(|shadow| shadow.settle(gpu, heads));
         Ok(settled.transpose()?.unwrap_or(false))
+    }
+
+    /// The method of the last frame.
+    pub fn method(&self) -> ShadowMethod {
+        self.method
     }
 
     /// Encodes looking up the map of slot `slot` of the last frame.
@@ -203,8 +223,8 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(device: &wgpu::Device, size: u32) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
+    fn new(gpu: &Gpu, size: u32) -> Self {
+        let texture = gpu.create_texture(&wgpu::TextureDescriptor {
             label: Some("hair columns"),
             size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: MAX_LIGHTS as u32 },
             mip_level_count: 1,
@@ -234,9 +254,9 @@ impl Columns {
     }
 
     /// Makes room for layers of `size` by `size` texels, with a margin so that swaying hair does not need a new texture.
-    fn fit(&mut self, device: &wgpu::Device, size: u32) {
+    fn fit(&mut self, gpu: &Gpu, size: u32) {
         if size > self.size {
-            *self = Self::new(device, size.next_multiple_of(64));
+            *self = Self::new(gpu, size.next_multiple_of(64));
         }
         self.clear();
     }

@@ -53,7 +53,7 @@ impl SurfaceBuffers {
         let device = &gpu.device;
         // A texel is about one millimetre for a standing figure on a GPU, two on a software adapter.
         let texels = if gpu.is_software() { 1024 } else { 2048 };
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
+        let texture = gpu.create_texture(&wgpu::TextureDescriptor {
             label: Some("body depth"),
             size: wgpu::Extent3d { width: texels, height: texels, depth_or_array_layers: MAX_LIGHTS as u32 },
             mip_level_count: 1,
@@ -79,7 +79,7 @@ impl SurfaceBuffers {
         });
         let uniforms = (0..MAX_LIGHTS)
             .map(|_| {
-                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("depth pass"),
                     size: 64,
                     usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -99,10 +99,10 @@ impl SurfaceBuffers {
             closed: Closedness::default(),
             is_closed: false,
             seen_from_without: false,
-            moving: GrowBuffer::new(device, "body surface", vertex | wgpu::BufferUsages::STORAGE),
-            hair: GrowBuffer::new(device, "hair on the body", vertex | wgpu::BufferUsages::STORAGE),
-            fixed: GrowBuffer::new(device, "body colours", vertex),
-            indices: GrowBuffer::new(device, "body triangles", wgpu::BufferUsages::INDEX),
+            moving: GrowBuffer::new(gpu, "body surface", vertex | wgpu::BufferUsages::STORAGE),
+            hair: GrowBuffer::new(gpu, "hair on the body", vertex | wgpu::BufferUsages::STORAGE),
+            fixed: GrowBuffer::new(gpu, "body colours", vertex),
+            indices: GrowBuffer::new(gpu, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
             depth,
             layers,
@@ -113,11 +113,10 @@ impl SurfaceBuffers {
 
     /// Uploads one frame, seen from `eye`.
     pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, eye: Vec3) {
-        let (device, queue) = (&gpu.device, &gpu.queue);
         let Some((body, skin)) = body else {
             self.body = None;
-            self.indices.reserve(device, 0);
-            self.moving.reserve(device, 0);
+            self.indices.reserve(gpu, 0);
+            self.moving.reserve(gpu, 0);
             return;
         };
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
@@ -128,8 +127,8 @@ impl SurfaceBuffers {
                     VertexColor([color.x, color.y, color.z, mesh.scalp.get(i).copied().unwrap_or(0.0)])
                 })
                 .collect();
-            self.fixed.write(device, queue, &fixed);
-            self.indices.write(device, queue, mesh.triangles.as_flattened());
+            self.fixed.write(gpu, &fixed);
+            self.indices.write(gpu, mesh.triangles.as_flattened());
             self.body = Some(Arc::clone(body));
         }
         self.is_closed = self.closed.of(body);
@@ -139,8 +138,8 @@ impl SurfaceBuffers {
             .zip(&skin.normals)
             .map(|(p, n)| VertexPose { position: [p.x, p.y, p.z, 1.0], normal: [n.x, n.y, n.z, 0.0] })
             .collect_into_vec(&mut self.staging);
-        self.moving.write(device, queue, &self.staging);
-        self.hair.reserve(device, self.staging.len());
+        self.moving.write(gpu, &self.staging);
+        self.hair.reserve(gpu, self.staging.len());
     }
 
     /// The vertices for shadow methods; `None` without a body.
@@ -162,7 +161,7 @@ impl SurfaceBuffers {
         shadow_from_world: Mat4,
     ) {
         let (buffer, group) = &self.uniforms[k];
-        gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&shadow_from_world));
+        gpu.upload(buffer, 0, &[shadow_from_world]);
         let descriptor = wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.layers[k],

@@ -1,6 +1,6 @@
 //! The render targets of the body.
 
-use lovelock_gpu::wgpu;
+use lovelock_gpu::{Gpu, wgpu};
 
 /// Samples per pixel: supported by every WebGPU device for every format in use.
 pub(super) const SAMPLES: u32 = 4;
@@ -26,9 +26,9 @@ impl Targets {
         u64::from(self.width) * u64::from(self.height) * u64::from(SAMPLES) * 20
     }
 
-    pub fn new(device: &wgpu::Device, width: u32, height: u32) -> Self {
+    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let make = |label, format| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
+            let texture = gpu.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,

@@ -11,3 +11,4 @@ mod picture_gpu;
 mod receding;
 mod shaders;
 mod values;
+mod window;

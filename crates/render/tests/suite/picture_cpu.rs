@@ -7,3 +7,71 @@ mod cases;
 use lovelock_render::Backend;
 
 const BACKEND: Backend = Backend::Cpu;
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_render::{CpuRenderer, FrameStats, Light, Picture, ShadowMethod};
+
+use crate::common::{Scene, grid, scene, tuft};
+
+#[test]
+fn what_is_kept_from_picture_to_picture_changes_no_byte() {
+    let mut scene = scene(&tuft(60));
+    scene.body = Some(grid(-0.1, 0.3, 8, Vec3::new(0.5, 0.3, 0.2)));
+    scene.picture.ground = true;
+    scene.shadow.method = ShadowMethod::VoxelMap;
+    let (mut keeping, mut plain) = (CpuRenderer::default(), CpuRenderer::default().keeping_nothing());
+    type Change = fn(&mut Scene);
+    // What changes, and whether the depth maps of the body and the shadows of hair are kept.
+    let changes: [(&str, Change, [bool; 2]); 12] = [
+        ("the first picture", |_| {}, [false, false]),
+        ("nothing", |_| {}, [true, true]),
+        ("the camera", |scene| scene.camera.eye.x += 0.1, [true, true]),
+        ("exposure", |scene| scene.picture.exposure_stops += 0.5, [true, true]),
+        ("colour", |scene| scene.look.roughness += 0.1, [true, true]),
+        ("extinction", |scene| scene.look.extinction_scale *= 2.0, [true, false]),
+        ("hair", |scene| scene.strands.y.iter_mut().for_each(|y| *y -= 0.01), [true, false]),
+        ("the method", |scene| scene.shadow.method = ShadowMethod::OpacityMaps, [true, false]),
+        ("brightness of a light", |scene| scene.lights[0].intensity *= 0.7, [true, true]),
+        ("another light", |scene| scene.lights.push(Light::default()), [false, false]),
+        ("a light turns", |scene| scene.lights[0].direction.x += 0.3, [false, false]),
+        (
+            "the body",
+            |scene| {
+                let (body, skin) = scene.body.take().expect("a body");
+                let mut moved = skin.clone();
+                moved.positions.iter_mut().for_each(|p| p.y += 0.02);
+                scene.body = Some((Arc::clone(&body), moved));
+            },
+            [false, false],
+        ),
+    ];
+    let draw = |renderer: &mut CpuRenderer, scene: &Scene| {
+        let mut picture = Picture::default();
+        let stats = renderer.picture(&scene.input(), 96, 72, &mut picture).expect("a picture");
+        (picture, stats)
+    };
+    let mut before = Picture::default();
+    for (name, change, [body, hair]) in changes {
+        change(&mut scene);
+        let ((kept, stats), (computed, _)) = (draw(&mut keeping, &scene), draw(&mut plain, &scene));
+        assert!(kept == computed, "{name}");
+        assert!(name == "nothing" || kept != before, "control: {name} is seen");
+        let builds = |stats: &FrameStats| stats.passes.iter().any(|pass| pass.name == "shadow/build");
+        assert_eq!(
+            (stats.passes.iter().any(|pass| pass.name == "draw/body-depth"), builds(&stats)),
+            (!body, !hair),
+            "{name}"
+        );
+        before = kept;
+    }
+    // A picture that fails leaves nothing behind.
+    (scene.look.diameter, scene.look.real_hairs) = (17e-6, 1.0);
+    scene.shadow.exact.resolution = *lovelock_render::TEXEL_RESOLUTIONS.end();
+    scene.shadow.exact.memory_limit_bytes = 1;
+    scene.shadow.method = ShadowMethod::Exact;
+    let mut picture = Picture::default();
+    assert!(keeping.picture(&scene.input(), 96, 72, &mut picture).is_err());
+    assert!(keeping.picture(&scene.input(), 96, 72, &mut picture).is_err(), "not the shadows of before");
+}

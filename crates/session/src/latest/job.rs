@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// The request that waits.
 #[derive(Debug)]
@@ -76,6 +77,15 @@ impl<T> LatestJob<T> {
         }
     }
 
+    /// A request that waits, or that arrives within `most`.
+    pub fn next_within(&self, most: Duration) -> Option<T> {
+        let mut pending = self.lock();
+        if pending.request.is_none() && !pending.closed && !most.is_zero() {
+            pending = self.pending.1.wait_timeout(pending, most).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        pending.request.take()
+    }
+
     /// Ends the current request. `again` is queued again unless a newer request waits.
     pub fn done(&self, again: Option<T>) {
         let mut pending = self.lock();
@@ -108,6 +118,9 @@ mod tests {
         assert_eq!(jobs.next(), Some(4));
         jobs.done(None);
         assert!(!busy(&jobs));
+        assert_eq!(jobs.next_within(Duration::from_millis(1)), None);
+        jobs.put(5);
+        assert_eq!(jobs.next_within(Duration::ZERO), Some(5));
     }
 
     #[test]

@@ -1,17 +1,25 @@
 //! The render thread: takes the newest request when it is free, renders it and publishes the image.
 
+mod samples;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use lovelock_project::Project;
 use lovelock_project::project::backend_label;
-use lovelock_render::{Backend, Camera, FrameStats, GpuError, Picture, RenderError, Renderer};
+use lovelock_render::{
+    Backend, Camera, DeviceImages, FrameStats, Gpu, GpuError, Image, Picture, RenderError, Renderer,
+};
 
 use crate::latest::{Latest, LatestJob};
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
+use crate::thinning::Thinning;
+use crate::window_device::WindowDevice;
+use samples::{Samples, jitter};
 
 /// What to render.
 #[derive(Clone, Debug)]
@@ -20,17 +28,21 @@ pub struct RenderRequest {
     pub project: Arc<Project>,
     /// The instant.
     pub snapshot: Arc<FrameSnapshot>,
-    /// Width, pixels.
-    pub width: u32,
-    /// Height, pixels.
-    pub height: u32,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
+    pub still: bool,
+    /// Whether strands narrower than a pixel are replaced by fewer and wider ones.
+    pub thinned: bool,
+    /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
+    pub measured: bool,
 }
 
 /// A finished image with its cost.
 #[derive(Clone, Debug)]
 pub struct RenderedImage {
-    /// The image.
-    pub picture: Picture,
+    /// The image. On the window's device it may still be drawn; later commands of the window wait for it there.
+    pub image: Image,
     /// The camera that it was rendered with.
     pub camera: Camera,
     /// Statistics of the render.
@@ -43,6 +55,8 @@ pub struct RenderedImage {
     pub step: u64,
     /// [`FrameSnapshot::position_secs`] of the instant.
     pub position_secs: f64,
+    /// The number of samples of each pixel.
+    pub samples: u32,
 }
 
 /// The device that renders.
@@ -71,8 +85,11 @@ struct Failure {
     pictures: u64,
 }
 
-/// Opens a renderer on the chosen backend.
-type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> + Send>;
+/// Opens a renderer on the chosen backend, on the window's device if that is one.
+type Open = Box<dyn FnMut(Backend, Option<&Arc<Gpu>>) -> Result<Renderer, RenderError> + Send>;
+
+/// How long the thread waits for the device or for a request before it looks at the other one.
+const PATIENCE: Duration = Duration::from_millis(1);
 
 /// Number of consecutive failures after which a graphics device is no longer reopened automatically.
 const MOST_FAILURES: u32 = 3;
@@ -89,16 +106,20 @@ pub struct RenderThread {
 }
 
 impl RenderThread {
-    /// Starts the thread, which calls `on_rendered` after each image and each error.
+    /// Starts the thread, which calls `on_rendered` after each image and each error. Images are textures of `window`.
     ///
     /// # Errors
     /// If the system cannot create a thread.
-    pub fn start(on_rendered: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        Self::start_with(Box::new(Renderer::open), on_rendered)
+    pub fn start(window: WindowDevice, on_rendered: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        Self::start_with(Box::new(Renderer::open_for), window, on_rendered)
     }
 
     /// As [`RenderThread::start`], with renderers from `open`.
-    fn start_with(open: Open, on_rendered: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    fn start_with(
+        open: Open,
+        window: WindowDevice,
+        on_rendered: impl Fn() + Send + 'static,
+    ) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
         let (images, failures, notices) = (Latest::default(), Latest::default(), Latest::default());
         let adapter = Latest::default();
@@ -110,7 +131,14 @@ impl RenderThread {
             adapter: adapter.clone(),
             on_rendered: Box::new(on_rendered),
             open,
+            window,
             opened: None,
+            textures: None,
+            last: None,
+            samples: Samples::default(),
+            thinning: Thinning::default(),
+            picture: Picture::default(),
+            finished: (0.0, 1.0),
             failed: 0,
             card_given_up: false,
         };
@@ -159,6 +187,14 @@ impl Drop for RenderThread {
     }
 }
 
+/// An open renderer.
+struct Opened {
+    /// The backend that it was opened for, and the window's device at that time.
+    backend: Backend,
+    window: Option<Arc<Gpu>>,
+    renderer: Renderer,
+}
+
 struct Worker {
     jobs: LatestJob<RenderRequest>,
     images: Latest<RenderedImage>,
@@ -167,39 +203,122 @@ struct Worker {
     adapter: Latest<Adapter>,
     on_rendered: Box<dyn Fn() + Send>,
     open: Open,
-    /// The renderer, and the backend that it was opened for.
-    opened: Option<(Backend, Renderer)>,
+    window: WindowDevice,
+    opened: Option<Opened>,
+    /// The textures of the images.
+    textures: Option<DeviceImages>,
+    /// The request that was rendered last, and its samples so far.
+    last: Option<RenderRequest>,
+    samples: Samples,
+    thinning: Thinning,
+    picture: Picture,
+    /// The last finished image: its time, milliseconds, and the mean transmittance that was measured last.
+    finished: (f64, f32),
     /// Number of consecutive failures of the device.
     failed: u32,
     /// Whether [`Backend::Auto`] means the CPU because the GPU failed repeatedly.
     card_given_up: bool,
 }
 
+/// What the thread does next.
+enum Work {
+    Image(RenderRequest),
+    /// Another sample of the last image, which stands still.
+    Sample(RenderRequest),
+}
+
 impl Worker {
     fn run(mut self) {
-        while let Some(request) = self.jobs.next() {
+        while let Some(work) = self.next() {
+            let (request, is_sample) = match work {
+                Work::Image(request) => (request, false),
+                Work::Sample(request) => (request, true),
+            };
             // A panic while rendering costs the device and one image, but not the window.
-            let result = catch_unwind(AssertUnwindSafe(|| self.render(&request)));
+            let result = catch_unwind(AssertUnwindSafe(|| self.render(&request, is_sample)));
             let again = match result {
-                Ok(Ok(images)) => {
+                Ok(Ok(image)) => {
                     self.failed = 0;
-                    self.images.put(Arc::new(images));
+                    self.images.put(Arc::new(image));
+                    self.last = Some(request.clone());
                     false
                 }
-                Ok(Err(error)) => {
-                    let again = device_is_gone(&error) && self.try_again(request.project.picture.backend);
-                    self.fail(error.to_string());
-                    again
-                }
+                Ok(Err(error)) => self.take_error(&error, &request),
                 Err(_) => {
                     let again = self.try_again(request.project.picture.backend);
                     self.fail("rendering stopped unexpectedly; the renderer is opened again".to_owned());
                     again
                 }
             };
-            self.jobs.done(again.then_some(request));
+            if again || !is_sample {
+                self.jobs.done(again.then_some(request));
+            }
             (self.on_rendered)();
         }
+    }
+
+    /// Waits for the next work, and meanwhile takes what the device reports of finished images.
+    fn next(&mut self) -> Option<Work> {
+        loop {
+            if self.jobs.is_closed() {
+                return None;
+            }
+            self.take_finished();
+            let opened = self.opened.as_ref().map(|opened| &opened.renderer);
+            if let Some(renderer) = opened.filter(|renderer| renderer.is_full()) {
+                renderer.wait_for_oldest(PATIENCE);
+                continue;
+            }
+            let in_flight = opened.map_or(0, Renderer::in_flight);
+            let sample = self.last.as_ref().filter(|last| self.samples.wants_more(last));
+            if in_flight == 0 && sample.is_none() {
+                return self.jobs.next().map(Work::Image);
+            }
+            let most = if in_flight > 0 { PATIENCE } else { Duration::ZERO };
+            if let Some(request) = self.jobs.next_within(most) {
+                return Some(Work::Image(request));
+            }
+            if in_flight == 0 {
+                return sample.cloned().map(Work::Sample);
+            }
+        }
+    }
+
+    /// Takes the reports of finished images.
+    fn take_finished(&mut self) {
+        let mut again = false;
+        while let Some(opened) = &mut self.opened {
+            match opened.renderer.finished() {
+                Ok(None) => break,
+                Ok(Some(done)) => {
+                    self.finished.0 = done.ms;
+                    self.finished.1 = done.mean_transmittance.unwrap_or(self.finished.1);
+                    again |= done.again;
+                }
+                Err(error) => {
+                    let Some(last) = self.last.clone() else { break };
+                    again |= self.take_error(&error, &last);
+                    (self.on_rendered)();
+                    break;
+                }
+            }
+        }
+        if again && let Some(last) = &self.last {
+            self.jobs.done(Some(last.clone()));
+        }
+    }
+
+    /// Reports an error. Returns whether to render the request again.
+    fn take_error(&mut self, error: &RenderError, request: &RenderRequest) -> bool {
+        self.fail(error.to_string());
+        let opened_on_window = self.opened.as_ref().and_then(|opened| opened.window.as_ref());
+        let window = self.window.get();
+        if opened_on_window.or(window.as_ref()).is_some_and(|gpu| gpu.is_lost()) {
+            // The window opens another device and asks again.
+            self.opened = None;
+            return false;
+        }
+        device_is_gone(error) && self.try_again(request.project.picture.backend)
     }
 
     fn fail(&self, message: String) {
@@ -208,7 +327,7 @@ impl Worker {
 
     /// Closes the renderer after a failure. Returns whether to render the same request again.
     fn try_again(&mut self, choice: Backend) -> bool {
-        let by_processor = self.opened.take().is_some_and(|(_, renderer)| renderer.backend() == Backend::Cpu);
+        let by_processor = self.opened.take().is_some_and(|opened| opened.renderer.backend() == Backend::Cpu);
         self.failed = self.failed.saturating_add(1);
         if self.failed < MOST_FAILURES {
             return true;
@@ -225,34 +344,60 @@ impl Worker {
         true
     }
 
-    fn render(&mut self, request: &RenderRequest) -> Result<RenderedImage, RenderError> {
+    fn render(&mut self, request: &RenderRequest, is_sample: bool) -> Result<RenderedImage, RenderError> {
         let choice = request.project.picture.backend;
         // An explicit choice of the GPU asks for another attempt.
         self.card_given_up &= choice != Backend::Gpu;
-        let wanted = if choice == Backend::Auto && self.card_given_up { Backend::Cpu } else { choice };
-        if self.opened.as_ref().is_some_and(|(opened_for, _)| *opened_for != wanted) {
-            self.opened = None;
-        }
+        let backend = if choice == Backend::Auto && self.card_given_up { Backend::Cpu } else { choice };
+        let window = self.window.get();
+        self.opened.take_if(|opened| opened.backend != backend || !same_device(&opened.window, &window));
         let renderer = match &mut self.opened {
-            Some((_, renderer)) => renderer,
+            Some(opened) => &mut opened.renderer,
             none => {
-                let renderer = (self.open)(wanted)?;
-                let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
-                self.adapter.put(Arc::new(Adapter { name, backend, software: renderer.is_software() }));
-                &mut none.insert((wanted, renderer)).1
+                let renderer = (self.open)(backend, window.as_ref())?;
+                let (name, backend_in_use) = (renderer.adapter().to_owned(), renderer.backend());
+                let software = renderer.is_software();
+                self.adapter.put(Arc::new(Adapter { name, backend: backend_in_use, software }));
+                &mut none.insert(Opened { backend, window, renderer }).renderer
             }
         };
-        let RenderRequest { project, snapshot, width, height } = request;
+        let RenderRequest { project, snapshot, size, measured, .. } = request;
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
-        let mut picture = Picture::default();
-        let input = snapshot.frame_input(project, &camera);
-        let stats = renderer.picture(&input, *width, *height, &mut picture)?;
+        let textures = self.window.images(&mut self.textures);
+        let (image, mut stats) = if request.still && renderer.backend() == Backend::Cpu {
+            let index = if is_sample { self.samples.taken() } else { 0 };
+            let jittered = camera.moved_by_pixels(jitter(index), size[1]);
+            let picture = &mut self.picture;
+            let input = snapshot.frame_input(project, &jittered);
+            let stats = renderer.picture(&input, size[0], size[1], picture)?;
+            self.samples.add(request, index, picture);
+            (Image::on(textures, picture), stats)
+        } else {
+            self.samples.forget();
+            let head = snapshot.guides.world_from_head.translation.into();
+            let thinned = request.thinned.then(|| {
+                self.thinning.choose(&snapshot.scene.style, &project.look, (&camera, size[1], head))
+            });
+            let mut input = snapshot.frame_input(project, &camera);
+            input.style = thinned.as_ref().unwrap_or(input.style);
+            renderer.image(&input, *size, *measured, textures)?
+        };
+        if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {
+            // Its own time is not known yet: that of the last finished one stands for it.
+            (stats.draw_ms, stats.mean_transmittance) = self.finished;
+            stats.draw_ms = (stats.draw_ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
+        }
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
-        let snapshot = Arc::clone(snapshot);
-        Ok(RenderedImage { picture, camera, stats, times, snapshot, step, position_secs })
+        let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
+        Ok(RenderedImage { image, camera, stats, times, snapshot, step, position_secs, samples })
     }
+}
+
+/// Whether both are the same device, or none.
+fn same_device(a: &Option<Arc<Gpu>>, b: &Option<Arc<Gpu>>) -> bool {
+    a.as_ref().map(|gpu| &gpu.device) == b.as_ref().map(|gpu| &gpu.device)
 }
 
 /// Whether the renderer must be opened again. Opening it again does not help if a shader does not compile, something does not

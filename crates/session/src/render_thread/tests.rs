@@ -22,12 +22,20 @@ struct Rig {
 }
 
 impl Rig {
-    fn new(mut open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static) -> Self {
+    fn new(open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static) -> Self {
+        Self::on(WindowDevice::default(), open)
+    }
+
+    /// As [`Rig::new`], with a window on a device.
+    fn on(
+        window: WindowDevice,
+        mut open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static,
+    ) -> Self {
         let (scene, _) = SceneLoader::new().load_now(&small_project(), &Access::new()).expect("a scene");
         let snapshot = Engine::new(scene, small_project().simulation).snapshot();
         let opened = Arc::new(Mutex::new(Vec::new()));
         let noted = Arc::clone(&opened);
-        let open = move |choice| {
+        let open = move |choice, _: Option<&Arc<Gpu>>| {
             noted.lock().expect("a list").push(choice);
             open(choice)
         };
@@ -35,7 +43,7 @@ impl Rig {
         let wake = move || {
             let _ = sender.try_send(());
         };
-        let thread = RenderThread::start_with(Box::new(open), wake).expect("a thread");
+        let thread = RenderThread::start_with(Box::new(open), window, wake).expect("a thread");
         Self { thread, snapshot, finished, opened }
     }
 
@@ -44,7 +52,14 @@ impl Rig {
         let mut project = small_project();
         project.picture.backend = backend;
         let (project, snapshot) = (Arc::new(project), Arc::clone(&self.snapshot));
-        self.thread.request(RenderRequest { project, snapshot, width: 64, height: 48 });
+        self.thread.request(RenderRequest {
+            project,
+            snapshot,
+            size: [64, 48],
+            still: false,
+            thinned: false,
+            measured: false,
+        });
         while self.thread.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
             self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
@@ -56,7 +71,7 @@ impl Rig {
     }
 
     fn pixels(&self) -> Vec<u8> {
-        self.thread.images().latest().expect("a picture").picture.rgba.clone()
+        self.thread.images().latest().expect("a picture").image.picture().expect("pixels").rgba.clone()
     }
 
     /// Numbers of images, failures and notices so far.
@@ -160,4 +175,103 @@ fn a_panic_while_rendering_is_reported_and_rendering_continues() {
     rig.draw(Backend::Cpu);
     assert_eq!(rig.counts(), [1, 1, 0]);
     assert_eq!(rig.thread.error(), None);
+}
+
+/// A device as that of a window, if the machine has an adapter.
+fn window_device() -> Option<Arc<Gpu>> {
+    match Renderer::open(Backend::Gpu) {
+        Ok(renderer) => renderer.gpu().cloned(),
+        Err(error) => {
+            lovelock_testkit::skip_without_adapter(&error);
+            None
+        }
+    }
+}
+
+#[test]
+fn images_are_textures_of_the_window_whatever_draws_them() {
+    let Some(gpu) = window_device() else { return };
+    let window = WindowDevice::default();
+    window.set(Some(Arc::clone(&gpu)));
+    let (there, here) = (Rig::on(window, |choice| Renderer::open(choice)), Rig::new(Renderer::open));
+    for (rig, is_texture) in [(&there, true), (&here, false)] {
+        rig.draw(Backend::Cpu);
+        let image = rig.thread.images().latest().expect("an image").image.clone();
+        assert_eq!(image.on_device().is_some(), is_texture);
+        assert!(image.on_device().is_none_or(|image| image.gpu().device == gpu.device));
+    }
+    assert!(there.pixels() == here.pixels(), "the same bytes");
+}
+
+#[test]
+fn a_lost_window_device_is_not_retried_until_the_window_has_another_one() {
+    let Some(gpu) = window_device() else { return };
+    let window = WindowDevice::default();
+    window.set(Some(Arc::clone(&gpu)));
+    let of_window = window.clone();
+    let open = move |choice| Renderer::open_for(choice, of_window.get().as_ref());
+    let rig = Rig::on(window.clone(), open);
+    rig.draw(Backend::Gpu);
+    let before = rig.pixels();
+    let image = rig.thread.images().latest().expect("an image");
+    assert!(image.image.on_device().is_some_and(|image| image.gpu().device == gpu.device));
+    drop(image);
+    gpu.device.destroy();
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 1), "it waits for the window");
+    assert!(rig.thread.error().is_some_and(|said| said.contains("lost")));
+    // The CPU goes on, in memory.
+    rig.draw(Backend::Cpu);
+    let image = rig.thread.images().latest().expect("an image");
+    assert!(image.image.on_device().is_none());
+    window.set(window_device());
+    rig.draw(Backend::Gpu);
+    assert_eq!(rig.counts(), [3, 1, 0]);
+    assert!(rig.pixels() == before, "the same bytes on the new device");
+}
+
+#[test]
+fn what_stands_still_is_refined_until_something_else_is_wanted() {
+    let rig = Rig::new(Renderer::open);
+    let mut project = small_project();
+    project.picture.backend = Backend::Cpu;
+    let project = Arc::new(project);
+    let request = |still| RenderRequest {
+        project: Arc::clone(&project),
+        snapshot: Arc::clone(&rig.snapshot),
+        size: [64, 48],
+        still,
+        thinned: false,
+        measured: false,
+    };
+    let wait = |samples: u32| loop {
+        rig.finished.recv_timeout(Duration::from_secs(100)).expect("an image");
+        let image = rig.thread.images().latest().expect("an image");
+        if image.samples == samples {
+            return image.image.picture().expect("pixels");
+        }
+    };
+    rig.thread.request(request(false));
+    let plain = wait(1);
+    rig.thread.request(request(true));
+    let first = wait(1);
+    assert!(first == plain, "the first sample is the image");
+    let refined = wait(16);
+    assert!(refined != plain, "edges are smoother");
+    let off = |a: &Picture, b: &Picture| {
+        let sum: u64 = a.rgba.iter().zip(&b.rgba).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        sum as f64 / a.rgba.len() as f64
+    };
+    assert!(off(&refined, &plain) < 4.0, "{}", off(&refined, &plain));
+    // A quarter as many samples are nearer to all than one is.
+    rig.thread.request(request(false));
+    assert!(wait(1) == plain);
+    rig.thread.request(request(true));
+    let some = wait(4);
+    assert!(
+        off(&some, &refined) < 0.6 * off(&plain, &refined),
+        "{} {}",
+        off(&some, &refined),
+        off(&plain, &refined)
+    );
 }

@@ -80,16 +80,7 @@ impl PointLookup {
             slot: slot as u32,
             sums: u32::from(sum.is_some()),
         };
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("lookup"),
-            size: size_of::<LookupUniform>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM,
-            mapped_at_creation: true,
-        });
-        if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
-            bytes.copy_from_slice(bytemuck::bytes_of(&uniform));
-        }
-        buffer.unmap();
+        let buffer = commands.constants("lookup", &uniform);
         let mut resources = map.to_vec();
         resources.extend([
             (10, buffer.as_entire_binding()),

@@ -78,6 +78,15 @@ pub struct GpuColumns {
     pub uv_from_world: Mat4,
 }
 
+/// A list of fragments on the device.
+#[derive(Clone, Copy, Debug)]
+pub struct GpuList<'a> {
+    /// Its first two words are its head: the number of fragments modulo 2³², and a multiple of 2¹⁶ below the number, divided by 2¹⁶.
+    pub buffer: &'a wgpu::Buffer,
+    /// The number of fragments that it can hold.
+    pub room: u64,
+}
+
 /// A shadow method on the GPU. It holds one map per light, in slots that count from 0.
 pub trait GpuShadow: Debug + Send {
     /// Encodes the passes that build the map of slot `slot`. Memory is reused from build to build.
@@ -110,12 +119,17 @@ pub trait GpuShadow: Debug + Send {
         into: &wgpu::TextureView,
     ) -> Option<GpuColumns>;
 
-    /// Checks, after the device has finished a frame, whether maps were too small. Then they are enlarged, the result is `true`, and
-    /// the frame must be rendered again.
+    /// The list of fragments of the map of a slot, if its length is known only once the device has built it.
+    fn list(&self, _slot: usize) -> Option<GpuList<'_>> {
+        None
+    }
+
+    /// Takes the heads of the lists of slots 0, 1, … of a finished frame. Lists that were too short are enlarged, the result is `true`,
+    /// and the frame must be rendered again.
     ///
     /// # Errors
-    /// The maps need more than the limit of the method, or the device is lost.
-    fn settle(&mut self, _gpu: &Gpu) -> Result<bool, GpuShadowError> {
+    /// The maps need more than the limit of the method or than the device supports.
+    fn settle(&mut self, _gpu: &Gpu, _heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {
         Ok(false)
     }
 

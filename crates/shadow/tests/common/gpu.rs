@@ -26,8 +26,8 @@ pub fn device() -> Option<&'static Arc<Gpu>> {
 }
 
 pub fn buffer<T: bytemuck::Pod>(gpu: &Gpu, items: &[T]) -> GrowBuffer<T> {
-    let mut buffer = GrowBuffer::new(&gpu.device, "test", wgpu::BufferUsages::STORAGE);
-    buffer.write(&gpu.device, &gpu.queue, items);
+    let mut buffer = GrowBuffer::new(gpu, "test", wgpu::BufferUsages::STORAGE);
+    buffer.write(gpu, items);
     buffer
 }
 
@@ -119,6 +119,18 @@ impl Built {
         self.build_from(slot, &strands.input(input), settings)
     }
 
+    /// The heads of the lists of all maps.
+    fn heads(&self) -> Vec<[u32; 2]> {
+        let lists = (0..).map_while(|slot| self.shadow.list(slot));
+        lists
+            .map(|list| {
+                let mut head = [0; 2];
+                read_buffer(self.gpu, list.buffer, &mut head).expect("read back");
+                head
+            })
+            .collect()
+    }
+
     /// As [`Built::build`], of strands that are there.
     pub fn build_from(
         &mut self,
@@ -139,7 +151,8 @@ impl Built {
             let wait = wgpu::PollType::wait_indefinitely();
             self.gpu.device.poll(wait).expect("the device is there");
             self.passes = self.timer.times(self.gpu);
-            match self.shadow.settle(self.gpu) {
+            let heads = self.heads();
+            match self.shadow.settle(self.gpu, &heads) {
                 Ok(false) => return Ok(times),
                 Ok(true) => {}
                 Err(GpuShadowError::Shadow(error)) => return Err(error),

@@ -76,14 +76,14 @@ fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_panes_come()
     assert_eq!(pane.problem, None);
     let LiveError::Refused(why) = &pane.error else { panic!("{:?}", pane.error) };
     assert!(why.contains("MiB"), "{why}");
-    assert!(pane.colors_problem.is_none() && !pane.picture.rgba.is_empty(), "no colours were asked for");
+    assert!(pane.colors_problem.is_none() && !pane.image.is_empty(), "no colours were asked for");
     // Under a scale of colours there is the reason and no picture, and what the pane took all the same.
     for shows in [LiveShows::TransmittanceError, LiveShows::PictureError] {
         let view = LiveView { shows, ..LiveView::default() };
         rig.draw(LiveRequest { view, ..rig.request(&[0]) });
         let pane = rig.pane(0);
         assert_eq!(pane.colors_problem.as_ref(), Some(why));
-        assert!(pane.problem.is_none() && pane.picture.rgba.is_empty() && pane.times.whole > 0.0);
+        assert!(pane.problem.is_none() && pane.image.is_empty() && pane.times.whole > 0.0);
     }
 }
 
@@ -102,18 +102,18 @@ fn an_error_that_was_measured_stays_where_the_picture_alone_cannot_be_compared()
         "{:?}",
         pane.colors_problem
     );
-    assert!(pane.picture.rgba.is_empty() && pane.flip.is_none());
+    assert!(pane.image.is_empty() && pane.flip.is_none());
 }
 
 #[test]
 fn colours_are_on_hair_alone_and_stronger_where_the_error_is_larger() {
     let rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact]);
     rig.draw(LiveRequest { width: 160, height: 120, ..rig.request(&[0]) });
-    let plain = rig.pane(0).picture.clone();
+    let plain = pixels(&rig.pane(0));
     let view = |largest| LiveView { shows: LiveShows::TransmittanceError, largest, ..LiveView::default() };
     let drawn = |largest: f32| {
         rig.draw(LiveRequest { width: 160, height: 120, view: view(largest), ..rig.request(&[0, 1]) });
-        [rig.pane(0).picture.clone(), rig.pane(1).picture.clone()]
+        [pixels(&rig.pane(0)), pixels(&rig.pane(1))]
     };
     let colored = |picture: &Picture| {
         let strong = |pixel: &&[u8]| pixel[..3].iter().max().unwrap() - pixel[..3].iter().min().unwrap() > 40;
@@ -142,12 +142,11 @@ fn the_picture_of_the_reference_differs_from_none_but_itself() {
     let flip = |index| rig.pane(index).flip.expect("a mean");
     assert_eq!(rig.pane(1).flip, None, "the reference is not held against itself");
     assert!(
-        rig.pane(1)
-            .picture
+        pixels(&rig.pane(1))
             .rgba
             .chunks_exact(4)
             .all(|pixel| pixel[..3] == lovelock_metrics::ColorMap::Magma.at(0.0))
     );
     assert!(flip(0) > 0.005, "{}", flip(0));
-    assert_ne!(rig.pane(0).picture, rig.pane(1).picture);
+    assert_ne!(pixels(&rig.pane(0)), pixels(&rig.pane(1)));
 }

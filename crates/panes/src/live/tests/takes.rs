@@ -20,7 +20,7 @@ fn a_pane_shows_its_own_take_at_the_time_of_all() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("windy.take");
     windy(&path);
-    let mut rig = Rig::new(Box::new(Renderer::open), Backend::Cpu, &[ShadowMethod::VoxelMap; 2]);
+    let mut rig = Rig::new(Box::new(Renderer::open_for), Backend::Cpu, &[ShadowMethod::VoxelMap; 2]);
     rig.project.compare.panes[1].take = Some(FileRef::new(&path));
     let mut access = Access::new();
     access.pick(&path);
@@ -33,10 +33,10 @@ fn a_pane_shows_its_own_take_at_the_time_of_all() {
     };
     let [own, start] = at(0.0);
     assert_eq!((&own.problem, &start.problem), (&None, &None));
-    assert!(own.picture != start.picture, "the take is another one");
+    assert!(pixels(&own) != pixels(&start), "the take is another one");
     let [again, end] = at(0.2);
-    assert!(own.picture == again.picture, "what the window shows has not moved");
-    assert!(start.picture != end.picture, "the take has gone on");
+    assert!(pixels(&own) == pixels(&again), "what the window shows has not moved");
+    assert!(pixels(&start) != pixels(&end), "the take has gone on");
     assert!(end.label().contains("take windy"), "{}", end.label());
 
     // It is the picture that the take itself gives.
@@ -50,14 +50,14 @@ fn a_pane_shows_its_own_take_at_the_time_of_all() {
         .expect("the processor")
         .picture(&input, 64, 48, &mut picture)
         .expect("a picture");
-    assert!(picture == end.picture);
+    assert!(picture == pixels(&end));
 }
 
 #[test]
 fn a_take_that_is_not_allowed_or_not_there_is_said_in_its_pane_and_costs_no_other() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("gone.take");
-    let mut rig = Rig::new(Box::new(Renderer::open), Backend::Cpu, &[ShadowMethod::VoxelMap; 2]);
+    let mut rig = Rig::new(Box::new(Renderer::open_for), Backend::Cpu, &[ShadowMethod::VoxelMap; 2]);
     rig.project.compare.panes[1].take = Some(FileRef::new(&path));
     for allowed in [false, true] {
         let mut access = Access::new();
@@ -68,7 +68,7 @@ fn a_take_that_is_not_allowed_or_not_there_is_said_in_its_pane_and_costs_no_othe
         let [own, other] = [0, 1].map(|pane| {
             rig.live.pane(pane).and_then(lovelock_session::latest::Latest::latest).expect("a pane")
         });
-        assert!(own.problem.is_none() && !own.picture.rgba.is_empty());
+        assert!(own.problem.is_none() && !own.image.is_empty());
         assert!(other.problem.as_ref().is_some_and(|why| why.contains("gone.take")), "{:?}", other.problem);
     }
 }

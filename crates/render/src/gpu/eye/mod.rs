@@ -8,9 +8,7 @@ mod area;
 mod modes;
 
 use bytemuck::{Pod, Zeroable};
-use lovelock_gpu::{
-    Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu,
-};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
 
 use crate::Transparency;
 pub(super) use area::Area;
@@ -161,20 +159,19 @@ pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
 impl Eye {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
-        let device = &gpu.device;
         Ok(Self {
             behind_kernel: Kernel::new(gpu, "behind", &behind_source(), "each_pixel")?,
             modes: Vec::new(),
             depths: None,
-            map: GrowBuffer::new(device, "eye maps", storage),
-            list: GrowBuffer::new(device, "fragments", storage),
-            total: device.create_buffer(&wgpu::BufferDescriptor {
+            map: GrowBuffer::new(gpu, "eye maps", storage),
+            list: GrowBuffer::new(gpu, "fragments", storage),
+            total: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("fragments in all"),
                 size: 16,
                 usage: storage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
-            layer: GrowBuffer::new(device, "hair layer", storage),
+            layer: GrowBuffer::new(gpu, "hair layer", storage),
             room: 1 << 16,
             least_bands: 1,
             lists: None,
@@ -199,7 +196,6 @@ impl Eye {
     /// # Errors
     /// A shader does not compile, or a row of the picture does not fit a buffer of the device.
     pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
-        let device = &gpu.device;
         let mode = Mode::of(input.drawn);
         let Area { left, top, columns, rows: all_rows } = input.area;
         let variant = (input.drawn, input.streaked);
@@ -214,7 +210,7 @@ impl Eye {
         if input.area.pixels() * 8 > gpu.most_storage_bytes() {
             return Err(too_large(gpu, input.area.pixels() * 8));
         }
-        self.layer.reserve(device, input.area.pixels() as usize);
+        self.layer.reserve(gpu, input.area.pixels() as usize);
         let row_bytes = u64::from(columns) * u64::from(mode.words) * 4;
         let most_rows = gpu.most_storage_bytes() / row_bytes.max(1);
         if most_rows == 0 {
@@ -223,14 +219,14 @@ impl Eye {
         let mut bands = u64::from(all_rows).div_ceil(most_rows) as u32;
         if mode.lists {
             self.room = self.room.min(list_limit(gpu));
-            self.list.reserve(device, (self.room * FRAGMENT_WORDS) as usize);
+            self.list.reserve(gpu, (self.room * FRAGMENT_WORDS) as usize);
             bands = bands.max(self.least_bands).min(all_rows);
             self.lists = Some(Lists { bands, rows: all_rows });
         }
         let rows = all_rows.div_ceil(bands);
         self.depths.take_if(|held| held.columns < columns || held.rows < rows);
-        self.depths.get_or_insert_with(|| AreaDepths::new(device, columns, rows));
-        self.map.reserve(device, (u64::from(rows) * row_bytes / 4) as usize);
+        self.depths.get_or_insert_with(|| AreaDepths::new(gpu, columns, rows));
+        self.map.reserve(gpu, (u64::from(rows) * row_bytes / 4) as usize);
         commands.encoder().clear_buffer(&self.total, 0, None);
         for first in (0..all_rows).step_by(rows as usize) {
             let rows = rows.min(all_rows - first);
@@ -261,7 +257,7 @@ impl Eye {
             pad: [0; 3],
         };
         let Some(depths) = &self.depths else { return };
-        let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
+        let buffer = commands.constants("eye", &uniform);
         let resources = [
             (0, buffer.as_entire_binding()),
             (1, input.shaded.as_entire_binding()),
@@ -295,15 +291,19 @@ impl Eye {
         }
     }
 
-    /// Checks, after the device has finished a frame, whether lists were too short. Then they are enlarged, the result is `true`, and the
-    /// frame must be rendered again.
+    /// The list of fragments of the last frame, if its mode has one: a buffer whose second word is the number of fragments of its
+    /// largest band, and the number of fragments that fit.
+    pub fn list(&self) -> Option<(&wgpu::Buffer, u64)> {
+        self.lists.map(|_| (&self.total, self.room))
+    }
+
+    /// Takes the first two words of [`Eye::list`] of a finished frame. Lists that were too short are enlarged, the result is `true`, and
+    /// the frame must be rendered again.
     ///
     /// # Errors
-    /// One row of the picture needs a longer list than the device supports, or the device is lost.
-    pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
+    /// One row of the picture needs a longer list than the device supports.
+    pub fn settle(&mut self, gpu: &Gpu, totals: [u32; 2]) -> Result<bool, GpuError> {
         let Some(Lists { bands, rows }) = self.lists else { return Ok(false) };
-        let mut totals = [0_u32; 2];
-        read_buffer(gpu, &self.total, &mut totals)?;
         let wanted = u64::from(totals[1]);
         if wanted <= self.room {
             // Once lists have shrunk after a close view, half as many bands are tried.
@@ -336,10 +336,10 @@ fn list_limit(gpu: &Gpu) -> u64 {
 
 impl AreaDepths {
     /// For areas up to this size and a little larger, so that hair that sways needs no other one.
-    fn new(device: &wgpu::Device, columns: u32, rows: u32) -> Self {
-        let most = device.limits().max_texture_dimension_2d;
+    fn new(gpu: &Gpu, columns: u32, rows: u32) -> Self {
+        let most = gpu.device.limits().max_texture_dimension_2d;
         let [columns, rows] = [columns, rows].map(|side| side.next_multiple_of(64).min(most));
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
+        let texture = gpu.create_texture(&wgpu::TextureDescriptor {
             label: Some("depths behind hair"),
             size: wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 },
             mip_level_count: 1,

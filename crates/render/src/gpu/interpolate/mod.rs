@@ -76,24 +76,24 @@ impl Interpolation {
     /// A shader that does not compile, by file and line.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let source = ShaderSource::new(&[FRAMES, STRANDS]);
-        let (device, storage) = (&gpu.device, wgpu::BufferUsages::STORAGE);
+        let storage = wgpu::BufferUsages::STORAGE;
         Ok(Self {
             carry_frames: Kernel::new(gpu, "carry frames", &source, "carry_frames")?,
             place_points: Kernel::new(gpu, "place points", &source, "place_points")?,
             style: None,
-            instant: device.create_buffer(&wgpu::BufferDescriptor {
+            instant: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("instant of guides"),
                 size: size_of::<Instant>() as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            guides: GrowBuffer::new(device, "guides", storage),
-            wisps: GrowBuffer::new(device, "wisps", storage),
-            widest: GrowBuffer::new(device, "widest radii of wisps", storage),
-            curves: GrowBuffer::new(device, "curves of wisps", storage),
-            strands: GrowBuffer::new(device, "strands", storage),
-            strand_of: GrowBuffer::new(device, "strand of point", storage),
-            places: GrowBuffer::new(device, "places along guides", storage),
+            guides: GrowBuffer::new(gpu, "guides", storage),
+            wisps: GrowBuffer::new(gpu, "wisps", storage),
+            widest: GrowBuffer::new(gpu, "widest radii of wisps", storage),
+            curves: GrowBuffer::new(gpu, "curves of wisps", storage),
+            strands: GrowBuffer::new(gpu, "strands", storage),
+            strand_of: GrowBuffer::new(gpu, "strand of point", storage),
+            places: GrowBuffer::new(gpu, "places along guides", storage),
         })
     }
 
@@ -129,9 +129,9 @@ impl Interpolation {
 
         let guides = &frame.guides;
         let bytes_of_axis = size_of_val(guides.x.as_slice()) as u64;
-        self.guides.reserve(&gpu.device, 3 * guides.x.len());
+        self.guides.reserve(gpu, 3 * guides.x.len());
         for (offset, axis) in (0..).zip([&guides.x, &guides.y, &guides.z]) {
-            gpu.queue.write_buffer(self.guides.raw(), offset * bytes_of_axis, bytemuck::cast_slice(axis));
+            gpu.upload(self.guides.raw(), offset * bytes_of_axis, axis);
         }
         let turn = frame.world_from_head.matrix3;
         let instant = Instant {
@@ -139,7 +139,7 @@ impl Interpolation {
             // Each fits, because its buffer fits a binding.
             counts: [guides.x.len(), guides.points_per_guide, style.wisps.len(), count].map(|n| n as u32),
         };
-        gpu.queue.write_buffer(&self.instant, 0, bytemuck::bytes_of(&instant));
+        gpu.upload(&self.instant, 0, &[instant]);
 
         let resources = [
             (0, self.instant.as_entire_binding()),
@@ -181,7 +181,6 @@ impl Interpolation {
             return Ok(());
         }
         style.check().map_err(|error| GpuError::Input(format!("the hairstyle: {error}")))?;
-        let (device, queue) = (&gpu.device, &gpu.queue);
         let set = &style.strands;
         let curve_points = style.wisps.len() * style.guides.points_per_guide;
         fits(gpu, "guides", 3 * style.guides.x.len(), size_of::<f32>())?;
@@ -207,15 +206,15 @@ impl Interpolation {
             .collect();
         self.style = None;
         if style.widest.is_empty() {
-            self.widest.write(device, queue, &vec![f32::MAX; style.guides.x.len()]);
+            self.widest.write(gpu, &vec![f32::MAX; style.guides.x.len()]);
         } else {
-            self.widest.write(device, queue, &style.widest);
+            self.widest.write(gpu, &style.widest);
         }
-        self.wisps.write(device, queue, &wisps);
-        self.curves.reserve(device, curve_points);
-        self.strands.write(device, queue, &strands);
-        self.strand_of.write(device, queue, &strand_of);
-        self.places.write(device, queue, &places);
+        self.wisps.write(gpu, &wisps);
+        self.curves.reserve(gpu, curve_points);
+        self.strands.write(gpu, &strands);
+        self.strand_of.write(gpu, &strand_of);
+        self.places.write(gpu, &places);
         self.style = Some(Arc::clone(style));
         Ok(())
     }

@@ -34,14 +34,14 @@ impl Bench {
             gpu,
             interpolation: Interpolation::new(gpu).expect("shaders compile"),
             timer: PassTimer::new(gpu).expect("a timer"),
-            points: GrowBuffer::new(&gpu.device, "test", wgpu::BufferUsages::STORAGE),
+            points: GrowBuffer::new(gpu, "test", wgpu::BufferUsages::STORAGE),
             ms: None,
         }
     }
 
     /// The points from the device.
     fn run(&mut self, style: &Arc<Hairstyle>, frame: &GuideFrame) -> Result<Vec<[f32; 4]>, GpuError> {
-        self.points.reserve(&self.gpu.device, style.strands.points());
+        self.points.reserve(self.gpu, style.strands.points());
         let mut commands = self.timer.begin(self.gpu, "test");
         let encoded = self.interpolation.run(self.gpu, &mut commands, style, frame, self.points.raw());
         commands.submit();
@@ -284,7 +284,7 @@ fn what_does_not_fit_is_refused_with_words() {
     assert!(super::fits(gpu, "wisps", most as usize + 1, 64).is_err());
 
     // A buffer too small for the points.
-    let little = GrowBuffer::<[f32; 4]>::new(&gpu.device, "little", wgpu::BufferUsages::STORAGE);
+    let little = GrowBuffer::<[f32; 4]>::new(gpu, "little", wgpu::BufferUsages::STORAGE);
     let mut commands = bench.timer.begin(gpu, "test");
     let encoded = bench.interpolation.run(gpu, &mut commands, &style, &rest, little.raw());
     assert!(encoded.expect_err("too small").to_string().contains("bytes; they need"));

@@ -40,11 +40,11 @@ impl GpuRenderer {
             let usage = wgpu::BufferUsages::STORAGE | more;
             let descriptor =
                 wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-            gpu.device.create_buffer(&descriptor)
+            gpu.create_buffer(&descriptor)
         };
         let places: Vec<[f32; 4]> = points.iter().map(|p| [p.x, p.y, p.z, 0.0]).collect();
         let asked = buffer("points", bytes, wgpu::BufferUsages::COPY_DST);
-        gpu.queue.write_buffer(&asked, 0, bytemuck::cast_slice(&places));
+        gpu.upload(&asked, 0, &places);
         let out = buffer("answers", (points.len() as u64 * 4).max(16), wgpu::BufferUsages::COPY_SRC);
         let mut timer = PassTimer::default();
         let mut commands = timer.begin(gpu, "ask");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{PassTimer, constants};
+use lovelock_gpu::PassTimer;
 
 use super::{GpuRenderer, eye_input};
 use crate::gpu::eye::{HairOutput, too_large};
@@ -50,9 +50,9 @@ impl GpuRenderer {
             compare: &self.compare,
         };
         let area = [seen.area.left, seen.area.top, seen.area.columns, seen.area.rows];
-        let hair_area = constants(&gpu, "hair area", &area);
         let mut timer = PassTimer::new(&gpu)?;
         let mut commands = timer.begin(&gpu, "layers");
+        let hair_area = commands.constants("hair area", &area);
         // The bind group is created each time, because the buffers may have been replaced.
         macro_rules! bound {
             () => {{
@@ -68,8 +68,8 @@ impl GpuRenderer {
         drop(all);
         commands.compute("draw/layer-light", |pass| {
             kernels.background.run(pass, &background, pixels);
-            for (kernel, group) in kernels.lit.iter().zip(&lit) {
-                kernel.run(pass, group, self.screen.lit_threads(pixels));
+            for (list, (kernel, group)) in kernels.lit.iter().zip(&lit).enumerate() {
+                self.screen.run_list(pass, kernel, group, list);
             }
         });
 

@@ -18,6 +18,9 @@
 // The area that may contain hair or body, like `hair_area`; in whole cells.
 @group(0) @binding(14) var<uniform> figure_area: vec4u;
 
+// Workgroups along x, y and z of the kernels that draw the lists.
+@group(0) @binding(18) var<storage, read_write> list_groups: array<u32, 12>;
+
 // The transmittance of hair below which what is behind it is not shaded: a quarter of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
 
@@ -232,6 +235,14 @@ fn list_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         let item = atomicAdd(&list_count[list], 1u);
         listed[place_in_list(list, item, size.x * size.y)] = pixel.y * size.x + pixel.x;
     }
+}
+
+// Sizes the kernels that draw the lists: a thread for each pixel, but at most one row of workgroups.
+@compute @workgroup_size(4)
+fn size_lists(@builtin(local_invocation_index) list: u32) {
+    list_groups[3u * list] = min((atomicLoad(&list_count[list]) + 63u) / 64u, 65535u);
+    list_groups[3u * list + 1u] = 1u;
+    list_groups[3u * list + 2u] = 1u;
 }
 
 // Draws the pixels of a list, which all threads share.

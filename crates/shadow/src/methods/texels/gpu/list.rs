@@ -58,15 +58,15 @@ fn bytes(items: u64) -> u64 {
 #[derive(Debug)]
 pub(crate) struct List {
     buffer: Buffer,
-    /// Whether the count of the last build has not been read back yet.
-    pending: Option<Share>,
+    /// The budget of the last build.
+    share: Option<Share>,
     /// Fragments of the last build that was counted.
     found: u64,
 }
 
 impl List {
     pub fn new(gpu: &Gpu) -> Self {
-        Self { buffer: Buffer::new(gpu, "shadow list"), pending: None, found: 0 }
+        Self { buffer: Buffer::new(gpu, "shadow list"), share: None, found: 0 }
     }
 
     pub fn raw(&self) -> &wgpu::Buffer {
@@ -94,41 +94,30 @@ impl List {
         let wanted = if self.found == 0 { 2 * u64::from(segments) } else { self.found + self.found / 8 };
         self.buffer.fit(gpu, bytes(wanted.max(LEAST_ROOM).min(share.most(gpu))) / 4);
         encoder.clear_buffer(self.buffer.raw(), 0, Some(HEAD_BYTES));
-        self.pending = Some(share);
+        self.share = Some(share);
     }
 
-    /// Reads the number of fragments back. Returns the bytes that the map needs, and whether the list was too small and has been
-    /// enlarged; `None` if nothing was built since the last call.
-    pub fn settle(&mut self, gpu: &Gpu) -> Result<Option<(u64, bool)>, SettleError> {
-        let Some(share) = self.pending.take() else { return Ok(None) };
-        let mut head = [0_u32; 2];
-        read_buffer(gpu, self.buffer.raw(), &mut head)?;
+    /// The fragments that fit.
+    pub fn room(&self) -> u64 {
+        self.buffer.bytes().saturating_sub(HEAD_BYTES) / ITEM_BYTES
+    }
+
+    /// Takes the head of a finished build. Returns the bytes that the map needs, and whether the list was too small and has been
+    /// enlarged; `None` if nothing was built yet.
+    ///
+    /// # Errors
+    /// The map needs more than its budget.
+    pub fn settle(&mut self, gpu: &Gpu, head: [u32; 2]) -> Result<Option<(u64, bool)>, ShadowError> {
+        let Some(share) = self.share else { return Ok(None) };
         self.found = total(head);
         share.check(gpu, self.found)?;
         let short = bytes(self.found) > self.buffer.bytes();
         if short {
-            self.buffer.fit(gpu, bytes(self.found) / 4);
+            // A little more, because hair that moves needs more in the next frame.
+            let wanted = self.found + self.found / 8;
+            self.buffer.fit(gpu, bytes(wanted.min(share.most(gpu)).max(self.found)) / 4);
         }
         Ok(Some((share.other_bytes + bytes(self.found), short)))
-    }
-}
-
-/// Why a list could not be settled.
-#[derive(Debug)]
-pub(crate) enum SettleError {
-    Shadow(ShadowError),
-    Gpu(GpuError),
-}
-
-impl From<ShadowError> for SettleError {
-    fn from(error: ShadowError) -> Self {
-        Self::Shadow(error)
-    }
-}
-
-impl From<GpuError> for SettleError {
-    fn from(error: GpuError) -> Self {
-        Self::Gpu(error)
     }
 }
 

@@ -17,11 +17,11 @@ use glam::Vec4;
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
 use self::kernels::KernelSets;
-use self::list::{List, SettleError, Share};
+use self::list::{List, Share};
 use super::{TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
-    Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device,
-    wgsl,
+    Buffer, EXP, GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup,
+    fits_device, wgsl,
 };
 use crate::methods::texels::map::depth_per_texel;
 use crate::{ShadowError, ShadowReport, ShadowSettings};
@@ -201,7 +201,7 @@ impl Map {
     /// An empty map: everything is lit.
     fn new(gpu: &Gpu, lists: bool) -> Self {
         Self {
-            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            uniform: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("texels"),
                 size: size_of::<TexelUniform>() as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -290,7 +290,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             needed_bytes,
             ..ShadowReport::default()
         };
-        gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
+        gpu.upload(&map.uniform, 0, &[uniform]);
         let encoder = commands.encoder();
         if let Some(list) = &mut map.list {
             let maps = input.maps.max(1);
@@ -343,11 +343,16 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
     }
 
-    fn settle(&mut self, gpu: &Gpu) -> Result<bool, GpuShadowError> {
+    fn list(&self, slot: usize) -> Option<GpuList<'_>> {
+        let list = self.maps.get(slot)?.list.as_ref()?;
+        Some(GpuList { buffer: list.raw(), room: list.room() })
+    }
+
+    fn settle(&mut self, gpu: &Gpu, heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {
         let mut again = false;
-        for map in &mut self.maps {
+        for (map, &head) in self.maps.iter_mut().zip(heads) {
             let Some(list) = &mut map.list else { break };
-            match list.settle(gpu) {
+            match list.settle(gpu, head) {
                 Ok(None) => {}
                 Ok(Some((needed_bytes, short))) => {
                     again |= short;
@@ -355,8 +360,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
                     map.report.samples = list.found();
                     map.report.memory_bytes = map.words.bytes() + list.memory_bytes();
                 }
-                Err(SettleError::Gpu(error)) => return Err(error.into()),
-                Err(SettleError::Shadow(error)) => {
+                Err(error) => {
                     *map = Map::new(gpu, M::LISTS);
                     return Err(error.into());
                 }

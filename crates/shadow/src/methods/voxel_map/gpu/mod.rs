@@ -74,7 +74,7 @@ impl Map {
     /// An empty map: everything is lit.
     fn new(gpu: &Gpu) -> Self {
         Self {
-            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            uniform: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("voxels"),
                 size: size_of::<VoxelUniform>() as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
@@ -155,7 +155,7 @@ impl GpuShadow for GpuVoxelMap {
         };
         let depth = fixed_point_depth((input.extinction_scale, input.strand_width), settings, &lattice);
         let uniform = VoxelUniform::new(&lattice, depth, input, ours.filter);
-        gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
+        gpu.upload(&map.uniform, 0, &[uniform]);
 
         let encoder = commands.encoder();
         encoder.clear_buffer(map.cells.raw(), 0, Some(4 * cells));

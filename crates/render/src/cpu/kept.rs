@@ -1,0 +1,142 @@
+//! What is kept of the frame before: strands and shadows while neither hair nor body nor lights change, as when the camera turns around
+//! a paused dance, and the body's depth maps while the body and the lights stay.
+//!
+//! Inputs are compared by their content, which takes a fraction of a millisecond, so nobody has to say what has changed.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{GuideFrame, Hairstyle, Strands};
+use lovelock_motion::Body;
+
+use crate::{FrameInput, HairPose, Light, ShadowSettings};
+
+/// The inputs of the last frame whose results are kept.
+#[derive(Debug, Default)]
+pub(super) struct KeptInputs {
+    hair: Option<HairInputs>,
+    guides: Option<GuideFrame>,
+    strands: Strands,
+    body: BodyInputs,
+}
+
+/// What the shadows depend on beside the positions of hair and body.
+#[derive(Debug)]
+struct HairInputs {
+    style: Arc<Hairstyle>,
+    anchor: Affine3A,
+    /// Diameter, number of real hairs and extinction.
+    look: [f32; 3],
+    shadow: ShadowSettings,
+}
+
+#[derive(Debug, Default)]
+struct BodyInputs {
+    body: Option<Arc<Body>>,
+    positions: Vec<Vec3>,
+    /// The directions of the lights that are on.
+    lights: Vec<Vec3>,
+    is_known: bool,
+}
+
+/// What has not changed since the last frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Unchanged {
+    /// Body and lights: their depth maps.
+    pub body: bool,
+    /// Hair, body and lights, and the settings of shadows: strands, maps and what was looked up in them.
+    pub hair: bool,
+}
+
+impl KeptInputs {
+    /// Compares `input` with that of the last frame and takes its place.
+    pub fn follow(&mut self, input: &FrameInput) -> Unchanged {
+        let body = self.body.follow(input);
+        let same_hair = self.hair.as_ref().is_some_and(|kept| kept.is_of(input));
+        let hair = body & same_hair & self.follow_pose(input) & input.known.is_none();
+        if input.known.is_some() {
+            // Transmittance that was given is not that of the next picture.
+            self.hair = None;
+        } else if !same_hair {
+            self.hair = Some(HairInputs {
+                style: Arc::clone(input.style),
+                anchor: input.world_from_head,
+                look: look_of(input),
+                shadow: *input.shadow,
+            });
+        }
+        Unchanged { body, hair }
+    }
+
+    /// Forgets the last frame, because it was not completed or its results are no longer there.
+    pub fn forget(&mut self) {
+        (self.hair, self.guides, self.body.is_known) = (None, None, false);
+    }
+
+    fn follow_pose(&mut self, input: &FrameInput) -> bool {
+        match input.hair {
+            HairPose::Guides(guides) => {
+                let same = self.guides.as_ref() == Some(guides);
+                if !same {
+                    match &mut self.guides {
+                        Some(kept) => kept.clone_from(guides),
+                        none => *none = Some(guides.clone()),
+                    }
+                }
+                same
+            }
+            HairPose::Strands(strands) => {
+                let kept = &mut self.strands;
+                let same = self.guides.is_none()
+                    && (&kept.x, &kept.y, &kept.z, &kept.first_point)
+                        == (&strands.x, &strands.y, &strands.z, &strands.first_point);
+                if !same {
+                    self.guides = None;
+                    kept.first_point = Arc::clone(&strands.first_point);
+                    for (kept, axis) in
+                        [(&mut kept.x, &strands.x), (&mut kept.y, &strands.y), (&mut kept.z, &strands.z)]
+                    {
+                        kept.clone_from(axis);
+                    }
+                }
+                same
+            }
+        }
+    }
+}
+
+impl HairInputs {
+    fn is_of(&self, input: &FrameInput) -> bool {
+        Arc::ptr_eq(&self.style, input.style)
+            && self.anchor == input.world_from_head
+            && self.look == look_of(input)
+            && self.shadow == *input.shadow
+    }
+}
+
+impl BodyInputs {
+    fn follow(&mut self, input: &FrameInput) -> bool {
+        let body = input.body.map(|(body, _)| body);
+        let positions = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
+        let lights = || {
+            input.lights.iter().filter(|light| light.enabled).map(|light| Light::normalized(light).direction)
+        };
+        let same = self.is_known
+            && self.body.as_ref().map(Arc::as_ptr) == body.map(Arc::as_ptr)
+            && self.positions == positions
+            && self.lights.iter().copied().eq(lights());
+        if !same {
+            self.body = body.cloned();
+            self.positions.clear();
+            self.positions.extend_from_slice(positions);
+            self.lights.clear();
+            self.lights.extend(lights());
+            self.is_known = true;
+        }
+        same
+    }
+}
+
+fn look_of(input: &FrameInput) -> [f32; 3] {
+    [input.look.diameter, input.look.real_hairs, input.look.extinction_scale]
+}
