@@ -222,6 +222,8 @@ pub(crate) struct Bench {
     /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and simulate-402 and simulate-20k, which are
     /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
+    /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
+    /// sorting exactly.
     pub(crate) scenes: Vec<BenchTarget>,
     /// Change a setting of every scene, such as simulation.gravity=12; may be given several times.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -229,6 +231,10 @@ pub(crate) struct Bench {
     /// File for the numbers as comma-separated values.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
+    /// Earlier run to compare with: the output of `lovelock bench --json`. Stages are compared by their multiples of the machine's
+    /// yardstick, so the earlier run may come from another machine; those that slowed by over 10 % are marked.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) baseline: Option<PathBuf>,
     /// Frames to measure, 1 to 1000; steps of 1/60 s in scenes that are not rendered.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
@@ -251,6 +257,8 @@ pub(crate) struct Bench {
 pub(crate) enum BenchTarget {
     Scene(BenchScene),
     Locks(Vec<LockScene>),
+    VoxelMap,
+    OccupancyOrder,
 }
 
 impl FromStr for BenchTarget {
@@ -259,8 +267,13 @@ impl FromStr for BenchTarget {
     fn from_str(id: &str) -> Result<Self, String> {
         match id {
             "locks" => Ok(Self::Locks(LockScene::ALL.to_vec())),
+            "voxel-map" => Ok(Self::VoxelMap),
+            "occupancy-order" => Ok(Self::OccupancyOrder),
             _ if id.starts_with("locks-") => Ok(Self::Locks(vec![id.parse()?])),
-            _ => id.parse().map(Self::Scene).map_err(|error: String| format!("{error}, or locks")),
+            _ => id
+                .parse()
+                .map(Self::Scene)
+                .map_err(|error: String| format!("{error}, locks, voxel-map or occupancy-order")),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use lovelock_jobs::bench::{BenchRequest, bench};
+use lovelock_jobs::bench::{Baseline, BenchRequest, bench};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
@@ -26,6 +26,8 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
             match target {
                 BenchTarget::Scene(scene) => request.scenes.push(*scene),
                 BenchTarget::Locks(locks) => request.locks.extend(locks),
+                BenchTarget::VoxelMap => request.voxel_map = true,
+                BenchTarget::OccupancyOrder => request.occupancy_order = true,
             }
         }
     }
@@ -40,11 +42,23 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
             return Err(ProjectError::input(out, message));
         }
     }
+    let baseline = task.baseline.as_deref().map(Baseline::read).transpose()?;
+    if let (Some(file), Some(baseline)) = (&task.baseline, &baseline)
+        && !request.scenes.iter().any(|scene| baseline.has_scene(scene.id()))
+    {
+        let found =
+            if baseline.scenes().is_empty() { "no scenes".into() } else { baseline.scenes().join(", ") };
+        let message = format!("{}: found {found}; must contain one of the measured scenes", file.display());
+        return Err(ProjectError::input(file, message));
+    }
     let change = |project: &mut Project| apply(&task.set, project);
-    let report = bench(&request, &change, &mut |what| {
+    let mut report = bench(&request, &change, &mut |what| {
         eprintln!("measuring {what}");
         ControlFlow::Continue(())
     })?;
+    if let Some(baseline) = &baseline {
+        baseline.compare(&mut report);
+    }
     if let Some(out) = &task.out {
         write_whole(out, report.csv().as_bytes())?;
     }

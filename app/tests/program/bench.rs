@@ -53,6 +53,43 @@ fn every_stage_of_a_scene_is_measured() {
     assert!(scene["published_note"].is_null());
     let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + stages.len());
+    for figure in ["copy_gb_per_s", "multiply_adds_g_per_s", "scattered_adds_m_per_s"] {
+        assert!(json["yardstick"][figure].as_f64().is_some_and(|figure| figure > 0.0), "{figure}: {json}");
+    }
+    for (name, unit) in
+        [("interpolate", "bytes copied per point"), ("shadow", "scattered additions per point and light")]
+    {
+        assert_eq!(of(name)["multiple_of"], unit, "{name}");
+        assert!(of(name)["multiple"].as_f64().is_some_and(|multiple| multiple > 0.0), "{name}: {scene}");
+        assert!(of(name)["change"].is_null(), "there is no earlier run");
+    }
+}
+
+#[test]
+fn a_run_is_compared_with_an_earlier_one() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let args = ["bench", "simulate-402", "--frames", "2", "--json"];
+    let first = run(dir.path(), args).done().json();
+    assert!(first["comparison"].is_null());
+    // As if the earlier run had been a hundred times as fast in one stage and as slow in the others.
+    let mut earlier = first.clone();
+    let stages = earlier["scenes"][0]["stages"].as_array_mut().expect("stages");
+    for (stage, factor) in stages.iter_mut().zip([0.01, 100.0, 100.0]) {
+        stage["multiple"] = (stage["multiple"].as_f64().expect("a multiple") * factor).into();
+    }
+    std::fs::write(dir.path().join("before.json"), earlier.to_string()).expect("written");
+    let second = run(dir.path(), args.iter().chain(&["--baseline", "before.json"])).done().json();
+    let slower = second["comparison"]["slower"].as_array().expect("a comparison");
+    assert_eq!(second["comparison"]["compared"], 3);
+    assert_eq!((slower.len(), &slower[0]["stage"]), (1, &"simulate/direct".into()), "{second}");
+    let other = run(dir.path(), ["bench", "smooth", "--baseline", "before.json"]);
+    assert!(
+        other.refused(2).contains("before.json: found simulate-402; must contain one of the measured scenes")
+    );
+    let broken = &earlier.to_string()[..100];
+    std::fs::write(dir.path().join("before.json"), broken).expect("written");
+    let other = run(dir.path(), ["bench", "smooth", "--baseline", "before.json"]);
+    assert!(other.refused(2).contains("must be the output of `lovelock bench --json`"));
 }
 
 #[test]
@@ -85,8 +122,10 @@ fn a_published_scene_uses_its_own_settings_and_has_published_figures() {
 #[test]
 fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
-    let wrong: [(&[&str], &str); 7] = [
+    let wrong: [(&[&str], &str); 9] = [
         (&["bench", "wig"], "smooth-2m"),
+        (&["bench", "wig"], "voxel-map or occupancy-order"),
+        (&["bench", "--baseline", "none.json"], "none.json"),
         (&["bench", "--frames", "0"], "1..=1000"),
         (&["bench", "--backend", "magic"], "expected auto, gpu or cpu"),
         (&["bench", "--shadow", "magic"], "occupancy-maps"),

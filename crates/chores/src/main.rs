@@ -1,9 +1,10 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, count and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
 mod assets;
 mod browser;
+mod count;
 mod interchange;
 mod latency;
 mod layers;
@@ -30,6 +31,12 @@ enum Chore {
         #[arg(long, value_name = "PROGRAM")]
         beside: Option<std::path::PathBuf>,
     },
+    /// Counts instructions by valgrind and compares them with the counts in the tree
+    Count {
+        /// Replace the counts in the tree
+        #[arg(long)]
+        write: bool,
+    },
     /// Makes the shipped assets again
     Assets {
         /// Also write images of the dancer into this folder
@@ -44,6 +51,7 @@ fn main() -> ExitCode {
         Chore::Interchange => interchange::run(),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
+        Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };
     match done {

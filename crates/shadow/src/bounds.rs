@@ -84,8 +84,8 @@ impl Bounds {
     }
 }
 
-/// Points that are processed together.
-const LANES: usize = 16;
+/// Points that are processed together. The compiler unrolls loops over 16 lanes before it looks for vectors, and then finds none.
+const LANES: usize = 64;
 
 /// Intermediate bounds, one per lane.
 struct Running {
@@ -104,24 +104,26 @@ impl Running {
     #[inline(always)]
     fn add(&mut self, points: [&[f32; LANES]; 3], light: &LightFrame, anchor: Vec3) {
         let mut along = [[0.0; LANES]; 3];
-        let mut near = [true; LANES];
+        // 0 where a point is near. Words as wide as the coordinates: with booleans the loops below become scalar.
+        let mut far = [0_u32; LANES];
         for (along, axis) in along.iter_mut().zip([light.x, light.y, light.z]) {
             for lane in 0..LANES {
                 let d = [points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z];
                 along[lane] = d[0] * axis.x + d[1] * axis.y + d[2] * axis.z;
-                near[lane] &= along[lane].abs() <= FARTHEST;
+                let is_near = along[lane].abs() <= FARTHEST;
+                far[lane] |= u32::from(!is_near);
             }
         }
         for ((along, min), max) in along.iter().zip(&mut self.min).zip(&mut self.max) {
             for lane in 0..LANES {
-                let low = if near[lane] { along[lane] } else { f32::INFINITY };
-                let high = if near[lane] { along[lane] } else { f32::NEG_INFINITY };
+                let low = if far[lane] == 0 { along[lane] } else { f32::INFINITY };
+                let high = if far[lane] == 0 { along[lane] } else { f32::NEG_INFINITY };
                 min[lane] = if low < min[lane] { low } else { min[lane] };
                 max[lane] = if high > max[lane] { high } else { max[lane] };
             }
         }
-        for (ignored, near) in self.ignored.iter_mut().zip(near) {
-            *ignored += u32::from(!near);
+        for (ignored, far) in self.ignored.iter_mut().zip(far) {
+            *ignored += far;
         }
     }
 

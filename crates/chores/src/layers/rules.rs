@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 18] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     (
         "app",
         &[
@@ -29,6 +29,7 @@ const ARROWS: [(&str, &[&str]); 18] = [
             "session",
             "project",
             "render",
+            "shadow",
             "simulation",
             "motion",
             "groom",
@@ -51,6 +52,7 @@ const ARROWS: [(&str, &[&str]); 18] = [
     ("metrics", &["base"]),
     ("base", &[]),
     ("testkit", &["metrics", "base"]),
+    ("counts", &["render", "shadow", "simulation", "motion", "groom"]),
     ("xtask", &[]),
     ("chores", &["xtask", "metrics", "base"]),
 ];

@@ -1,14 +1,26 @@
 //! Measures whole frames of known scenes, stage by stage, and compares them with published figures.
 
+mod baseline;
+mod bound;
+mod comparison;
 mod locks;
 mod memory;
+mod occupancy_order;
 mod report;
 mod scenes;
 mod simulation;
+mod text;
+mod voxel_map;
+mod yardstick;
 
+pub use baseline::Baseline;
+pub use comparison::{Comparison, SlowerStage};
 pub use locks::{LockFigures, LockReport, LockScene, Spread};
+pub use occupancy_order::{OrderReport, OrderTimes};
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
+pub use voxel_map::{VoxelMapReport, VoxelMapRow};
+pub use yardstick::{Bound, Yardstick};
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -25,6 +37,8 @@ use lovelock_session::health::health;
 use lovelock_session::machine::machine;
 use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 
+use bound::Amounts;
+
 /// What to measure. Scenes without rendering ([`BenchScene::is_simulated_alone`]) only use `frames`.
 #[derive(Clone, Debug)]
 pub struct BenchRequest {
@@ -32,6 +46,10 @@ pub struct BenchRequest {
     pub scenes: Vec<BenchScene>,
     /// The hairstyles whose locks are measured in motion, in order. The rest of the request does not apply to them.
     pub locks: Vec<LockScene>,
+    /// Whether the voxel map is timed against the published loop. The rest of the request does not apply to it.
+    pub voxel_map: bool,
+    /// Whether occupancy order is timed against exact order. It has its own scenes and modes.
+    pub occupancy_order: bool,
     /// The backends, in order; an unavailable one is skipped with a note.
     pub backends: Vec<Backend>,
     /// Number of frames to measure, after one that is not counted.
@@ -49,6 +67,8 @@ impl Default for BenchRequest {
         Self {
             scenes: BenchScene::ALL.to_vec(),
             locks: Vec::new(),
+            voxel_map: false,
+            occupancy_order: false,
             backends: vec![Backend::Cpu, Backend::Gpu],
             frames: 15,
             size: None,
@@ -61,7 +81,7 @@ impl Default for BenchRequest {
 /// The frame at which measuring starts, when the hair is in full motion.
 const FIRST_FRAME: u64 = 40;
 
-/// Measures. `change` is applied to the project of every scene first. `progress` is called with each scene and backend before
+/// Measures the yardstick, then all that is requested. `change` is applied to the project of every scene first. `progress` is called with each scene and backend before
 /// it starts, and may cancel.
 ///
 /// # Errors
@@ -76,7 +96,7 @@ pub fn bench(
     }
     let mut notes = Vec::new();
     let mut renderers = Vec::new();
-    let drawn = request.scenes.iter().any(|scene| !scene.is_simulated_alone());
+    let drawn = request.occupancy_order || request.scenes.iter().any(|scene| !scene.is_simulated_alone());
     for &backend in request.backends.iter().filter(|_| drawn) {
         match Renderer::open(backend) {
             Ok(renderer) => renderers.push(renderer),
@@ -87,18 +107,22 @@ pub fn bench(
             Err(error) => return Err(error.into()),
         }
     }
+    if progress("the yardstick").is_break() {
+        return Err(ProjectError::Cancelled);
+    }
+    let yardstick = Yardstick::measure();
     let mut scenes = Vec::new();
     for &scene in &request.scenes {
-        let mut project = scene.project();
-        change(&mut project)?;
-        project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
+        let mut project = changed(scene, request, change)?;
         project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
         let loaded = load(&project)?;
         if scene.is_simulated_alone() {
             if progress(scene.id()).is_break() {
                 return Err(ProjectError::Cancelled);
             }
-            let (report, note) = simulation::measure(scene, &project, &loaded, request);
+            let (mut report, note) = simulation::measure(scene, &project, &loaded, request);
+            let amounts = Amounts { simulated_points: report.points, ..Amounts::default() };
+            report.stages.iter_mut().for_each(|stage| stage.measure_by(&yardstick, &amounts));
             scenes.push(report);
             notes.push(note);
             continue;
@@ -108,7 +132,15 @@ pub fn bench(
             if progress(&what).is_break() {
                 return Err(ProjectError::Cancelled);
             }
-            scenes.push(measure(scene, &project, &loaded, renderer, request)?);
+            let mut report = measure(scene, &project, &loaded, renderer, request)?;
+            let amounts = amounts(&project, &loaded, &report);
+            for stage in &mut report.stages {
+                // The yardstick is that of the CPU.
+                if renderer.is_software() || ON_CPU.contains(&stage.name.as_str()) {
+                    stage.measure_by(&yardstick, &amounts);
+                }
+            }
+            scenes.push(report);
         }
     }
     let mut locks = Vec::new();
@@ -120,7 +152,57 @@ pub fn bench(
         change(&mut project)?;
         locks.push(locks::measure(*scene, &project, &load(&project)?));
     }
-    Ok(BenchReport { machine: machine(), scenes, locks, notes })
+    let voxel_map = if request.voxel_map { Some(voxel_map::measure(progress)?) } else { None };
+    let mut orders = Vec::new();
+    for scene in occupancy_order::SCENES.into_iter().filter(|_| request.occupancy_order) {
+        let project = changed(scene, request, change)?;
+        let loaded = load(&project)?;
+        for renderer in &mut renderers {
+            let what = format!("occupancy-order, {} on {}", scene.id(), renderer.adapter());
+            if progress(&what).is_break() {
+                return Err(ProjectError::Cancelled);
+            }
+            orders.push(occupancy_order::measure(scene, &project, &loaded, renderer, request)?);
+        }
+    }
+    Ok(BenchReport {
+        machine: machine(),
+        yardstick,
+        scenes,
+        locks,
+        voxel_map,
+        occupancy_order: orders,
+        comparison: None,
+        notes,
+    })
+}
+
+/// Stages that run on the CPU whatever draws.
+const ON_CPU: [&str; 2] = ["motion", "simulate"];
+
+/// The project of a scene with the changes of the command line.
+fn changed(
+    scene: BenchScene,
+    request: &BenchRequest,
+    change: &dyn Fn(&mut Project) -> Result<(), ProjectError>,
+) -> Result<Project, ProjectError> {
+    let mut project = scene.project();
+    change(&mut project)?;
+    project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
+    Ok(project)
+}
+
+/// The amount of work in a frame of a rendered scene.
+fn amounts(project: &Project, loaded: &Scene, report: &SceneReport) -> Amounts {
+    let clock = FrameClock::new(30.0);
+    let steps = clock.step_of_frame(FIRST_FRAME + 1) - clock.step_of_frame(FIRST_FRAME);
+    Amounts {
+        strand_points: report.points,
+        lights: project.lights.iter().filter(|light| light.enabled).count() as u64,
+        simulated_points: loaded.style.guides.x.len() as u64 * steps,
+        vertices: loaded.body.mesh.positions.len() as u64,
+        pixels: u64::from(report.width) * u64::from(report.height),
+    }
 }
 
 fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {

@@ -1,6 +1,6 @@
-//! Results of measurements: the keys of `bench --json`, a table, and CSV.
+//! Results of measurements: the keys of `bench --json`, and CSV.
 
-use std::fmt::{self, Write};
+use std::fmt::Write;
 
 use lovelock_groom::StrandSet;
 use lovelock_project::Project;
@@ -9,19 +9,31 @@ use lovelock_session::health::Gauge;
 use lovelock_session::stats::{Stage, StageTimes};
 use serde::Serialize;
 
+use super::comparison::Comparison;
 use super::locks::LockReport;
 use super::memory::peak_memory_bytes;
+use super::occupancy_order::OrderReport;
 use super::scenes::BenchScene;
+use super::voxel_map::VoxelMapReport;
+use super::yardstick::{Bound, Yardstick};
 
 /// The results on this machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchReport {
     /// CPU and number of threads.
     pub machine: String,
+    /// How fast this machine is.
+    pub yardstick: Yardstick,
     /// A report for each scene and backend.
     pub scenes: Vec<SceneReport>,
     /// A report for each hairstyle whose locks were measured.
     pub locks: Vec<LockReport>,
+    /// The voxel map beside the published loop, if it was measured.
+    pub voxel_map: Option<VoxelMapReport>,
+    /// Occupancy order beside exact order, for each scene and backend where it was measured.
+    pub occupancy_order: Vec<OrderReport>,
+    /// The comparison with an earlier run, if there is one.
+    pub comparison: Option<Comparison>,
     /// Notes, such as skipped backends, as sentences.
     pub notes: Vec<String>,
 }
@@ -84,6 +96,14 @@ pub struct StageReport {
     pub max_ms: f64,
     /// The published time of this stage and scene, milliseconds; null if there is none.
     pub published_ms: Option<f64>,
+    /// The figure of the yardstick that bounds it; null where the stage does not run on the CPU.
+    pub bound: Option<Bound>,
+    /// The median in units of that figure, per item that the stage handles.
+    pub multiple: Option<f64>,
+    /// The unit and the item, such as *multiply-adds per vertex*.
+    pub multiple_of: Option<String>,
+    /// The multiple divided by that of the earlier run; null without one.
+    pub change: Option<f64>,
 }
 
 impl StageReport {
@@ -95,6 +115,10 @@ impl StageReport {
             min_ms: times.clone().fold(f64::INFINITY, f64::min),
             max_ms: times.fold(0.0, f64::max),
             published_ms,
+            bound: None,
+            multiple: None,
+            multiple_of: None,
+            change: None,
         }
     }
 }
@@ -167,17 +191,17 @@ impl SceneReport {
 }
 
 impl BenchReport {
-    /// One line per stage, with a heading.
+    /// One line per stage of the scenes, with a heading. Every line contains the yardstick.
     pub fn csv(&self) -> String {
         let mut out =
-            "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes\n"
+            "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes,multiple,multiple_of,change,copy_gb_per_s,multiply_adds_g_per_s,scattered_adds_m_per_s\n"
                 .to_owned();
         for scene in &self.scenes {
             for stage in &scene.stages {
                 let optional = |value: Option<String>| value.unwrap_or_default();
                 let _ = writeln!(
                     out,
-                    "{},{},\"{}\",{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{}",
+                    "{},{},\"{}\",{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{},{},{},{},{:.3},{:.3},{:.3}",
                     scene.scene,
                     scene.backend,
                     scene.adapter.replace('"', "\"\""),
@@ -195,6 +219,12 @@ impl BenchReport {
                     scene.shadow_bytes,
                     scene.draw_bytes,
                     optional(scene.peak_memory_bytes.map(|bytes| bytes.to_string())),
+                    optional(stage.multiple.map(|multiple| format!("{multiple:.6}"))),
+                    optional(stage.multiple_of.clone()),
+                    optional(stage.change.map(|change| format!("{change:.4}"))),
+                    self.yardstick.copy_gb_per_s,
+                    self.yardstick.multiply_adds_g_per_s,
+                    self.yardstick.scattered_adds_m_per_s,
                 );
             }
         }
@@ -202,106 +232,14 @@ impl BenchReport {
     }
 }
 
-/// Rows that are sums of others, in order.
-const SUMS: [&str; 3] = ["passes", "picture", "frame"];
-
-/// One number of a report: label, value and unit.
-type Number = (&'static str, fn(&SceneReport) -> f64, &'static str);
-
-const NUMBERS: [Number; 4] = [
-    ("shadow memory", |scene| mib(scene.shadow_bytes), " MiB"),
-    ("pixel memory", |scene| mib(scene.draw_bytes), " MiB"),
-    ("pictures a second", |scene| scene.pictures_per_second, ""),
-    ("frames a second", |scene| scene.frames_per_second, ""),
-];
-
-fn mib(bytes: u64) -> f64 {
-    bytes as f64 / f64::from(1 << 20)
-}
-
-/// A number with at most two decimals.
-fn short(ms: f64) -> String {
-    ((100.0 * ms).round() / 100.0).to_string()
-}
-
-impl fmt::Display for BenchReport {
-    /// The backends of a scene side by side.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.machine)?;
-        for same in self.scenes.chunk_by(|a, b| a.scene == b.scene) {
-            let Some(first) = same.first() else { continue };
-            writeln!(f, "\n{}", first.heading())?;
-            // The stages of all backends, in the order of the backend with the most stages.
-            let mut by_size: Vec<_> = same.iter().collect();
-            by_size.sort_by_key(|scene| std::cmp::Reverse(scene.stages.len()));
-            let mut stages: Vec<&StageReport> = Vec::new();
-            for stage in by_size.iter().flat_map(|scene| &scene.stages) {
-                if !stages.iter().any(|known| known.name == stage.name) {
-                    stages.push(stage);
-                }
-            }
-            // The sums after the passes of all backends.
-            stages.sort_by_key(|stage| SUMS.iter().position(|sum| stage.name == *sum).map_or(0, |at| at + 1));
-            let width = stages.iter().map(|stage| stage.name.len()).fold(20, usize::max);
-            write!(f, "  {:<width$}", "")?;
-            for scene in same {
-                write!(f, "{:>12}{:>24}", scene.backend, "(least to most)")?;
-            }
-            writeln!(f, "{:>12}", "published")?;
-            for stage in stages {
-                write!(f, "  {:<width$}", stage.name)?;
-                for scene in same {
-                    match scene.stages.iter().find(|other| other.name == stage.name) {
-                        Some(found) => {
-                            let spread = format!("({:.2} to {:.2})", found.min_ms, found.max_ms);
-                            write!(f, "{:>12.2}{spread:>24}", found.median_ms)?;
-                        }
-                        None => write!(f, "{:>36}", "")?,
-                    }
-                }
-                writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, short))?;
-            }
-            for (name, of, unit) in NUMBERS.into_iter().filter(|_| !first.is_simulated_alone()) {
-                write!(f, "  {name:<width$}")?;
-                for scene in same {
-                    let number = format!("{:.1}{unit}", of(scene));
-                    write!(f, "{number:>12}{:>24}", "")?;
-                }
-                // Papers print the rate of the image.
-                let published = first.stages.iter().find(|stage| stage.name == "picture");
-                match published.and_then(|stage| stage.published_ms) {
-                    Some(ms) if name == "pictures a second" => writeln!(f, "{:>12}", short(1e3 / ms))?,
-                    _ => writeln!(f)?,
-                }
-            }
-            // The simulation does not depend on the backend: one column, with advice for gauges over their limits.
-            for gauge in &first.health {
-                writeln!(f, "  {:<width$}{:>12}", gauge.kind.label().to_lowercase(), gauge.in_words())?;
-            }
-            for gauge in first.health.iter().filter(|gauge| !gauge.advice.is_empty()) {
-                writeln!(f, "  {}", gauge.advice)?;
-            }
-            if let Some(note) = first.published_note {
-                writeln!(f, "  {note}")?;
-            }
-        }
-        for locks in &self.locks {
-            write!(f, "\n{locks}")?;
-        }
-        for note in &self.notes {
-            writeln!(f, "\n{note}")?;
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use lovelock_session::health::GaugeKind;
 
     use super::*;
 
-    fn report() -> BenchReport {
+    /// A report of one scene on two backends with one stage.
+    pub(in crate::bench) fn report() -> BenchReport {
         let scene = |backend: &str, ms: f64| SceneReport {
             scene: "smooth".to_owned(),
             backend: backend.to_owned(),
@@ -333,60 +271,37 @@ mod tests {
         };
         BenchReport {
             machine: "m".to_owned(),
+            yardstick: Yardstick {
+                copy_gb_per_s: 10.0,
+                multiply_adds_g_per_s: 50.0,
+                scattered_adds_m_per_s: 200.0,
+            },
             scenes: vec![scene("cpu", 10.0), scene("gpu", 100.0)],
             locks: Vec::new(),
+            voxel_map: None,
+            occupancy_order: Vec::new(),
+            comparison: None,
             notes: vec![],
         }
     }
 
     #[test]
-    fn backends_are_listed_side_by_side_with_the_published_figure() {
-        let text = report().to_string();
-        let line = text.lines().find(|line| line.trim().starts_with("draw")).expect("a line");
-        let numbers: Vec<_> = line.split_whitespace().collect();
-        assert_eq!(
-            numbers,
-            ["draw", "11.00", "(10.00", "to", "15.00)", "101.00", "(100.00", "to", "105.00)", "37"]
-        );
-    }
-
-    #[test]
-    fn gauges_are_printed_once_with_their_advice() {
-        let text = report().to_string();
-        let rows: Vec<_> = text.lines().filter(|line| line.contains("deepest in the body")).collect();
-        assert!(rows.len() == 1 && rows[0].ends_with("2.0 mm in head and shoulders"), "{text}");
-        assert_eq!(text.matches("Hair goes into the body.").count(), 1, "{text}");
-        let json = serde_json::to_value(report()).expect("plain data");
-        assert_eq!(json["scenes"][1]["health"][0]["within"], "head and shoulders");
-    }
-
-    #[test]
-    fn sums_follow_the_passes_of_all_backends() {
-        let mut report = report();
-        for (scene, names) in
-            report.scenes.iter_mut().zip([&["draw/tiles", "picture"][..], &["draw/a", "passes", "picture"]])
-        {
-            scene.stages.extend(names.iter().map(|name| StageReport::new(name, Some(26.81), &[2.0])));
-        }
-        let text = report.to_string();
-        let rows: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().next()).collect();
-        let at = |name: &str| rows.iter().position(|row| *row == name).expect(name);
-        assert!(
-            at("draw/a") < at("draw/tiles")
-                && at("draw/tiles") < at("passes")
-                && at("passes") < at("picture")
-        );
-        let rate = text.lines().find(|line| line.trim().starts_with("pictures a second")).expect("a rate");
-        assert!(rate.ends_with("37.3"), "what was published as a rate is printed as one: {rate}");
-    }
-
-    #[test]
     fn csv_quotes_text_and_leaves_unknown_fields_empty() {
-        let csv = report().csv();
+        let mut report = report();
+        report.scenes[0].stages[0].multiple = Some(2.5);
+        report.scenes[0].stages[0].multiple_of = Some("bytes copied per pixel".to_owned());
+        let csv = report.csv();
+        let fields = |line: &str| line.replace("\"a \"\"quoted\"\", name\"", "name").split(',').count();
+        assert!(
+            csv.lines().all(|line| fields(line) == fields(csv.lines().next().expect("a heading"))),
+            "{csv}"
+        );
         let line = csv.lines().nth(1).expect("a line");
         assert!(
             line.contains("\"a \"\"quoted\"\", name\"")
-                && line.ends_with("11.0000,10.0000,15.0000,37,3145728,5242880,"),
+                && line.ends_with(
+                    "11.0000,10.0000,15.0000,37,3145728,5242880,,2.500000,bytes copied per pixel,,10.000,50.000,200.000"
+                ),
             "{line}"
         );
     }

@@ -5,7 +5,7 @@ mod plan;
 mod probe;
 
 use anyhow::bail;
-use needs::{BROWSER, INTERCHANGE, NEEDS, Need, SCREEN};
+use needs::{BROWSER, COUNT, INTERCHANGE, NEEDS, Need, SCREEN};
 use plan::{Plan, Rights, Step, plan};
 use probe::Here;
 use std::process::Command;
@@ -44,6 +44,14 @@ pub fn prepare_browser() -> anyhow::Result<()> {
 /// If a compiler is missing and cannot be installed.
 pub fn prepare_screen() -> anyhow::Result<()> {
     get(&SCREEN)
+}
+
+/// Installs the system packages for `cargo xtask count`.
+///
+/// # Errors
+/// If valgrind is missing and cannot be installed.
+pub fn prepare_count() -> anyhow::Result<()> {
+    get(&COUNT)
 }
 
 fn get(needs: &[Need]) -> anyhow::Result<()> {

@@ -57,6 +57,14 @@ pub(crate) const SCREEN: [Need; 1] = [Need {
     packages: ["xvfb", "xorg-x11-server-Xvfb", "xorg-server-xvfb", "xorg-x11-server-Xvfb", "xvfb"],
 }];
 
+/// The additional requirement of `cargo xtask count`.
+pub(crate) const COUNT: [Need; 1] = [Need {
+    what: "valgrind",
+    test: Test::Program("valgrind"),
+    to_build: true,
+    packages: ["valgrind", "valgrind", "valgrind", "valgrind", "valgrind"],
+}];
+
 /// The requirements of building, testing and the window. The names of the libraries are those that these crates load: winit
 /// through x11-dl (Xlib, Xcursor, Xlib-xcb, Xinput2), xkbcommon-dl and wayland-sys, rfd for its dialogs (D-Bus), wgpu through
 /// ash (Vulkan).

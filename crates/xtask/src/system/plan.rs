@@ -146,7 +146,7 @@ pub(crate) fn plan(probe: &dyn Probe, needs: &[Need]) -> Option<Plan> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::needs::{BROWSER, INTERCHANGE, NEEDS};
+    use super::super::needs::{BROWSER, COUNT, INTERCHANGE, NEEDS};
     use super::{Family, Plan, Probe, Rights, Step, Test};
 
     /// A simulated machine.
@@ -279,6 +279,7 @@ mod tests {
         };
         assert_eq!(packages(&INTERCHANGE), ["python3-venv"]);
         assert_eq!(packages(&BROWSER), ["chromium"]);
+        assert_eq!(packages(&COUNT), ["valgrind"]);
         assert_eq!(super::plan(&WHOLE, &INTERCHANGE), None);
     }
 

@@ -25,7 +25,7 @@ const MOST_GRIDS: usize = 8;
 /// The most cells of all private grids together, which bounds their address space to 1 GiB.
 const MOST_CELLS: usize = 1 << 28;
 /// Points per parallel task of the bounds.
-const POINTS_PER_BOUNDS: usize = 1 << 16;
+const POINTS_PER_BOUNDS: usize = 1 << 14;
 /// Points per parallel task of a lookup.
 const POINTS_PER_LOOKUP: usize = 4096;
 

@@ -16,6 +16,7 @@ mod grid;
 mod lattice;
 mod layout;
 mod lookup;
+pub mod published;
 pub mod reference;
 mod samples;
 mod sum;
