@@ -81,7 +81,7 @@ pub(super) fn measure(
         Some(gpu) => Renderer::on_device(Arc::clone(gpu))?,
         None => Renderer::open(Backend::Cpu)?,
     };
-    let mut renderers = [&mut other, renderer];
+    let renderers = [&mut other, renderer];
     let mut pictures = [Picture::default(), Picture::default()];
     let mut draws: [Vec<f64>; 2] = Default::default();
     let mut wholes: [Vec<f64>; 2] = Default::default();
