@@ -165,6 +165,7 @@ pub fn bench(
             orders.push(occupancy_order::measure(scene, &project, &loaded, renderer, request)?);
         }
     }
+    notes.extend(yardstick.change_note(&Yardstick::measure()));
     Ok(BenchReport {
         machine: machine(),
         yardstick,

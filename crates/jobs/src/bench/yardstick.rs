@@ -39,6 +39,8 @@ pub enum Bound {
 
 /// Seconds for which each figure is measured, after a pass that is not counted. The figure is that of the fastest pass.
 const SECS: f64 = 0.25;
+/// The largest factor between the figures at the beginning and at the end of a run on a steady machine.
+const STEADY: f64 = 1.25;
 /// Bytes that one pass copies.
 const COPIED: usize = 128 << 20;
 /// Bytes of all tables of the scattered sum together.
@@ -98,6 +100,20 @@ impl Yardstick {
             Bound::MultiplyAdds => 1.0 / self.multiply_adds_g_per_s,
             Bound::ScatteredAdds => 1e3 / self.scattered_adds_m_per_s,
         }
+    }
+
+    /// A sentence if this machine was faster or slower at the end of a run, `after`, than at its beginning.
+    pub(super) fn change_note(&self, after: &Self) -> Option<String> {
+        let bounds = [Bound::Copy, Bound::MultiplyAdds, Bound::ScatteredAdds];
+        let changed = bounds.into_iter().any(|bound| {
+            let ratio = self.unit_ns(bound) / after.unit_ns(bound);
+            !(1.0 / STEADY..=STEADY).contains(&ratio)
+        });
+        changed.then(|| {
+            format!(
+                "the speed of the machine changed during the run, so multiples are rough; at the end, {after}"
+            )
+        })
     }
 
     /// Whether all figures can divide a time.
@@ -173,6 +189,19 @@ mod tests {
         assert!(yardstick.is_usable());
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(!Yardstick { copy_gb_per_s: wrong, ..yardstick }.is_usable());
+        }
+    }
+
+    #[test]
+    fn a_machine_that_changes_its_speed_is_reported() {
+        let yardstick =
+            Yardstick { copy_gb_per_s: 10.0, multiply_adds_g_per_s: 50.0, scattered_adds_m_per_s: 200.0 };
+        assert_eq!(yardstick.change_note(&yardstick), None);
+        assert_eq!(yardstick.change_note(&Yardstick { copy_gb_per_s: 12.0, ..yardstick }), None);
+        for multiply_adds_g_per_s in [25.0, 100.0] {
+            let note =
+                yardstick.change_note(&Yardstick { multiply_adds_g_per_s, ..yardstick }).expect("a note");
+            assert!(note.contains("at the end, yardstick: 10.0 GB/s copied"), "{note}");
         }
     }
 
