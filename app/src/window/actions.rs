@@ -309,7 +309,7 @@ impl Window {
     /// Handles a request to close the window: asks first if changes would be lost.
     pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && !self.quitting && !self.is_reopening && self.history.is_modified() {
+        if asked && !self.quitting && !self.display.is_reopening && self.history.is_modified() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.pending = Some(Pending::Quit);
         }

@@ -85,9 +85,9 @@ impl Window {
         let compares = self.layout.compare.shown;
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
-        let rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate.0);
-        self.session.thins = self.layout.view_thins.0;
-        let again = self.session.send(self.history.project(), &seen, size, rate);
+        self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate.0);
+        self.session.view.thins = self.layout.view_thins.0;
+        let again = self.session.send(self.history.project(), &seen, size);
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
@@ -98,9 +98,9 @@ impl Window {
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         // Any command to the window makes it paint again.
-        if title != self.title {
+        if title != self.display.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
+            self.display.title = title;
         }
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
@@ -216,7 +216,7 @@ impl Window {
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let most_pixels = viewport::most_pixels_at_rest(self.session.painter().adapter().as_deref());
-            let painted = (self.session.painted.as_deref(), &self.textures);
+            let painted = (self.session.painted.as_deref(), &self.display.textures);
             let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
             if self.tools(ui, &response, project) {
                 camera_control::apply(&mut project.camera, &response);

@@ -91,7 +91,7 @@ impl Window {
             );
             let by_card =
                 self.session.painter().adapter().is_some_and(|adapter| adapter.backend == Backend::Gpu);
-            if !by_card || self.session.measured {
+            if !by_card || self.session.view.measured {
                 fact(
                     "Mean transmittance",
                     "Mean fraction of the first light that reaches a point of the hair through other hair.",

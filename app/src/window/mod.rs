@@ -6,6 +6,7 @@ mod camera_control;
 mod command;
 mod compare;
 mod control;
+mod display;
 mod files;
 mod frame;
 mod gesture;
@@ -31,7 +32,6 @@ mod timeline;
 mod tools;
 mod viewport;
 
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -39,9 +39,9 @@ use std::sync::Arc;
 use crate::cli::Assignment;
 use command::Command;
 use compare::{Compare, CompareLayout};
+use display::{Display, Kept, Opened};
 use gesture::Gestures;
 use images::Textures;
-use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::animation::{Moment, Overdub};
 use lovelock_project::error::ProjectError;
@@ -62,9 +62,6 @@ use viewport::Viewport;
 
 /// Key under which the layout is stored. The number changes with the format.
 const LAYOUT_KEY: &str = "layout 1";
-
-/// Environment variable with a number of seconds after which the window's graphics device is destroyed, once, as if it had failed.
-const LOSE_DEVICE: &str = "LOVELOCK_LOSE_DEVICE";
 
 /// Number of recent projects in the menu.
 const RECENT: usize = 10;
@@ -149,20 +146,7 @@ pub(crate) struct Window {
     seen: Option<Seen>,
     quitting: bool,
     screenshot: Option<Screenshot>,
-    /// The graphics device of the window, and its images there.
-    device: WindowDevice,
-    textures: Textures,
-    /// Whether the options of text that were changed to draw all glyphs anew must be set back.
-    sharpen_text: bool,
-    /// The title that was set last.
-    title: String,
-    /// The context of the window, and its place on the screen, points.
-    ctx: Option<egui::Context>,
-    place: Option<egui::Rect>,
-    /// For trials without hardware that fails: when the device is taken away, seconds after the window has opened.
-    loses_device: Option<(Stopwatch, f64)>,
-    /// Whether the window is closed in order to open it with another graphics device.
-    is_reopening: bool,
+    display: Display,
 }
 
 /// Opens the window with the file at `path`, if there is one; with the panes of a comparison if `panes`.
@@ -180,10 +164,10 @@ pub(crate) fn open(
     // Another round opens the window anew after its graphics device was lost, with everything on it.
     loop {
         let (kept_here, first) = (Rc::clone(&kept), first.take());
-        let place = kept.borrow().as_ref().and_then(|window| window.place);
+        let place = kept.borrow().as_ref().and_then(|window| window.display.place);
         eframe::run_native_ext(
             "lovelock",
-            native_options(place),
+            display::native_options(place),
             ctx.take(),
             Box::new(move |creation| {
                 let mut window = match (kept_here.take(), first) {
@@ -196,7 +180,7 @@ pub(crate) fn open(
                     (None, None) => return Err("the state of the window was lost".into()),
                 };
                 window.attach(creation.wgpu_render_state.as_ref(), &creation.egui_ctx);
-                Ok(Box::new(Opened { window: Some(window), kept: kept_here }))
+                Ok(Box::new(Opened::new(window, kept_here)))
             }),
         )
         .map_err(|error| {
@@ -206,48 +190,8 @@ pub(crate) fn open(
         })?;
         match kept.borrow().as_ref() {
             // The context is kept too: threads ask it for repaints, and it knows what is unfolded.
-            Some(window) => ctx.clone_from(&window.ctx),
+            Some(window) => ctx.clone_from(&window.display.ctx),
             None => return Ok(()),
-        }
-    }
-}
-
-fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
-    let mut viewport = egui::ViewportBuilder::default()
-        .with_title("Lovelock")
-        .with_app_id("lovelock")
-        .with_inner_size([1440.0, 900.0])
-        // Both panels, and the width of another one for the image.
-        .with_min_inner_size([960.0, 540.0])
-        .with_drag_and_drop(true);
-    if let Some(place) = place {
-        viewport = viewport.with_position(place.min).with_inner_size(place.size());
-    }
-    eframe::NativeOptions {
-        viewport,
-        // Images are already dithered and panels are flat. Without a graphics card every pixel of the window costs time.
-        dithering: false,
-        wgpu_options: egui_wgpu::WgpuConfiguration {
-            wgpu_setup: images::device_setup(),
-            ..egui_wgpu::WgpuConfiguration::default()
-        },
-        ..Default::default()
-    }
-}
-
-/// The window while no graphics device shows it.
-type Kept = Rc<RefCell<Option<Window>>>;
-
-/// The window on a graphics device.
-struct Opened {
-    window: Option<Window>,
-    kept: Kept,
-}
-
-impl Drop for Opened {
-    fn drop(&mut self) {
-        if let Some(window) = self.window.take().filter(|window| window.is_reopening) {
-            self.kept.replace(Some(window));
         }
     }
 }
@@ -301,67 +245,13 @@ impl Window {
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
-            device,
-            textures,
-            sharpen_text: false,
-            title: String::new(),
-            ctx: None,
-            place: None,
-            loses_device: std::env::var(LOSE_DEVICE)
-                .ok()
-                .and_then(|secs| Some((Stopwatch::start(), secs.parse().ok()?))),
-            is_reopening: false,
+            display: Display::new(device, textures),
             seen: None,
             quitting: false,
             screenshot: None,
         };
         window.warn(problems.iter().map(|problem| problem.message.clone()));
         Ok(window)
-    }
-
-    /// Shows the window with a painter and its graphics device, after a loss with another one than before.
-    fn attach(&mut self, painter: Option<&egui_wgpu::RenderState>, ctx: &egui::Context) {
-        self.device.set(painter.and_then(images::device_of));
-        self.textures.attach(painter.cloned());
-        if self.is_reopening {
-            self.is_reopening = false;
-            self.title.clear();
-            self.viewport.forget_image();
-            self.compare.forget_images();
-            self.thumbnails.forget();
-            self.session.draw_again();
-            // The glyphs were on the lost device; with other options all are drawn anew.
-            set_hinting(ctx, false);
-            self.sharpen_text = true;
-            self.notices.push(
-                notices::Kind::Warning,
-                "The graphics device was lost and opened again. Nothing else is lost.".to_owned(),
-            );
-        }
-        self.ctx = Some(ctx.clone());
-    }
-
-    /// Closes the window in order to open it again if its graphics device was lost.
-    fn watch_device(&mut self, ctx: &egui::Context) {
-        if std::mem::take(&mut self.sharpen_text) {
-            set_hinting(ctx, true);
-            ctx.request_repaint();
-        }
-        if let Some(gpu) = self.device.get()
-            && self.loses_device.take_if(|(since, secs)| since.secs() > *secs).is_some()
-        {
-            gpu.device.destroy();
-        }
-        let lost = self.device.get().is_some_and(|gpu| gpu.is_lost());
-        if lost && !self.is_reopening {
-            tracing::warn!("the window opens another graphics device");
-            self.is_reopening = true;
-            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-        }
-        let viewport = ctx.input(|input| (input.viewport().outer_rect, input.viewport().inner_rect));
-        if let (Some(outer), Some(inner)) = viewport {
-            self.place = Some(egui::Rect::from_min_size(outer.min, inner.size()));
-        }
     }
 
     /// Shows messages to the user.
@@ -435,38 +325,6 @@ impl Window {
             _ => true,
         }
     }
-}
-
-impl eframe::App for Opened {
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        let Some(window) = &mut self.window else { return };
-        // Asked only occasionally: the window may be moved to another display, and some systems respond slowly.
-        if ui.ctx().cumulative_frame_nr() % 128 == 1 {
-            let display = frame.winit_window().and_then(|window| window.current_monitor());
-            if let Some(millihertz) = display.and_then(|display| display.refresh_rate_millihertz()) {
-                window.session.set_display_hz(f64::from(millihertz) * 1e-3);
-            }
-        }
-        window.pass(ui);
-        window.watch_device(ui.ctx());
-    }
-
-    /// The panels' colour: cleared once instead of painted under each panel, because every pixel of the window costs time without a
-    /// graphics card.
-    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
-    }
-
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        if let Some(window) = &self.window {
-            eframe::set_value(storage, LAYOUT_KEY, &window.layout);
-        }
-    }
-}
-
-/// Sets whether glyphs are fitted to pixels.
-fn set_hinting(ctx: &egui::Context, hinted: bool) {
-    ctx.all_styles_mut(|style| style.visuals.text_options.font_hinting = hinted);
 }
 
 /// The layout of panes in a recording: side by side, in the colours of the window and without times, so that the same panes give

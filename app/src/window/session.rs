@@ -25,6 +25,17 @@ const PLOTTED_FRAMES: usize = 240;
 /// Time without any change after which an image is rendered at its full size, and then with further samples.
 const AT_REST: Duration = Duration::from_millis(250);
 
+/// How images of the window are drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ViewOptions {
+    /// The rate that images keep while something moves, images per second, if their size is automatic.
+    pub(crate) rate: Option<f32>,
+    /// Whether strands narrower than a pixel are thinned while something moves.
+    pub(crate) thins: bool,
+    /// Whether the passes of images are shown and must be measured.
+    pub(crate) measured: bool,
+}
+
 /// The engine's threads and their latest results.
 pub(crate) struct Session {
     worker: Worker,
@@ -38,8 +49,6 @@ pub(crate) struct Session {
     resolution: Resolution,
     /// What was last shown, and since when it has been the same.
     shown: Option<(Arc<Project>, Arc<FrameSnapshot>)>,
-    /// The rate that images keep, images per second; 0 if their size is fixed.
-    rate_wanted: f32,
     same_since: Stopwatch,
     seen_painted: u64,
     seen_notices: u64,
@@ -60,10 +69,7 @@ pub(crate) struct Session {
     pub(crate) backwards: bool,
     /// Whether the progress of a load is shown.
     pub(crate) load_is_seen: bool,
-    /// Whether strands narrower than a pixel are thinned while something moves.
-    pub(crate) thins: bool,
-    /// Whether the passes of images are shown and must be measured.
-    pub(crate) measured: bool,
+    pub(crate) view: ViewOptions,
     pub(crate) draw_error: Option<String>,
     /// Messages that have not been shown yet.
     pub(crate) done: Vec<String>,
@@ -106,7 +112,6 @@ impl Session {
             drawn: None,
             resolution: Resolution::default(),
             shown: None,
-            rate_wanted: 0.0,
             same_since: Stopwatch::start(),
             seen_painted: 0,
             seen_notices: 0,
@@ -123,8 +128,7 @@ impl Session {
             display_hz: 0.0,
             backwards: false,
             load_is_seen: false,
-            thins: true,
-            measured: false,
+            view: ViewOptions::default(),
             draw_error: None,
             done: Vec::new(),
             saved_take: None,
@@ -237,7 +241,7 @@ impl Session {
             self.stages.push(painted.times);
             if self.drawn.as_ref().is_some_and(|drawn| !drawn.still && drawn.size == painted.image.size()) {
                 let StageTimes { interpolate, shadow, draw, .. } = painted.times;
-                self.resolution.take(interpolate + shadow + draw, self.rate_wanted);
+                self.resolution.take(interpolate + shadow + draw, self.view.rate.unwrap_or_default());
             }
             self.passes.push(&painted.stats.passes);
             self.painted = Some(painted);
@@ -253,14 +257,13 @@ impl Session {
     }
 
     /// Sends changes on: the project to the simulation, and the frame to the render thread, with the project `seen` at the current
-    /// time. Images have the size `size`; with a `rate`, images per second, fewer pixels while something moves. Returns after which time
+    /// time. Images have the size `size`, or less while something moves: see [`ViewOptions`]. Returns after which time
     /// it must be called again even if nothing happens.
     pub(crate) fn send(
         &mut self,
         project: &Arc<Project>,
         seen: &Arc<Project>,
         size: [u32; 2],
-        rate: Option<f32>,
     ) -> Option<Duration> {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
@@ -283,8 +286,7 @@ impl Session {
             self.same_since = Stopwatch::start();
         }
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
-        let automatic = rate.is_some();
-        self.rate_wanted = rate.unwrap_or_default();
+        let automatic = self.view.rate.is_some();
         let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };
         let side = |side: u32| ((side as f32 * scale).round() as u32).clamp(16, side.max(16));
         let request = RenderRequest {
@@ -292,8 +294,8 @@ impl Session {
             snapshot: Arc::clone(frame),
             size: size.map(side),
             still: still && automatic,
-            thinned: self.thins && automatic && !still,
-            measured: self.measured,
+            thinned: self.view.thins && automatic && !still,
+            measured: self.view.measured,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = self.drawn.as_ref().is_some_and(|drawn| {

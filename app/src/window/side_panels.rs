@@ -92,7 +92,7 @@ impl Window {
                         super::control::note(ui, "Of the single image, before the comparison was opened.");
                     }
                     let session = &self.session;
-                    self.session.measured =
+                    self.session.view.measured =
                         panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
                 });
             });

@@ -162,12 +162,11 @@ fn arrived(gpu: &Gpu, arrives: &Arrival) -> Result<(), GpuError> {
     // An earlier error of the device explains the failure better than the failure itself.
     let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
     let _ = gpu.device.poll(wgpu::PollType::Poll);
-    let result = match arrives.try_recv() {
-        Ok(result) => result,
-        Err(_) => {
-            gpu.wait()?;
-            arrives.recv().map_err(|error| failed(error.to_string()))?
-        }
+    let result = if let Ok(result) = arrives.try_recv() {
+        result
+    } else {
+        gpu.wait()?;
+        arrives.recv().map_err(|error| failed(error.to_string()))?
     };
     result.map_err(|error| failed(error.to_string()))
 }

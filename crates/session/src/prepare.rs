@@ -20,7 +20,7 @@ use crate::scene::{LoadControl, Scene, SceneLoader};
 /// If there is no adapter for [`Backend::Gpu`], or it cannot be used.
 pub fn open_renderer(choice: Backend, gpu: Option<&Arc<Gpu>>) -> Result<Renderer, ProjectError> {
     let renderer = match gpu {
-        Some(gpu) => Renderer::on_device(Arc::clone(gpu)),
+        Some(gpu) => Renderer::on_device(gpu),
         None => Renderer::open(choice),
     };
     renderer.map_err(|error| match (&error, choice) {

@@ -187,7 +187,7 @@ impl Window {
         let zoom = compare.zoom;
         let points = ui.ctx().pixels_per_point();
         let magnified = place.width() * points * zoom.factor() / pane.image.size()[0].max(1) as f32;
-        compare.textures.take(ui.ctx(), &self.textures, index, &pane, magnified);
+        compare.textures.take(ui.ctx(), &self.display.textures, index, &pane, magnified);
         // An image with another aspect ratio was rendered before the page changed.
         let whole = compare.textures.size(index).map_or(place, |size| viewport::fit(size, place));
         let near = (whole.size() - place.size()).abs().max_elem() < 3.0;

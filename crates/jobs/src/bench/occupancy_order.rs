@@ -78,7 +78,7 @@ pub(super) fn measure(
         project
     });
     let mut other = match renderer.gpu() {
-        Some(gpu) => Renderer::on_device(Arc::clone(gpu))?,
+        Some(gpu) => Renderer::on_device(gpu)?,
         None => Renderer::open(Backend::Cpu)?,
     };
     let renderers = [&mut other, renderer];

@@ -83,7 +83,7 @@ impl Renderers {
             // Drop the old one first, because two may not fit into memory.
             self.panes[pane] = None;
             let opened = match (&self.gpu, wanted) {
-                (Some(gpu), Backend::Gpu) => Renderer::on_device(Arc::clone(gpu))?,
+                (Some(gpu), Backend::Gpu) => Renderer::on_device(gpu)?,
                 _ => (self.open)(wanted, window.as_ref())?,
             };
             if choice == Backend::Auto {

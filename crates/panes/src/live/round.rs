@@ -199,7 +199,7 @@ impl Rounds {
         while renderer.in_flight() > 0 {
             match renderer.finished() {
                 Ok(Some(done)) => {
-                    found = Some((done.ms, done.again || found.is_some_and(|(_, again)| again)))
+                    found = Some((done.ms, done.again || found.is_some_and(|(_, again)| again)));
                 }
                 Ok(None) => renderer.wait_for_oldest(PATIENCE),
                 // The next image of the pane reports the error.

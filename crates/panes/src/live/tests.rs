@@ -196,7 +196,7 @@ fn a_lost_device_is_opened_again_for_all_panes_on_it() {
     for (index, before) in before.iter().enumerate() {
         let pane = rig.pane(index);
         assert_eq!(pane.problem, None, "rendered again without another request");
-        assert!(pixels(&pane) == pixels(&before), "pane {index}");
+        assert!(pixels(&pane) == pixels(before), "pane {index}");
     }
 }
 

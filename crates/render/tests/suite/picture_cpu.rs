@@ -15,6 +15,9 @@ use lovelock_render::{CpuRenderer, FrameStats, Light, Picture, ShadowMethod};
 
 use crate::common::{Scene, grid, scene, tuft};
 
+/// A change of a scene.
+type Change = fn(&mut Scene);
+
 #[test]
 fn what_is_kept_from_picture_to_picture_changes_no_byte() {
     let mut scene = scene(&tuft(60));
@@ -22,7 +25,6 @@ fn what_is_kept_from_picture_to_picture_changes_no_byte() {
     scene.picture.ground = true;
     scene.shadow.method = ShadowMethod::VoxelMap;
     let (mut keeping, mut plain) = (CpuRenderer::default(), CpuRenderer::default().keeping_nothing());
-    type Change = fn(&mut Scene);
     // What changes, and whether the depth maps of the body and the shadows of hair are kept.
     let changes: [(&str, Change, [bool; 2]); 12] = [
         ("the first picture", |_| {}, [false, false]),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::Vec3;
-use lovelock_groom::Hairstyle;
+use lovelock_groom::{Hairstyle, Strands};
 use lovelock_render::{
     Backend, DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, HairPose, Picture, RenderError,
     Renderer, ShadowMethod, Shrinker, Traffic, Transparency,
@@ -148,7 +148,7 @@ fn an_image_whose_list_was_too_short_shows_the_one_before() {
         // Nothing is too short without hair.
         let mut little = lit(transparency, method);
         little.style = Arc::new(Hairstyle::default());
-        little.strands = Default::default();
+        little.strands = Strands::default();
         let before = rig.settled(&little).read().expect("pixels");
         // Wide strands over the whole picture, before any list has grown.
         let mut much = Scene { body: lit(transparency, method).body, ..scene(&tuft(600)) };
@@ -222,7 +222,7 @@ fn wrong_requests_are_refused_and_the_renderer_goes_on() {
         assert!(matches!(refused, Err(RenderError::Size { .. })), "{size:?}");
     }
     let mut odd = lit(Transparency::Sorted, ShadowMethod::VoxelMap);
-    odd.strands = Default::default();
+    odd.strands = Strands::default();
     assert!(matches!(odd.input().hair, HairPose::Strands(_)));
     rig.image(&odd);
     rig.finish();

@@ -350,7 +350,9 @@ impl Worker {
         self.card_given_up &= choice != Backend::Gpu;
         let backend = if choice == Backend::Auto && self.card_given_up { Backend::Cpu } else { choice };
         let window = self.window.get();
-        self.opened.take_if(|opened| opened.backend != backend || !same_device(&opened.window, &window));
+        self.opened.take_if(|opened| {
+            opened.backend != backend || !same_device(opened.window.as_ref(), window.as_ref())
+        });
         let renderer = match &mut self.opened {
             Some(opened) => &mut opened.renderer,
             none => {
@@ -396,8 +398,8 @@ impl Worker {
 }
 
 /// Whether both are the same device, or none.
-fn same_device(a: &Option<Arc<Gpu>>, b: &Option<Arc<Gpu>>) -> bool {
-    a.as_ref().map(|gpu| &gpu.device) == b.as_ref().map(|gpu| &gpu.device)
+fn same_device(a: Option<&Arc<Gpu>>, b: Option<&Arc<Gpu>>) -> bool {
+    a.map(|gpu| &gpu.device) == b.map(|gpu| &gpu.device)
 }
 
 /// Whether the renderer must be opened again. Opening it again does not help if a shader does not compile, something does not

@@ -193,7 +193,7 @@ fn images_are_textures_of_the_window_whatever_draws_them() {
     let Some(gpu) = window_device() else { return };
     let window = WindowDevice::default();
     window.set(Some(Arc::clone(&gpu)));
-    let (there, here) = (Rig::on(window, |choice| Renderer::open(choice)), Rig::new(Renderer::open));
+    let (there, here) = (Rig::on(window, Renderer::open), Rig::new(Renderer::open));
     for (rig, is_texture) in [(&there, true), (&here, false)] {
         rig.draw(Backend::Cpu);
         let image = rig.thread.images().latest().expect("an image").image.clone();
@@ -209,7 +209,10 @@ fn a_lost_window_device_is_not_retried_until_the_window_has_another_one() {
     let window = WindowDevice::default();
     window.set(Some(Arc::clone(&gpu)));
     let of_window = window.clone();
-    let open = move |choice| Renderer::open_for(choice, of_window.get().as_ref());
+    let open = move |choice| match (choice, of_window.get()) {
+        (Backend::Gpu, Some(gpu)) => Renderer::on_window(&gpu, choice),
+        _ => Renderer::open(choice),
+    };
     let rig = Rig::on(window.clone(), open);
     rig.draw(Backend::Gpu);
     let before = rig.pixels();

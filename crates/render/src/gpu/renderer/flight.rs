@@ -166,7 +166,7 @@ impl GpuRenderer {
         self.flights.ended = Some(Stopwatch::start());
         let mut finished = Finished { ms, again: false, mean_transmittance: None };
         if let Some(report) = done.report {
-            let (heads, sum) = self.read_report(&report)?;
+            let (heads, sum) = read_report(&report)?;
             finished.mean_transmittance =
                 report.measured.then(|| (sum / (255.0 * f64::from(report.points.max(1)))) as f32);
             let [image, maps @ ..] = &heads[..report.lists.min(MOST_LISTS)] else {
@@ -192,27 +192,26 @@ impl GpuRenderer {
             let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         }
     }
+}
 
-    /// The heads of the lists and the sum of the transmittances.
-    fn read_report(&self, report: &Report) -> Result<([[u32; 2]; MOST_LISTS], f64), GpuError> {
-        let mut heads = [[0; 2]; MOST_LISTS];
-        let mut sum = 0.0;
-        {
-            let bytes =
-                report.buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
-            let word = |at: usize| {
-                bytes[4 * at..].first_chunk().map_or(0, |&bytes: &[u8; 4]| u32::from_le_bytes(bytes))
-            };
-            for (k, head) in heads.iter_mut().enumerate() {
-                *head = [word(4 * k), word(4 * k + 1)];
-            }
-            if report.measured {
-                sum = number_of_bytes(&bytes[HEADS_BYTES as usize..]);
-            }
+/// The heads of the lists and the sum of the transmittances.
+fn read_report(report: &Report) -> Result<([[u32; 2]; MOST_LISTS], f64), GpuError> {
+    let mut heads = [[0; 2]; MOST_LISTS];
+    let mut sum = 0.0;
+    {
+        let bytes =
+            report.buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
+        let word =
+            |at: usize| bytes[4 * at..].first_chunk().map_or(0, |&bytes: &[u8; 4]| u32::from_le_bytes(bytes));
+        for (k, head) in heads.iter_mut().enumerate() {
+            *head = [word(4 * k), word(4 * k + 1)];
         }
-        report.buffer.unmap();
-        Ok((heads, sum))
+        if report.measured {
+            sum = number_of_bytes(&bytes[HEADS_BYTES as usize..]);
+        }
     }
+    report.buffer.unmap();
+    Ok((heads, sum))
 }
 
 /// Encodes copying what a frame reports into `spare` or a new buffer.

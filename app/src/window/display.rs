@@ -1,0 +1,177 @@
+//! The window on its display: opening it, its graphics device, and opening it again with another device after a loss.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use lovelock_base::clock::Stopwatch;
+use lovelock_session::window_device::WindowDevice;
+
+use super::images::{self, Textures};
+use super::{LAYOUT_KEY, Window, notices, theme};
+
+/// Environment variable with a number of seconds after which the window's graphics device is destroyed, once, as if it had failed.
+const LOSE_DEVICE: &str = "LOVELOCK_LOSE_DEVICE";
+
+/// What the window knows of its display.
+pub(super) struct Display {
+    /// The graphics device of the window, and its images there.
+    device: WindowDevice,
+    pub(super) textures: Textures,
+    /// The title that was set last.
+    pub(super) title: String,
+    /// The context of the window, and its place on the screen, points.
+    pub(super) ctx: Option<egui::Context>,
+    pub(super) place: Option<egui::Rect>,
+    /// Whether the window is closed in order to open it with another graphics device.
+    pub(super) is_reopening: bool,
+    /// Whether the options of text that were changed to draw all glyphs anew must be set back.
+    sharpen_text: bool,
+    /// For trials without hardware that fails: when the device is taken away, seconds after the window has opened.
+    loses_device: Option<(Stopwatch, f64)>,
+}
+
+impl Display {
+    /// A window that is not open yet.
+    pub(super) fn new(device: WindowDevice, textures: Textures) -> Self {
+        let secs = std::env::var(LOSE_DEVICE).ok().and_then(|secs| secs.parse().ok());
+        Self {
+            device,
+            textures,
+            title: String::new(),
+            ctx: None,
+            place: None,
+            is_reopening: false,
+            sharpen_text: false,
+            loses_device: secs.map(|secs| (Stopwatch::start(), secs)),
+        }
+    }
+}
+
+/// The options of the window, at its old place if it is opened again.
+pub(super) fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
+    let mut viewport = egui::ViewportBuilder::default()
+        .with_title("Lovelock")
+        .with_app_id("lovelock")
+        .with_inner_size([1440.0, 900.0])
+        // Both panels, and the width of another one for the image.
+        .with_min_inner_size([960.0, 540.0])
+        .with_drag_and_drop(true);
+    if let Some(place) = place {
+        viewport = viewport.with_position(place.min).with_inner_size(place.size());
+    }
+    eframe::NativeOptions {
+        viewport,
+        // Images are already dithered and panels are flat. Without a graphics card every pixel of the window costs time.
+        dithering: false,
+        wgpu_options: egui_wgpu::WgpuConfiguration {
+            wgpu_setup: images::device_setup(),
+            ..egui_wgpu::WgpuConfiguration::default()
+        },
+        ..Default::default()
+    }
+}
+
+/// The window while no graphics device shows it.
+pub(super) type Kept = Rc<RefCell<Option<Window>>>;
+
+/// The window on a graphics device.
+pub(super) struct Opened {
+    window: Option<Window>,
+    kept: Kept,
+}
+
+impl Drop for Opened {
+    fn drop(&mut self) {
+        if let Some(window) = self.window.take().filter(|window| window.display.is_reopening) {
+            self.kept.replace(Some(window));
+        }
+    }
+}
+
+impl Opened {
+    /// `window` on the device that has just been opened.
+    pub(super) fn new(window: Window, kept: Kept) -> Self {
+        Self { window: Some(window), kept }
+    }
+}
+
+impl eframe::App for Opened {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let Some(window) = &mut self.window else { return };
+        // Asked only occasionally: the window may be moved to another display, and some systems respond slowly.
+        if ui.ctx().cumulative_frame_nr() % 128 == 1 {
+            let display = frame.winit_window().and_then(|window| window.current_monitor());
+            if let Some(millihertz) = display.and_then(|display| display.refresh_rate_millihertz()) {
+                window.session.set_display_hz(f64::from(millihertz) * 1e-3);
+            }
+        }
+        window.pass(ui);
+        window.watch_device(ui.ctx());
+    }
+
+    /// The panels' colour: cleared once instead of painted under each panel, because every pixel of the window costs time without a
+    /// graphics card.
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::PANEL.to_normalized_gamma_f32()
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        if let Some(window) = &self.window {
+            eframe::set_value(storage, LAYOUT_KEY, &window.layout);
+        }
+    }
+}
+
+impl Window {
+    /// Shows the window with a painter and its graphics device, after a loss with another one than before.
+    pub(super) fn attach(&mut self, painter: Option<&egui_wgpu::RenderState>, ctx: &egui::Context) {
+        let display = &mut self.display;
+        display.device.set(painter.and_then(images::device_of));
+        display.textures.attach(painter.cloned());
+        display.ctx = Some(ctx.clone());
+        if !std::mem::take(&mut display.is_reopening) {
+            return;
+        }
+        display.title.clear();
+        // The glyphs were on the lost device; with other options all are drawn anew.
+        set_hinting(ctx, false);
+        display.sharpen_text = true;
+        self.viewport.forget_image();
+        self.compare.forget_images();
+        self.thumbnails.forget();
+        self.session.draw_again();
+        self.notices.push(
+            notices::Kind::Warning,
+            "The graphics device was lost and opened again. Nothing else is lost.".to_owned(),
+        );
+    }
+
+    /// Closes the window in order to open it again if its graphics device was lost.
+    fn watch_device(&mut self, ctx: &egui::Context) {
+        let display = &mut self.display;
+        if std::mem::take(&mut display.sharpen_text) {
+            set_hinting(ctx, true);
+            ctx.request_repaint();
+        }
+        if let Some(gpu) = display.device.get()
+            && display.loses_device.take_if(|(since, secs)| since.secs() > *secs).is_some()
+        {
+            gpu.device.destroy();
+        }
+        let lost = display.device.get().is_some_and(|gpu| gpu.is_lost());
+        if lost && !display.is_reopening {
+            tracing::warn!("the window opens another graphics device");
+            display.is_reopening = true;
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        let viewport = ctx.input(|input| (input.viewport().outer_rect, input.viewport().inner_rect));
+        if let (Some(outer), Some(inner)) = viewport {
+            display.place = Some(egui::Rect::from_min_size(outer.min, inner.size()));
+        }
+    }
+}
+
+/// Sets whether glyphs are fitted to pixels.
+fn set_hinting(ctx: &egui::Context, hinted: bool) {
+    ctx.all_styles_mut(|style| style.visuals.text_options.font_hinting = hinted);
+}
