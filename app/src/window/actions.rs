@@ -234,6 +234,7 @@ impl Window {
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };
+                let [width, height] = painted.image.size();
                 let written =
                     painted.image.picture().map_err(|error| error.to_string()).and_then(|picture| {
                         recording::write_png(path, picture.width, picture.height, &picture.rgba)
@@ -241,7 +242,8 @@ impl Window {
                     });
                 match written {
                     Ok(()) => {
-                        self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
+                        let what = format!("Saved {}, {width} × {height} pixels", path.display());
+                        self.notices.push(notices::Kind::Done, what);
                     }
                     Err(error) => self.warn([error]),
                 }

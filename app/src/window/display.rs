@@ -1,9 +1,13 @@
 //! The window on its display: opening it, its graphics device, and opening it again with another device after a loss.
 
 use std::cell::RefCell;
+use std::path::PathBuf;
 use std::rc::Rc;
+use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
+use lovelock_project::error::ProjectError;
+use lovelock_project::project::{PROJECT_EXTENSION, save_project};
 use lovelock_session::window_device::WindowDevice;
 
 use super::images::{self, Textures};
@@ -20,8 +24,8 @@ pub(super) struct Display {
     /// The title that was set last.
     pub(super) title: String,
     /// The context of the window, and its place on the screen, points.
-    pub(super) ctx: Option<egui::Context>,
-    pub(super) place: Option<egui::Rect>,
+    ctx: Option<egui::Context>,
+    place: Option<egui::Rect>,
     /// Whether the window is closed in order to open it with another graphics device.
     pub(super) is_reopening: bool,
     /// Whether the options of text that were changed to draw all glyphs anew must be set back.
@@ -47,8 +51,63 @@ impl Display {
     }
 }
 
+/// How often the window is opened again, a second apart, before the program gives up.
+const MOST_TRIES: u32 = 10;
+
+/// Opens the window that `make` makes, and again with another graphics device after the one in use was lost, with everything on it.
+/// Returns when the user closes it.
+///
+/// # Errors
+/// If the window cannot be opened. If it cannot be opened again, unsaved changes are in the file that the error names.
+pub(super) fn run(
+    make: impl FnOnce(&eframe::CreationContext) -> Result<Window, ProjectError>,
+) -> Result<(), ProjectError> {
+    let mut make = Some(make);
+    let kept = Kept::default();
+    let (mut ctx, mut tries) = (None, 0);
+    loop {
+        let (kept_here, make) = (Rc::clone(&kept), make.take());
+        let place = kept.borrow().as_ref().and_then(|window| window.display.place);
+        let opened = eframe::run_native_ext(
+            "lovelock",
+            native_options(place),
+            ctx.take(),
+            Box::new(move |creation| {
+                let mut window = match (kept_here.take(), make) {
+                    (Some(window), _) => window,
+                    (None, Some(make)) => make(creation)?,
+                    (None, None) => return Err("the state of the window was lost".into()),
+                };
+                window.attach(creation.wgpu_render_state.as_ref(), &creation.egui_ctx);
+                Ok(Box::new(Opened { window: Some(window), kept: kept_here }))
+            }),
+        );
+        match opened {
+            Ok(()) if kept.borrow().is_none() => return Ok(()),
+            Ok(()) => tries = 0,
+            // A driver that is being replaced has no device for a moment.
+            Err(error) if kept.borrow().is_some() && tries < MOST_TRIES => {
+                tracing::warn!(%error, "the window could not be opened again");
+                tries += 1;
+                std::thread::sleep(Duration::from_secs(1));
+            }
+            Err(error) => {
+                let rescued = kept.take().and_then(|window| window.rescue());
+                let rescued = rescued.map_or_else(String::new, |path| {
+                    format!("; the unsaved project is in {}", path.display())
+                });
+                return Err(ProjectError::work(format!(
+                    "the window could not be opened: {error}{rescued}; without a display use `lovelock record`"
+                )));
+            }
+        }
+        // The context is kept too: threads ask it for repaints, and it holds what is unfolded.
+        ctx = kept.borrow().as_ref().and_then(|window| window.display.ctx.clone());
+    }
+}
+
 /// The options of the window, at its old place if it is opened again.
-pub(super) fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
+fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
     let mut viewport = egui::ViewportBuilder::default()
         .with_title("Lovelock")
         .with_app_id("lovelock")
@@ -72,10 +131,10 @@ pub(super) fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions
 }
 
 /// The window while no graphics device shows it.
-pub(super) type Kept = Rc<RefCell<Option<Window>>>;
+type Kept = Rc<RefCell<Option<Window>>>;
 
 /// The window on a graphics device.
-pub(super) struct Opened {
+struct Opened {
     window: Option<Window>,
     kept: Kept,
 }
@@ -85,13 +144,6 @@ impl Drop for Opened {
         if let Some(window) = self.window.take().filter(|window| window.display.is_reopening) {
             self.kept.replace(Some(window));
         }
-    }
-}
-
-impl Opened {
-    /// `window` on the device that has just been opened.
-    pub(super) fn new(window: Window, kept: Kept) -> Self {
-        Self { window: Some(window), kept }
     }
 }
 
@@ -144,6 +196,18 @@ impl Window {
             notices::Kind::Warning,
             "The graphics device was lost and opened again. Nothing else is lost.".to_owned(),
         );
+    }
+
+    /// Writes unsaved changes to a file beside the project, or in the folder of the program's data. Returns its path.
+    fn rescue(&self) -> Option<PathBuf> {
+        if !self.history.is_modified() {
+            return None;
+        }
+        let path = match &self.project_path {
+            Some(path) => path.with_extension(format!("rescued.{PROJECT_EXTENSION}")),
+            None => eframe::storage_dir("lovelock")?.join("rescued").with_extension(PROJECT_EXTENSION),
+        };
+        save_project(&path, self.history.project()).ok().map(|()| path)
     }
 
     /// Closes the window in order to open it again if its graphics device was lost.

@@ -33,13 +33,12 @@ mod tools;
 mod viewport;
 
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 use std::sync::Arc;
 
 use crate::cli::Assignment;
 use command::Command;
 use compare::{Compare, CompareLayout};
-use display::{Display, Kept, Opened};
+use display::Display;
 use gesture::Gestures;
 use images::Textures;
 use lovelock_project::Project;
@@ -158,42 +157,11 @@ pub(crate) fn open(
 ) -> Result<(), ProjectError> {
     // A file that cannot be opened is an error of the command line, reported without opening the window.
     let opened = actions::open_for_start(path, set)?;
-    let mut first = Some((opened, screenshot));
-    let kept = Kept::default();
-    let mut ctx = None;
-    // Another round opens the window anew after its graphics device was lost, with everything on it.
-    loop {
-        let (kept_here, first) = (Rc::clone(&kept), first.take());
-        let place = kept.borrow().as_ref().and_then(|window| window.display.place);
-        eframe::run_native_ext(
-            "lovelock",
-            display::native_options(place),
-            ctx.take(),
-            Box::new(move |creation| {
-                let mut window = match (kept_here.take(), first) {
-                    (Some(window), _) => window,
-                    (None, Some((opened, screenshot))) => {
-                        let mut window = Window::new(creation, opened, screenshot)?;
-                        window.layout.compare.shown |= panes;
-                        window
-                    }
-                    (None, None) => return Err("the state of the window was lost".into()),
-                };
-                window.attach(creation.wgpu_render_state.as_ref(), &creation.egui_ctx);
-                Ok(Box::new(Opened::new(window, kept_here)))
-            }),
-        )
-        .map_err(|error| {
-            ProjectError::work(format!(
-                "the window could not be opened: {error}; without a display use `lovelock record`"
-            ))
-        })?;
-        match kept.borrow().as_ref() {
-            // The context is kept too: threads ask it for repaints, and it knows what is unfolded.
-            Some(window) => ctx.clone_from(&window.display.ctx),
-            None => return Ok(()),
-        }
-    }
+    display::run(move |creation| {
+        let mut window = Window::new(creation, opened, screenshot)?;
+        window.layout.compare.shown |= panes;
+        Ok(window)
+    })
 }
 
 impl Window {

@@ -13,7 +13,7 @@ use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage
 use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
+use lovelock_session::stats::{PassHistory, StageHistory};
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
@@ -239,9 +239,12 @@ impl Session {
         }
         if let Some(painted) = self.painter.images().newer_than(&mut self.seen_painted) {
             self.stages.push(painted.times);
-            if self.drawn.as_ref().is_some_and(|drawn| !drawn.still && drawn.size == painted.image.size()) {
-                let StageTimes { interpolate, shadow, draw, .. } = painted.times;
-                self.resolution.take(interpolate + shadow + draw, self.view.rate.unwrap_or_default());
+            // Times of another size, as those of the images before a change, say nothing about this one.
+            if let (Some((size, ms)), Some(drawn)) = (painted.cost, &self.drawn)
+                && !drawn.still
+                && drawn.size == size
+            {
+                self.resolution.take(ms, self.view.rate.unwrap_or_default());
             }
             self.passes.push(&painted.stats.passes);
             self.painted = Some(painted);

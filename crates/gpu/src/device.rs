@@ -1,5 +1,6 @@
 //! The graphics device and its errors.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::Pod;
@@ -52,6 +53,7 @@ pub struct Gpu {
     fault: Fault,
     pub(crate) counters: Counters,
     pub(crate) constants: Mutex<ConstantPool>,
+    frame: AtomicU64,
 }
 
 /// The errors of a device that have not been reported.
@@ -146,6 +148,7 @@ impl Gpu {
             fault,
             counters: Counters::default(),
             constants: Mutex::default(),
+            frame: AtomicU64::new(0),
         })
     }
 
@@ -159,6 +162,7 @@ impl Gpu {
             fault: Arc::clone(&self.fault),
             counters: Counters::default(),
             constants: Mutex::default(),
+            frame: AtomicU64::new(0),
         })
     }
 
@@ -190,7 +194,13 @@ impl Gpu {
 
     /// Starts a frame of this handle: its passes get the constant buffers of the last frame again, in order.
     pub(crate) fn begin_frame(&self) {
+        self.frame.fetch_add(1, Ordering::Relaxed);
         self.constants.lock().unwrap_or_else(PoisonError::into_inner).begin();
+    }
+
+    /// The number of frames of this handle that have begun.
+    pub(crate) fn frame(&self) -> u64 {
+        self.frame.load(Ordering::Relaxed)
     }
 
     /// Writes `items` to a buffer, `offset` bytes after its start, before the next submitted commands.

@@ -30,21 +30,23 @@ pub struct Kernel {
     groups: Mutex<BoundGroups>,
 }
 
-/// A bind group that was not used for this many bindings of its kernel is dropped: it keeps its buffers alive.
-const KEPT_FOR: u64 = 32;
+/// A bind group that was not used in this many frames is dropped: it keeps its buffers and textures alive.
+const KEPT_FRAMES: u64 = 2;
+/// The most bind groups that are kept.
+const MOST_KEPT: usize = 64;
 
 /// The bind groups of the last frames, with the resources that they bind.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct BoundGroups {
     kept: Vec<Bound>,
-    /// Number of bindings so far.
-    now: u64,
+    frames: u64,
 }
 
 #[derive(Debug)]
 struct Bound {
     resources: Vec<(u32, Resource)>,
     group: wgpu::BindGroup,
+    /// The frame that used it last.
     last: u64,
 }
 
@@ -119,8 +121,21 @@ impl Kernel {
                 cache: None,
             });
             let layout = pipeline.get_bind_group_layout(0);
-            Self { label, pipeline, layout, used, groups: Mutex::default() }
+            Self {
+                label,
+                pipeline,
+                layout,
+                used,
+                groups: Mutex::new(BoundGroups { kept: Vec::new(), frames: KEPT_FRAMES }),
+            }
         })
+    }
+
+    /// Keeps bind groups for this many frames in place of two: for kernels whose resources are used in turn.
+    #[must_use]
+    pub fn keeping(self, frames: u64) -> Self {
+        self.groups.lock().unwrap_or_else(PoisonError::into_inner).frames = frames;
+        self
     }
 
     /// Binds resources by their binding numbers. Those that the kernel does not use are ignored. The bind group of an earlier frame is
@@ -128,8 +143,8 @@ impl Kernel {
     pub fn bind(&self, gpu: &Gpu, resources: &[(u32, wgpu::BindingResource)]) -> wgpu::BindGroup {
         let wanted = || resources.iter().filter(|(binding, _)| self.used.contains(binding));
         let mut groups = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
-        groups.now += 1;
-        let now = groups.now;
+        let (now, frames) = (gpu.frame(), groups.frames);
+        groups.kept.retain(|bound| bound.last + frames >= now);
         let same = |bound: &Bound| {
             bound.resources.len() == wanted().count()
                 && bound
@@ -142,7 +157,9 @@ impl Kernel {
             bound.last = now;
             return bound.group.clone();
         }
-        groups.kept.retain(|bound| bound.last + KEPT_FOR > now);
+        if groups.kept.len() >= MOST_KEPT {
+            groups.kept.clear();
+        }
         let entries: Vec<_> = wanted()
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
             .collect();

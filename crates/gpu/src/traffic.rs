@@ -16,6 +16,17 @@ pub struct Traffic {
 }
 
 impl Traffic {
+    /// Both together.
+    #[must_use]
+    pub const fn plus(self, other: Self) -> Self {
+        Self {
+            bytes_up: self.bytes_up + other.bytes_up,
+            bytes_back: self.bytes_back + other.bytes_back,
+            waits: self.waits + other.waits,
+            created: self.created + other.created,
+        }
+    }
+
     /// What has happened since `earlier`.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Self {

@@ -130,6 +130,24 @@ mod tests {
     }
 
     #[test]
+    fn times_of_other_sizes_are_the_callers_to_leave_out() {
+        // The window leaves out the times of images that were drawn before the last change. Two images in flight then only make the
+        // answer later: the scale that is found is the same.
+        let (mut at_once, mut late) = (Resolution::default(), Resolution::default());
+        let ms = |scale: f32| 10.0 + 40.0 * f64::from(scale * scale);
+        let mut in_flight = std::collections::VecDeque::from([1.0_f32, 1.0]);
+        for _ in 0..400 {
+            at_once.take(ms(at_once.scale()), 30.0);
+            in_flight.push_back(late.scale());
+            let finished = in_flight.pop_front().expect("two in flight");
+            if finished.to_bits() == late.scale().to_bits() {
+                late.take(ms(finished), 30.0);
+            }
+        }
+        assert!((at_once.scale() - late.scale()).abs() < 1e-6, "{} {}", at_once.scale(), late.scale());
+    }
+
+    #[test]
     fn times_that_are_none_change_nothing() {
         let mut resolution = Resolution::default();
         for ms in [f64::NAN, f64::INFINITY, 0.0, -5.0] {

@@ -57,28 +57,46 @@ fn level(level: usize, wanted: f32) -> usize {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
+    use lovelock_groom::StrandSet;
 
     use super::*;
 
     #[test]
     fn far_hair_is_thinned_and_near_hair_is_not() {
-        let style = Arc::new(Hairstyle::default());
-        let look = HairLook::default();
+        // 3,000 strands that stand for 100,000 hairs are 2.3 mm wide.
+        let strands = StrandSet {
+            wisp: vec![0; 3000],
+            weights: vec![[1.0, 0.0, 0.0]; 3000],
+            shade: vec![0.5; 3000],
+            first_point: (0..=3000).map(|i| 2 * i).collect(),
+            guide_param: vec![0.0; 6000],
+            offset_normal: vec![0.0; 6000],
+            offset_binormal: vec![0.0; 6000],
+            offset_tangent: vec![0.0; 6000],
+            taper: vec![1.0; 6000],
+        };
+        let style = Arc::new(Hairstyle { strands, ..Hairstyle::default() });
+        let look = HairLook { width_scale: 0.4, ..HairLook::default() };
         let at = |metres: f32| Camera { eye: Vec3::Z * metres, target: Vec3::ZERO, fov_y: 0.5 };
         let mut thinning = Thinning::default();
-        let near = thinning.choose(&style, &look, (&at(0.4), 1080, Vec3::ZERO));
-        assert!(Arc::ptr_eq(&near, &style) && thinning.level == 0);
-        // One strand that stands for all of them is wide everywhere.
-        assert!(Arc::ptr_eq(&thinning.choose(&style, &look, (&at(50.0), 1080, Vec3::ZERO)), &style));
+        let mut share = |metres: f32| {
+            let chosen = thinning.choose(&style, &look, (&at(metres), 720, Vec3::ZERO));
+            (chosen.strands.count() as f32 / 3000.0, Arc::ptr_eq(&chosen, &style))
+        };
+        assert_eq!(share(0.4), (1.0, true), "near");
+        let (far, farther) = (share(4.0).0, share(20.0).0);
+        assert!(far < 0.95 && farther < far && (farther - 0.3).abs() < 1e-3, "{far} {farther}");
+        assert_eq!(share(0.4), (1.0, true), "near again");
     }
 
     #[test]
     fn the_share_follows_the_width_and_does_not_flicker() {
         for (wanted, expected) in
-            [(2.0, 0), (1.0, 0), (0.74, 1), (0.5, 2), (0.38, 3), (0.1, 4), (f32::NAN, 0)]
+            [(2.0, 0), (1.2, 0), (0.65, 1), (0.48, 2), (0.35, 3), (0.1, 4), (f32::NAN, 0)]
         {
-            // From either side.
-            assert!((0..SHARES.len()).any(|from| level(from, wanted) == expected), "{wanted}");
+            for from in [0, SHARES.len() - 1] {
+                assert_eq!(level(from, wanted), expected, "{wanted} from {from}");
+            }
         }
         // A width that sways by 5 % around a bound keeps its share.
         let mut now = level(0, 0.55);

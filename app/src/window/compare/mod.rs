@@ -63,7 +63,10 @@ impl Compare {
     pub(crate) fn update(&mut self, live: &Live) -> Vec<String> {
         for (index, (seen, held)) in self.seen.iter_mut().zip(&mut self.panes).enumerate() {
             if let Some(pane) = live.pane(index).and_then(|slot| slot.newer_than(seen)) {
-                self.costs.push(&pane);
+                // An image that the device has not finished yet comes again with its time.
+                if pane.times.whole > 0.0 {
+                    self.costs.push(&pane);
+                }
                 *held = Some(pane);
             }
         }

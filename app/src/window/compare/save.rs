@@ -47,9 +47,15 @@ impl Compare {
         let (to, wake) = (path.to_owned(), ctx.clone());
         let write = move || {
             let panes: Vec<_> = shown.iter().map(|(index, pane, ms)| (*index, &**pane, *ms)).collect();
-            let picture = sheet.compose(&panes, whole);
-            let written = recording::write_png(&to, picture.width, picture.height, &picture.rgba);
-            let _ = sender.send(written.map_err(|error| error.to_string()));
+            let lost = panes.iter().find_map(|(_, pane, _)| pane.image.picture().err());
+            let written = if let Some(error) = lost {
+                Err(error.to_string())
+            } else {
+                let picture = sheet.compose(&panes, whole);
+                recording::write_png(&to, picture.width, picture.height, &picture.rgba)
+                    .map_err(|error| error.to_string())
+            };
+            let _ = sender.send(written);
             wake.request_repaint();
         };
         let spawned = std::thread::Builder::new().name("save picture".to_owned()).spawn(write);

@@ -62,54 +62,41 @@ pub fn record(
     let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
     let mut begun = false;
     let mut drawn = Drawn::default();
-    let most_times = ((frames.end - frames.start) as usize).min(MOST_TIMES);
-    let (mut history, mut passes) = (StageHistory::new(most_times), PassHistory::new(most_times));
-    let (mut shadow_bytes, mut draw_bytes) = (0, 0);
-    let mut whole = Vec::new();
+    let total = frames.end - frames.start;
+    let mut tally = Tally::new((total as usize).min(MOST_TIMES));
     let mut in_flight: Option<Begun> = None;
-    let mut write = |drawn: &Drawn, (mut times, stats): (StageTimes, FrameStats), sink: &mut PictureSink| {
-        let encoding = Stopwatch::start();
-        job.push(drawn, sink).map_err(refused)?;
-        times.encode = encoding.ms();
-        history.push(times);
-        passes.push(&stats.passes);
-        (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
-        Ok::<_, ProjectError>(())
-    };
     for frame in frames.clone() {
-        let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
         if sink.next_is_kept() {
             sink.keep_next();
-            report_progress(progress, Progress::Kept { done, total })?;
+            report_progress(progress, Progress::Kept { done: frame + 1 - frames.start, total })?;
             continue;
         }
         if !std::mem::replace(&mut begun, true) {
             // Simulate all earlier frames of the recording, whether they are kept or not.
             dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
+            tally.since = Stopwatch::start();
         }
-        let watch = Stopwatch::start();
-        // While a graphics card draws this frame, the one before is encoded.
-        let next = job.begin(frame, &mut dance, &mut drawer)?;
-        let finished = match (in_flight.take(), next) {
-            (None, Some(begun)) => {
-                in_flight = Some(begun);
-                None
-            }
-            (Some(before), next) => {
-                in_flight = next;
-                Some(job.finish(before, &mut drawer, &mut drawn)?)
-            }
-            (None, None) => Some(job.draw(frame, &mut dance, &mut drawer, &mut drawn)?),
-        };
-        if let Some(finished) = finished {
-            write(&drawn, finished, &mut sink)?;
+        // While a graphics card draws this frame, the one before is written.
+        let before = std::mem::replace(&mut in_flight, job.begin(frame, &mut dance, &mut drawer)?);
+        let mut finished = None;
+        if let Some(before) = before {
+            finished = Some((before.frame, job.finish(before, &mut drawer, &mut drawn)?));
+        } else if in_flight.is_none() {
+            finished = Some((frame, job.draw(frame, &mut dance, &mut drawer, &mut drawn)?));
         }
-        whole.push(watch.ms());
-        report_progress(progress, Progress::Frame { done, total, steps_per_frame: dance.steps_per_frame() })?;
+        if let Some((frame, made)) = finished {
+            tally.write(&job, &drawn, made, &mut sink)?;
+            let (done, steps_per_frame) = (frame + 1 - frames.start, dance.steps_per_frame());
+            report_progress(progress, Progress::Frame { done, total, steps_per_frame })?;
+        }
     }
-    if let Some(last) = in_flight.take() {
-        let finished = job.finish(last, &mut drawer, &mut drawn)?;
-        write(&drawn, finished, &mut sink)?;
+    if let Some(last) = in_flight {
+        let made = job.finish(last, &mut drawer, &mut drawn)?;
+        tally.write(&job, &drawn, made, &mut sink)?;
+        report_progress(
+            progress,
+            Progress::Frame { done: total, total, steps_per_frame: dance.steps_per_frame() },
+        )?;
     }
     report_progress(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
@@ -135,11 +122,11 @@ pub fn record(
         shutter_degrees: job.options.shutter_degrees,
         strands: strands.count() as u64,
         segments: strands.segments() as u64,
-        frame_ms: lovelock_base::statistics::median(whole).unwrap_or(0.0),
-        stage_ms: history.medians(),
-        passes_ms: passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
-        shadow_bytes,
-        draw_bytes,
+        frame_ms: lovelock_base::statistics::median(tally.whole_ms).unwrap_or(0.0),
+        stage_ms: tally.history.medians(),
+        passes_ms: tally.passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
+        shadow_bytes: tally.shadow_bytes,
+        draw_bytes: tally.draw_bytes,
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
@@ -294,7 +281,8 @@ impl<'a> Job<'a> {
         dance: &mut Dance,
         drawer: &mut Drawer,
     ) -> Result<Option<Begun>, ProjectError> {
-        if self.is_layered() || !drawer.begins() {
+        // With frames that are kept in between, the next to be written would not be the one in flight.
+        if self.is_layered() || self.request.resume || !drawer.begins() {
             return Ok(None);
         }
         let snapshot = dance.snapshot(frame)?;
@@ -399,6 +387,51 @@ fn refused(request: &RecordRequest, error: &RecordError) -> ProjectError {
         ProjectError::Request { file, message: error.to_string() }
     } else {
         ProjectError::Work { file, message: error.to_string() }
+    }
+}
+
+/// What the written frames cost.
+struct Tally {
+    history: StageHistory,
+    passes: PassHistory,
+    /// The largest of any frame, bytes.
+    shadow_bytes: u64,
+    draw_bytes: u64,
+    /// Time from one written frame to the next, milliseconds.
+    whole_ms: Vec<f64>,
+    since: Stopwatch,
+}
+
+impl Tally {
+    /// For at most `most` frames in the medians.
+    fn new(most: usize) -> Self {
+        Self {
+            history: StageHistory::new(most),
+            passes: PassHistory::new(most),
+            shadow_bytes: 0,
+            draw_bytes: 0,
+            whole_ms: Vec::new(),
+            since: Stopwatch::start(),
+        }
+    }
+
+    /// Writes a frame that was drawn.
+    fn write(
+        &mut self,
+        job: &Job,
+        drawn: &Drawn,
+        (mut times, stats): (StageTimes, FrameStats),
+        sink: &mut PictureSink,
+    ) -> Result<(), ProjectError> {
+        let encoding = Stopwatch::start();
+        job.push(drawn, sink).map_err(|error| job.refused(&error))?;
+        times.encode = encoding.ms();
+        self.history.push(times);
+        self.passes.push(&stats.passes);
+        self.shadow_bytes = self.shadow_bytes.max(stats.shadow_bytes);
+        self.draw_bytes = self.draw_bytes.max(stats.draw_bytes);
+        self.whole_ms.push(self.since.lap_ms());
+        Ok(())
     }
 }
 

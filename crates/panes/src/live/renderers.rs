@@ -72,13 +72,7 @@ impl Renderers {
             wanted => renderer.backend() == wanted,
         };
         let window = self.window.get();
-        if let (Some(window), Some(gpu)) = (&window, &self.gpu)
-            && window.device != gpu.device
-            && gpu.is_lost()
-        {
-            // The window has another device by now.
-            self.gpu = None;
-        }
+        self.close_lost();
         if !self.panes[pane].as_ref().is_some_and(fits) {
             // Drop the old one first, because two may not fit into memory.
             self.panes[pane] = None;
@@ -97,6 +91,14 @@ impl Renderers {
         match &mut self.panes[pane] {
             Some(renderer) => Ok(renderer),
             None => unreachable!("the renderer was just stored"),
+        }
+    }
+
+    /// Closes the renderers whose device is lost.
+    fn close_lost(&mut self) {
+        self.gpu.take_if(|gpu| gpu.is_lost());
+        for pane in &mut self.panes {
+            pane.take_if(|renderer| renderer.gpu().is_some_and(|gpu| gpu.is_lost()));
         }
     }
 
@@ -121,6 +123,11 @@ impl Renderers {
             *slot = None;
         }
         if !by_card {
+            return Broken { try_again: false, notice: None };
+        }
+        if self.window.get().is_some_and(|gpu| gpu.is_lost()) {
+            // The window opens another device and asks again: this is no failure of the pane.
+            self.close_lost();
             return Broken { try_again: false, notice: None };
         }
         for slot in &mut self.panes {

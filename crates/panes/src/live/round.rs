@@ -165,6 +165,10 @@ impl Rounds {
             let (image, stats) = renderer.image(&input, size, true, window)?;
             pane.image = image;
             take_stats(pane, &stats);
+            if renderer.in_flight() > 0 {
+                // Its time is known when the device has finished it: see `Rounds::finish`.
+                pane.times = LiveTimes { whole: 0.0, ..pane.times };
+            }
             if request.view.measures {
                 // A missing light has no transmittance, and the image does not need it.
                 let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());

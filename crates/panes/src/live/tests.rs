@@ -201,6 +201,37 @@ fn a_lost_device_is_opened_again_for_all_panes_on_it() {
 }
 
 #[test]
+fn panes_on_a_lost_window_device_wait_for_another_one_and_are_not_given_up() {
+    let device = || Renderer::open(Backend::Gpu).map(|renderer| renderer.gpu().cloned());
+    let (first, second) = match (device(), device()) {
+        (Ok(Some(first)), Ok(Some(second))) => (first, second),
+        (Err(error), _) | (_, Err(error)) => {
+            return lovelock_testkit::skip_without_adapter(&error.to_string());
+        }
+        _ => panic!("a renderer without a device"),
+    };
+    let window = WindowDevice::default();
+    window.set(Some(Arc::clone(&first)));
+    let open = |_: Backend, window: Option<&Arc<Gpu>>| match window {
+        Some(gpu) => Renderer::on_window(gpu, Backend::Gpu),
+        None => Err(GpuError::NoAdapter("for this test".to_owned()).into()),
+    };
+    let mut renderers = super::Renderers::new(Box::new(open), window.clone());
+    let pane = Contender { backend: Backend::Gpu, ..Contender::default() };
+    renderers.of_pane(0, &pane).expect("a renderer");
+    first.device.destroy();
+    for _ in 0..10 {
+        let lost = renderers.of_pane(0, &pane).expect_err("the device is lost");
+        assert!(lost.to_string().contains("lost"), "{lost}");
+        let broken = renderers.broke(0);
+        assert!(!broken.try_again && broken.notice.is_none(), "it waits for the window");
+    }
+    window.set(Some(Arc::clone(&second)));
+    let renderer = renderers.of_pane(0, &pane).expect("a renderer on the new device");
+    assert!(renderer.gpu().is_some_and(|gpu| gpu.device == second.device));
+}
+
+#[test]
 fn a_gpu_that_always_fails_leaves_its_panes_to_the_cpu_or_says_so() {
     for (backend, drawn) in [(Backend::Auto, true), (Backend::Gpu, false)] {
         let open = |choice, window: Option<&Arc<Gpu>>| match choice {

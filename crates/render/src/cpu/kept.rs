@@ -11,6 +11,9 @@ use lovelock_motion::Body;
 
 use crate::{FrameInput, HairPose, Light, ShadowSettings};
 
+/// Given strands of more points are not compared: copies of them would cost too much memory beside those of other panes.
+const MOST_STRAND_POINTS: usize = 1 << 18;
+
 /// The inputs of the last frame whose results are kept.
 #[derive(Debug, Default)]
 pub(super) struct KeptInputs {
@@ -84,6 +87,10 @@ impl KeptInputs {
                     }
                 }
                 same
+            }
+            HairPose::Strands(strands) if strands.points() > MOST_STRAND_POINTS => {
+                (self.guides, self.strands) = (None, Strands::default());
+                false
             }
             HairPose::Strands(strands) => {
                 let kept = &mut self.strands;

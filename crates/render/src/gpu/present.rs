@@ -44,7 +44,8 @@ impl Present {
         });
         Ok(Self {
             nothing: nothing.create_view(&wgpu::TextureViewDescriptor::default()),
-            kernel: Kernel::new(gpu, "present", source, "show")?,
+            // Textures are used in turn, and each is bound with the one before it.
+            kernel: Kernel::new(gpu, "present", source, "show")?.keeping(12),
             heads: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("heads of lists"),
                 size: HEAD_BYTES * MOST_LISTS as u64,

@@ -11,7 +11,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTime, PassTimer, Readback, Traffic, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
-use super::eye::{Area, Eye, EyeInput, HairOutput, WIDEST_PLAIN, too_large};
+use super::eye::{Area, Eye, EyeInput, HairOutput, Lists, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
@@ -178,11 +178,12 @@ impl GpuRenderer {
         Ok(PendingPicture {
             readback,
             size: [width, height],
-            method: self.shadow.method(),
-            maps: self.shadow.lists().count(),
+            lists: self.lists_of_frame(),
             points: self.hair.strands().point_count,
+            // A software adapter has measured them already; a card tells them when it has finished.
+            passes: if gpu.is_software() { self.timer.times(&gpu) } else { Vec::new() },
             begun_ms: watch.ms(),
-            before,
+            traffic: gpu.traffic().since(before),
         })
     }
 
@@ -197,7 +198,7 @@ impl GpuRenderer {
         picture: &mut Picture,
     ) -> Result<Option<FrameStats>, RenderError> {
         let gpu = Arc::clone(&self.gpu);
-        let watch = Stopwatch::start();
+        let (watch, before) = (Stopwatch::start(), gpu.traffic());
         pending.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
         self.readbacks.push(pending.readback);
         gpu.check()?;
@@ -206,24 +207,46 @@ impl GpuRenderer {
             let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
             *head = [words[0], words[1]];
         }
-        let [image, maps @ ..] = &heads;
-        let maps = &maps[..pending.maps.min(maps.len())];
-        let again = [self.shadow.settle(&gpu, pending.method, maps)?, self.eye.settle(&gpu, *image)?];
-        if again != [false, false] {
+        if self.settle(&pending.lists, &heads)? {
             return Ok(None);
         }
         [picture.width, picture.height] = pending.size;
         self.is_whole = true;
-        let passes = self.timer.times(&gpu);
+        let passes = if pending.passes.is_empty() { self.timer.times(&gpu) } else { pending.passes };
         let mut stats = self.stats(passes);
         let whole_ms = pending.begun_ms + watch.ms();
         stats.draw_ms = (whole_ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
-        stats.traffic = gpu.traffic().since(pending.before);
+        stats.traffic = pending.traffic.plus(gpu.traffic().since(before));
         if self.shadow.has_light() {
             let points = f64::from(pending.points.max(1));
             stats.mean_transmittance = (number_of_bytes(&self.numbers) / (255.0 * points)) as f32;
         }
         Ok(Some(stats))
+    }
+
+    /// The lists of the frame that was drawn last.
+    fn lists_of_frame(&self) -> ListsOfFrame {
+        let mut maps = [None; MAX_LIGHTS];
+        maps.iter_mut().zip(self.shadow.lists()).for_each(|(room, list)| *room = Some(list.room));
+        ListsOfFrame { eye: self.eye.lists(), method: self.shadow.method(), maps }
+    }
+
+    /// Takes the heads of the lists of a finished frame. Returns whether it must be drawn again, because `lists` were too short for it;
+    /// later frames have longer ones.
+    fn settle(&mut self, lists: &ListsOfFrame, heads: &[[u32; 2]; MOST_LISTS]) -> Result<bool, RenderError> {
+        let gpu = Arc::clone(&self.gpu);
+        let [image, maps @ ..] = heads;
+        let count = lists.maps.iter().flatten().count();
+        let short = |(head, room): (&[u32; 2], &Option<u64>)| {
+            room.is_some_and(|room| GpuList::fragments(*head) > room)
+        };
+        let maps_were_short = maps.iter().zip(&lists.maps).any(short);
+        // Both are asked, so that both grow at once.
+        let again = [
+            self.shadow.settle(&gpu, lists.method, &maps[..count])?,
+            self.eye.settle(&gpu, *image, lists.eye)?,
+        ];
+        Ok(maps_were_short || again != [false, false])
     }
 
     /// Statistics of the last picture without its whole time, its traffic and its mean transmittance.
@@ -265,7 +288,7 @@ impl GpuRenderer {
             return Err(too_large(gpu, 4 * pixels).into());
         }
         if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
-            // The old buffers are freed first.
+            // The old ones are freed when the bind groups of the last frames are.
             self.targets = None;
             self.targets = Some(Targets::new(gpu, width, height));
         }
@@ -399,12 +422,21 @@ impl GpuRenderer {
 pub struct PendingPicture {
     readback: Readback,
     size: [u32; 2],
-    method: ShadowMethod,
-    /// The number of maps with lists, and of strand points.
-    maps: usize,
+    lists: ListsOfFrame,
+    /// The number of strand points.
     points: u32,
+    passes: Vec<PassTime>,
     begun_ms: f64,
-    before: Traffic,
+    traffic: Traffic,
+}
+
+/// The lists with which a frame was drawn.
+#[derive(Clone, Copy, Debug)]
+struct ListsOfFrame {
+    eye: Option<Lists>,
+    method: ShadowMethod,
+    /// The fragments that fit into the list of the map of each light; the lights without a list come last.
+    maps: [Option<u64>; MAX_LIGHTS],
 }
 
 /// Where a finished picture goes.

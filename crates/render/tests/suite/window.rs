@@ -250,6 +250,26 @@ fn a_small_copy_is_the_mean_of_the_middle() {
 }
 
 #[test]
+fn a_picture_that_was_begun_with_a_short_list_is_not_taken_for_whole() {
+    let Some(mut rig) = Rig::new() else { return };
+    let mut much = scene(&tuft(600));
+    (much.picture.transparency, much.camera.eye.z, much.look.diameter) = (Transparency::Sorted, 0.4, 0.01);
+    let begun =
+        [0; 2].map(|_| rig.renderer.begin_picture(&much.input(), SIZE[0], SIZE[1]).expect("it begins"));
+    let mut picture = Picture::default();
+    for pending in begun {
+        let finished = rig.renderer.finish_picture(pending, &mut picture).expect("no error");
+        assert!(
+            finished.is_none(),
+            "both lists were too short, although the first has made the next ones longer"
+        );
+    }
+    let pending = rig.renderer.begin_picture(&much.input(), SIZE[0], SIZE[1]).expect("it begins");
+    assert!(rig.renderer.finish_picture(pending, &mut picture).expect("no error").is_some());
+    assert!(picture == rig.picture(&much).0);
+}
+
+#[test]
 fn pictures_that_are_begun_ahead_have_the_same_bytes() {
     let Some(mut rig) = Rig::new() else { return };
     let mut scene = lit(Transparency::Sorted, ShadowMethod::VoxelMap);

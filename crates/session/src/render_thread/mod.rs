@@ -47,8 +47,10 @@ pub struct RenderedImage {
     pub camera: Camera,
     /// Statistics of the render.
     pub stats: FrameStats,
-    /// Times of all stages of this frame except `encode`.
+    /// Times of all stages of this frame except `encode`. A frame that a device still draws has the time of the one before.
     pub times: StageTimes,
+    /// The size of the frame that was finished last, pixels, and its time, milliseconds.
+    pub cost: Option<([u32; 2], f64)>,
     /// The instant.
     pub snapshot: Arc<FrameSnapshot>,
     /// [`FrameSnapshot::step`] of the instant.
@@ -138,7 +140,9 @@ impl RenderThread {
             samples: Samples::default(),
             thinning: Thinning::default(),
             picture: Picture::default(),
-            finished: (0.0, 1.0),
+            cost: None,
+            transmittance: 1.0,
+            refused: None,
             failed: 0,
             card_given_up: false,
         };
@@ -212,8 +216,12 @@ struct Worker {
     samples: Samples,
     thinning: Thinning,
     picture: Picture,
-    /// The last finished image: its time, milliseconds, and the mean transmittance that was measured last.
-    finished: (f64, f32),
+    /// The image that a device finished last: its size, and its time in milliseconds.
+    cost: Option<([u32; 2], f64)>,
+    /// The mean transmittance that was measured last.
+    transmittance: f32,
+    /// The project with which the window's device was lost too often.
+    refused: Option<Arc<Project>>,
     /// Number of consecutive failures of the device.
     failed: u32,
     /// Whether [`Backend::Auto`] means the CPU because the GPU failed repeatedly.
@@ -238,13 +246,19 @@ impl Worker {
             let result = catch_unwind(AssertUnwindSafe(|| self.render(&request, is_sample)));
             let again = match result {
                 Ok(Ok(image)) => {
-                    self.failed = 0;
+                    if self.in_flight() == 0 {
+                        self.failed = 0;
+                    }
                     self.images.put(Arc::new(image));
                     self.last = Some(request.clone());
                     false
                 }
-                Ok(Err(error)) => self.take_error(&error, &request),
+                Ok(Err(error)) => {
+                    self.samples.forget();
+                    self.take_error(&error, &request)
+                }
                 Err(_) => {
+                    self.samples.forget();
                     let again = self.try_again(request.project.picture.backend);
                     self.fail("rendering stopped unexpectedly; the renderer is opened again".to_owned());
                     again
@@ -291,8 +305,9 @@ impl Worker {
             match opened.renderer.finished() {
                 Ok(None) => break,
                 Ok(Some(done)) => {
-                    self.finished.0 = done.ms;
-                    self.finished.1 = done.mean_transmittance.unwrap_or(self.finished.1);
+                    self.failed = 0;
+                    self.cost = Some((done.size, done.ms));
+                    self.transmittance = done.mean_transmittance.unwrap_or(self.transmittance);
                     again |= done.again;
                 }
                 Err(error) => {
@@ -316,6 +331,10 @@ impl Worker {
         if opened_on_window.or(window.as_ref()).is_some_and(|gpu| gpu.is_lost()) {
             // The window opens another device and asks again.
             self.opened = None;
+            self.failed = self.failed.saturating_add(1);
+            if self.failed >= MOST_FAILURES {
+                self.give_up(request);
+            }
             return false;
         }
         device_is_gone(error) && self.try_again(request.project.picture.backend)
@@ -335,17 +354,41 @@ impl Worker {
         if choice != Backend::Auto || self.card_given_up || by_processor {
             return false;
         }
+        self.give_up_card();
+        true
+    }
+
+    /// Stops using a card that is lost again and again with this request.
+    fn give_up(&mut self, request: &RenderRequest) {
+        match request.project.picture.backend {
+            Backend::Auto => self.give_up_card(),
+            _ => self.refused = Some(Arc::clone(&request.project)),
+        }
+        self.failed = 0;
+    }
+
+    fn give_up_card(&mut self) {
         self.card_given_up = true;
         self.notices.put(Arc::new(format!(
             "The graphics card failed {MOST_FAILURES} times in a row: the processor renders from now on. Choose \
              \"{}\" in Picture to try the card again.",
             Backend::Gpu.label()
         )));
-        true
+    }
+
+    fn in_flight(&self) -> usize {
+        self.opened.as_ref().map_or(0, |opened| opened.renderer.in_flight())
     }
 
     fn render(&mut self, request: &RenderRequest, is_sample: bool) -> Result<RenderedImage, RenderError> {
         let choice = request.project.picture.backend;
+        if self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, &request.project)) {
+            let why = format!(
+                "the graphics card was lost {MOST_FAILURES} times in a row with these settings: change one to try again"
+            );
+            return Err(GpuError::Input(why).into());
+        }
+        self.refused = None;
         // An explicit choice of the GPU asks for another attempt.
         self.card_given_up &= choice != Backend::Gpu;
         let backend = if choice == Backend::Auto && self.card_given_up { Backend::Cpu } else { choice };
@@ -378,7 +421,9 @@ impl Worker {
         } else {
             self.samples.forget();
             let head = snapshot.guides.world_from_head.translation.into();
-            let thinned = request.thinned.then(|| {
+            // A card would have to be given the other strands at the beginning and the end of each movement.
+            let thins = request.thinned && renderer.backend() == Backend::Cpu;
+            let thinned = thins.then(|| {
                 self.thinning.choose(&snapshot.scene.style, &project.look, (&camera, size[1], head))
             });
             let mut input = snapshot.frame_input(project, &camera);
@@ -387,13 +432,17 @@ impl Worker {
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {
             // Its own time is not known yet: that of the last finished one stands for it.
-            (stats.draw_ms, stats.mean_transmittance) = self.finished;
-            stats.draw_ms = (stats.draw_ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
+            let ms = self.cost.map_or(0.0, |(_, ms)| ms);
+            stats.draw_ms = (ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
+            stats.mean_transmittance = self.transmittance;
+        } else {
+            self.cost = Some((*size, stats.interpolate_ms + stats.shadow_ms + stats.draw_ms));
         }
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
-        Ok(RenderedImage { image, camera, stats, times, snapshot, step, position_secs, samples })
+        let cost = self.cost;
+        Ok(RenderedImage { image, camera, stats, times, cost, snapshot, step, position_secs, samples })
     }
 }
 

@@ -87,6 +87,15 @@ pub struct GpuList<'a> {
     pub room: u64,
 }
 
+impl GpuList<'_> {
+    /// The number of fragments in a head. Each of at most 2¹⁶ workgroups loses less than 2¹⁶ in the second word, so the number lies
+    /// between that word times 2¹⁶ and 2³² more; the first word determines it.
+    pub fn fragments([low, high]: [u32; 2]) -> u64 {
+        let base = u64::from(high) << 16;
+        base + u64::from(low.wrapping_sub(base as u32))
+    }
+}
+
 /// A shadow method on the GPU. It holds one map per light, in slots that count from 0.
 pub trait GpuShadow: Debug + Send {
     /// Encodes the passes that build the map of slot `slot`. Memory is reused from build to build.

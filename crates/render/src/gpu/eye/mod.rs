@@ -110,9 +110,11 @@ struct AreaDepths {
     rows: u32,
 }
 
-/// How the lists of a frame were divided into bands.
+/// The list of a frame, and how it was divided into bands.
 #[derive(Clone, Copy, Debug)]
-struct Lists {
+pub(super) struct Lists {
+    /// The fragments that fit.
+    pub room: u64,
     bands: u32,
     /// Rows of the area.
     rows: u32,
@@ -221,7 +223,7 @@ impl Eye {
             self.room = self.room.min(list_limit(gpu));
             self.list.reserve(gpu, (self.room * FRAGMENT_WORDS) as usize);
             bands = bands.max(self.least_bands).min(all_rows);
-            self.lists = Some(Lists { bands, rows: all_rows });
+            self.lists = Some(Lists { room: self.room, bands, rows: all_rows });
         }
         let rows = all_rows.div_ceil(bands);
         self.depths.take_if(|held| held.columns < columns || held.rows < rows);
@@ -297,15 +299,20 @@ impl Eye {
         self.lists.map(|_| (&self.total, self.room))
     }
 
-    /// Takes the first two words of [`Eye::list`] of a finished frame. Lists that were too short are enlarged, the result is `true`, and
-    /// the frame must be rendered again.
+    /// The list of the last frame, if its mode has one.
+    pub fn lists(&self) -> Option<Lists> {
+        self.lists
+    }
+
+    /// Takes the first two words of [`Eye::list`] of a finished frame, whose [`Eye::lists`] were `then`. If they were too short, those of
+    /// later frames are longer, the result is `true`, and the frame must be rendered again.
     ///
     /// # Errors
     /// One row of the picture needs a longer list than the device supports.
-    pub fn settle(&mut self, gpu: &Gpu, totals: [u32; 2]) -> Result<bool, GpuError> {
-        let Some(Lists { bands, rows }) = self.lists else { return Ok(false) };
+    pub fn settle(&mut self, gpu: &Gpu, totals: [u32; 2], then: Option<Lists>) -> Result<bool, GpuError> {
+        let Some(Lists { room, bands, rows }) = then else { return Ok(false) };
         let wanted = u64::from(totals[1]);
-        if wanted <= self.room {
+        if wanted <= room {
             // Once lists have shrunk after a close view, half as many bands are tried.
             if self.least_bands > 1 && wanted < self.room / 4 {
                 self.least_bands /= 2;
@@ -315,7 +322,7 @@ impl Eye {
         let limit = list_limit(gpu);
         if wanted <= limit {
             // A quarter more, so that moving hair does not need a larger list in the next frame.
-            self.room = (wanted + wanted / 4).min(limit);
+            self.room = (wanted + wanted / 4).min(limit).max(self.room.min(limit));
             return Ok(true);
         }
         if bands >= rows {
@@ -324,7 +331,7 @@ impl Eye {
         // Fewer bands have proportionally more fragments each.
         let more = (u64::from(bands) * wanted / limit + 1).max(2 * u64::from(bands));
         self.room = limit;
-        self.least_bands = more.min(u64::from(rows)) as u32;
+        self.least_bands = self.least_bands.max(more.min(u64::from(rows)) as u32);
         Ok(true)
     }
 }

@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{Gpu, GpuError, PassTimer, wgpu};
-use lovelock_shadow::{SUM_WORDS, ShadowMethod};
+use lovelock_shadow::SUM_WORDS;
 
-use super::{GpuRenderer, Output, number_of_bytes};
+use super::{GpuRenderer, ListsOfFrame, Output, number_of_bytes};
 use crate::gpu::present::{HEAD_BYTES, MOST_LISTS};
 use crate::image::{DeviceImage, DeviceImages};
 use crate::picture::check_size_for;
@@ -23,6 +23,8 @@ pub const MOST_IN_FLIGHT: usize = 2;
 /// A frame that the device has finished.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finished {
+    /// Its width and height, pixels.
+    pub size: [u32; 2],
     /// Its time on the device, milliseconds, from its submission or from the end of the frame before.
     pub ms: f64,
     /// Whether lists were too short, so that the image before it is shown in its place. They have been enlarged: draw it again.
@@ -34,6 +36,7 @@ pub struct Finished {
 /// A frame that the device may not have finished.
 #[derive(Debug)]
 pub(super) struct Flight {
+    size: [u32; 2],
     state: Arc<AtomicU8>,
     report: Option<Report>,
     since: Stopwatch,
@@ -43,8 +46,7 @@ pub(super) struct Flight {
 #[derive(Debug)]
 struct Report {
     buffer: wgpu::Buffer,
-    lists: usize,
-    method: ShadowMethod,
+    lists: ListsOfFrame,
     points: u32,
     measured: bool,
 }
@@ -118,15 +120,14 @@ impl GpuRenderer {
         }
         let report = report.map(|buffer| Report {
             buffer,
-            lists: 1 + self.shadow.lists().count(),
-            method: self.shadow.method(),
+            lists: self.lists_of_frame(),
             points: self.hair.strands().point_count,
             measured,
         });
         if report.is_some() {
             gpu.note_read_back(if measured { REPORT_BYTES } else { HEADS_BYTES });
         }
-        self.flights.frames.push_back(Flight { state, report, since: Stopwatch::start() });
+        self.flights.frames.push_back(Flight { size, state, report, since: Stopwatch::start() });
         self.flights.last = Some(Arc::clone(&shown));
         self.is_whole = true;
         let stats = FrameStats { traffic: gpu.traffic().since(before), ..self.stats(passes) };
@@ -164,16 +165,12 @@ impl GpuRenderer {
             None => done.since.ms(),
         };
         self.flights.ended = Some(Stopwatch::start());
-        let mut finished = Finished { ms, again: false, mean_transmittance: None };
+        let mut finished = Finished { size: done.size, ms, again: false, mean_transmittance: None };
         if let Some(report) = done.report {
             let (heads, sum) = read_report(&report)?;
             finished.mean_transmittance =
                 report.measured.then(|| (sum / (255.0 * f64::from(report.points.max(1)))) as f32);
-            let [image, maps @ ..] = &heads[..report.lists.min(MOST_LISTS)] else {
-                return Ok(Some(finished));
-            };
-            let again = [self.shadow.settle(&gpu, report.method, maps)?, self.eye.settle(&gpu, *image)?];
-            finished.again = again != [false, false];
+            finished.again = self.settle(&report.lists, &heads)?;
             self.flights.spare.push(report.buffer);
         }
         Ok(Some(finished))

@@ -5,7 +5,7 @@
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, read_buffer, wgpu};
 
-use crate::gpu::{Buffer, fits_device, wgsl};
+use crate::gpu::{Buffer, GpuList, fits_device, wgsl};
 use crate::{ShadowError, ShadowMethod};
 
 /// Counts fragments and allocates ranges of the list.
@@ -109,7 +109,7 @@ impl List {
     /// The map needs more than its budget.
     pub fn settle(&mut self, gpu: &Gpu, head: [u32; 2]) -> Result<Option<(u64, bool)>, ShadowError> {
         let Some(share) = self.share else { return Ok(None) };
-        self.found = total(head);
+        self.found = GpuList::fragments(head);
         share.check(gpu, self.found)?;
         let short = bytes(self.found) > self.buffer.bytes();
         if short {
@@ -119,13 +119,6 @@ impl List {
         }
         Ok(Some((share.other_bytes + bytes(self.found), short)))
     }
-}
-
-/// The number of fragments in a header. Each of at most 2¹⁶ workgroups loses less than 2¹⁶ in the second word, so the number lies
-/// between that word times 2¹⁶ and 2³² more; the first word determines it.
-fn total([low, high]: [u32; 2]) -> u64 {
-    let base = u64::from(high) << 16;
-    base + u64::from(low.wrapping_sub(base as u32))
 }
 
 #[cfg(test)]
@@ -140,7 +133,7 @@ mod tests {
             let head = counts.iter().fold([0_u32; 2], |[low, high], count: &u32| {
                 [low.wrapping_add(*count), high.wrapping_add(count >> 16)]
             });
-            assert_eq!(total(head), counts.iter().map(|count| u64::from(*count)).sum::<u64>());
+            assert_eq!(GpuList::fragments(head), counts.iter().map(|count| u64::from(*count)).sum::<u64>());
         }
     }
 }
