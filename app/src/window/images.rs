@@ -8,7 +8,7 @@ use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions, Vec2};
 use egui_wgpu::RenderState;
 use lovelock_render::{DeviceImage, Gpu, Image, Picture, wgpu};
 
-/// What the window's painter knows of images on the window's device. Without a device of the window nothing is known.
+/// The images that are registered with the window's painter; none without a device of the window.
 #[derive(Clone, Default)]
 pub(crate) struct Textures(Rc<RefCell<Known>>);
 
@@ -18,7 +18,7 @@ struct Known {
     entries: Vec<Entry>,
 }
 
-/// A texture that the painter knows. The textures of a series are used in turn, so few are made known over and over.
+/// A texture that is registered with the painter. The textures of a series are used in turn, so few have to be registered.
 struct Entry {
     image: Weak<DeviceImage>,
     sharp: bool,

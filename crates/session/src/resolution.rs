@@ -9,7 +9,7 @@ pub const RATES: [f32; 2] = [15.0, 120.0];
 /// The rate that is wanted unless the user chooses another one.
 pub const DEFAULT_RATE: f32 = 30.0;
 
-/// The least scale: below it hair is no longer hair, and most of the time of an image does not depend on its size.
+/// The least scale. Below it single strands cannot be seen, and most of the time of an image does not depend on its size.
 const LEAST: f64 = 0.5;
 /// Scales are multiples of this, so that textures of the same size are used again.
 const STEP: f64 = 1.0 / 48.0;
