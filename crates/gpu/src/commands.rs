@@ -5,7 +5,6 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimer
 
 use lovelock_base::clock::Stopwatch;
 
-use crate::constants::constants;
 use crate::{Gpu, GpuError};
 
 /// The duration of one pass on the device. Passes with the same name are added up.
@@ -179,7 +178,7 @@ impl Commands<'_> {
 
     /// A uniform buffer that holds `value` in this frame. It is kept for the same pass of the next frame.
     pub fn constants<T: Pod>(&self, label: &str, value: &T) -> wgpu::Buffer {
-        constants(self.gpu, label, bytemuck::bytes_of(value))
+        self.gpu.constants(label, bytemuck::bytes_of(value))
     }
 
     /// The encoder, for commands between passes.

@@ -52,7 +52,7 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     fault: Fault,
     pub(crate) counters: Counters,
-    pub(crate) constants: Mutex<ConstantPool>,
+    constants: Mutex<ConstantPool>,
     frame: AtomicU64,
 }
 
@@ -196,6 +196,24 @@ impl Gpu {
     pub(crate) fn begin_frame(&self) {
         self.frame.fetch_add(1, Ordering::Relaxed);
         self.constants.lock().unwrap_or_else(PoisonError::into_inner).begin();
+    }
+
+    /// A uniform buffer that holds `bytes` until the next frame begins.
+    pub(crate) fn constants(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+        let make = || {
+            self.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: (bytes.len() as u64).next_multiple_of(16),
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let (buffer, is_new) =
+            self.constants.lock().unwrap_or_else(PoisonError::into_inner).take(bytes, make);
+        if is_new {
+            self.upload(&buffer, 0, bytes);
+        }
+        buffer
     }
 
     /// The number of frames of this handle that have begun.
