@@ -34,6 +34,10 @@ impl LightFrame {
     /// the map by a small angle. A zero vector changes nothing.
     pub fn transported(&self, direction: Vec3) -> Self {
         let x = direction.normalize_or(self.x);
+        if x == self.x {
+            // Exactly the same axes, so that an image does not depend on how many were drawn before it.
+            return *self;
+        }
         let y = Quat::from_rotation_arc(self.x, x) * self.y;
         // Orthonormalise, because rounding errors would accumulate over a long drag.
         match (y - y.dot(x) * x).try_normalize() {
@@ -80,6 +84,15 @@ mod tests {
             3.0 * Vec3::new(r * a.cos(), r * a.sin(), z)
         });
         axes.into_iter().chain(spiral)
+    }
+
+    #[test]
+    fn a_light_that_does_not_turn_keeps_its_axes_exactly() {
+        for direction in [Vec3::new(-0.6, -0.6, -0.5), Vec3::new(0.2, -0.5, 0.7)].map(Vec3::normalize) {
+            let frame = LightFrame::new(direction);
+            assert_eq!(frame.transported(direction), frame);
+            assert_ne!(frame.transported(direction + Vec3::X * 1e-3), frame, "control");
+        }
     }
 
     #[test]
