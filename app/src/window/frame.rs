@@ -85,8 +85,8 @@ impl Window {
         let compares = self.layout.compare.shown;
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
-        self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate.0);
-        self.session.view.thins = self.layout.view_thins.0;
+        self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
+        self.session.view.thins = self.layout.view_thins;
         let again = self.session.send(self.history.project(), &seen, size);
         if let Some(after) = again {
             ctx.request_repaint_after(after);
@@ -137,13 +137,13 @@ impl Window {
                             ui.separator();
                             ui.add_enabled_ui(self.layout.view_scale <= 0.0, |ui| {
                                 let [least, most] = resolution::RATES;
-                                let rate = &mut self.layout.view_rate.0;
+                                let rate = &mut self.layout.view_rate;
                                 let slider = egui::Slider::new(rate, least..=most).integer();
                                 ui.add(slider.suffix(" images/s").text("while moving")).on_hover_text(
                                     "While something moves, fewer pixels are rendered if that is needed for this many \
                                      images per second. At rest every pixel is rendered.",
                                 );
-                                ui.checkbox(&mut self.layout.view_thins.0, "Fewer strands while moving")
+                                ui.checkbox(&mut self.layout.view_thins, "Fewer strands while moving")
                                     .on_hover_text(
                                         "While something moves, strands that are narrower than a pixel are replaced by \
                                          fewer and wider ones.",

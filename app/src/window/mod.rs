@@ -66,7 +66,7 @@ const LAYOUT_KEY: &str = "layout 1";
 const RECENT: usize = 10;
 
 /// The state of the interface that is stored between runs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 struct Layout {
     panels_hidden: bool,
@@ -74,30 +74,24 @@ struct Layout {
     /// Rendered pixels per pixel of the screen; 0 is automatic.
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
-    view_rate: ViewRate,
+    view_rate: f32,
     /// Whether strands narrower than a pixel are thinned while something moves.
-    view_thins: Thins,
+    view_thins: bool,
     compare: CompareLayout,
     timeline: timeline::Zoom,
 }
 
-/// A wanted rate of images, images per second.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct ViewRate(f32);
-
-impl Default for ViewRate {
+impl Default for Layout {
     fn default() -> Self {
-        Self(resolution::DEFAULT_RATE)
-    }
-}
-
-/// A switch that is on at first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct Thins(bool);
-
-impl Default for Thins {
-    fn default() -> Self {
-        Self(true)
+        Self {
+            panels_hidden: false,
+            recent: Vec::new(),
+            view_scale: 0.0,
+            view_rate: resolution::DEFAULT_RATE,
+            view_thins: true,
+            compare: CompareLayout::default(),
+            timeline: timeline::Zoom::default(),
+        }
     }
 }
 

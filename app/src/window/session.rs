@@ -47,8 +47,7 @@ pub(crate) struct Session {
     /// The last request to the render thread.
     pub(crate) drawn: Option<RenderRequest>,
     resolution: Resolution,
-    /// What was last shown, and since when it has been the same.
-    shown: Option<(Arc<Project>, Arc<FrameSnapshot>)>,
+    /// Since when the project and the frame have been those of the last request.
     same_since: Stopwatch,
     seen_painted: u64,
     seen_notices: u64,
@@ -111,7 +110,6 @@ impl Session {
             simulated: Arc::clone(project),
             drawn: None,
             resolution: Resolution::default(),
-            shown: None,
             same_since: Stopwatch::start(),
             seen_painted: 0,
             seen_notices: 0,
@@ -281,11 +279,10 @@ impl Session {
         }
         // Frames are compared by identity and not by their step: seeking, settling and other hair make new frames of the same step.
         let same = self
-            .shown
+            .drawn
             .as_ref()
-            .is_some_and(|(shown, shown_frame)| Arc::ptr_eq(shown, seen) && Arc::ptr_eq(shown_frame, frame));
+            .is_some_and(|drawn| Arc::ptr_eq(&drawn.project, seen) && Arc::ptr_eq(&drawn.snapshot, frame));
         if !same {
-            self.shown = Some((Arc::clone(seen), Arc::clone(frame)));
             self.same_since = Stopwatch::start();
         }
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
@@ -301,12 +298,11 @@ impl Session {
             measured: self.view.measured,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
-        let fresh = self.drawn.as_ref().is_some_and(|drawn| {
-            Arc::ptr_eq(&drawn.project, seen)
-                && Arc::ptr_eq(&drawn.snapshot, frame)
-                && (drawn.still, drawn.size, drawn.measured)
-                    == (request.still, request.size, request.measured)
-        });
+        let fresh = same
+            && self.drawn.as_ref().is_some_and(|drawn| {
+                (drawn.still, drawn.size, drawn.thinned, drawn.measured)
+                    == (request.still, request.size, request.thinned, request.measured)
+            });
         if !fresh {
             self.painter.request(request.clone());
             self.drawn = Some(request);

@@ -10,7 +10,7 @@ use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::{Backend, DeviceImages, FrameInput, Picture, Renderer, Traffic};
 use lovelock_session::engine::Engine;
-use lovelock_session::scene::{LoadControl, SceneLoader};
+use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_testkit::flip;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -20,15 +20,21 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 const MEAN: f32 = 0.01;
 const P99: f32 = 0.2;
 
-#[test]
-fn the_default_project_looks_the_same_on_both() {
-    let (width, height) = (480, 270);
+/// The default project with its scene, before the first step.
+fn dancer() -> (Project, Arc<Scene>, Engine) {
     let project = Project::default();
     let cancelled = AtomicBool::new(false);
     let mut silent = |_: &str, _: f32| {};
     let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
     let (scene, _) = SceneLoader::new().load(&project, &Access::new(), &mut control).expect("the dancer");
-    let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+    let engine = Engine::new(Arc::clone(&scene), project.simulation);
+    (project, scene, engine)
+}
+
+#[test]
+fn the_default_project_looks_the_same_on_both() {
+    let (width, height) = (480, 270);
+    let (project, scene, mut engine) = dancer();
     let mut gpu = match Renderer::open(Backend::Gpu) {
         Ok(renderer) => renderer,
         Err(error) => return lovelock_testkit::skip_without_adapter(&error),
@@ -99,12 +105,7 @@ const COUNTED: u64 = 6;
 
 #[test]
 fn frames_reuse_their_memory() {
-    let project = Project::default();
-    let cancelled = AtomicBool::new(false);
-    let mut silent = |_: &str, _: f32| {};
-    let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
-    let (scene, _) = SceneLoader::new().load(&project, &Access::new(), &mut control).expect("the dancer");
-    let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+    let (project, _, mut engine) = dancer();
     let snapshots: Vec<_> = (0..COUNTED)
         .map(|step| {
             engine.advance_to_step(60 + step);
