@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 20] = [
     (
         "app",
         &[
@@ -42,13 +42,14 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ("panes", &["session", "project", "render", "shadow", "groom", "metrics", "base"]),
     ("session", &["project", "render", "simulation", "motion", "groom", "record", "base"]),
     ("project", &["render", "simulation", "motion", "groom", "record", "base"]),
-    ("render", &["shadow", "gpu", "groom", "motion", "base"]),
+    ("render", &["shadow", "gpu", "groom", "motion", "appearance", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
     ("motion", &["base"]),
     ("groom", &["base"]),
     ("gpu", &["base"]),
+    ("appearance", &["base"]),
     ("metrics", &["base"]),
     ("base", &[]),
     ("testkit", &["metrics", "base"]),
@@ -61,8 +62,18 @@ const ARROWS: [(&str, &[&str]); 19] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 9] =
-    ["base", "groom", "motion", "simulation", "record", "metrics", "testkit", "xtask", "chores"];
+const WITHOUT_WGPU: [&str; 10] = [
+    "appearance",
+    "base",
+    "groom",
+    "motion",
+    "simulation",
+    "record",
+    "metrics",
+    "testkit",
+    "xtask",
+    "chores",
+];
 
 /// Libraries that only some crates may name: how their packages' names start, and who may.
 const LIBRARIES: [(&[&str], &[&str]); 3] = [

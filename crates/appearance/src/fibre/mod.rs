@@ -1,0 +1,1 @@
+//! Scattering of light by hair fibres.
