@@ -25,7 +25,6 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strands;
-mod thin;
 mod ties;
 mod whole_part;
 

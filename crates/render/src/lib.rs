@@ -18,6 +18,7 @@ mod light_view;
 mod picture;
 mod renderer;
 mod shadow_stage;
+mod strand_count;
 mod strand_details;
 mod transparency;
 mod uniform;
@@ -41,4 +42,5 @@ pub use lovelock_shadow::{
 };
 pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings, check_size};
 pub use renderer::Renderer;
+pub use strand_count::StrandCount;
 pub use transparency::Transparency;

@@ -5,7 +5,7 @@ use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, RenderError, Transparency};
+use crate::{Backend, RenderError, StrandCount, Transparency};
 
 /// The longest side of a picture, pixels.
 pub const MOST_SIDE: u32 = 8192;
@@ -50,6 +50,12 @@ pub struct PictureSettings {
     pub transparency: Transparency,
     /// Opacity of a strand where it covers a pixel completely.
     pub strand_opacity: f32,
+    /// How the number of strands is chosen.
+    pub strands: StrandCount,
+    /// The number of strands that is drawn by their size, as a multiple of what suits the backend.
+    pub strand_detail: f32,
+    /// The number of strands if it is fixed.
+    pub strand_number: f32,
     /// What draws.
     pub backend: Backend,
 }
@@ -64,6 +70,9 @@ impl Default for PictureSettings {
             ground: true,
             transparency: Transparency::default(),
             strand_opacity: 0.85,
+            strands: StrandCount::default(),
+            strand_detail: 1.0,
+            strand_number: 25_000.0,
             backend: Backend::default(),
         }
     }
@@ -105,6 +114,29 @@ impl Settings for PictureSettings {
             "How much a strand hides of what is behind it.",
         )
         .unit(Unit::FRACTION),
+        Setting::choice::<StrandCount>(
+            field!(Self, strands),
+            "Strands",
+            "How many strands are drawn: as many as suit their size on the screen, a fixed number, or \
+             those that the hairstyle stores. Shadows are always cast by the stored strands.",
+        ),
+        Setting::number(
+            field!(Self, strand_detail),
+            [0.1, 10.0],
+            "Strand detail",
+            "Number of strands when it follows their size on the screen: twice the detail draws twice \
+             as many, half as wide.",
+        )
+        .logarithmic()
+        .soft([0.25, 4.0]),
+        Setting::number(
+            field!(Self, strand_number),
+            [1_000.0, 120_000.0],
+            "Strand number",
+            "Number of strands when it is fixed.",
+        )
+        .unit(Unit::THOUSANDS)
+        .logarithmic(),
         Setting::switch(field!(Self, ground), "Ground", "Shows the ground with the dancer's shadow."),
         Setting::color(field!(Self, background_top), "Top colour", "Colour of the background at the top."),
         Setting::color(

@@ -3,11 +3,14 @@
 use std::sync::Arc;
 
 use lovelock_groom::Hairstyle;
+use lovelock_groom::fine::FineStrands;
 
 /// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StrandDetails {
     style: Option<Arc<Hairstyle>>,
+    /// The number of fine strands; 0 for the stored ones.
+    fine: usize,
     /// See [`pack_detail`].
     pub words: Vec<u32>,
     /// First point of each segment, in the order of strands.
@@ -17,9 +20,10 @@ pub(crate) struct StrandDetails {
 impl StrandDetails {
     /// Rebuilds if the hairstyle has changed. Returns whether it has.
     pub fn follow(&mut self, style: &Arc<Hairstyle>) -> bool {
-        if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
+        if self.fine == 0 && self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             return false;
         }
+        self.fine = 0;
         self.segments.clear();
         self.words.clear();
         self.words.resize(style.strands.points(), 0);
@@ -37,6 +41,40 @@ impl StrandDetails {
             }
         }
         self.style = Some(Arc::clone(style));
+        true
+    }
+
+    /// Rebuilds for all strands of a list if `style` or the list has changed. Returns whether it has.
+    pub fn follow_fine(&mut self, style: &Arc<Hairstyle>, fine: &FineStrands, list_changed: bool) -> bool {
+        let count = fine.strands.len();
+        let same_style = self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style));
+        if same_style && !list_changed && self.fine == count {
+            return false;
+        }
+        let set = &style.strands;
+        let points = fine.points_per_strand;
+        let last = points.saturating_sub(1).max(1);
+        self.segments.clear();
+        self.segments.extend(
+            (0..count).flat_map(|i| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32),
+        );
+        self.words.clear();
+        self.words.reserve(count * points);
+        for strand in &fine.strands {
+            let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
+            let own = match ends {
+                [first, end, ..] => set.taper.get(*first as usize..*end as usize).unwrap_or(&[]),
+                _ => &[],
+            };
+            for k in 0..points {
+                let along = k as f32 / last as f32;
+                let at = (along * own.len().saturating_sub(1) as f32).round() as usize;
+                let taper = own.get(at).copied().unwrap_or(1.0);
+                let shade = f32::from(strand.shade) / 255.0;
+                self.words.push(pack_detail(taper, along, shade, k == 0, k == last));
+            }
+        }
+        (self.style, self.fine) = (Some(Arc::clone(style)), count);
         true
     }
 }

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_base::settings::Settings;
+use lovelock_groom::fine::Portion;
 
 use crate::{FrameInput, MAX_LIGHTS};
 
@@ -31,6 +32,7 @@ pub(crate) struct FrameUniform {
     pub absorption_variation: Vec4,
     pub width_opacity_tip_scalp: Vec4,
     pub highlights: Vec4,
+    pub fading: Vec4,
     pub lights: [LightUniform; MAX_LIGHTS],
 }
 
@@ -47,32 +49,47 @@ const SKY: Vec3 = Vec3::new(0.62, 0.68, 0.78);
 const EARTH: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 
 impl FrameUniform {
-    /// The uniform of `input`. `maps` are those of its lights, in order.
-    pub fn new(input: &FrameInput, width: u32, height: u32, maps: &[LightMaps], shadow_texels: u32) -> Self {
+    /// The uniform of `input`, drawn with the stored strands or with fine ones. `maps` are those of its lights, in order.
+    pub fn new(
+        input: &FrameInput,
+        drawn: Option<(Portion, usize)>,
+        (width, height): (u32, u32),
+        maps: &[LightMaps],
+        shadow_texels: u32,
+    ) -> Self {
         let picture = input.picture.clamped();
         let look = input.look;
         let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
-        let mut count = 0;
+        let mut lit = 0;
         for (light, map) in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).zip(maps) {
             let light = light.normalized();
-            lights[count] = LightUniform {
+            lights[lit] = LightUniform {
                 direction_specular: light.direction.extend(light.specular),
                 radiance_blur: (light.color * light.intensity)
                     .extend(light.softness / map.metres_per_texel.max(1e-6)),
                 shadow_from_world: map.shadow_from_world,
                 columns_from_world: map.columns_from_world,
             };
-            count += 1;
+            lit += 1;
         }
         let scale = input.camera.pixels_per_metre_at_one_metre(height);
         let exponents = highlight_exponents(look.roughness);
         let opacity = picture.strand_opacity;
-        let strand_width = look.shadow_width(input.style.strands.count()) * look.width_scale.clamp(0.01, 4.0);
+        let count =
+            drawn.map_or(input.style.strands.count().max(1) as f32, |(portion, _)| portion.sum().max(1.0));
+        let strand_width = look.diameter * (look.real_hairs / count) * look.width_scale.clamp(0.01, 4.0);
+        let fading = drawn.map_or(
+            Vec4::new(f32::MAX, 1.0, 1.0, input.style.strands.points() as f32),
+            |(portion, points)| {
+                let [end, inverse] = portion.ramp();
+                Vec4::new(end, inverse, points as f32, (portion.drawn * points) as f32)
+            },
+        );
         Self {
             clip_from_world,
             world_from_clip: clip_from_world.inverse(),
-            eye_lights: input.camera.eye.extend(count as f32),
+            eye_lights: input.camera.eye.extend(lit as f32),
             size_scale_exposure: Vec4::new(width as f32, height as f32, scale, picture.exposure_stops.exp2()),
             ambient_up_ground: (SKY * picture.ambient).extend(f32::from(u8::from(picture.ground))),
             ambient_down_texels: (EARTH * picture.ambient).extend(shadow_texels as f32),
@@ -91,6 +108,7 @@ impl FrameUniform {
                 exponents[0],
                 exponents[1],
             ),
+            fading,
             lights,
         }
     }
@@ -151,6 +169,7 @@ mod tests {
                 offset_of!(FrameUniform, absorption_variation),
                 offset_of!(FrameUniform, width_opacity_tip_scalp),
                 offset_of!(FrameUniform, highlights),
+                offset_of!(FrameUniform, fading),
                 offset_of!(FrameUniform, lights),
                 size_of::<FrameUniform>(),
             ]

@@ -150,7 +150,7 @@ impl Rounds {
         let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
-        let project = contender.applied_to(&request.project);
+        let project = contender.applied_to(&request.project).compared();
         let shared = (&request.snapshot, &self.strands);
         let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
         let input = input_of(snapshot, &project, strands, &pane.camera);

@@ -246,6 +246,9 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         }
     }
     let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip_scalp.x);
+    // The last of fine strands fade.
+    let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
+    let points_per_strand = max(points_per_strand, 1.0) as u32;
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
@@ -254,7 +257,9 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         hash[lane] = shade * 37.0 - floor(shade * 37.0);
         let w = at[2][lane];
         let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
-        let wide = 0.5 * width * taper * scale / max(w, 1e-3);
+        let strand = (first + lane) as u32 / points_per_strand;
+        let share = saturate((fade_end - strand as f32) * fade_slope);
+        let wide = 0.5 * width * taper * share * scale / max(w, 1e-3);
         // A NaN point is not drawn: every comparison with it is false.
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
         half_width[lane] = if drawn { wide } else { -1.0 };

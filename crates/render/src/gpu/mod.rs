@@ -1,6 +1,7 @@
 //! The GPU backend: wgpu compute and raster passes.
 
 mod eye;
+mod fine;
 mod frame_resources;
 mod ground;
 mod hair;

@@ -7,7 +7,7 @@ use super::light_kernels::{LightShaders, LightVariants};
 use super::present::Present;
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
-use super::{eye, interpolate};
+use super::{eye, fine, interpolate};
 
 macro_rules! part {
     ($name:literal) => {
@@ -58,7 +58,7 @@ pub(super) fn shrink_source() -> ShaderSource {
 pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
     let shrink = std::iter::once(("shrink".to_owned(), shrink_source()));
-    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).collect()
+    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).chain(fine::shaders()).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.

@@ -179,7 +179,7 @@ impl GpuRenderer {
             readback,
             size: [width, height],
             lists: self.lists_of_frame(),
-            points: self.hair.strands().point_count,
+            points: self.hair.drawn().point_count,
             // A software adapter has measured them already; a card tells them when it has finished.
             passes: if gpu.is_software() { self.timer.times(&gpu) } else { Vec::new() },
             begun_ms: watch.ms(),
@@ -261,7 +261,7 @@ impl GpuRenderer {
         FrameStats {
             interpolate_ms: of("interpolate"),
             shadow_ms: of("shadow/"),
-            segments: u64::from(self.hair.strands().segment_count),
+            segments: u64::from(self.hair.drawn().segment_count),
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
@@ -294,7 +294,7 @@ impl GpuRenderer {
         }
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
-        self.hair.write(gpu, &mut commands, input)?;
+        self.hair.write(gpu, &mut commands, input, height)?;
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
 
@@ -305,7 +305,8 @@ impl GpuRenderer {
             let columns_from_world = self.shadow.columns_from_world(maps.len());
             maps.push(LightMaps { columns_from_world, ..view });
         }
-        let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
+        let uniform =
+            FrameUniform::new(input, self.hair.portion(), (width, height), &maps, self.surface.texels);
         gpu.upload(&self.uniform, 0, &[uniform]);
         self.last = uniform;
         let seen = self.seen_hair(input, &uniform, [width, height]);
@@ -474,7 +475,7 @@ fn eye_input<'a>(
     uniform: &FrameUniform,
     drawn: HairOutput,
 ) -> EyeInput<'a> {
-    let strands = hair.strands();
+    let strands = hair.drawn();
     EyeInput {
         area: seen.area,
         reach: seen.reach,

@@ -32,6 +32,9 @@ struct FrameUniform {
     width_opacity_tip_scalp: vec4f,
     // Strength of the first and second highlight, their exponents.
     highlights: vec4f,
+    // The index of the strand at which the width of fading strands would reach 0, the slope of their widths, points per strand, and
+    // the number of points.
+    fading: vec4f,
     lights: array<LightUniform, 4>,
 }
 

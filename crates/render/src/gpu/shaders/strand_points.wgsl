@@ -16,6 +16,17 @@ struct ShadedPoint {
 @group(0) @binding(6) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
 @group(0) @binding(7) var<storage, read_write> shaded: array<ShadedPoint>;
 
+// The number of points that are drawn; the buffers may hold more.
+fn drawn_points() -> u32 {
+    return u32(frame.fading.w);
+}
+
+// The width of the strand of point `i` as a share of the full width: the last of fine strands fade.
+fn share_of_strand(i: u32) -> f32 {
+    let strand = i / max(u32(frame.fading.z), 1u);
+    return clamp((frame.fading.x - f32(strand)) * frame.fading.y, 0.0, 1.0);
+}
+
 struct Projected { pixel: vec2f, depth: f32, w: f32 }
 
 fn project(p: vec3f) -> Projected {
@@ -59,8 +70,9 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
 @compute @workgroup_size(64)
 fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
+    let count = drawn_points();
     // Surplus threads repeat the last point: on software adapters code after a branch is slow.
-    let i = min(thread, arrayLength(&details) - 1u);
+    let i = min(thread, count - 1u);
     let detail = details[i];
     let taper = f32(detail & 0xffu) / 255.0;
     let along = f32((detail >> 8u) & 0xffu) / 255.0;
@@ -112,9 +124,9 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     inside /= f32(max(LIGHTS, 1u));
     sum += 0.5 * ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
 
-    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
-    if (thread < arrayLength(&details)) {
+    if (thread < count) {
         shaded[i] = ShadedPoint(
             vec3f(here.pixel, here.depth),
             select(-1.0, half_width, visible),
