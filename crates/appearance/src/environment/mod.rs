@@ -10,7 +10,7 @@
 //! # Directions of a picture
 //!
 //! +Y is up. The picture is seen from its inside: the top row looks along +Y, the centre column along +Z, the
-//! column at a quarter of the width along +X. That is the latitude-longitude map of OpenEXR (`ImfEnvmap.h`),
+//! column at a quarter of the width along +X. That is the latitude-longitude map of `OpenEXR` (`ImfEnvmap.h`),
 //! which the dome light of USD and the environment light of Mitsuba follow.
 //!
 //! # Units
@@ -66,8 +66,8 @@ impl Environment {
     /// Mean radiance from around each axis, in the order +X, -X, +Y, -Y, +Z, -Z, with the surroundings turned as
     /// in [`surround`](Self::surround).
     ///
-    /// A direction `d` counts toward an axis `a` with `max(0, dot(d, a))^2`, the ambient cube of Half-Life 2
-    /// (McTaggart 2004). The six weights sum to one in every direction, so the mean of the six is the mean over
+    /// A direction `d` counts toward an axis `a` with `max(0, dot(d, a))^2`, the ambient cube of Mitchell et
+    /// al. 2006, "Shading in Valve's Source Engine". The six weights sum to one in every direction, so the mean of the six is the mean over
     /// the sphere, and they are smooth, so a sun that turns past the border of two axes makes no step.
     pub fn axis_radiance(&self, turn: f32) -> [Vec3; 6] {
         match self {

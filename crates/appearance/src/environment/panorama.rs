@@ -50,7 +50,7 @@ impl Thumbnail {
 }
 
 impl Panorama {
-    /// Reads a Radiance (`.hdr`) or an OpenEXR picture (`.exr`). The content decides which, not the name.
+    /// Reads a Radiance (`.hdr`) or an `OpenEXR` picture (`.exr`). The content decides which, not the name.
     ///
     /// The pixels are averaged while they are read, so memory is bounded for any file. Values that no light has are
     /// replaced and counted in [`notes`](Self::notes).

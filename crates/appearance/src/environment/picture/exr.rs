@@ -1,4 +1,4 @@
-//! The OpenEXR picture format, read block by block: memory holds one block and the reduced picture.
+//! The `OpenEXR` picture format, read block by block: memory holds one block and the reduced picture.
 
 use std::io::{BufRead, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::block::reader::{ChunksReader as _, Reader};
+use exr::compression::Compression;
 use exr::error::Error;
 use exr::math::Vec2;
 use exr::meta::attribute::SampleType;
@@ -18,6 +19,10 @@ use crate::environment::error::Problem;
 
 /// What a file must have.
 const WANTED: &str = "a flat layer with the channels R, G and B at full resolution";
+
+/// The sizes among the eight-byte numbers at the start of a DWA block. Before them is its version, after them the coder
+/// of its coefficients.
+const DWA_SIZES: std::ops::Range<usize> = 1..10;
 
 /// Reads the first flat layer with the channels R, G and B.
 pub(super) fn read(content: impl BufRead + Seek) -> Result<Reducer, Problem> {
@@ -100,7 +105,7 @@ impl Colours {
         let mut channels = [None; 3];
         let mut before = 0;
         for channel in &header.channels.list {
-            let colour = ["R", "G", "B"].iter().position(|name| channel.name.eq(*name));
+            let colour = ["R", "G", "B"].iter().position(|name| channel.name.eq(name));
             // A channel of fewer samples shifts all after it.
             if channel.sampling != Vec2(1, 1) {
                 return None;
@@ -139,7 +144,37 @@ fn is_full_size(chunk: &Chunk) -> bool {
 }
 
 fn decompress(chunk: Chunk, meta: &MetaData) -> Result<UncompressedBlock, Error> {
+    if asks_for_too_much(&chunk, &meta.headers[chunk.layer_index])? {
+        return Err(Error::Invalid("sizes in a DWA block far above its pixels".into()));
+    }
     UncompressedBlock::decompress_chunk(chunk, meta, false)
+}
+
+/// Whether a DWA block announces more data than its pixels can have.
+///
+/// The decoder (exr 1.74.2) allocates what such a block announces, and memory that is not there ends the program. The
+/// other compressions are bounded by the size of the block.
+fn asks_for_too_much(chunk: &Chunk, header: &Header) -> Result<bool, Error> {
+    if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+        return Ok(false);
+    }
+    let content = match &chunk.compressed_block {
+        CompressedBlock::Tile(tile) => &tile.compressed_pixels_le,
+        CompressedBlock::ScanLine(lines) => &lines.compressed_pixels_le,
+        _ => return Ok(false),
+    };
+    let indices = header.get_block_data_indices(&chunk.compressed_block)?;
+    let area = header.get_absolute_block_pixel_coordinates(indices)?.size.area();
+    let bytes = area * header.channels.bytes_per_pixel;
+    // Stored as it is, without sizes.
+    if content.len() == bytes {
+        return Ok(false);
+    }
+    // Coefficients come in squares of 8 x 8, so a block one pixel wide has up to 4 per byte of its pixels; the constant
+    // is for blocks smaller than a square.
+    let limit = 4 * bytes as u64 + (1 << 16);
+    let sizes = content.chunks_exact(8).take(DWA_SIZES.end).skip(DWA_SIZES.start);
+    Ok(sizes.filter_map(|size| size.try_into().ok()).any(|size| u64::from_le_bytes(size) > limit))
 }
 
 /// Adds the rows of a block; `corner` is that of the data in the display window.

@@ -23,7 +23,7 @@ pub struct Notes {
     pub negative: u64,
     /// With a component above [`LARGEST_RADIANCE`], taken as that.
     pub too_bright: u64,
-    /// Of the display window of an OpenEXR picture that the file does not store, taken as black.
+    /// Of the display window of an `OpenEXR` picture that the file does not store, taken as black.
     pub missing: u64,
     /// The width is not twice the height. The picture is stretched over the sphere all the same.
     pub stretched: bool,

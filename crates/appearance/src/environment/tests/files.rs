@@ -234,3 +234,18 @@ fn folders_and_missing_files_are_named() {
     assert!(matches!(error.problem, Problem::Io(_)), "{error}");
     assert!(error.to_string().contains("missing.hdr: cannot be read"), "{error}");
 }
+
+#[test]
+fn a_dwa_block_that_announces_too_much_is_refused() {
+    let bytes = exr_of(32, 16, &noise(32, 16), Compression::DWAA(None), Blocks::ScanLines);
+    assert_eq!(load("dwa.exr", &bytes).unwrap().size(), [32, 16]);
+    // The one block: its row, the number of its bytes, and those up to the end of the file.
+    let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let block = (0..bytes.len() - 8).find(|&at| number(at) == 0 && number(at + 4) == bytes.len() - at - 8);
+    let mut announcing = bytes.clone();
+    // The ninth of its numbers, the count of coefficients: 2^40 of two bytes.
+    let at = block.unwrap() + 8 + 8 * 8;
+    announcing[at..at + 8].copy_from_slice(&(1_u64 << 40).to_le_bytes());
+    let message = refusal("dwa.exr", &announcing);
+    assert!(message.contains("sizes in a DWA block far above its pixels"), "{message}");
+}

@@ -61,6 +61,7 @@ fn damaged_files_neither_panic_nor_yield_light_that_is_not_finite() {
         (Compression::PIZ, Blocks::ScanLines),
         (Compression::PXR24, tiles),
         (Compression::B44, Blocks::ScanLines),
+        (Compression::DWAA(None), Blocks::ScanLines),
     ];
     files.extend(encodings.map(|(compression, blocks)| exr_of(32, 16, &small, compression, blocks)));
 

@@ -22,7 +22,9 @@ fn one_pixel_is_found_with_its_irradiance_and_colour() {
 #[test]
 fn the_surroundings_are_not_part_of_the_light() {
     let (mut pixels, direction, solid) = one_pixel([512, 256], [100, 90], Vec3::splat(1e4));
-    pixels.iter_mut().for_each(|pixel| *pixel += vec3(0.2, 0.3, 0.5));
+    for pixel in &mut pixels {
+        *pixel += vec3(0.2, 0.3, 0.5);
+    }
     let found = panorama(512, 256, &pixels).strongest().unwrap();
     assert!(found.direction.dot(direction) > 1.0 - 1e-5);
     assert_near(found.irradiance, Vec3::splat(1e4 * solid), 1e-2);
@@ -58,8 +60,8 @@ fn the_centroid_of_a_disc_is_its_centre() {
 
 #[test]
 fn nothing_stands_out_of_an_even_light() {
-    assert_eq!(panorama(64, 32, &[Vec3::ONE; 64 * 32]).strongest(), None);
-    assert_eq!(panorama(64, 32, &[Vec3::ZERO; 64 * 32]).strongest(), None);
+    assert_eq!(panorama(64, 32, &vec![Vec3::ONE; 64 * 32]).strongest(), None);
+    assert_eq!(panorama(64, 32, &vec![Vec3::ZERO; 64 * 32]).strongest(), None);
     assert_eq!(panorama(64, 32, &noise(64, 32)).strongest(), None);
     let half: Vec<Vec3> = (0..64 * 32).map(|at| if at < 64 * 16 { Vec3::ONE } else { Vec3::ZERO }).collect();
     assert_eq!(panorama(64, 32, &half).strongest(), None);

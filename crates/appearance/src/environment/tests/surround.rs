@@ -103,7 +103,9 @@ fn a_positive_turn_takes_z_to_x() {
 #[test]
 fn a_sun_leaves_no_negative_light_and_keeps_its_mean() {
     let (mut pixels, direction, solid) = one_pixel([512, 256], [100, 90], Vec3::splat(5e4));
-    pixels.iter_mut().for_each(|pixel| *pixel += vec3(0.0, 0.01, 0.02));
+    for pixel in &mut pixels {
+        *pixel += vec3(0.0, 0.01, 0.02);
+    }
     let raw = projected(512, 256, &pixels);
     let windowed = panorama(512, 256, &pixels).surround();
     let lowest = |surround: &Surround| {
