@@ -1,6 +1,7 @@
 //! The longitudinal term: how light spreads along the strand.
 
 use super::LOBES;
+use super::arithmetic::exp;
 
 /// Variances v of the lobes R, TT, TRT and the rest, for a longitudinal roughness (Chiang et al. 2016, equation 7; pbrt).
 pub fn variances(roughness_along: f64) -> [f64; LOBES] {
@@ -20,6 +21,37 @@ pub(super) const VARIANCE_RATIOS: [f64; LOBES] = [1.0, 0.25, 4.0, 4.0];
 pub fn longitudinal(v: f64, sin_i: f64, cos_i: f64, sin_o: f64, cos_o: f64) -> f64 {
     let exponent = (cos_i * cos_o - sin_i * sin_o - 1.0) / v;
     exponent.exp() * bessel_i0e(cos_i * cos_o / v) / (v * -(-2.0 / v).exp_m1())
+}
+
+/// A longitudinal lobe in single precision, with the divisions done.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LongitudinalLobe {
+    /// `1 / v`.
+    pub inverse: f32,
+    /// `1 / (v (1 - exp(-2/v)))`.
+    pub scale: f32,
+}
+
+impl LongitudinalLobe {
+    /// The lobe of variance `v`, 3e-4 to 200.
+    #[inline(always)]
+    pub fn new(v: f32) -> Self {
+        let inverse = 1.0 / v;
+        Self { inverse, scale: inverse / (1.0 - exp(-2.0 * inverse)) }
+    }
+
+    /// [`longitudinal`] in plain arithmetic: two exponentials, two square roots, one division and no branch. `cos_o` and `cos_i`
+    /// are not negative. The Bessel function is within 0.8 % of the exact one.
+    #[inline(always)]
+    pub fn at(self, sin_i: f32, cos_i: f32, sin_o: f32, cos_o: f32) -> f32 {
+        let both = cos_i * cos_o;
+        let x = both * self.inverse;
+        let x2 = x * x;
+        // I0e(x) of Olivares et al. 2018.
+        let bessel = 0.5 * (1.0 + exp(-2.0 * x)) * (1.0 + 0.242_73 * x2)
+            / ((1.0 + 0.430_23 * x2) * (1.0 + 0.25 * x2).sqrt().sqrt());
+        exp((both - sin_i * sin_o - 1.0) * self.inverse) * bessel * self.scale
+    }
 }
 
 /// The modified Bessel function of order zero times `exp(-x)`, for non-negative `x`; relative error below 1e-9.
@@ -60,6 +92,32 @@ mod tests {
             assert!((bessel_i0e(x) - expected).abs() < 1e-9, "{x}");
         }
         assert!((bessel_i0e(29.999_999) / bessel_i0e(30.000_001) - 1.0).abs() < 1e-7);
+    }
+
+    #[test]
+    fn single_precision_is_finite_and_close_for_every_roughness() {
+        for step in 5..=100 {
+            for v in variances(f64::from(step) / 100.0) {
+                let lobe = LongitudinalLobe::new(v as f32);
+                let (mut peak, mut error, mut relative) = (0.0_f64, 0.0_f64, 0.0_f64);
+                let angles = || (-30..=30).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_2 / 30.0);
+                let mut pairs = Vec::new();
+                for (i, o) in angles().flat_map(|i| angles().map(move |o| (i, o))) {
+                    let truth = longitudinal(v, i.sin(), i.cos(), o.sin(), o.cos());
+                    let value = lobe.at(i.sin() as f32, i.cos() as f32, o.sin() as f32, o.cos() as f32);
+                    assert!(value.is_finite() && value >= 0.0);
+                    peak = peak.max(truth);
+                    error = error.max((f64::from(value) - truth).abs());
+                    pairs.push((truth, f64::from(value)));
+                }
+                for (truth, value) in pairs {
+                    if truth > 0.01 * peak {
+                        relative = relative.max((value / truth - 1.0).abs());
+                    }
+                }
+                assert!(error < 0.007 * peak && relative < 0.016, "v {v}: {} {relative}", error / peak);
+            }
+        }
     }
 
     #[test]
