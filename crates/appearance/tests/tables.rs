@@ -76,13 +76,13 @@ fn sigma(eumelanin: f32, pheomelanin: f32) -> [f32; 3] {
 
 #[test]
 fn shares_forward_and_backward_of_known_colours() {
-    // From a separate implementation in numpy, rounded to its printed digits.
-    let known: [(&str, [f32; 3], [f32; 3], Option<[f32; 3]>); 5] = [
-        ("white", [0.0; 3], [0.903; 3], Some([0.097; 3])),
-        ("blonde", sigma(0.3, 0.05), [0.710, 0.602, 0.403], Some([0.073, 0.062, 0.047])),
-        ("brown", sigma(1.3, 0.1), [0.342, 0.189, 0.067], Some([0.043, 0.037, 0.034])),
-        ("red", sigma(0.3, 0.8), [0.555, 0.362, 0.125], None),
-        ("black", sigma(8.0, 0.0), [0.043, 0.041, 0.041], Some([0.034; 3])),
+    // From a separate implementation in numpy, with three digits. Red's backward share was not printed.
+    let known = [
+        ("white", [0.0; 3], [0.903; 3], [0.097; 3]),
+        ("blonde", sigma(0.3, 0.05), [0.710, 0.602, 0.403], [0.073, 0.062, 0.047]),
+        ("brown", sigma(1.3, 0.1), [0.342, 0.189, 0.067], [0.043, 0.037, 0.034]),
+        ("red", sigma(0.3, 0.8), [0.555, 0.362, 0.125], [f32::NAN; 3]),
+        ("black", sigma(8.0, 0.0), [0.043, 0.041, 0.041], [0.034; 3]),
     ];
     let table = ManyTable::bake(&Fibre::default());
     let eye = CosineStep::new(1.0);
@@ -90,11 +90,10 @@ fn shares_forward_and_backward_of_known_colours() {
         for channel in 0..3 {
             let row = table.row(eye, sigma[channel]);
             println!("{name} {channel}: {:.4} {:.4}", row[0], row[1]);
-            // Half of the last digit, and the interpolation.
-            assert!((row[0] - forward[channel]).abs() < 0.0015, "{name} {channel}: {}", row[0]);
-            if let Some(backward) = backward {
-                assert!((row[1] - backward[channel]).abs() < 0.001, "{name} {channel}: {}", row[1]);
-            }
+            // Half of the last digit, and the interpolation over absorption.
+            assert!((row[0] - forward[channel]).abs() < 0.000_75, "{name} {channel}: {}", row[0]);
+            let error = (row[1] - backward[channel]).abs();
+            assert!(error < 0.000_75 || backward[channel].is_nan(), "{name} {channel}: {}", row[1]);
         }
     }
 }

@@ -1,4 +1,6 @@
 //! The longitudinal term: how light spreads along the strand.
+// Inlined into the loops of a renderer; a call would prevent vectorisation.
+#![allow(clippy::inline_always)]
 
 use super::LOBES;
 use super::arithmetic::exp;

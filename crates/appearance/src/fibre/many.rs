@@ -3,8 +3,10 @@
 //! This is dual scattering (Zinke, Yuksel, Weber and Keyser 2008) with a smooth count of crossed fibres in place of their switch
 //! between lit and unlit. A point of a strand has one [`PointScatter`], and every light then costs two rows of a table and
 //! arithmetic without branches. Everything is in single precision, as vectorised code and a shader repeat it.
+// Inlined into the loops of a renderer; a call would prevent vectorisation.
+#![allow(clippy::inline_always)]
 
-use super::arithmetic::exp;
+use super::arithmetic::{clamp, exp};
 use super::scattering::TILTS;
 use super::{CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterTable, distributions, variances};
 
@@ -125,10 +127,10 @@ impl PointScatter {
     /// Scattering toward an eye at an inclination, for an absorption per channel. Values that are not numbers count as zero.
     #[inline(always)]
     pub fn new(tables: &FibreTables, sin_theta: f32, cos_theta: f32, sigma: [f32; 3]) -> Self {
-        let sin_theta = sin_theta.max(-1.0).min(1.0);
-        let cos_theta = cos_theta.max(0.0).min(1.0);
+        let sin_theta = clamp(sin_theta, -1.0, 1.0);
+        let cos_theta = clamp(cos_theta, 0.0, 1.0);
         let eye = CosineStep::new(cos_theta);
-        let sigma = sigma.map(|sigma| sigma.max(0.0).min(1e6));
+        let sigma = sigma.map(|sigma| clamp(sigma, 0.0, 1e6));
         let rows = sigma.map(|sigma| tables.many.row(eye, sigma));
         let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k]];
         let v = tables.variances[0];
@@ -163,19 +165,19 @@ impl PointScatter {
     pub fn radiance(&self, tables: &FibreTables, light: &PointLight, strength: f32) -> [f32; 3] {
         let direct = tables.direct.row(self.eye, light.phi);
         let forward = tables.forward.row(self.eye, light.phi);
-        let n = light.fibres.max(0.0).min(MOST_FIBRES);
+        let n = clamp(light.fibres, 0.0, MOST_FIBRES);
         let unhit = exp(-n);
 
-        let mut psi = [0.0; 3];
+        let reached = self.forward.map(|a_f| exp(-n * (1.0 - a_f)));
+        let psi = reached.map(|reached| clamp(reached - unhit, 0.0, 1.0));
         let (mut spread, mut weight) = (0.0, 0.0);
         for c in 0..3 {
-            let reached = exp(-n * (1.0 - self.forward[c]));
-            psi[c] = (reached - unhit).max(0.0);
             // Mean hits of light that was hit, n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
-            let hits = (n * self.forward[c] + 1e-4) / ((1.0 - unhit / reached).max(0.0) + 1e-4);
-            let w = psi[c] + 1e-6;
-            spread += w * self.spread[c] * hits;
-            weight += w;
+            let hit = clamp(1.0 - unhit / reached[c], 0.0, 1.0);
+            let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
+            let share = psi[c] + 1e-6;
+            spread += share * self.spread[c] * hits;
+            weight += share;
         }
         let x = (spread / weight).min(WIDEST);
 
@@ -188,7 +190,7 @@ impl PointScatter {
 
         // Backscattered light leaves on the side of the light.
         let same_side =
-            (0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE)).max(0.0).min(1.0);
+            clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
         let behind = same_side * (1.0 - exp(-light.fibres_behind.max(0.0)));
         let back = |v: f32| {
             LongitudinalLobe::new(v).at(light.sin_theta, light.cos_theta, self.sin_theta, self.cos_theta)

@@ -1,4 +1,6 @@
 //! Table of what one fibre does to light that many fibres scatter.
+// Inlined into the loops of a renderer; a call would prevent vectorisation.
+#![allow(clippy::inline_always)]
 
 use rayon::prelude::*;
 

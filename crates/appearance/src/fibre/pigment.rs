@@ -21,7 +21,8 @@ pub fn absorption_of_color(color: [f64; 3], roughness_around: f64) -> [f64; 3] {
     let b = super::Fibre { roughness_around, ..default }.clamped().roughness_around;
     let scale =
         5.969 - 0.215 * b + 2.532 * b.powi(2) - 10.73 * b.powi(3) + 5.574 * b.powi(4) + 0.245 * b.powi(5);
-    color.map(|c| (c.max(0.001).min(1.0).ln() / scale).powi(2))
+    // The maximum drops a value that is not a number.
+    color.map(|c| (c.max(0.001).clamp(0.001, 1.0).ln() / scale).powi(2))
 }
 
 #[cfg(test)]

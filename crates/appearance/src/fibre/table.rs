@@ -1,10 +1,13 @@
 //! Tables of the azimuthal distribution of a whole fibre, for every absorption.
+// Inlined into the loops of a renderer; a call would prevent vectorisation.
+#![allow(clippy::inline_always)]
 
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::{Fibre, FibrePath, Quadrature, TrimmedLogistic, arithmetic::exp};
+use super::arithmetic::{clamp, exp};
+use super::{Fibre, FibrePath, Quadrature, TrimmedLogistic};
 
 /// Steps of the azimuth, 0 to pi.
 pub const AZIMUTHS: usize = 64;
@@ -64,7 +67,7 @@ impl CosineStep {
 /// Index and fraction of the position `x` among `count` entries. A position that is not a number counts as zero.
 #[inline(always)]
 pub(super) fn step(x: f32, count: usize) -> (usize, f32) {
-    let x = x.max(0.0).min((count - 1) as f32);
+    let x = clamp(x, 0.0, (count - 1) as f32);
     let index = (x as usize).min(count - 2);
     (index, x - index as f32)
 }
