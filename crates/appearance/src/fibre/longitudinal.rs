@@ -36,23 +36,31 @@ pub struct LongitudinalLobe {
 
 impl LongitudinalLobe {
     /// The lobe of variance `v`, 3e-4 to 200.
-    #[inline(always)]
-    pub fn new(v: f32) -> Self {
-        let inverse = 1.0 / v;
-        Self { inverse, scale: inverse / (1.0 - exp(-2.0 * inverse)) }
+    pub fn new(v: f64) -> Self {
+        Self { inverse: (1.0 / v) as f32, scale: (1.0 / (v * -(-2.0 / v).exp_m1())) as f32 }
     }
 
-    /// [`longitudinal`] in plain arithmetic: two exponentials, two square roots, one division and no branch. `cos_o` and `cos_i`
-    /// are not negative. The Bessel function is within 0.8 % of the exact one.
+    /// The lobe of variance `v`, 3e-4 to 200, without an exponential. It is within 0.16 % of the exact one.
+    #[inline(always)]
+    pub fn quick(v: f32) -> Self {
+        let w = 1.0 / v;
+        // Least maximal relative error of a rational function that is 1/2 at 0 and w at infinity.
+        let above = 0.5 + w * (0.777_000_5 + w * (0.545_796_4 + w * 0.386_785));
+        let below = 1.0 + w * (0.523_910_8 + w * 0.386_785);
+        Self { inverse: w, scale: above / below }
+    }
+
+    /// [`longitudinal`] in plain arithmetic: one exponential, one square root, one division and no branch. `cos_o` and `cos_i` are
+    /// not negative. The Bessel function is within 0.04 % of the exact one.
     #[inline(always)]
     pub fn at(self, sin_i: f32, cos_i: f32, sin_o: f32, cos_o: f32) -> f32 {
         let both = cos_i * cos_o;
         let x = both * self.inverse;
-        let x2 = x * x;
-        // I0e(x) of Olivares et al. 2018.
-        let bessel = 0.5 * (1.0 + exp(-2.0 * x)) * (1.0 + 0.242_73 * x2)
-            / ((1.0 + 0.430_23 * x2) * (1.0 + 0.25 * x2).sqrt().sqrt());
-        exp((both - sin_i * sin_o - 1.0) * self.inverse) * bessel * self.scale
+        // The square of I0e(x) as a rational function with the exact slope at 0 and the exact limit 1 / (2 pi x); the free numbers
+        // have the least maximal relative error.
+        let above = 1.0 + x * (0.386_872_3 + x * (0.255_961_1 + x * 0.172_482_43));
+        let below = 1.0 + x * (2.386_872_3 + x * (2.598_808_4 + x * (1.298_065 + x * 1.083_739)));
+        exp((both - sin_i * sin_o - 1.0) * self.inverse) * (above / below).sqrt() * self.scale
     }
 }
 
@@ -98,28 +106,32 @@ mod tests {
 
     #[test]
     fn single_precision_is_finite_and_close_for_every_roughness() {
+        // Largest error of both lobes relative to the peak, and relative to the value where it is above 1 % of the peak.
+        let mut worst = [0.0_f64; 3];
         for step in 5..=100 {
             for v in variances(f64::from(step) / 100.0) {
-                let lobe = LongitudinalLobe::new(v as f32);
-                let (mut peak, mut error, mut relative) = (0.0_f64, 0.0_f64, 0.0_f64);
+                let lobes = [LongitudinalLobe::new(v), LongitudinalLobe::quick(v as f32)];
+                let (mut peak, mut error, mut values) = (0.0_f64, [0.0_f64; 2], Vec::new());
                 let angles = || (-30..=30).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_2 / 30.0);
-                let mut pairs = Vec::new();
                 for (i, o) in angles().flat_map(|i| angles().map(move |o| (i, o))) {
                     let truth = longitudinal(v, i.sin(), i.cos(), o.sin(), o.cos());
-                    let value = lobe.at(i.sin() as f32, i.cos() as f32, o.sin() as f32, o.cos() as f32);
-                    assert!(value.is_finite() && value >= 0.0);
                     peak = peak.max(truth);
-                    error = error.max((f64::from(value) - truth).abs());
-                    pairs.push((truth, f64::from(value)));
-                }
-                for (truth, value) in pairs {
-                    if truth > 0.01 * peak {
-                        relative = relative.max((value / truth - 1.0).abs());
+                    for (lobe, error) in lobes.iter().zip(&mut error) {
+                        let value = lobe.at(i.sin() as f32, i.cos() as f32, o.sin() as f32, o.cos() as f32);
+                        assert!(value.is_finite() && value >= 0.0);
+                        *error = error.max((f64::from(value) - truth).abs());
+                        values.push((truth, f64::from(value)));
                     }
                 }
-                assert!(error < 0.007 * peak && relative < 0.016, "v {v}: {} {relative}", error / peak);
+                // The exponent of the smoothest lobe is a difference of numbers near 1, divided by 4e-4.
+                let relative = values.iter().filter(|(truth, _)| *truth > 0.01 * peak);
+                let relative = relative.map(|(truth, value)| (value / truth - 1.0).abs()).fold(0.0, f64::max);
+                worst =
+                    [worst[0].max(error[0] / peak), worst[1].max(error[1] / peak), worst[2].max(relative)];
             }
         }
+        println!("{worst:?}");
+        assert!(worst[0] < 0.0006 && worst[1] < 0.002 && worst[2] < 0.0025, "{worst:?}");
     }
 
     #[test]

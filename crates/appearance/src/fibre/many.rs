@@ -69,8 +69,8 @@ impl FibreTables {
 
     fn set_longitudinal(&mut self, fibre: Fibre) {
         self.fibre = fibre;
-        self.variances = variances(fibre.roughness_along).map(|v| v as f32);
-        self.lobes = self.variances.map(LongitudinalLobe::new);
+        let v = variances(fibre.roughness_along);
+        (self.variances, self.lobes) = (v.map(|v| v as f32), v.map(LongitudinalLobe::new));
         self.tilts = TILTS.map(|tilts| {
             let angle = tilts * fibre.tilt;
             [angle.sin() as f32, angle.cos() as f32]
@@ -112,8 +112,10 @@ pub struct PointScatter {
     pub spread: [f32; 3],
     /// Per channel: backscattered light times [`BACKSCATTER`]. Symbol: `A_b`.
     pub backscatter: [f32; 3],
-    /// Per channel: variance of the backscattered light. Symbol: `v_b`.
-    pub backscatter_variance: [f32; 3],
+    /// Variance of the backscattered light, the mean over the channels weighted by that light. Symbol: `v_b`.
+    pub backscatter_variance: f32,
+    /// Its longitudinal lobe.
+    pub backscatter_lobe: LongitudinalLobe,
     /// Per channel: distribution of the paths longer than TRT.
     pub rest: [f32; 3],
     /// Per channel: share of diffuse light that the strand scatters, `a_f + a_b`.
@@ -134,6 +136,12 @@ impl PointScatter {
         let rows = sigma.map(|sigma| tables.many.row(eye, sigma));
         let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k]];
         let v = tables.variances[0];
+        let (mut variance, mut weight) = (0.0, 0.0);
+        for row in &rows {
+            variance += (row[4] + 1e-9) * row[5];
+            weight += row[4] + 1e-9;
+        }
+        let backscatter_variance = clamp(v * variance / weight, 0.0, WIDEST);
         Self {
             eye,
             sin_theta,
@@ -145,7 +153,8 @@ impl PointScatter {
             forward: column(0),
             spread: column(2).map(|ratio| v * ratio),
             backscatter: column(4).map(|share| BACKSCATTER * share),
-            backscatter_variance: column(5).map(|ratio| (v * ratio).min(WIDEST)),
+            backscatter_variance,
+            backscatter_lobe: LongitudinalLobe::quick(backscatter_variance),
             rest: column(7),
             albedo: [0, 1, 2].map(|c| rows[c][0] + rows[c][1]),
             diffuse_rate: column(6),
@@ -185,24 +194,25 @@ impl PointScatter {
             lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
         };
         let once: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(tables.lobes[p], p));
-        let wide = tables.variances.map(|v| LongitudinalLobe::new(v + x));
-        let after: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(wide[p], p));
+        // The longer paths are few; after scattering they count to TRT, whose variance they have.
+        let after: [f32; 3] = [0, 1, 2].map(|p| m(LongitudinalLobe::quick(tables.variances[p] + x), p));
 
         // Backscattered light leaves on the side of the light.
         let same_side =
             clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
         let behind = same_side * (1.0 - exp(-light.fibres_behind.max(0.0)));
-        let back = |v: f32| {
-            LongitudinalLobe::new(v).at(light.sin_theta, light.cos_theta, self.sin_theta, self.cos_theta)
+        let back = |lobe: LongitudinalLobe| {
+            behind * lobe.at(light.sin_theta, light.cos_theta, self.sin_theta, self.cos_theta)
         };
+        let back_once = back(self.backscatter_lobe);
+        let back_after = back(LongitudinalLobe::quick(self.backscatter_variance + x));
         [0, 1, 2].map(|c| {
-            let sum =
-                |m: &[f32; LOBES], d: [f32; 3]| m[0] * d[0] + m[1] * d[1] + m[2] * d[2] + m[3] * self.rest[c];
-            let single = sum(&once, distributions(&direct, self.sigma[c]));
-            let global = sum(&after, distributions(&forward, self.sigma[c]));
-            let v = self.backscatter_variance[c];
-            let local = behind * self.backscatter[c];
-            unhit * (single + strength * local * back(v)) + strength * psi[c] * (global + local * back(v + x))
+            let (d, g) = (distributions(&direct, self.sigma[c]), distributions(&forward, self.sigma[c]));
+            let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
+            let global = after[0] * g[0] + after[1] * g[1] + after[2] * (g[2] + self.rest[c]);
+            let local = self.backscatter[c];
+            unhit * (single + strength * local * back_once)
+                + strength * psi[c] * (global + local * back_after)
         })
     }
 }
