@@ -10,7 +10,7 @@ const ROUGHNESS: [f64; 4] = [0.1, 0.3, 0.6, 0.9];
 
 /// Light that a fibre scatters toward an eye out of even light from everywhere.
 fn furnace(fibre: &Fibre, sigma: f64, theta_o: f64) -> f64 {
-    let (width, around, along) = (Quadrature::new(48), Quadrature::new(48), Quadrature::new(48));
+    let (width, around, along) = (Quadrature::new(32), Quadrature::new(48), Quadrature::new(24));
     // The longitudinal integral is cut at the lobes' peaks, which are narrow for smooth fibres.
     let peaks = [-2.0, 1.0, 4.0].map(|tilts| (-(theta_o + tilts * fibre.tilt)).clamp(-FRAC_PI_2, FRAC_PI_2));
     let mut cuts = [-FRAC_PI_2, peaks[0], peaks[1], peaks[2], FRAC_PI_2];

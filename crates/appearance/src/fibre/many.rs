@@ -8,7 +8,9 @@
 
 use super::arithmetic::{clamp, exp};
 use super::scattering::TILTS;
-use super::{CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterTable, distributions, variances};
+use super::{
+    CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterRow, ScatterTable, distributions, variances,
+};
 
 /// Most fibres that are told apart between a point and a light.
 pub const MOST_FIBRES: f32 = 40.0;
@@ -172,30 +174,45 @@ impl PointScatter {
     /// 20). x is the mean over the channels, weighted by psi: a variance per channel costs twice the time.
     #[inline(always)]
     pub fn radiance(&self, tables: &FibreTables, light: &PointLight, strength: f32) -> [f32; 3] {
-        let direct = tables.direct.row(self.eye, light.phi);
-        let forward = tables.forward.row(self.eye, light.phi);
+        let rows = [tables.direct.row(self.eye, light.phi), tables.forward.row(self.eye, light.phi)];
+        self.radiance_of_rows(&rows, tables.variances, tables.lobes, light, strength)
+    }
+
+    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of light that
+    /// was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows are read.
+    #[inline(always)]
+    pub fn radiance_of_rows(
+        &self,
+        rows: &[ScatterRow; 2],
+        variances: [f32; LOBES],
+        lobes: [LongitudinalLobe; LOBES],
+        light: &PointLight,
+        strength: f32,
+    ) -> [f32; 3] {
         let n = clamp(light.fibres, 0.0, MOST_FIBRES);
         let unhit = exp(-n);
 
         let reached = self.forward.map(|a_f| exp(-n * (1.0 - a_f)));
         let psi = reached.map(|reached| clamp(reached - unhit, 0.0, 1.0));
-        let (mut spread, mut weight) = (0.0, 0.0);
-        for c in 0..3 {
+        let added = [0, 1, 2].map(|c| {
             // Mean hits of light that was hit, n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
             let hit = clamp(1.0 - unhit / reached[c], 0.0, 1.0);
             let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
-            let share = psi[c] + 1e-6;
-            spread += share * self.spread[c] * hits;
-            weight += share;
-        }
-        let x = (spread / weight).min(WIDEST);
+            clamp(self.spread[c] * hits, 0.0, WIDEST)
+        });
+        let share = psi.map(|psi| psi + 1e-6);
+        let x = (share[0] * added[0] + share[1] * added[1] + share[2] * added[2])
+            / (share[0] + share[1] + share[2]);
 
         let m = |lobe: LongitudinalLobe, p: usize| {
             lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
         };
-        let once: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(tables.lobes[p], p));
-        // The longer paths are few; after scattering they count to TRT, whose variance they have.
-        let after: [f32; 3] = [0, 1, 2].map(|p| m(LongitudinalLobe::quick(tables.variances[p] + x), p));
+        let once: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(lobes[p], p));
+        // TT carries most of the light of fair hair and is the narrowest, so each channel has its own. The longer paths are few;
+        // after scattering they count to TRT, whose variance they have.
+        let after_r = m(LongitudinalLobe::quick(variances[0] + x), 0);
+        let after_tt = added.map(|x| m(LongitudinalLobe::quick(variances[1] + x), 1));
+        let after_trt = m(LongitudinalLobe::quick(variances[2] + x), 2);
 
         // Backscattered light leaves on the side of the light.
         let same_side =
@@ -207,9 +224,9 @@ impl PointScatter {
         let back_once = back(self.backscatter_lobe);
         let back_after = back(LongitudinalLobe::quick(self.backscatter_variance + x));
         [0, 1, 2].map(|c| {
-            let (d, g) = (distributions(&direct, self.sigma[c]), distributions(&forward, self.sigma[c]));
+            let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
             let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
-            let global = after[0] * g[0] + after[1] * g[1] + after[2] * (g[2] + self.rest[c]);
+            let global = after_r * g[0] + after_tt[c] * g[1] + after_trt * (g[2] + self.rest[c]);
             let local = self.backscatter[c];
             unhit * (single + strength * local * back_once)
                 + strength * psi[c] * (global + local * back_after)
