@@ -43,7 +43,7 @@ pub use io::{
     Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis, guess_units,
     load_hair, load_hair_bytes,
 };
-pub use look::HairLook;
+pub use look::{HairLook, HairShading};
 pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
 pub use operation::{HairOperation, OperationCache, OperationResult};
