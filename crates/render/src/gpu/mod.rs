@@ -1,6 +1,7 @@
 //! The GPU backend: wgpu compute and raster passes.
 
 mod eye;
+mod false_colors;
 mod frame_resources;
 mod ground;
 mod hair;
@@ -16,6 +17,7 @@ mod shrink;
 mod surface;
 mod targets;
 
+pub use false_colors::ColorScale;
 pub use pipelines::all_shaders;
 pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;
