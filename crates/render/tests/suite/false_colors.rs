@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_groom::Strands;
 use lovelock_render::{
     Backend, ColorScale, DeviceImages, GpuRenderer, Picture, RenderError, Renderer, ShadowMethod, Traffic,
     Transparency, ValueRenderer,
@@ -58,7 +59,7 @@ fn expected(scene: &Scene, values: &[f32], scale: &ColorScale, plain: &Picture) 
         let place = ((value - scale.range[0]) / (scale.range[1] - scale.range[0])).clamp(0.0, 1.0) * 255.0;
         let share = if value.is_nan() { 0.0 } else { weight };
         let color = if value.is_nan() { [0.0; 3] } else { [255.0 - place, place, 77.0] };
-        color.map(|color| grey + share * (color - grey))
+        color.map(|color| (grey + share * (color - grey)).round())
     });
     colors.collect()
 }
@@ -81,13 +82,15 @@ fn lit(transparency: Transparency) -> Scene {
     scene.body = Some(grid(-0.1, 0.3, 8, Vec3::new(0.5, 0.3, 0.2)));
     (scene.picture.transparency, scene.picture.ground) = (transparency, true);
     scene.shadow.method = ShadowMethod::VoxelMap;
+    scene.look.width_scale = 2.0;
     scene.camera.eye = Vec3::new(0.1, 0.1, 0.5);
     scene
 }
 
-/// Values that differ along and between strands.
+/// Values from -0.2 to 0.2 that differ along and between strands.
 fn waves(scene: &Scene) -> Vec<f32> {
-    (0..scene.strands.x.len()).map(|i| 0.2 * (0.37 * i as f32).sin()).collect()
+    let Strands { x, y, .. } = &scene.strands;
+    x.iter().zip(y).map(|(x, y)| 0.2 * (90.0 * x + 50.0 * y).sin()).collect()
 }
 
 #[test]
@@ -102,10 +105,11 @@ fn the_device_paints_the_values_that_the_cpu_draws() {
         let [plain, found] = rig.colored(&scene, &values, &scale);
         let (mean, far) = off(&found, &expected(&scene, &values, &scale, &plain));
         let other: Vec<f32> = values.iter().map(|value| 0.9 * value).collect();
-        let (control, control_far) = off(&found, &expected(&scene, &other, &scale, &plain));
-        println!("{transparency}: {mean:.4}, {far:.5}; control {control:.4}, {control_far:.5}");
-        assert!(mean < 0.3 && far < 0.005, "{transparency}: {mean} {far}");
-        assert!(control > 2.0 * mean && control_far > 0.05, "{control} {control_far}");
+        let (control, _) = off(&found, &expected(&scene, &other, &scale, &plain));
+        println!("{transparency}: {mean:.4}, {far:.5}; control {control:.4}");
+        // Measured on a software adapter: 0.0031 and no pixel; values that are a tenth smaller give 0.288.
+        assert!(mean < 0.02 && far < 1e-4, "{transparency}: {mean} {far}");
+        assert!(control > 0.1, "{transparency}: {control}");
         assert!(found.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255));
     }
 }
@@ -128,9 +132,9 @@ fn only_values_go_up_and_nothing_else_comes_back() {
         assert_eq!(asked.since(before).bytes_back, stats.traffic.bytes_back + words);
         let image = rig.renderer.false_colors(&values, &scale, &mut rig.images).expect("false colours");
         let Traffic { bytes_up, bytes_back, waits, created } = rig.renderer.gpu().traffic().since(asked);
-        // The first rounds fill the textures and bind groups that are kept.
-        let created = if round < 2 { 0 } else { created };
-        assert_eq!((bytes_up, bytes_back, waits, created), (words, 8, 1, 0), "round {round}");
+        assert_eq!((bytes_up, bytes_back, waits), (words, 8, 1), "round {round}");
+        // The first rounds fill the buffers and bind groups that are kept.
+        assert!(created == 0 || round < 2, "round {round}: {created}");
         assert!(image.read().expect("pixels") == first, "the same values, the same image");
     }
     // Control: a picture in memory is counted.
@@ -160,7 +164,7 @@ fn wrong_numbers_of_values_and_missing_pictures_are_refused() {
     assert!(matches!(refused, Err(RenderError::Known { found: 3, .. })));
     // Without hair there is the grey picture alone.
     let mut bald = lit(Transparency::Sorted);
-    (bald.style, bald.strands) = (Arc::default(), lovelock_groom::Strands::default());
+    (bald.style, bald.strands) = (Arc::default(), Strands::default());
     let [plain, found] = rig.colored(&bald, &[], &scale);
     assert!(off(&found, &expected(&bald, &[], &scale, &plain)).1 == 0.0);
 }

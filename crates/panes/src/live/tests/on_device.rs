@@ -7,7 +7,7 @@ use super::*;
 
 const SIZE: [u32; 2] = [160, 120];
 /// What a frame reports: the sum of its transmittances and the heads of its lists.
-const REPORT_BYTES: u64 = 4 * 256 + 5 * 16;
+const REPORT_BYTES: u64 = 4 * lovelock_shadow::SUM_WORDS + 5 * 16;
 
 /// Panes on one device, which is the window's if `is_window`; `None` without an adapter.
 fn rounds(is_window: bool) -> Option<(Rounds, WindowDevice)> {
@@ -73,8 +73,10 @@ fn false_colours_on_the_device_are_those_in_memory() {
             println!(
                 "{transparency}, {shows:?}: {mean:.4}, {far:.5}; control {control:.4}, {control_far:.5}"
             );
-            assert!(mean < 0.3 && far < 0.005, "{transparency}, {shows:?}: {mean} {far}");
-            assert!(control > 2.0 * mean && control_far > 0.01, "{control} {control_far}");
+            // Strands whose depths are almost equal may change places. Measured on a software adapter: at most 0.032 and 0.0011;
+            // another range of the colours gives at least 0.32 and 0.020.
+            assert!(mean < 0.1 && far < 0.004, "{transparency}, {shows:?}: {mean} {far}");
+            assert!(control > 0.2 && control_far > 0.01, "{control} {control_far}");
         }
         // The lists are long enough now: of the image nothing but the transmittance comes back.
         let points = rig.snapshot.scene.style.strands.points() as u64;
