@@ -73,7 +73,7 @@ fn false_colours_on_the_device_are_those_in_memory() {
             println!(
                 "{transparency}, {shows:?}: {mean:.4}, {far:.5}; control {control:.4}, {control_far:.5}"
             );
-            // Strands whose depths are almost equal may change places. Measured on a software adapter: at most 0.032 and 0.0011;
+            // Strands whose depths are almost equal may be ordered differently. Measured on a software adapter: at most 0.032 and 0.0011;
             // another range of the colours gives at least 0.32 and 0.020.
             assert!(mean < 0.1 && far < 0.004, "{transparency}, {shows:?}: {mean} {far}");
             assert!(control > 0.2 && control_far > 0.01, "{control} {control_far}");
