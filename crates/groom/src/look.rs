@@ -285,8 +285,7 @@ impl HairLook {
     /// before any variation.
     pub fn absorption(&self) -> Vec3 {
         let as_vec3 = |of: [f64; 3]| Vec3::from(of.map(|sigma| sigma as f32));
-        let natural =
-            as_vec3(pigment::absorption_of_melanin(self.eumelanin.into(), self.pheomelanin.into()));
+        let natural = as_vec3(pigment::absorption_of_melanin(self.eumelanin.into(), self.pheomelanin.into()));
         let amount = self.dye_amount.clamp(0.0, 1.0);
         if amount > 0.0 {
             let dye = self.dye.to_array().map(f64::from);

@@ -28,7 +28,7 @@ pub use camera::Camera;
 pub use cpu::{CpuRenderer, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
-pub use gpu::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
+pub use gpu::{ColorScale, Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;

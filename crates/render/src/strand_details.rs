@@ -97,7 +97,8 @@ impl<'a> Locks<'a> {
     fn of(&self, strand: usize) -> u32 {
         let wisp = self.0.strands.wisp.get(strand).copied().unwrap_or(0);
         let part = self.0.wisps.get(wisp as usize).map_or(0, |of| {
-            (strand as u32).saturating_sub(of.first_strand).saturating_mul(LOCKS_OF_WISP) / of.strand_count.max(1)
+            (strand as u32).saturating_sub(of.first_strand).saturating_mul(LOCKS_OF_WISP)
+                / of.strand_count.max(1)
         });
         let x = (wisp.wrapping_mul(LOCKS_OF_WISP).wrapping_add(part)).wrapping_mul(0x9e37_79b9);
         (x ^ (x >> 15)).wrapping_mul(0x85eb_ca6b) >> 26
@@ -108,5 +109,10 @@ impl<'a> Locks<'a> {
 /// is the last of its strand, and a random number of the lock in 6 bits.
 fn pack_detail(taper: f32, along: f32, shade: f32, (first, last): (bool, bool), lock: u32) -> u32 {
     let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-    byte(taper) | byte(along) << 8 | byte(shade) << 16 | u32::from(first) << 24 | u32::from(last) << 25 | lock << 26
+    byte(taper)
+        | byte(along) << 8
+        | byte(shade) << 16
+        | u32::from(first) << 24
+        | u32::from(last) << 25
+        | lock << 26
 }

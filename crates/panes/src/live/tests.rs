@@ -1,6 +1,7 @@
 //! Panes of a small scene on the CPU; lost devices need an adapter.
 
 mod against_exact;
+mod on_device;
 mod takes;
 
 use std::sync::Mutex;

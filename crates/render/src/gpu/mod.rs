@@ -1,6 +1,7 @@
 //! The GPU backend: wgpu compute and raster passes.
 
 mod eye;
+mod false_colors;
 mod fine;
 mod frame_resources;
 mod ground;
@@ -17,6 +18,7 @@ mod shrink;
 mod surface;
 mod targets;
 
+pub use false_colors::ColorScale;
 pub use pipelines::all_shaders;
 pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;

@@ -2,6 +2,7 @@
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
+use super::false_colors::FalseColorShaders;
 use super::layers::LayerShaders;
 use super::light_kernels::{LightShaders, LightVariants};
 use super::present::Present;
@@ -31,11 +32,12 @@ const TONE_MAP: ShaderPart = part!("tone_map.wgsl");
 const PICTURE: ShaderPart = part!("picture.wgsl");
 const LAYERS: ShaderPart = part!("layers.wgsl");
 const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
+const FALSE_COLORS: ShaderPart = part!("false_colors.wgsl");
 const PRESENT: ShaderPart = part!("present.wgsl");
 const SHRINK: ShaderPart = part!("shrink.wgsl");
 
 /// The shaders of these kernels and pipelines.
-fn own_shaders() -> [(&'static str, ShaderSource); 8] {
+fn own_shaders() -> [(&'static str, ShaderSource); 9] {
     [
         ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
@@ -43,6 +45,10 @@ fn own_shaders() -> [(&'static str, ShaderSource); 8] {
         ("surface", &[FRAME, SURFACE]),
         ("depth", &[DEPTH]),
         ("layers", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS]),
+        (
+            "false colours",
+            &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS, FALSE_COLORS],
+        ),
         ("values of points", &[FRAME, STRAND_SHADING, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
     ]
@@ -70,6 +76,8 @@ pub(super) struct Pipelines {
     pub present: Present,
     /// The parts of the kernels for layers, which are compiled on demand.
     pub layers: LayerShaders,
+    /// Those for false colours, likewise.
+    pub false_colors: FalseColorShaders,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body seen from the camera: all faces, and front faces only if it is closed.
@@ -89,7 +97,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, values, present] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, colors, values, present] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -112,7 +120,8 @@ impl Pipelines {
         Ok(Self {
             screen: ScreenKernels::new(gpu, &picture.1)?,
             present: Present::new(gpu, &present.1)?,
-            layers: LayerShaders { layers: layers.1, values: values.1 },
+            layers: LayerShaders { layers: layers.1, values: values.1.clone() },
+            false_colors: FalseColorShaders { colors: colors.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
