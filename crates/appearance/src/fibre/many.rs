@@ -6,7 +6,7 @@
 // Inlined into the loops of a renderer; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
-use super::arithmetic::{clamp, exp};
+use super::arithmetic::{clamp, exp, three};
 use super::scattering::TILTS;
 use super::{
     CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterRow, ScatterTable, distributions, variances,
@@ -192,44 +192,58 @@ impl PointScatter {
         let n = clamp(light.fibres, 0.0, MOST_FIBRES);
         let unhit = exp(-n);
 
-        let reached = self.forward.map(|a_f| exp(-n * (1.0 - a_f)));
-        let psi = reached.map(|reached| clamp(reached - unhit, 0.0, 1.0));
-        let added = [0, 1, 2].map(|c| {
+        let reached = three(|c| exp(-n * (1.0 - self.forward[c])));
+        let psi = three(|c| clamp(reached[c] - unhit, 0.0, 1.0));
+        let mut added = [0.0; 3];
+        for c in 0..3 {
             // Mean hits of light that was hit, n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
             let hit = clamp(1.0 - unhit / reached[c], 0.0, 1.0);
             let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
-            clamp(self.spread[c] * hits, 0.0, WIDEST)
-        });
-        let share = psi.map(|psi| psi + 1e-6);
+            added[c] = clamp(self.spread[c] * hits, 0.0, WIDEST);
+        }
+        let share = three(|c| psi[c] + 1e-6);
         let x = (share[0] * added[0] + share[1] * added[1] + share[2] * added[2])
             / (share[0] + share[1] + share[2]);
 
-        let m = |lobe: LongitudinalLobe, p: usize| {
-            lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
-        };
-        let once: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(lobes[p], p));
+        let once = [
+            self.lobe_at(lobes[0], 0, light),
+            self.lobe_at(lobes[1], 1, light),
+            self.lobe_at(lobes[2], 2, light),
+            self.lobe_at(lobes[3], 3, light),
+        ];
         // TT carries most of the light of fair hair and is the narrowest, so each channel has its own. The longer paths are few;
         // after scattering they count to TRT, whose variance they have.
-        let after_r = m(LongitudinalLobe::quick(variances[0] + x), 0);
-        let after_tt = added.map(|x| m(LongitudinalLobe::quick(variances[1] + x), 1));
-        let after_trt = m(LongitudinalLobe::quick(variances[2] + x), 2);
+        let after_r = self.lobe_at(LongitudinalLobe::quick(variances[0] + x), 0, light);
+        let after_tt = [
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[0]), 1, light),
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[1]), 1, light),
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[2]), 1, light),
+        ];
+        let after_trt = self.lobe_at(LongitudinalLobe::quick(variances[2] + x), 2, light);
 
-        // Backscattered light leaves on the side of the light.
+        // Backscattered light leaves on the side of the light. Lobe 3 has no tilt.
         let same_side =
             clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
-        let behind = same_side * (1.0 - exp(-light.fibres_behind.max(0.0)));
-        let back = |lobe: LongitudinalLobe| {
-            behind * lobe.at(light.sin_theta, light.cos_theta, self.sin_theta, self.cos_theta)
-        };
-        let back_once = back(self.backscatter_lobe);
-        let back_after = back(LongitudinalLobe::quick(self.backscatter_variance + x));
-        [0, 1, 2].map(|c| {
+        let behind = same_side * (1.0 - exp(-clamp(light.fibres_behind, 0.0, f32::MAX)));
+        let back_once = behind * self.lobe_at(self.backscatter_lobe, 3, light);
+        let back_after =
+            behind * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
+
+        let mut radiance = [0.0; 3];
+        for c in 0..3 {
             let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
             let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
             let global = after_r * g[0] + after_tt[c] * g[1] + after_trt * (g[2] + self.rest[c]);
             let local = self.backscatter[c];
-            unhit * (single + strength * local * back_once)
-                + strength * psi[c] * (global + local * back_after)
-        })
+            radiance[c] = unhit * (single + strength * local * back_once)
+                + strength * psi[c] * (global + local * back_after);
+        }
+        radiance
+    }
+
+    /// A longitudinal lobe at the light, with the tilt of lobe `p`.
+    #[inline(always)]
+    fn lobe_at(&self, lobe: LongitudinalLobe, p: usize, light: &PointLight) -> f32 {
+        lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
     }
 }
