@@ -194,13 +194,11 @@ impl PointScatter {
 
         let reached = three(|c| exp(-n * (1.0 - self.forward[c])));
         let psi = three(|c| clamp(reached[c] - unhit, 0.0, 1.0));
-        let mut added = [0.0; 3];
-        for c in 0..3 {
-            // Mean hits of light that was hit, n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
-            let hit = clamp(1.0 - unhit / reached[c], 0.0, 1.0);
-            let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
-            added[c] = clamp(self.spread[c] * hits, 0.0, WIDEST);
-        }
+        let added = [
+            self.added(0, n, unhit, reached[0]),
+            self.added(1, n, unhit, reached[1]),
+            self.added(2, n, unhit, reached[2]),
+        ];
         let share = three(|c| psi[c] + 1e-6);
         let x = (share[0] * added[0] + share[1] * added[1] + share[2] * added[2])
             / (share[0] + share[1] + share[2]);
@@ -229,16 +227,43 @@ impl PointScatter {
         let back_after =
             behind * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
 
-        let mut radiance = [0.0; 3];
-        for c in 0..3 {
-            let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
-            let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
-            let global = after_r * g[0] + after_tt[c] * g[1] + after_trt * (g[2] + self.rest[c]);
-            let local = self.backscatter[c];
-            radiance[c] = unhit * (single + strength * local * back_once)
-                + strength * psi[c] * (global + local * back_after);
-        }
-        radiance
+        let direct = [unhit, strength * back_once, once[0], once[1], once[2], once[3]];
+        let scattered = [strength, back_after, after_r, after_trt];
+        [
+            self.channel(0, rows, &direct, &scattered, psi[0], after_tt[0]),
+            self.channel(1, rows, &direct, &scattered, psi[1], after_tt[1]),
+            self.channel(2, rows, &direct, &scattered, psi[2], after_tt[2]),
+        ]
+    }
+
+    /// Variance that the hits add to light of a channel which was hit.
+    #[inline(always)]
+    fn added(&self, c: usize, n: f32, unhit: f32, reached: f32) -> f32 {
+        // Mean hits are n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
+        let hit = clamp(1.0 - unhit / reached, 0.0, 1.0);
+        let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
+        clamp(self.spread[c] * hits, 0.0, WIDEST)
+    }
+
+    /// Radiance of a channel. `direct` is the light that no fibre hit, its backscattering and its four lobes; `scattered` is the
+    /// strength, the backscattering and the lobes R and TRT of light that was hit, whose amount is `psi` and whose lobe TT `after_tt`.
+    #[inline(always)]
+    fn channel(
+        &self,
+        c: usize,
+        rows: &[ScatterRow; 2],
+        direct: &[f32; 6],
+        scattered: &[f32; 4],
+        psi: f32,
+        after_tt: f32,
+    ) -> f32 {
+        let [unhit, back_once, once @ ..] = direct;
+        let [strength, back_after, after_r, after_trt] = scattered;
+        let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
+        let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
+        let global = after_r * g[0] + after_tt * g[1] + after_trt * (g[2] + self.rest[c]);
+        let local = self.backscatter[c];
+        unhit * (single + local * back_once) + strength * psi * (global + local * back_after)
     }
 
     /// A longitudinal lobe at the light, with the tilt of lobe `p`.
