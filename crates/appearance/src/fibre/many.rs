@@ -16,7 +16,8 @@ use super::{
 pub const MOST_FIBRES: f32 = 40.0;
 /// Largest variance of scattered light; a lobe that is wider is flat anyway.
 const WIDEST: f32 = 20.0;
-/// Backscattered light per radian of azimuth: `2 / pi` (Zinke et al. 2008, equation 17), without their density factor of 0.7.
+/// Backscattered light per radian of azimuth: `2 / pi` (Zinke et al. 2008, local multiple scattering). Their density factor of
+/// 0.7 is 1 here, which agrees best with path tracing of layers of parallel fibres.
 const BACKSCATTER: f32 = 2.0 * std::f32::consts::FRAC_1_PI;
 /// Half of the azimuth over which backscattered light ends, around 90 degrees, in radians. A step would show as an edge.
 const BACKSCATTER_EDGE: f32 = 0.2;
@@ -112,7 +113,7 @@ pub struct PointScatter {
     pub forward: [f32; 3],
     /// Per channel: variance of the forward scattering. Symbol: `b_f`.
     pub spread: [f32; 3],
-    /// Per channel: backscattered light times [`BACKSCATTER`]. Symbol: `A_b`.
+    /// Per channel: backscattered light times `2 / pi`. Symbol: `A_b`.
     pub backscatter: [f32; 3],
     /// Variance of the backscattered light, the mean over the channels weighted by that light. Symbol: `v_b`.
     pub backscatter_variance: f32,
@@ -122,8 +123,8 @@ pub struct PointScatter {
     pub rest: [f32; 3],
     /// Per channel: share of diffuse light that the strand scatters, `a_f + a_b`.
     pub albedo: [f32; 3],
-    /// Per channel: rate at which diffuse light is lost per crossed fibre, for `exp(-rate * fibres)`. It is zero for white hair, so
-    /// white hair in a white room stays white (two-flux theory of Kubelka and Munk).
+    /// Per channel: rate at which diffuse light is lost per crossed fibre, for `exp(-rate * fibres)`. It is zero for white hair,
+    /// so white hair in a white room stays white (two-flux theory of Kubelka and Munk).
     pub diffuse_rate: [f32; 3],
 }
 
@@ -165,21 +166,23 @@ impl PointScatter {
 
     /// Radiance toward the eye per unit of irradiance (on a surface perpendicular to the light), per channel.
     ///
-    /// `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0 the strand only shows the light that reaches
-    /// it directly, `exp(-fibres)` times the scattering of one fibre.
+    /// `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0 the strand only shows the light that
+    /// reaches it directly, `exp(-fibres)` times the scattering of one fibre.
     ///
-    /// With n fibres, `e = exp(-n)` of the light hits none of them and `psi = exp(-n (1 - a_f)) - e` is scattered forward by all that it
-    /// hits, which follows from a Poisson distribution of the hits. The radiance is
-    /// `e (f_s + f_b(0)) + psi (f_G + f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, equations 5 to
-    /// 20). x is the mean over the channels, weighted by psi: a variance per channel costs twice the time.
+    /// With n fibres, `e = exp(-n)` of the light hits none of them and `psi = exp(-n (1 - a_f)) - e` is scattered forward by all
+    /// that it hits, which follows from a Poisson distribution of the hits. The radiance is `e (f_s + f_b(0)) + psi (f_G +
+    /// f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, global and local multiple
+    /// scattering). TT has an x per channel. The other lobes share its mean over the channels, weighted by psi, which halves the
+    /// time.
     #[inline(always)]
     pub fn radiance(&self, tables: &FibreTables, light: &PointLight, strength: f32) -> [f32; 3] {
         let rows = [tables.direct.row(self.eye, light.phi), tables.forward.row(self.eye, light.phi)];
         self.radiance_of_rows(&rows, tables.variances, tables.lobes, light, strength)
     }
 
-    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of light that
-    /// was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows are read.
+    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of
+    /// light that was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows
+    /// are read.
     #[inline(always)]
     pub fn radiance_of_rows(
         &self,
@@ -246,7 +249,8 @@ impl PointScatter {
     }
 
     /// Radiance of a channel. `direct` is the light that no fibre hit, its backscattering and its four lobes; `scattered` is the
-    /// strength, the backscattering and the lobes R and TRT of light that was hit, whose amount is `psi` and whose lobe TT `after_tt`.
+    /// strength, the backscattering and the lobes R and TRT of light that was hit, whose amount is `psi` and whose lobe TT
+    /// `after_tt`.
     #[inline(always)]
     fn channel(
         &self,
