@@ -58,36 +58,41 @@ fn dual_scattering(fibre: &Fibre, sigma: f64, at: &Directions, n: f64) -> f64 {
     (-n).exp() * (f_s + f_b(0.0)) + psi * (f_g + f_b(x))
 }
 
-#[test]
-fn single_precision_with_tables_is_close_to_the_formulas() {
-    let fibre = Fibre::default();
-    let tables = FibreTables::bake(&fibre);
-    let mut lines = Vec::new();
-    for (name, eumelanin, pheomelanin) in COLOURS {
-        let sigma = absorption_of_melanin(eumelanin, pheomelanin);
-        let (mut largest, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
-        for (i, n) in [0.0, 0.5, 1.0, 4.0, 16.0].into_iter().enumerate() {
-            let theta_o = [0.0, 0.4, -0.8][i % 3];
-            for phi in [0.3, 1.2, 1.9, 2.9] {
-                let at = Directions { theta_o, theta_i: [0.1, -0.5, 0.3, 0.9][i % 4], phi };
-                let value = point(&tables, theta_o, sigma).radiance(&tables, &light(at.theta_i, phi, n), 1.0);
-                let truth = sigma.map(|sigma| dual_scattering(&fibre, sigma, &at, n));
-                let scale = truth[0].max(truth[1]).max(truth[2]).max(1e-4);
-                for c in 0..3 {
-                    let error = (f64::from(value[c]) - truth[c]).abs() / scale;
-                    largest = largest.max(error);
-                    sum += error;
-                    count += 1.0;
-                }
+/// Mean and largest error of a colour, relative to the brightest channel. The counts of fibres are changed by `factor`.
+fn errors(tables: &FibreTables, [eumelanin, pheomelanin]: [f64; 2], factor: f64) -> (f64, f64) {
+    let sigma = absorption_of_melanin(eumelanin, pheomelanin);
+    let (mut largest, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
+    for (i, n) in [0.0, 0.5, 1.0, 4.0, 16.0].into_iter().enumerate() {
+        let theta_o = [0.0, 0.4, -0.8][i % 3];
+        for phi in [0.3, 1.2, 1.9, 2.9] {
+            let at = Directions { theta_o, theta_i: [0.1, -0.5, 0.3, 0.9][i % 4], phi };
+            let light = light(at.theta_i, phi, factor * n);
+            let value = point(tables, theta_o, sigma).radiance(tables, &light, 1.0);
+            let truth = sigma.map(|sigma| dual_scattering(&tables.fibre, sigma, &at, n));
+            let scale = truth[0].max(truth[1]).max(truth[2]).max(1e-4);
+            for c in 0..3 {
+                let error = (f64::from(value[c]) - truth[c]).abs() / scale;
+                largest = largest.max(error);
+                sum += error;
+                count += 1.0;
             }
         }
-        println!("{name}: mean {:.4}, largest {largest:.4}", sum / count);
-        lines.push((name, sum / count, largest));
     }
-    for (name, mean, largest) in lines {
-        // Measured 0.7 % and 4.7 % of the brightest channel, for blonde; the backscattered variance is shared by the channels.
+    (sum / count, largest)
+}
+
+#[test]
+fn single_precision_with_tables_is_close_to_the_formulas() {
+    let tables = FibreTables::bake(&Fibre::default());
+    for (name, eumelanin, pheomelanin) in COLOURS {
+        let (mean, largest) = errors(&tables, [eumelanin, pheomelanin], 1.0);
+        println!("{name}: mean {mean:.4}, largest {largest:.4}");
+        // Measured 0.7 % and 4.7 % for blonde; the other lobes than TT share a variance between the channels.
         assert!(mean < 0.01 && largest < 0.06, "{name}: {mean} {largest}");
     }
+    // A tenth more fibres has to be seen.
+    let (mean, largest) = errors(&tables, [1.3, 0.1], 1.1);
+    assert!(mean > 0.02 && largest > 0.06, "{mean} {largest}");
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn fresnel(cos_i: f64, index: f64) -> f64 {
     0.5 * (parallel * parallel + perpendicular * perpendicular)
 }
 
-/// Path of a ray through the circular section of a fibre (Chiang et al. 2016, section 4; Marschner et al. 2003).
+/// Path of a ray through the circular section of a fibre (Chiang et al. 2016; Marschner et al. 2003).
 #[derive(Clone, Copy, Debug)]
 pub struct FibrePath {
     gamma_o: f64,
@@ -60,7 +60,7 @@ fn wrap(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The logistic distribution of azimuths, trimmed to -pi..pi (Chiang et al. 2016, equations 9 and 10; pbrt, `TrimmedLogistic`).
+/// The logistic distribution of azimuths, trimmed to -pi..pi (Chiang et al. 2016; pbrt, `TrimmedLogistic`).
 #[derive(Clone, Copy, Debug)]
 pub struct TrimmedLogistic {
     scale: f64,
@@ -84,7 +84,7 @@ impl TrimmedLogistic {
     }
 
     /// Mean of [`Self::density`] over 90 degrees to both sides. It is what light has left of its azimuth after it was scattered
-    /// forward by many fibres (Zinke et al. 2008, equation 11).
+    /// forward by many fibres (Zinke et al. 2008, global multiple scattering).
     pub fn mean_over_half(&self, from_exit: f64) -> f64 {
         let x = wrap(from_exit);
         (self.cumulative(x + FRAC_PI_2) - self.cumulative(x - FRAC_PI_2)) / PI

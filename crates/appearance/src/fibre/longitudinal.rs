@@ -5,7 +5,7 @@
 use super::LOBES;
 use super::arithmetic::exp;
 
-/// Variances v of the lobes R, TT, TRT and the rest, for a longitudinal roughness (Chiang et al. 2016, equation 7; pbrt).
+/// Variances v of the lobes R, TT, TRT and the rest, for a longitudinal roughness (Chiang et al. 2016; pbrt).
 pub fn variances(roughness_along: f64) -> [f64; LOBES] {
     let b = roughness_along;
     let v = (0.726 * b + 0.812 * b * b + 3.7 * b.powi(20)).powi(2);
@@ -15,7 +15,7 @@ pub fn variances(roughness_along: f64) -> [f64; LOBES] {
 /// Variances of the lobes relative to that of R.
 pub(super) const VARIANCE_RATIOS: [f64; LOBES] = [1.0, 0.25, 4.0, 4.0];
 
-/// Longitudinal term `M_p` of a lobe with variance `v` (d'Eon et al. 2011, equation 7), per unit of sine:
+/// Longitudinal term `M_p` of a lobe with variance `v` (d'Eon et al. 2011), per unit of sine:
 /// its integral over `cos_i d(theta_i)` is 1.
 ///
 /// The published form `exp(-si so/v) I0(ci co/v) / (2 v sinh(1/v))` overflows for smooth fibres. This one is identical and does
@@ -50,14 +50,14 @@ impl LongitudinalLobe {
         Self { inverse: w, scale: above / below }
     }
 
-    /// [`longitudinal`] in plain arithmetic: one exponential, one square root, one division and no branch. `cos_o` and `cos_i` are
-    /// not negative. The Bessel function is within 0.04 % of the exact one.
+    /// [`longitudinal`] in plain arithmetic: one exponential, one square root, one division and no branch. `cos_o` and `cos_i`
+    /// are not negative. The Bessel function is within 0.04 % of the exact one.
     #[inline(always)]
     pub fn at(self, sin_i: f32, cos_i: f32, sin_o: f32, cos_o: f32) -> f32 {
         let both = cos_i * cos_o;
         let x = both * self.inverse;
-        // The square of I0e(x) as a rational function with the exact slope at 0 and the exact limit 1 / (2 pi x); the free numbers
-        // have the least maximal relative error.
+        // The square of I0e(x) as a rational function with the exact slope at 0 and the exact limit 1 / (2 pi x); the free
+        // numbers have the least maximal relative error.
         let above = 1.0 + x * (0.386_872_3 + x * (0.255_961_1 + x * 0.172_482_43));
         let below = 1.0 + x * (2.386_872_3 + x * (2.598_808_4 + x * (1.298_065 + x * 1.083_739)));
         exp((both - sin_i * sin_o - 1.0) * self.inverse) * (above / below).sqrt() * self.scale

@@ -6,7 +6,7 @@
 // Inlined into the loops of a renderer; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
-use super::arithmetic::{clamp, exp};
+use super::arithmetic::{clamp, exp, three};
 use super::scattering::TILTS;
 use super::{
     CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterRow, ScatterTable, distributions, variances,
@@ -16,7 +16,8 @@ use super::{
 pub const MOST_FIBRES: f32 = 40.0;
 /// Largest variance of scattered light; a lobe that is wider is flat anyway.
 const WIDEST: f32 = 20.0;
-/// Backscattered light per radian of azimuth: `2 / pi` (Zinke et al. 2008, equation 17), without their density factor of 0.7.
+/// Backscattered light per radian of azimuth: `2 / pi` (Zinke et al. 2008, local multiple scattering). Their density factor of
+/// 0.7 is 1 here, which agrees best with path tracing of layers of parallel fibres.
 const BACKSCATTER: f32 = 2.0 * std::f32::consts::FRAC_1_PI;
 /// Half of the azimuth over which backscattered light ends, around 90 degrees, in radians. A step would show as an edge.
 const BACKSCATTER_EDGE: f32 = 0.2;
@@ -112,7 +113,7 @@ pub struct PointScatter {
     pub forward: [f32; 3],
     /// Per channel: variance of the forward scattering. Symbol: `b_f`.
     pub spread: [f32; 3],
-    /// Per channel: backscattered light times [`BACKSCATTER`]. Symbol: `A_b`.
+    /// Per channel: backscattered light times `2 / pi`. Symbol: `A_b`.
     pub backscatter: [f32; 3],
     /// Variance of the backscattered light, the mean over the channels weighted by that light. Symbol: `v_b`.
     pub backscatter_variance: f32,
@@ -122,8 +123,8 @@ pub struct PointScatter {
     pub rest: [f32; 3],
     /// Per channel: share of diffuse light that the strand scatters, `a_f + a_b`.
     pub albedo: [f32; 3],
-    /// Per channel: rate at which diffuse light is lost per crossed fibre, for `exp(-rate * fibres)`. It is zero for white hair, so
-    /// white hair in a white room stays white (two-flux theory of Kubelka and Munk).
+    /// Per channel: rate at which diffuse light is lost per crossed fibre, for `exp(-rate * fibres)`. It is zero for white hair,
+    /// so white hair in a white room stays white (two-flux theory of Kubelka and Munk).
     pub diffuse_rate: [f32; 3],
 }
 
@@ -165,21 +166,23 @@ impl PointScatter {
 
     /// Radiance toward the eye per unit of irradiance (on a surface perpendicular to the light), per channel.
     ///
-    /// `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0 the strand only shows the light that reaches
-    /// it directly, `exp(-fibres)` times the scattering of one fibre.
+    /// `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0 the strand only shows the light that
+    /// reaches it directly, `exp(-fibres)` times the scattering of one fibre.
     ///
-    /// With n fibres, `e = exp(-n)` of the light hits none of them and `psi = exp(-n (1 - a_f)) - e` is scattered forward by all that it
-    /// hits, which follows from a Poisson distribution of the hits. The radiance is
-    /// `e (f_s + f_b(0)) + psi (f_G + f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, equations 5 to
-    /// 20). x is the mean over the channels, weighted by psi: a variance per channel costs twice the time.
+    /// With n fibres, `e = exp(-n)` of the light hits none of them and `psi = exp(-n (1 - a_f)) - e` is scattered forward by all
+    /// that it hits, which follows from a Poisson distribution of the hits. The radiance is `e (f_s + f_b(0)) + psi (f_G +
+    /// f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, global and local multiple
+    /// scattering). TT has an x per channel. The other lobes share its mean over the channels, weighted by psi, which halves the
+    /// time.
     #[inline(always)]
     pub fn radiance(&self, tables: &FibreTables, light: &PointLight, strength: f32) -> [f32; 3] {
         let rows = [tables.direct.row(self.eye, light.phi), tables.forward.row(self.eye, light.phi)];
         self.radiance_of_rows(&rows, tables.variances, tables.lobes, light, strength)
     }
 
-    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of light that
-    /// was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows are read.
+    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of
+    /// light that was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows
+    /// are read.
     #[inline(always)]
     pub fn radiance_of_rows(
         &self,
@@ -192,44 +195,84 @@ impl PointScatter {
         let n = clamp(light.fibres, 0.0, MOST_FIBRES);
         let unhit = exp(-n);
 
-        let reached = self.forward.map(|a_f| exp(-n * (1.0 - a_f)));
-        let psi = reached.map(|reached| clamp(reached - unhit, 0.0, 1.0));
-        let added = [0, 1, 2].map(|c| {
-            // Mean hits of light that was hit, n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
-            let hit = clamp(1.0 - unhit / reached[c], 0.0, 1.0);
-            let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
-            clamp(self.spread[c] * hits, 0.0, WIDEST)
-        });
-        let share = psi.map(|psi| psi + 1e-6);
+        let reached = three(|c| exp(-n * (1.0 - self.forward[c])));
+        let psi = three(|c| clamp(reached[c] - unhit, 0.0, 1.0));
+        let added = [
+            self.added(0, n, unhit, reached[0]),
+            self.added(1, n, unhit, reached[1]),
+            self.added(2, n, unhit, reached[2]),
+        ];
+        let share = three(|c| psi[c] + 1e-6);
         let x = (share[0] * added[0] + share[1] * added[1] + share[2] * added[2])
             / (share[0] + share[1] + share[2]);
 
-        let m = |lobe: LongitudinalLobe, p: usize| {
-            lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
-        };
-        let once: [f32; LOBES] = [0, 1, 2, 3].map(|p| m(lobes[p], p));
+        let once = [
+            self.lobe_at(lobes[0], 0, light),
+            self.lobe_at(lobes[1], 1, light),
+            self.lobe_at(lobes[2], 2, light),
+            self.lobe_at(lobes[3], 3, light),
+        ];
         // TT carries most of the light of fair hair and is the narrowest, so each channel has its own. The longer paths are few;
         // after scattering they count to TRT, whose variance they have.
-        let after_r = m(LongitudinalLobe::quick(variances[0] + x), 0);
-        let after_tt = added.map(|x| m(LongitudinalLobe::quick(variances[1] + x), 1));
-        let after_trt = m(LongitudinalLobe::quick(variances[2] + x), 2);
+        let after_r = self.lobe_at(LongitudinalLobe::quick(variances[0] + x), 0, light);
+        let after_tt = [
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[0]), 1, light),
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[1]), 1, light),
+            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[2]), 1, light),
+        ];
+        let after_trt = self.lobe_at(LongitudinalLobe::quick(variances[2] + x), 2, light);
 
-        // Backscattered light leaves on the side of the light.
+        // Backscattered light leaves on the side of the light. Lobe 3 has no tilt.
         let same_side =
             clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
-        let behind = same_side * (1.0 - exp(-light.fibres_behind.max(0.0)));
-        let back = |lobe: LongitudinalLobe| {
-            behind * lobe.at(light.sin_theta, light.cos_theta, self.sin_theta, self.cos_theta)
-        };
-        let back_once = back(self.backscatter_lobe);
-        let back_after = back(LongitudinalLobe::quick(self.backscatter_variance + x));
-        [0, 1, 2].map(|c| {
-            let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
-            let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
-            let global = after_r * g[0] + after_tt[c] * g[1] + after_trt * (g[2] + self.rest[c]);
-            let local = self.backscatter[c];
-            unhit * (single + strength * local * back_once)
-                + strength * psi[c] * (global + local * back_after)
-        })
+        let behind = same_side * (1.0 - exp(-clamp(light.fibres_behind, 0.0, f32::MAX)));
+        let back_once = behind * self.lobe_at(self.backscatter_lobe, 3, light);
+        let back_after =
+            behind * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
+
+        let direct = [unhit, strength * back_once, once[0], once[1], once[2], once[3]];
+        let scattered = [strength, back_after, after_r, after_trt];
+        [
+            self.channel(0, rows, &direct, &scattered, psi[0], after_tt[0]),
+            self.channel(1, rows, &direct, &scattered, psi[1], after_tt[1]),
+            self.channel(2, rows, &direct, &scattered, psi[2], after_tt[2]),
+        ]
+    }
+
+    /// Variance that the hits add to light of a channel which was hit.
+    #[inline(always)]
+    fn added(&self, c: usize, n: f32, unhit: f32, reached: f32) -> f32 {
+        // Mean hits are n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
+        let hit = clamp(1.0 - unhit / reached, 0.0, 1.0);
+        let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
+        clamp(self.spread[c] * hits, 0.0, WIDEST)
+    }
+
+    /// Radiance of a channel. `direct` is the light that no fibre hit, its backscattering and its four lobes; `scattered` is the
+    /// strength, the backscattering and the lobes R and TRT of light that was hit, whose amount is `psi` and whose lobe TT
+    /// `after_tt`.
+    #[inline(always)]
+    fn channel(
+        &self,
+        c: usize,
+        rows: &[ScatterRow; 2],
+        direct: &[f32; 6],
+        scattered: &[f32; 4],
+        psi: f32,
+        after_tt: f32,
+    ) -> f32 {
+        let [unhit, back_once, once @ ..] = direct;
+        let [strength, back_after, after_r, after_trt] = scattered;
+        let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
+        let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
+        let global = after_r * g[0] + after_tt * g[1] + after_trt * (g[2] + self.rest[c]);
+        let local = self.backscatter[c];
+        unhit * (single + local * back_once) + strength * psi * (global + local * back_after)
+    }
+
+    /// A longitudinal lobe at the light, with the tilt of lobe `p`.
+    #[inline(always)]
+    fn lobe_at(&self, lobe: LongitudinalLobe, p: usize, light: &PointLight) -> f32 {
+        lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
     }
 }

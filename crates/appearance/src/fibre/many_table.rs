@@ -17,8 +17,8 @@ const WIDEST: f64 = 200.0;
 ///
 /// | index | value |
 /// |---|---|
-/// | 0 | `a_f`, the share of light that one fibre scatters forward (Zinke et al. 2008, equation 6) |
-/// | 1 | `a_b`, the share that it scatters backward (equation 12) |
+/// | 0 | `a_f`, the share of light that one fibre scatters forward (Zinke et al. 2008, forward scattering transmittance) |
+/// | 1 | `a_b`, the share that it scatters backward |
 /// | 2 | variance of the forward scattering over that of R: `sum ratio_p a_fp / a_f` |
 /// | 3 | variance of the backward scattering over that of R |
 /// | 4 | `A_b`, light that returns from the fibres behind after any number of scatterings, see [`backscattered`] |
@@ -30,8 +30,9 @@ pub type ManyRow = [f32; 8];
 /// Multiple scattering by absorption and inclination, for [`super::PointScatter`].
 ///
 /// The rows are a flat array of 16 x 64 rows of 8 values (32 KB). Row `j * 64 + k` is that of the cosine of the same `j` as in a
-/// [`super::ScatterTable`] and of the absorption whose [`position`] is `k`. Values between are interpolated bilinearly. Variances are relative to that of R, so the
-/// table depends on the azimuthal roughness and the index of refraction, and on nothing else.
+/// [`super::ScatterTable`] and of the absorption whose [`position`] is `k`. Values between are interpolated bilinearly.
+/// Variances are relative to that of R, so the table depends on the azimuthal roughness and the index of refraction, and on
+/// nothing else.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManyTable {
     rows: Vec<ManyRow>,
@@ -39,8 +40,8 @@ pub struct ManyTable {
 
 /// Position of an absorption on the axis of the table, 0 to 63: `63 sqrt(sigma) / (1 + sqrt(sigma))`.
 ///
-/// It resolves light hair finely, where the root of the albedo's loss counts, and its end is an infinite absorption, so nothing is
-/// clamped.
+/// It resolves light hair finely, where the root of the albedo's loss counts, and its end is an infinite absorption, so nothing
+/// is clamped.
 #[inline(always)]
 pub fn position(sigma: f32) -> f32 {
     let root = sigma.max(0.0).sqrt().min(1e9);
@@ -56,8 +57,9 @@ fn absorption(k: usize) -> f64 {
 
 /// Light that returns from endless fibres behind, beyond what the first one scatters backward.
 ///
-/// It is the reflectance of an endless stack of layers which transmit `a_f` and reflect `a_b`, less the first layer. For coloured hair
-/// it agrees with the two terms of Zinke et al. 2008 (equation 14) and for white hair it is the energy that they leave out.
+/// It is the reflectance of an endless stack of layers which transmit `a_f` and reflect `a_b`, less the first layer. For
+/// coloured hair it agrees with the two terms of Zinke et al. 2008 for the average backscattering attenuation and for white hair
+/// it is the energy that they leave out.
 pub fn backscattered(a_f: f64, a_b: f64) -> f64 {
     let q = 1.0 + a_b * a_b - a_f * a_f;
     let root = (q * q - 4.0 * a_b * a_b).max(0.0).sqrt();

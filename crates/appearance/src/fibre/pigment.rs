@@ -1,19 +1,19 @@
 //! Absorption of hair from its pigments or from a colour.
 
-/// Absorption per radius of the fibre in red, green and blue for an amount of eumelanin (Chiang et al. 2016, section 4.1; pbrt).
+/// Absorption per radius of the fibre in red, green and blue for an amount of eumelanin (Chiang et al. 2016; pbrt).
 pub const EUMELANIN: [f64; 3] = [0.419, 0.697, 1.37];
 /// Absorption per radius of the fibre for an amount of pheomelanin.
 pub const PHEOMELANIN: [f64; 3] = [0.187, 0.4, 1.05];
 
-/// Absorption per radius of hair with two pigments. Black hair has about 8 of eumelanin, brown 1.3, blonde 0.3 and white 0; red hair
-/// has about 0.8 of pheomelanin. Negative amounts and values that are not numbers count as zero.
+/// Absorption per radius of hair with two pigments. Black hair has about 8 of eumelanin, brown 1.3, blonde 0.3 and white 0; red
+/// hair has about 0.8 of pheomelanin. Negative amounts and values that are not numbers count as zero.
 pub fn absorption_of_melanin(eumelanin: f64, pheomelanin: f64) -> [f64; 3] {
     let (e, p) = (eumelanin.max(0.0), pheomelanin.max(0.0));
     [0, 1, 2].map(|c| e * EUMELANIN[c] + p * PHEOMELANIN[c])
 }
 
-/// Absorption per radius of dyed hair that has the linear colour `color` where much of it is lit from everywhere (Chiang et al. 2016,
-/// equation 9). It depends on the azimuthal roughness, because rough fibres make longer paths.
+/// Absorption per radius of dyed hair that has the linear colour `color` where much of it is lit from everywhere (Chiang et al.
+/// 2016). It depends on the azimuthal roughness, because rough fibres make longer paths.
 ///
 /// A channel is clamped to 0.001 to 1; a value that is not a number counts as black.
 pub fn absorption_of_color(color: [f64; 3], roughness_around: f64) -> [f64; 3] {

@@ -15,7 +15,7 @@ pub struct Directions {
     pub phi: f64,
 }
 
-/// Turn of the eye's inclination per lobe, in tilts of the scales (Chiang et al. 2016, section 4; pbrt).
+/// Turn of the eye's inclination per lobe, in tilts of the scales (Chiang et al. 2016; pbrt).
 pub(super) const TILTS: [f64; LOBES] = [-2.0, 1.0, 4.0, 0.0];
 
 /// Longitudinal terms of all lobes.
@@ -31,7 +31,7 @@ fn longitudinal_terms(
     })
 }
 
-/// Scattering of light by a fibre toward a point at the offset `h` of its width, -1 to 1 (Chiang et al. 2016, equation 1).
+/// Scattering of light by a fibre toward a point at the offset `h` of its width, -1 to 1 (Chiang et al. 2016).
 ///
 /// `sigma` is the absorption per radius and channel; negative values count as zero. The result is per steradian and contains the
 /// cosine of the light, see the [module](super).

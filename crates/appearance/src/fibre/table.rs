@@ -37,8 +37,9 @@ pub type ScatterRow = [f32; 8];
 /// Distribution of scattered light over the azimuth, averaged over the width of the fibre.
 ///
 /// The rows are a flat array of 64 x 16 rows of 8 values (32 KB). Row `j * 64 + i` is that of the azimuth `pi i / 63` and of the
-/// eye's cosine `(r + (1 - r) j / 15)^2` with `r = sqrt(0.05)`, which are closer at grazing angles because reflection rises there. Values between are interpolated bilinearly. The table depends on the azimuthal roughness and the
-/// index of refraction, and on nothing else.
+/// eye's cosine `(r + (1 - r) j / 15)^2` with `r = sqrt(0.05)`, which are closer at grazing angles because reflection rises
+/// there. Values between are interpolated bilinearly. The table depends on the azimuthal roughness and the index of refraction,
+/// and on nothing else.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterTable {
     rows: Vec<ScatterRow>,
@@ -88,8 +89,8 @@ pub(super) fn bilinear(rows: [&[f32; 8]; 4], x: f32, y: f32) -> [f32; 8] {
 }
 
 impl ScatterTable {
-    /// The table of the distribution itself and that of its mean over 90 degrees to both sides, which is the distribution of light
-    /// that many fibres scattered forward before ([`TrimmedLogistic::mean_over_half`]).
+    /// The table of the distribution itself and that of its mean over 90 degrees to both sides, which is the distribution of
+    /// light that many fibres scattered forward before ([`TrimmedLogistic::mean_over_half`]).
     pub fn bake(fibre: &Fibre) -> [Self; 2] {
         let fibre = fibre.clamped();
         let logistic = TrimmedLogistic::new(fibre.roughness_around.max(SMOOTHEST_AROUND));
