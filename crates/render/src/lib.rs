@@ -3,11 +3,13 @@
 //! A [`FrameInput`] is everything that a picture shows at one instant; a [`Renderer`] makes a [`Picture`] of it.
 //! Shadow methods run here, between the strands and their shading.
 
+mod ambient;
 mod backend;
 mod camera;
 mod closed;
 mod cpu;
 mod error;
+mod fibre;
 mod frame;
 mod gpu;
 mod image;
@@ -17,6 +19,7 @@ mod light;
 mod light_view;
 mod picture;
 mod renderer;
+mod scene_light;
 mod shadow_stage;
 mod strand_count;
 mod strand_details;

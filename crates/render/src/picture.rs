@@ -40,6 +40,8 @@ pub struct PictureSettings {
     pub exposure_stops: f32,
     /// Brightness of the light from all directions.
     pub ambient: f32,
+    /// The angle about the vertical by which a picture of the surroundings is turned, radians.
+    pub surroundings_turn: f32,
     /// Background at the upper edge, linear sRGB.
     pub background_top: Vec3,
     /// Background at the horizon, linear sRGB.
@@ -65,6 +67,7 @@ impl Default for PictureSettings {
         Self {
             exposure_stops: 0.0,
             ambient: 0.5,
+            surroundings_turn: 0.0,
             background_top: Vec3::new(0.055, 0.062, 0.075),
             background_bottom: Vec3::new(0.20, 0.215, 0.235),
             ground: true,
@@ -94,6 +97,13 @@ impl Settings for PictureSettings {
             "Brightness of the light from all directions, which also reaches the inside of the \
              hair.",
         ),
+        Setting::number(
+            field!(Self, surroundings_turn),
+            [-3.141_593, 3.141_593],
+            "Turn surroundings",
+            "Turns the picture of the surroundings around the figure.",
+        )
+        .unit(Unit::RADIANS),
         Setting::choice::<Transparency>(
             field!(Self, transparency),
             "Transparency",

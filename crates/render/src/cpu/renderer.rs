@@ -5,8 +5,8 @@ mod inspect;
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::PassTime;
-use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
+use lovelock_groom::{HairShading, Strands};
 use rayon::prelude::*;
 
 use super::backdrop::{Ground, ground_simd};
@@ -19,9 +19,11 @@ use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of}
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
-use super::view::View;
+use super::view::{FibreView, View};
+use crate::fibre;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
+use crate::scene_light::SceneLight;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
@@ -35,6 +37,7 @@ pub struct CpuRenderer {
     /// Interpolated strands, kept while nothing moves them.
     strands: Strands,
     drawn: DrawnStrands,
+    light: Option<Box<SceneLight>>,
     kept: KeptInputs,
     keeps: bool,
     maps: Vec<LightMaps>,
@@ -83,6 +86,7 @@ impl Default for CpuRenderer {
         Self {
             strands: Strands::default(),
             drawn: DrawnStrands::default(),
+            light: None,
             kept: KeptInputs::default(),
             keeps: true,
             maps: Vec::new(),
@@ -169,9 +173,17 @@ impl CpuRenderer {
         let mut drawn = std::mem::take(&mut self.drawn);
         let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
         let interpolate_ms = watch.ms();
+        let mut light = self.light.take().unwrap_or_default();
+        let watch = Stopwatch::start();
+        light.follow(input);
+        let ambient_ms = watch.ms();
         let hair = Hair { stored: strands, drawn: &drawn, same_points };
-        let stats = self.draw(input, &hair, unchanged, width, height, target);
-        (self.strands, self.drawn) = (made, drawn);
+        let mut stats = self.draw(input, (&hair, &light), unchanged, width, height, target);
+        (self.strands, self.drawn, self.light) = (made, drawn, Some(light));
+        if let Ok(stats) = &mut stats {
+            stats.draw_ms += ambient_ms;
+            stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms: ambient_ms });
+        }
         if stats.is_err() {
             self.kept.forget();
         }
@@ -181,7 +193,7 @@ impl CpuRenderer {
     fn draw(
         &mut self,
         input: &FrameInput,
-        hair: &Hair,
+        (hair, light): (&Hair, &SceneLight),
         unchanged: Unchanged,
         width: u32,
         height: u32,
@@ -207,9 +219,12 @@ impl CpuRenderer {
         if !unchanged.body {
             self.maps = self.draw_depth(input);
         }
-        let uniform =
-            FrameUniform::new(input, hair.drawn.portion(), (width, height), &self.maps, DEPTH_TEXELS);
-        let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+        let drawn = hair.drawn.portion();
+        let uniform = FrameUniform::new(input, drawn, light, (width, height), &self.maps, DEPTH_TEXELS);
+        let tables = &light.tables;
+        let fibre = (input.look.shading == HairShading::Fibre)
+            .then(|| FibreView { tables, lights: fibre::lights(tables, input.lights) });
+        let view = View::new(&uniform, (&light.grid, fibre), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
         if !unchanged.body {
             passed("draw/body-depth", &part);
         }

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
-use lovelock_groom::StrandBounds;
 use lovelock_groom::fine::{FineStrands, Portion};
+use lovelock_groom::{HairShading, StrandBounds};
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
@@ -211,21 +211,29 @@ impl HairBuffers {
 
     /// Replaces the colours of shaded points by the transmittance of the first light.
     pub fn shade_values(&self, gpu: &Gpu, kernel: &Kernel, commands: &mut Commands, frame: &FrameResources) {
-        self.run_over_points(gpu, kernel, "draw/values", commands, frame);
+        self.run_over_points(gpu, kernel, "draw/values", commands, frame, []);
     }
 
     /// Projects and shades every point.
-    pub fn shade(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
-        self.run_over_points(gpu, &kernels.shade_points, "draw/points", commands, frame);
+    pub fn shade(
+        &self,
+        gpu: &Gpu,
+        (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
+        commands: &mut Commands,
+        frame: &FrameResources,
+    ) {
+        let kernel = &kernels.shade_points[usize::from(shading == HairShading::Fibre)];
+        self.run_over_points(gpu, kernel, "draw/points", commands, frame, [(8, tables.as_entire_binding())]);
     }
 
-    fn run_over_points(
+    fn run_over_points<const N: usize>(
         &self,
         gpu: &Gpu,
         kernel: &Kernel,
         name: &'static str,
         commands: &mut Commands,
         frame: &FrameResources,
+        more: [(u32, wgpu::BindingResource); N],
     ) {
         let drawn = self.drawn();
         let points = u64::from(drawn.point_count);
@@ -238,7 +246,9 @@ impl HairBuffers {
             (6, self.transmittance.raw().as_entire_binding()),
             (7, self.shaded.raw().as_entire_binding()),
         ];
-        let group = kernel.bind(gpu, &frame.with(own));
+        let mut all = frame.with(own);
+        all.extend(more);
+        let group = kernel.bind(gpu, &all);
         commands.compute(name, |pass| kernel.run(pass, &group, points));
     }
 }

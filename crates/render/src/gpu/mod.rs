@@ -8,6 +8,7 @@ mod ground;
 mod hair;
 mod interpolate;
 mod layers;
+mod light_buffers;
 mod light_kernels;
 mod pipelines;
 mod present;

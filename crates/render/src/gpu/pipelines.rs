@@ -20,7 +20,8 @@ macro_rules! part {
 }
 
 const FRAME: ShaderPart = part!("frame.wgsl");
-const STRAND_SHADING: ShaderPart = part!("strand_shading.wgsl");
+const KAJIYA_KAY: ShaderPart = part!("kajiya_kay.wgsl");
+const FIBRE: ShaderPart = part!("fibre.wgsl");
 const STRAND_POINTS: ShaderPart = part!("strand_points.wgsl");
 const SURFACE: ShaderPart = part!("surface.wgsl");
 const SURFACE_SHADING: ShaderPart = part!("surface_shading.wgsl");
@@ -39,7 +40,7 @@ const SHRINK: ShaderPart = part!("shrink.wgsl");
 /// The shaders of these kernels and pipelines.
 fn own_shaders() -> [(&'static str, ShaderSource); 9] {
     [
-        ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
+        ("strand points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
         ("picture", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
         ("surface", &[FRAME, SURFACE]),
@@ -49,7 +50,7 @@ fn own_shaders() -> [(&'static str, ShaderSource); 9] {
             "false colours",
             &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS, FALSE_COLORS],
         ),
-        ("values of points", &[FRAME, STRAND_SHADING, STRAND_POINTS, VALUE_POINTS]),
+        ("values of points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))

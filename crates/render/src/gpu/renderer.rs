@@ -18,6 +18,7 @@ use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
 use super::layers::LayerBuffers;
+use super::light_buffers::LightBuffers;
 use super::pipelines::Pipelines;
 use super::present::MOST_LISTS;
 use super::screen::{Screen, ScreenInput};
@@ -45,6 +46,7 @@ pub struct GpuRenderer {
     hair: HairBuffers,
     surface: SurfaceBuffers,
     ground: Ground,
+    light: LightBuffers,
     eye: Eye,
     linear: wgpu::Sampler,
     compare: wgpu::Sampler,
@@ -96,6 +98,7 @@ impl GpuRenderer {
             hair: HairBuffers::new(&gpu)?,
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             ground: Ground::new(&gpu),
+            light: LightBuffers::new(&gpu),
             eye: Eye::new(&gpu)?,
             compare: device.create_sampler(&wgpu::SamplerDescriptor {
                 compare: Some(wgpu::CompareFunction::LessEqual),
@@ -201,6 +204,7 @@ impl GpuRenderer {
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
         self.hair.write(gpu, &mut commands, input, height)?;
+        self.light.write(gpu, &mut commands, input);
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
 
@@ -211,8 +215,14 @@ impl GpuRenderer {
             let columns_from_world = self.shadow.columns_from_world(maps.len());
             maps.push(LightMaps { columns_from_world, ..view });
         }
-        let uniform =
-            FrameUniform::new(input, self.hair.portion(), (width, height), &maps, self.surface.texels);
+        let uniform = FrameUniform::new(
+            input,
+            self.hair.portion(),
+            self.light.light(),
+            (width, height),
+            &maps,
+            self.surface.texels,
+        );
         gpu.upload(&self.uniform, 0, &[uniform]);
         self.last = uniform;
         let seen = self.seen_hair(input, &uniform, [width, height]);
@@ -224,13 +234,15 @@ impl GpuRenderer {
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,
+            ambient: self.light.cells(),
         };
         for (k, map) in maps.iter().enumerate() {
             self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
         }
         self.draw_body(gpu, &mut commands, targets);
         let lit = self.pipelines.lit.of(gpu, maps.len())?;
-        self.hair.shade(gpu, lit, &mut commands, &frame);
+        let shading = (lit, input.look.shading, self.light.tables());
+        self.hair.shade(gpu, shading, &mut commands, &frame);
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }

@@ -11,6 +11,7 @@ use crate::cpu::points::ShadedPoint;
 use crate::cpu::tile::{Grid, STRIDE, TILE};
 use crate::cpu::view::View;
 use crate::picture::check_size;
+use crate::scene_light::NO_LIGHT;
 use crate::uniform::FrameUniform;
 
 /// The largest distance of hair from the pixel, pixels.
@@ -54,8 +55,8 @@ impl ValueRenderer {
         [width, height]: [u32; 2],
         pixel: [f32; 2],
     ) -> Option<HairHit> {
-        let uniform = FrameUniform::new(input, None, (width, height), &[], 1);
-        let view = View::new(&uniform, &[], &[], 1);
+        let uniform = FrameUniform::new(input, None, &NO_LIGHT, (width, height), &[], 1);
+        let view = View::new(&uniform, (&NO_LIGHT.grid, None), &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
         let points = &self.placed.points;
         let near = |&first: &u32| {
