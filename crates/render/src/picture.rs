@@ -59,8 +59,8 @@ impl Default for PictureSettings {
         Self {
             exposure_stops: 0.0,
             ambient: 0.5,
-            background_top: Vec3::new(0.055, 0.062, 0.075),
-            background_bottom: Vec3::new(0.20, 0.215, 0.235),
+            background_top: Vec3::new(0.135, 0.145, 0.163),
+            background_bottom: Vec3::new(0.25, 0.262, 0.282),
             ground: true,
             transparency: Transparency::default(),
             strand_opacity: 0.85,
