@@ -64,7 +64,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Opt
 const CUT: [&str; 7] =
     ["length", "layering", "length_variation", "face_framing", "fringe", "fringe_length", "taper"];
 
-const SHAPE: [&str; 9] = [
+const SHAPE: [&str; 11] = [
     "part_position",
     "part_strength",
     "sweep",
@@ -74,6 +74,8 @@ const SHAPE: [&str; 9] = [
     "hold",
     "ends",
     "hairline",
+    "hairline_softness",
+    "baby_hairs",
 ];
 
 const TEXTURE: [&str; 12] = [

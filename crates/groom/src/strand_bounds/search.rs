@@ -174,7 +174,9 @@ impl Search<'_> {
     /// The largest coordinate of the strands.
     fn farthest(self, guides: &[Extent]) -> Option<f32> {
         let Self { bounds, frame, .. } = self;
-        let whole = guides.iter().fold(Extent::NONE, |whole, guide| whole.join(*guide));
+        // A guide with an infinite point would make any bound close enough.
+        let finite = guides.iter().filter(|guide| (guide.max - guide.min).is_finite());
+        let whole = finite.fold(Extent::NONE, |whole, guide| whole.join(*guide));
         let tolerance = (TOLERANCE * (whole.max - whole.min)).max(0.0);
         let wisps = (0..).zip(&bounds.wisps).map(|(number, wisp)| Candidate {
             at_most: match self.narrowed_along(number) {

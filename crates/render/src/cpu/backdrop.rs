@@ -5,7 +5,7 @@
 use glam::Vec3;
 use lovelock_groom::simd_versions;
 
-use super::math::{max, mix, smoothstep, three};
+use super::math::{exp2, max, mix, smoothstep, three};
 use super::tile::TILE;
 use super::view::View;
 
@@ -92,6 +92,14 @@ impl Ground {
     }
 }
 
+/// How much darker the background is far from the pool of light behind the figure.
+const POOL_DEPTH: f32 = 0.6;
+/// Exponent of the pool's bell: it is half as strong at a distance of 0.88 from its middle, where 1 is half the height of a
+/// square image.
+const POOL_FALL: f32 = -1.3;
+/// Height of the pool's middle: head and shoulders are above the middle of the image.
+const POOL_Y: f32 = 0.12;
+
 /// The fully lit colour of a row of a tile whose first pixel has its centre at `x`, `y`.
 #[inline(always)]
 pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) {
@@ -100,12 +108,14 @@ pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) 
     let (top, bottom) = (uniform.background_top.to_array(), uniform.background_bottom.to_array());
     let ndc_y = 1.0 - 2.0 * y / size.y;
     let blend = smoothstep(0.0, 1.0, 0.5 - 0.5 * ndc_y);
-    let (first, step, v) = (2.0 * x / size.x - 1.0, 2.0 / size.x, ndc_y * 0.7);
+    // Half as elongated as the image.
+    let (wide, high) = ((size.x / size.y).sqrt(), ndc_y - POOL_Y);
+    let (first, step) = (2.0 * x / size.x - 1.0, 2.0 / size.x);
     let mut pool = [0.0; TILE];
     for (lane, pool) in pool.iter_mut().enumerate() {
-        let u = (first + step * lane as f32) * 0.8;
-        // A soft pool of light behind the figure.
-        *pool = 1.0 - 0.28 * smoothstep(0.2, 1.5, (u * u + v * v).sqrt());
+        let u = (first + step * lane as f32) * wide;
+        // A bell has no edge: where a ramp begins or ends, the eye sees a ring.
+        *pool = 1.0 - POOL_DEPTH * (1.0 - exp2(POOL_FALL * (u * u + high * high)));
     }
     for c in 0..3 {
         let color = mix(top[c], bottom[c], blend);

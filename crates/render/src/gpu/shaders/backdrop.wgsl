@@ -34,12 +34,22 @@ fn ndc_of(pixel: vec2u) -> vec2f {
     return ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
 }
 
+// How much darker the background is far from the pool of light behind the figure.
+const POOL_DEPTH: f32 = 0.6;
+// Exponent of the pool's bell: it is half as strong at a distance of 0.88 from its middle, where 1 is half the height of a
+// square image.
+const POOL_FALL: f32 = -1.3;
+// Height of the pool's middle: head and shoulders are above the middle of the image.
+const POOL_Y: f32 = 0.12;
+
 // The background without the ground.
 fn graded(pixel: vec2u) -> vec3f {
     let ndc = ndc_of(pixel);
     let down = 0.5 - 0.5 * ndc.y;
-    // A soft pool of light behind the figure.
-    let pool = 1.0 - 0.28 * smoothstep(0.2, 1.5, length(ndc * vec2f(0.8, 0.7)));
+    // Half as elongated as the image.
+    let wide = sqrt(frame.size_scale_exposure.x / frame.size_scale_exposure.y);
+    let from_middle = vec2f(ndc.x * wide, ndc.y - POOL_Y);
+    // A bell has no edge: where a ramp begins or ends, the eye sees a ring.
+    let pool = 1.0 - POOL_DEPTH * (1.0 - exp2(POOL_FALL * dot(from_middle, from_middle)));
     return mix(frame.background_top.xyz, frame.background_bottom.xyz, smoothstep(0.0, 1.0, down)) * pool;
 }
-
