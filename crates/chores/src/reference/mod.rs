@@ -135,8 +135,9 @@ fn render_ours(arguments: &Arguments, variant: &Variant, folder: &Path) -> anyho
 
 /// Runs the path tracer. Returns what it told.
 fn render_theirs(python: &Path, scenes: &Path, out: &Path, samples: u32) -> anyhow::Result<Value> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/reference/render.py");
     let mut program = Command::new(python);
-    program.args(["-c", include_str!("render.py")]).args([scenes, out]).arg(samples.to_string());
+    program.arg(&script).args([scenes, out]).arg(samples.to_string());
     // Progress goes to the terminal.
     let output = program.stderr(Stdio::inherit()).output();
     let output = output.with_context(|| format!("could not start {}", python.display()))?;
