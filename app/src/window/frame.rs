@@ -86,7 +86,6 @@ impl Window {
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
-        self.session.view.thins = self.layout.view_thins;
         let again = self.session.send(self.history.project(), &seen, size);
         if let Some(after) = again {
             ctx.request_repaint_after(after);
@@ -143,11 +142,6 @@ impl Window {
                                     "While something moves, fewer pixels are rendered if that is needed for this many \
                                      images per second. At rest every pixel is rendered.",
                                 );
-                                ui.checkbox(&mut self.layout.view_thins, "Fewer strands while moving")
-                                    .on_hover_text(
-                                        "While something moves, strands that are narrower than a pixel are replaced by \
-                                         fewer and wider ones.",
-                                    );
                             });
                         });
                         if let Some(label) = self.history.undo_label() {

@@ -75,8 +75,6 @@ struct Layout {
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
     view_rate: f32,
-    /// Whether strands narrower than a pixel are thinned while something moves.
-    view_thins: bool,
     compare: CompareLayout,
     timeline: timeline::Zoom,
 }
@@ -88,7 +86,6 @@ impl Default for Layout {
             recent: Vec::new(),
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
-            view_thins: true,
             compare: CompareLayout::default(),
             timeline: timeline::Zoom::default(),
         }

@@ -30,8 +30,6 @@ const AT_REST: Duration = Duration::from_millis(250);
 pub(crate) struct ViewOptions {
     /// The rate that images keep while something moves, images per second, if their size is automatic.
     pub(crate) rate: Option<f32>,
-    /// Whether strands narrower than a pixel are thinned while something moves.
-    pub(crate) thins: bool,
     /// Whether the passes of images are shown and must be measured.
     pub(crate) measured: bool,
 }
@@ -294,14 +292,12 @@ impl Session {
             snapshot: Arc::clone(frame),
             size: size.map(side),
             still: still && automatic,
-            thinned: self.view.thins && automatic && !still,
             measured: self.view.measured,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = same
             && self.drawn.as_ref().is_some_and(|drawn| {
-                (drawn.still, drawn.size, drawn.thinned, drawn.measured)
-                    == (request.still, request.size, request.thinned, request.measured)
+                (drawn.still, drawn.size, drawn.measured) == (request.still, request.size, request.measured)
             });
         if !fresh {
             self.painter.request(request.clone());

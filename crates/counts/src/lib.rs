@@ -198,6 +198,7 @@ impl Drawn {
             shadow: &self.shadow,
             camera: &camera,
             picture: &self.settings,
+            surroundings: None,
             known: None,
         };
         self.renderer.picture(&input, 320, 180, &mut self.picture).expect("a picture");

@@ -69,6 +69,11 @@ impl PassTimer {
         if let Clock::Wall(times) = &mut self.0 {
             times.clear();
         }
+        self.resume(gpu, label)
+    }
+
+    /// Adds commands to the frame that was begun last: their constants follow those of its earlier passes and are kept like them.
+    pub fn resume<'a>(&'a mut self, gpu: &'a Gpu, label: &'static str) -> Commands<'a> {
         Commands { gpu, label, encoder: encoder(gpu, label), clock: &mut self.0 }
     }
 

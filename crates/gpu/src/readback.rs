@@ -17,7 +17,8 @@ pub struct Readback {
 }
 
 impl Readback {
-    /// Encodes copying the first bytes of each of the `wanted` buffers; their numbers are multiples of 4.
+    /// Encodes copying the first bytes of each of the `wanted` buffers; their numbers are multiples of 4,
+    /// not all 0.
     pub fn copy(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, wanted: &[(&wgpu::Buffer, u64)]) {
         self.parts.clear();
         self.parts.extend(wanted.iter().map(|(_, bytes)| *bytes));
@@ -32,7 +33,7 @@ impl Readback {
             }),
         };
         let mut at = 0;
-        for &(from, bytes) in wanted {
+        for &(from, bytes) in wanted.iter().filter(|(_, bytes)| *bytes > 0) {
             encoder.copy_buffer_to_buffer(from, 0, &buffer, at, bytes);
             at += bytes;
         }

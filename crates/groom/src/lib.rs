@@ -5,6 +5,7 @@
 //! The simulator moves its [`Guides`] to a [`GuideFrame`] in world space, from which [`interpolate()`] makes the
 //! [`Strands`] that are shadowed and drawn.
 
+pub mod fine;
 mod frame;
 mod grow;
 mod guides;
@@ -24,7 +25,6 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strands;
-mod thin;
 mod ties;
 mod whole_part;
 
@@ -43,7 +43,7 @@ pub use io::{
     Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis, guess_units,
     load_hair, load_hair_bytes,
 };
-pub use look::HairLook;
+pub use look::{HairLook, HairShading};
 pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
 pub use operation::{HairOperation, OperationCache, OperationResult};

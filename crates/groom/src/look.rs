@@ -1,9 +1,52 @@
 //! Colour and width of hair.
 
+use std::fmt;
+use std::str::FromStr;
+
 use glam::Vec3;
+use lovelock_appearance::fibre::{Fibre, pigment};
 use lovelock_base::field;
-use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
+
+/// How light that meets a strand is shaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HairShading {
+    /// Scattering by a fibre and by the many fibres around it: see [`lovelock_appearance::fibre`].
+    #[default]
+    Fibre,
+    /// Two highlights and a matt part (Kajiya, Kay 1989), as the papers on shadows of hair use it.
+    KajiyaKay,
+}
+
+impl Choices for HairShading {
+    const ALL: &'static [Self] = &[Self::Fibre, Self::KajiyaKay];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Fibre => ("fibre", "Fibre scattering"),
+            Self::KajiyaKay => ("kajiya-kay", "Kajiya-Kay"),
+        }
+    }
+}
+
+impl fmt::Display for HairShading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.names().0)
+    }
+}
+
+impl FromStr for HairShading {
+    type Err = String;
+
+    fn from_str(id: &str) -> Result<Self, String> {
+        Self::ALL.iter().copied().find(|shading| shading.names().0 == id).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|shading| shading.names().0).collect();
+            format!("unknown shading `{id}`: expected one of {}", known.join(", "))
+        })
+    }
+}
 
 /// What hair is made of and how thick it is: everything about its appearance that no light changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,6 +56,18 @@ pub struct HairLook {
     pub eumelanin: f32,
     /// Concentration of pheomelanin, the pigment of red hair.
     pub pheomelanin: f32,
+    /// How light is shaded.
+    pub shading: HairShading,
+    /// Share of strands without pigment.
+    pub grey: f32,
+    /// Colour of the dye, linear sRGB: what much hair of that dye looks like in white light.
+    pub dye: Vec3,
+    /// Share of the dye in the pigment: 0 natural, 1 dye alone.
+    pub dye_amount: f32,
+    /// Share of the locks that are lightened.
+    pub highlights: f32,
+    /// How much less pigment those have, as a fraction.
+    pub highlight_lightening: f32,
     /// How much the melanin varies between strands, as a fraction.
     pub variation: f32,
     /// How much less melanin the tips have than the roots, as a fraction.
@@ -27,8 +82,16 @@ pub struct HairLook {
     pub primary_strength: f32,
     /// Strength of the secondary highlight, in the hair's colour.
     pub secondary_strength: f32,
-    /// Width of the highlights along the hair: low values are silky, high ones dull.
+    /// Width of the highlights along the hair: low values are silky, high ones dull. Symbol: `beta_m`.
     pub roughness: f32,
+    /// Width of the scattering around the strand: low values are glassy, high ones soft. Symbol: `beta_n`.
+    pub roughness_around: f32,
+    /// Angle by which the scales of a hair open toward its tip, radians.
+    pub scale_tilt: f32,
+    /// Index of refraction of the fibre.
+    pub refraction: f32,
+    /// Share of the light that reaches the eye by way of other strands, 0 to 1.
+    pub many_scattering: f32,
     /// Factor on the optical depth with which strands shadow each other (the symbol *s*).
     ///
     /// It represents the light that hair scatters forward instead of blocking: 1 is a head of opaque fibres, which is black a
@@ -41,6 +104,12 @@ impl Default for HairLook {
         Self {
             eumelanin: 1.3,
             pheomelanin: 0.1,
+            shading: HairShading::default(),
+            grey: 0.0,
+            dye: Vec3::new(0.25, 0.02, 0.08),
+            dye_amount: 0.0,
+            highlights: 0.0,
+            highlight_lightening: 0.6,
             variation: 0.25,
             tip_lightening: 0.15,
             diameter: 80e-6,
@@ -49,6 +118,10 @@ impl Default for HairLook {
             primary_strength: 0.6,
             secondary_strength: 0.8,
             roughness: 0.3,
+            roughness_around: 0.3,
+            scale_tilt: 2.0_f32.to_radians(),
+            refraction: 1.55,
+            many_scattering: 1.0,
             extinction_scale: 0.15,
         }
     }
@@ -69,6 +142,39 @@ impl Settings for HairLook {
             "Concentration of the pigment of red hair.",
         ),
         Setting::number(
+            field!(Self, grey),
+            [0.0, 1.0],
+            "Grey",
+            "Share of strands without pigment. All strands are white at 100 %.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::color(
+            field!(Self, dye),
+            "Dye",
+            "Colour of the dye, as a head of hair with this dye looks in white light.",
+        ),
+        Setting::number(
+            field!(Self, dye_amount),
+            [0.0, 1.0],
+            "Dye amount",
+            "How far the dye replaces the natural pigment.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, highlights),
+            [0.0, 1.0],
+            "Lightened locks",
+            "Share of the locks that are lightened, as a hairdresser paints highlights.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, highlight_lightening),
+            [0.0, 1.0],
+            "Lightening",
+            "How much less pigment lightened locks have.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
             field!(Self, variation),
             [0.0, 1.0],
             "Colour variation",
@@ -82,6 +188,12 @@ impl Settings for HairLook {
             "How much lighter hair is at its tips than at its roots.",
         )
         .unit(Unit::FRACTION),
+        Setting::choice::<HairShading>(
+            field!(Self, shading),
+            "Shading",
+            "How light on hair is computed: by scattering in the fibres, or by the two highlights of \
+             Kajiya and Kay.",
+        ),
         Setting::number(
             field!(Self, primary_strength),
             [0.0, 2.0],
@@ -98,8 +210,38 @@ impl Settings for HairLook {
             field!(Self, roughness),
             [0.05, 1.0],
             "Roughness",
-            "Width of the highlights: narrow on silky hair, broad on dull hair.",
+            "Width of the highlights along the strand: narrow on silky hair, broad on dull hair.",
         ),
+        Setting::number(
+            field!(Self, roughness_around),
+            [0.05, 1.0],
+            "Roughness around",
+            "Width of the scattering around the strand: glassy at low values, soft at high ones. Light \
+             hair looks more saturated with rough fibres.",
+        ),
+        Setting::number(
+            field!(Self, scale_tilt),
+            [0.0, 0.18],
+            "Scale tilt",
+            "Angle of the scales of a hair, which moves the first highlight toward the root and the \
+             second toward the tip.",
+        )
+        .unit(Unit::RADIANS)
+        .decimals(1),
+        Setting::number(
+            field!(Self, refraction),
+            [1.1, 2.0],
+            "Refraction",
+            "Index of refraction of a hair; natural hair has 1.55. Higher values shine more.",
+        ),
+        Setting::number(
+            field!(Self, many_scattering),
+            [0.0, 1.0],
+            "Light between strands",
+            "Share of the light that reaches the eye by way of other strands. Without it light hair is \
+             too dark.",
+        )
+        .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, width_scale),
             [0.05, 2.0],
@@ -139,10 +281,31 @@ impl Settings for HairLook {
 impl HairLook {
     /// Absorption per unit of path through a fibre, linear sRGB.
     ///
-    /// Chiang et al. 2016, "A practical and controllable hair and fur model", after d'Eon et al. 2011.
+    /// Chiang et al. 2016, "A practical and controllable hair and fur model", after d'Eon et al. 2011; of the strands that have pigment,
+    /// before any variation.
     pub fn absorption(&self) -> Vec3 {
-        self.eumelanin.max(0.0) * Vec3::new(0.419, 0.697, 1.37)
-            + self.pheomelanin.max(0.0) * Vec3::new(0.187, 0.4, 1.05)
+        let as_vec3 = |of: [f64; 3]| Vec3::from(of.map(|sigma| sigma as f32));
+        let natural = as_vec3(pigment::absorption_of_melanin(self.eumelanin.into(), self.pheomelanin.into()));
+        let amount = self.dye_amount.clamp(0.0, 1.0);
+        if amount > 0.0 {
+            let dye = self.dye.to_array().map(f64::from);
+            let dyed = as_vec3(pigment::absorption_of_color(dye, self.roughness_around.into()));
+            natural.lerp(dyed, amount)
+        } else {
+            natural
+        }
+    }
+
+    /// The shape of the fibres.
+    pub fn fibre(&self) -> Fibre {
+        let fibre = Fibre {
+            roughness_along: self.roughness.into(),
+            roughness_around: self.roughness_around.into(),
+            // Scales open toward the tip, and the tangent of a strand points there.
+            tilt: -f64::from(self.scale_tilt),
+            index: self.refraction.into(),
+        };
+        fibre.clamped()
     }
 
     /// Colour that light has after many fibres, linear sRGB: what a head of hair with this absorption looks like.

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
-use crate::{GroomSettings, HairLook, HairTie, TieKind};
+use crate::{GroomSettings, HairLook, HairShading, HairTie, TieKind};
 
 /// A shipped hairstyle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -126,6 +126,12 @@ const SMOOTH: GroomSettings = GroomSettings {
     look: HairLook {
         eumelanin: 2.6,
         pheomelanin: 0.05,
+        shading: HairShading::Fibre,
+        grey: 0.0,
+        dye: Vec3::new(0.25, 0.02, 0.08),
+        dye_amount: 0.0,
+        highlights: 0.0,
+        highlight_lightening: 0.6,
         variation: 0.25,
         tip_lightening: 0.15,
         diameter: 80e-6,
@@ -134,6 +140,10 @@ const SMOOTH: GroomSettings = GroomSettings {
         primary_strength: 0.6,
         secondary_strength: 0.8,
         roughness: 0.3,
+        roughness_around: 0.3,
+        scale_tilt: 0.034_906_585,
+        refraction: 1.55,
+        many_scattering: 1.0,
         extinction_scale: 0.15,
     },
 };

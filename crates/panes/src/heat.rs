@@ -1,12 +1,20 @@
-//! False-colour images of errors.
+//! False-colour images of errors: in memory, and the colours of those that a device draws.
 
 use lovelock_metrics::{ColorMap, Image, flip, paint};
-use lovelock_render::{FrameInput, Picture, RenderError, ValueRenderer};
+use lovelock_render::{ColorScale, FrameInput, Picture, RenderError, ValueRenderer};
 
 /// Brightness of the image under the colours.
 const BEHIND: f32 = 0.3;
 
-/// Renders `values`, one per strand point, in colour over a dimmed grey image of the same hair.
+/// The colours with which a device draws values up to `largest` as [`on_hair`] does.
+pub(super) fn scale(colors: ColorMap, largest: f32) -> ColorScale {
+    let (low, high) = colors.range_to(largest).into_inner();
+    let table = std::array::from_fn(|k| colors.at(k as f32 / 255.0));
+    ColorScale { range: [low, high], colors: table, behind: BEHIND }
+}
+
+/// Renders `values`, one per strand point, in colour over a dimmed grey image of the same hair. Twin of
+/// `false_colors.wgsl`.
 ///
 /// # Errors
 /// If the size is out of range, or there is not one value per strand point.
@@ -33,7 +41,7 @@ pub(super) fn on_hair(
 }
 
 /// Replaces `picture` by its difference from `reference` (FLIP) in colour, and returns the mean. `picture` is resized to the
-/// reference.
+/// reference. FLIP is computed on the CPU, and so is the reference, so the pictures of every backend come to memory for it.
 pub(super) fn of_pictures(reference: &Picture, largest: f32, picture: &mut Picture) -> Result<f64, String> {
     resize(picture, reference.width, reference.height);
     let test = Image::new(picture.width, picture.height, &picture.rgba).map_err(|error| error.to_string())?;

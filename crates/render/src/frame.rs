@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
+use lovelock_appearance::environment::Panorama;
 use lovelock_gpu::{PassTime, Traffic};
 use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
@@ -30,6 +31,8 @@ pub struct FrameInput<'a> {
     pub camera: &'a Camera,
     /// Settings of the picture as a whole.
     pub picture: &'a PictureSettings,
+    /// A picture of the surroundings that gives light from all directions, in place of sky and ground.
+    pub surroundings: Option<&'a Arc<Panorama>>,
     /// Transmittance that replaces the result of the shadow method; supported by the CPU backend only.
     pub known: Option<KnownTransmittance<'a>>,
 }

@@ -3,11 +3,13 @@
 //! A [`FrameInput`] is everything that a picture shows at one instant; a [`Renderer`] makes a [`Picture`] of it.
 //! Shadow methods run here, between the strands and their shading.
 
+mod ambient;
 mod backend;
 mod camera;
 mod closed;
 mod cpu;
 mod error;
+mod fibre;
 mod frame;
 mod gpu;
 mod image;
@@ -17,7 +19,9 @@ mod light;
 mod light_view;
 mod picture;
 mod renderer;
+mod scene_light;
 mod shadow_stage;
+mod strand_count;
 mod strand_details;
 mod transparency;
 mod uniform;
@@ -27,7 +31,7 @@ pub use camera::Camera;
 pub use cpu::{CpuRenderer, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
-pub use gpu::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
+pub use gpu::{ColorScale, Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
@@ -41,4 +45,5 @@ pub use lovelock_shadow::{
 };
 pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings, check_size};
 pub use renderer::Renderer;
+pub use strand_count::StrandCount;
 pub use transparency::Transparency;

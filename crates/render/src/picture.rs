@@ -5,7 +5,7 @@ use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, RenderError, Transparency};
+use crate::{Backend, RenderError, StrandCount, Transparency};
 
 /// The longest side of a picture, pixels.
 pub const MOST_SIDE: u32 = 8192;
@@ -40,6 +40,8 @@ pub struct PictureSettings {
     pub exposure_stops: f32,
     /// Brightness of the light from all directions.
     pub ambient: f32,
+    /// The angle about the vertical by which a picture of the surroundings is turned, radians.
+    pub surroundings_turn: f32,
     /// Background at the upper edge, linear sRGB.
     pub background_top: Vec3,
     /// Background at the horizon, linear sRGB.
@@ -50,6 +52,12 @@ pub struct PictureSettings {
     pub transparency: Transparency,
     /// Opacity of a strand where it covers a pixel completely.
     pub strand_opacity: f32,
+    /// How the number of strands is chosen.
+    pub strands: StrandCount,
+    /// The number of strands that is drawn by their size, as a multiple of what suits the backend.
+    pub strand_detail: f32,
+    /// The number of strands if it is fixed.
+    pub strand_number: f32,
     /// What draws.
     pub backend: Backend,
 }
@@ -59,11 +67,15 @@ impl Default for PictureSettings {
         Self {
             exposure_stops: 0.0,
             ambient: 0.5,
+            surroundings_turn: 0.0,
             background_top: Vec3::new(0.055, 0.062, 0.075),
             background_bottom: Vec3::new(0.20, 0.215, 0.235),
             ground: true,
             transparency: Transparency::default(),
             strand_opacity: 0.85,
+            strands: StrandCount::default(),
+            strand_detail: 1.0,
+            strand_number: 25_000.0,
             backend: Backend::default(),
         }
     }
@@ -85,6 +97,13 @@ impl Settings for PictureSettings {
             "Brightness of the light from all directions, which also reaches the inside of the \
              hair.",
         ),
+        Setting::number(
+            field!(Self, surroundings_turn),
+            [-3.141_593, 3.141_593],
+            "Turn surroundings",
+            "Turns the picture of the surroundings around the figure.",
+        )
+        .unit(Unit::RADIANS),
         Setting::choice::<Transparency>(
             field!(Self, transparency),
             "Transparency",
@@ -105,6 +124,29 @@ impl Settings for PictureSettings {
             "How much a strand hides of what is behind it.",
         )
         .unit(Unit::FRACTION),
+        Setting::choice::<StrandCount>(
+            field!(Self, strands),
+            "Strands",
+            "How many strands are drawn: as many as suit their size on the screen, a fixed number, or \
+             those that the hairstyle stores. Shadows are always cast by the stored strands.",
+        ),
+        Setting::number(
+            field!(Self, strand_detail),
+            [0.1, 10.0],
+            "Strand detail",
+            "Number of strands when it follows their size on the screen: twice the detail draws twice \
+             as many, half as wide.",
+        )
+        .logarithmic()
+        .soft([0.25, 4.0]),
+        Setting::number(
+            field!(Self, strand_number),
+            [1_000.0, 120_000.0],
+            "Strand number",
+            "Number of strands when it is fixed.",
+        )
+        .unit(Unit::THOUSANDS)
+        .logarithmic(),
         Setting::switch(field!(Self, ground), "Ground", "Shows the ground with the dancer's shadow."),
         Setting::color(field!(Self, background_top), "Top colour", "Colour of the background at the top."),
         Setting::color(

@@ -180,8 +180,7 @@ impl Renderer {
         measured: bool,
         window: Option<&mut DeviceImages>,
     ) -> Result<(Image, FrameStats), RenderError> {
-        if let (Some(gpu), Some(images)) = (&mut self.gpu, &window)
-            && gpu.gpu().device == images.gpu().device
+        if let Some(gpu) = self.on_device_of(window.as_deref())
             && let Some(images) = window
         {
             let (image, stats) = gpu.image(input, [width, height], measured, images)?;
@@ -192,6 +191,12 @@ impl Renderer {
         let image = drawn.is_ok().then(|| Image::on(window, &mut picture));
         self.spare = picture;
         Ok((image.unwrap_or_default(), drawn?))
+    }
+
+    /// The renderer on the GPU, if it draws into the textures of this window without a copy: if they are on one device.
+    pub fn on_device_of(&mut self, window: Option<&DeviceImages>) -> Option<&mut GpuRenderer> {
+        let gpu = self.gpu.as_mut()?;
+        (gpu.gpu().device == window?.gpu().device).then_some(gpu)
     }
 
     /// Whether as many images of [`Renderer::image`] are in flight as may be.

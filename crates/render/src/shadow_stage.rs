@@ -7,7 +7,7 @@ use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -88,11 +88,11 @@ impl std::fmt::Debug for ShadowStage {
 }
 
 impl ShadowStage {
-    /// Builds the maps and looks up all strand points and vertices.
+    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices.
     ///
     /// # Errors
     /// The map would exceed its memory limit, or given transmittance does not match the picture.
-    pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), RenderError> {
+    pub fn run(&mut self, input: &FrameInput, stored: &Strands, drawn: &Strands) -> Result<(), RenderError> {
         self.is_whole = false;
         let lights: Vec<Light> = input
             .lights
@@ -110,7 +110,7 @@ impl ShadowStage {
         let empty: &[Vec3] = &[];
         let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
         if let Some(known) = input.known {
-            known.check(lights.len(), strands.points(), positions.len())?;
+            known.check(lights.len(), drawn.points(), positions.len())?;
         }
         self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
             values.clear();
@@ -124,39 +124,57 @@ impl ShadowStage {
                 at_vertices: Vec::new(),
             });
         }
-        let (vertices, maps) = (&self.vertices, lights.len() as u32);
+        let maps = lights.len() as u32;
         self.passes.clear();
-        let mut passed = |name: &str, part: &Stopwatch| {
-            self.passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
-        };
         let part = Stopwatch::start();
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, strands))?;
-        passed("shadow/build", &part);
-
-        let part = Stopwatch::start();
-        self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
-            let known = input.known.map_or([None; 2], |known| {
-                [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
-            });
-            shadow.look_up(strands, vertices, known);
-        });
-        let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
-        pack(&at_points, strands.points(), &mut self.at_points);
-        let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
-        pack(&at_vertices, positions.len(), &mut self.at_vertices);
-        self.mean = at_points.first().map_or(1.0, |values| mean(values));
-        passed("shadow/ask", &part);
+            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, stored))?;
+        self.passed("shadow/build", &part);
+        self.look_up(input.known, drawn);
 
         let part = Stopwatch::start();
         self.columns.clear();
         self.columns.extend(self.lights.iter().map(|light| light.shadow.column_map()));
-        passed("shadow/columns", &part);
+        self.passed("shadow/columns", &part);
         self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
         self.is_whole = true;
         Ok(())
+    }
+
+    /// Looks up the points of other strands, and the vertices, in the maps of the last run.
+    ///
+    /// # Errors
+    /// There was none.
+    pub fn look_up_again(&mut self, drawn: &Strands) -> Result<(), RenderError> {
+        if !self.is_whole {
+            return Err(RenderError::NoPicture);
+        }
+        self.passes.clear();
+        self.look_up(None, drawn);
+        Ok(())
+    }
+
+    fn look_up(&mut self, known: Option<KnownTransmittance>, drawn: &Strands) {
+        let vertices = &self.vertices;
+        let part = Stopwatch::start();
+        self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
+            let known = known.map_or([None; 2], |known| {
+                [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
+            });
+            shadow.look_up(drawn, vertices, known);
+        });
+        let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
+        pack(&at_points, drawn.points(), &mut self.at_points);
+        let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
+        pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
+        self.mean = at_points.first().map_or(1.0, |values| mean(values));
+        self.passed("shadow/ask", &part);
+    }
+
+    fn passed(&mut self, name: &str, part: &Stopwatch) {
+        self.passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
     }
 
     /// Transmittance of light `light` at the strand points of the last run.

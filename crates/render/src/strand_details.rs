@@ -3,11 +3,14 @@
 use std::sync::Arc;
 
 use lovelock_groom::Hairstyle;
+use lovelock_groom::fine::FineStrands;
 
 /// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StrandDetails {
     style: Option<Arc<Hairstyle>>,
+    /// The number of fine strands; 0 for the stored ones.
+    fine: usize,
     /// See [`pack_detail`].
     pub words: Vec<u32>,
     /// First point of each segment, in the order of strands.
@@ -17,12 +20,14 @@ pub(crate) struct StrandDetails {
 impl StrandDetails {
     /// Rebuilds if the hairstyle has changed. Returns whether it has.
     pub fn follow(&mut self, style: &Arc<Hairstyle>) -> bool {
-        if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
+        if self.fine == 0 && self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             return false;
         }
+        self.fine = 0;
         self.segments.clear();
         self.words.clear();
         self.words.resize(style.strands.points(), 0);
+        let locks = Locks::new(style);
         for (s, ends) in style.strands.first_point.windows(2).enumerate() {
             let (first, end) = (ends[0], ends[1]);
             self.segments.extend(first..end.saturating_sub(1).max(first));
@@ -31,19 +36,83 @@ impl StrandDetails {
                     style.strands.taper.get(i as usize).copied().unwrap_or(1.0),
                     (i - first) as f32 / (end - first - 1).max(1) as f32,
                     style.strands.shade.get(s).copied().unwrap_or(0.5),
-                    i == first,
-                    i + 1 == end,
+                    (i == first, i + 1 == end),
+                    locks.of(s),
                 );
             }
         }
         self.style = Some(Arc::clone(style));
         true
     }
+
+    /// Rebuilds for all strands of a list if `style` or the list has changed. Returns whether it has.
+    pub fn follow_fine(&mut self, style: &Arc<Hairstyle>, fine: &FineStrands, list_changed: bool) -> bool {
+        let count = fine.strands.len();
+        let same_style = self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style));
+        if same_style && !list_changed && self.fine == count {
+            return false;
+        }
+        let set = &style.strands;
+        let points = fine.points_per_strand;
+        let last = points.saturating_sub(1).max(1);
+        self.segments.clear();
+        self.segments.extend(
+            (0..count).flat_map(|i| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32),
+        );
+        self.words.clear();
+        self.words.reserve(count * points);
+        let locks = Locks::new(style);
+        for strand in &fine.strands {
+            let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
+            let own = match ends {
+                [first, end, ..] => set.taper.get(*first as usize..*end as usize).unwrap_or(&[]),
+                _ => &[],
+            };
+            for k in 0..points {
+                let along = k as f32 / last as f32;
+                let at = (along * own.len().saturating_sub(1) as f32).round() as usize;
+                let taper = own.get(at).copied().unwrap_or(1.0);
+                let shade = f32::from(strand.shade) / 255.0;
+                let lock = locks.of(strand.parents[0] as usize);
+                self.words.push(pack_detail(taper, along, shade, (k == 0, k == last), lock));
+            }
+        }
+        (self.style, self.fine) = (Some(Arc::clone(style)), count);
+        true
+    }
+}
+
+/// The locks of a hairstyle, each a part of a wisp: colours vary from lock to lock.
+struct Locks<'a>(&'a Hairstyle);
+
+/// Locks of a wisp.
+const LOCKS_OF_WISP: u32 = 8;
+
+impl<'a> Locks<'a> {
+    fn new(style: &'a Hairstyle) -> Self {
+        Self(style)
+    }
+
+    /// A random number of the lock of a stored strand, 0 to 63.
+    fn of(&self, strand: usize) -> u32 {
+        let wisp = self.0.strands.wisp.get(strand).copied().unwrap_or(0);
+        let part = self.0.wisps.get(wisp as usize).map_or(0, |of| {
+            (strand as u32).saturating_sub(of.first_strand).saturating_mul(LOCKS_OF_WISP)
+                / of.strand_count.max(1)
+        });
+        let x = (wisp.wrapping_mul(LOCKS_OF_WISP).wrapping_add(part)).wrapping_mul(0x9e37_79b9);
+        (x ^ (x >> 15)).wrapping_mul(0x85eb_ca6b) >> 26
+    }
 }
 
 /// Taper, position along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first and whether it
-/// is the last of its strand.
-fn pack_detail(taper: f32, along: f32, shade: f32, first: bool, last: bool) -> u32 {
+/// is the last of its strand, and a random number of the lock in 6 bits.
+fn pack_detail(taper: f32, along: f32, shade: f32, (first, last): (bool, bool), lock: u32) -> u32 {
     let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-    byte(taper) | byte(along) << 8 | byte(shade) << 16 | u32::from(first) << 24 | u32::from(last) << 25
+    byte(taper)
+        | byte(along) << 8
+        | byte(shade) << 16
+        | u32::from(first) << 24
+        | u32::from(last) << 25
+        | lock << 26
 }

@@ -1,9 +1,12 @@
 //! The uniform of all passes: the twin of `frame.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec4};
+use lovelock_appearance::fibre::LOBES;
 use lovelock_base::settings::Settings;
+use lovelock_groom::fine::Portion;
 
+use crate::scene_light::SceneLight;
 use crate::{FrameInput, MAX_LIGHTS};
 
 /// Twin of `LightUniform` in `frame.wgsl`.
@@ -24,13 +27,17 @@ pub(crate) struct FrameUniform {
     pub world_from_clip: Mat4,
     pub eye_lights: Vec4,
     pub size_scale_exposure: Vec4,
-    pub ambient_up_ground: Vec4,
-    pub ambient_down_texels: Vec4,
+    pub ground_texels: Vec4,
     pub background_top: Vec4,
     pub background_bottom: Vec4,
     pub absorption_variation: Vec4,
     pub width_opacity_tip_scalp: Vec4,
     pub highlights: Vec4,
+    pub fading: Vec4,
+    pub colors: Vec4,
+    pub lobes: [Vec4; LOBES],
+    pub ambient_grid: Vec4,
+    pub surround: [Vec4; 9],
     pub lights: [LightUniform; MAX_LIGHTS],
 }
 
@@ -42,40 +49,52 @@ pub(crate) struct LightMaps {
     pub metres_per_texel: f32,
 }
 
-/// Ambient colour from above and below, before `PictureSettings::ambient`.
-const SKY: Vec3 = Vec3::new(0.62, 0.68, 0.78);
-const EARTH: Vec3 = Vec3::new(0.36, 0.33, 0.31);
-
 impl FrameUniform {
-    /// The uniform of `input`. `maps` are those of its lights, in order.
-    pub fn new(input: &FrameInput, width: u32, height: u32, maps: &[LightMaps], shadow_texels: u32) -> Self {
+    /// The uniform of `input`, drawn with the stored strands or with a part of the fine ones and the points of each. `maps` are those of
+    /// its lights, in order.
+    pub fn new(
+        input: &FrameInput,
+        drawn: Option<(Portion, usize)>,
+        light: &SceneLight,
+        (width, height): (u32, u32),
+        maps: &[LightMaps],
+        shadow_texels: u32,
+    ) -> Self {
         let picture = input.picture.clamped();
         let look = input.look;
         let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
-        let mut count = 0;
-        for (light, map) in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).zip(maps) {
-            let light = light.normalized();
-            lights[count] = LightUniform {
-                direction_specular: light.direction.extend(light.specular),
-                radiance_blur: (light.color * light.intensity)
-                    .extend(light.softness / map.metres_per_texel.max(1e-6)),
+        let mut lit = 0;
+        for (lamp, map) in input.lights.iter().filter(|lamp| lamp.enabled).take(MAX_LIGHTS).zip(maps) {
+            let lamp = lamp.normalized();
+            lights[lit] = LightUniform {
+                direction_specular: lamp.direction.extend(lamp.specular),
+                radiance_blur: (lamp.color * lamp.intensity)
+                    .extend(lamp.softness / map.metres_per_texel.max(1e-6)),
                 shadow_from_world: map.shadow_from_world,
                 columns_from_world: map.columns_from_world,
             };
-            count += 1;
+            lit += 1;
         }
         let scale = input.camera.pixels_per_metre_at_one_metre(height);
         let exponents = highlight_exponents(look.roughness);
         let opacity = picture.strand_opacity;
-        let strand_width = look.shadow_width(input.style.strands.count()) * look.width_scale.clamp(0.01, 4.0);
+        let count =
+            drawn.map_or(input.style.strands.count().max(1) as f32, |(portion, _)| portion.sum().max(1.0));
+        let strand_width = look.diameter * (look.real_hairs / count) * look.width_scale.clamp(0.01, 4.0);
+        let fading = drawn.map_or(
+            Vec4::new(f32::MAX, 1.0, 1.0, input.style.strands.points() as f32),
+            |(portion, points)| {
+                let [end, inverse] = portion.ramp();
+                Vec4::new(end, inverse, points as f32, (portion.drawn * points) as f32)
+            },
+        );
         Self {
             clip_from_world,
             world_from_clip: clip_from_world.inverse(),
-            eye_lights: input.camera.eye.extend(count as f32),
+            eye_lights: input.camera.eye.extend(lit as f32),
             size_scale_exposure: Vec4::new(width as f32, height as f32, scale, picture.exposure_stops.exp2()),
-            ambient_up_ground: (SKY * picture.ambient).extend(f32::from(u8::from(picture.ground))),
-            ambient_down_texels: (EARTH * picture.ambient).extend(shadow_texels as f32),
+            ground_texels: Vec4::new(f32::from(u8::from(picture.ground)), shadow_texels as f32, 0.0, 0.0),
             background_top: picture.background_top.extend(1.0),
             background_bottom: picture.background_bottom.extend(1.0),
             absorption_variation: look.absorption().extend(look.variation.clamp(0.0, 1.0)),
@@ -91,6 +110,19 @@ impl FrameUniform {
                 exponents[0],
                 exponents[1],
             ),
+            fading,
+            colors: Vec4::new(
+                look.grey.clamp(0.0, 1.0),
+                look.highlights.clamp(0.0, 1.0),
+                look.highlight_lightening.clamp(0.0, 1.0),
+                look.many_scattering.clamp(0.0, 1.0),
+            ),
+            lobes: std::array::from_fn(|p| {
+                let [sin, cos] = light.tables.tilts[p];
+                Vec4::new(sin, cos, light.tables.variances[p], 0.0)
+            }),
+            ambient_grid: light.grid.origin.extend(1.0 / light.grid.cell.max(1e-6)),
+            surround: light.around.surround.uniform(),
             lights,
         }
     }
@@ -144,13 +176,17 @@ mod tests {
                 offset_of!(FrameUniform, world_from_clip),
                 offset_of!(FrameUniform, eye_lights),
                 offset_of!(FrameUniform, size_scale_exposure),
-                offset_of!(FrameUniform, ambient_up_ground),
-                offset_of!(FrameUniform, ambient_down_texels),
+                offset_of!(FrameUniform, ground_texels),
                 offset_of!(FrameUniform, background_top),
                 offset_of!(FrameUniform, background_bottom),
                 offset_of!(FrameUniform, absorption_variation),
                 offset_of!(FrameUniform, width_opacity_tip_scalp),
                 offset_of!(FrameUniform, highlights),
+                offset_of!(FrameUniform, fading),
+                offset_of!(FrameUniform, colors),
+                offset_of!(FrameUniform, lobes),
+                offset_of!(FrameUniform, ambient_grid),
+                offset_of!(FrameUniform, surround),
                 offset_of!(FrameUniform, lights),
                 size_of::<FrameUniform>(),
             ]

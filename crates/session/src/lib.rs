@@ -29,7 +29,6 @@ pub mod stats;
 pub mod take;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;
-pub mod thinning;
 pub mod threads;
 pub mod totals;
 pub mod window_device;

@@ -65,6 +65,7 @@ impl FrameSnapshot {
             shadow: &project.shadow,
             camera,
             picture: &project.picture,
+            surroundings: None,
             known: None,
         }
     }

@@ -47,7 +47,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
     ("motion", &["base"]),
-    ("groom", &["base"]),
+    ("groom", &["appearance", "base"]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
     ("metrics", &["base"]),

@@ -3,6 +3,7 @@
 //! A round renders all requested panes at one instant, whose strands are interpolated once. Panes are published when each is
 //! finished, or together at the end of the round.
 
+mod colors;
 mod film;
 mod probes;
 mod reference;

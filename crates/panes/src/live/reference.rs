@@ -154,8 +154,9 @@ fn draw(
     [width, height]: [u32; 2],
     picture: &mut Picture,
 ) -> Result<(), String> {
+    let project = project.compared();
     let camera = snapshot.camera(&project.camera);
-    let input = input_of(snapshot, project, strands, &camera);
+    let input = input_of(snapshot, &project, strands, &camera);
     let drawn = renderer.picture(&input, width, height, picture);
     drawn.map(|_| ()).map_err(|error| error.to_string())
 }

@@ -6,12 +6,11 @@ use std::time::Duration;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
-use lovelock_metrics::errors;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, Picture, RayStructure, RenderError,
-    Transparency, ValueRenderer,
+    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, RayStructure, RenderError,
+    ValueRenderer,
 };
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -21,23 +20,21 @@ use super::probes::{Probes, curve, direction};
 use super::reference::ExactReference;
 use super::renderers::{Broken, Renderers, device_is_gone};
 use super::takes::PaneTakes;
-use crate::heat;
 use crate::probe::LiveProbe;
 use crate::request::{LiveError, LivePane, LiveRequest, LiveTimes};
-use crate::view::LiveShows;
 
 /// Renders panes and keeps the state that the next instant needs.
 pub(super) struct Rounds {
     pub(super) renderers: Renderers,
-    strands: Strands,
+    pub(super) strands: Strands,
     /// The instant of `strands`.
     strands_of: Option<Arc<FrameSnapshot>>,
     /// The last request, whose images the user saw when choosing hair.
     shown: Option<LiveRequest>,
-    values: ValueRenderer,
-    reference: ExactReference,
+    pub(super) values: ValueRenderer,
+    pub(super) reference: ExactReference,
     probes: Probes,
-    takes: PaneTakes,
+    pub(super) takes: PaneTakes,
     /// The textures of each pane on the window's device.
     textures: Vec<Option<DeviceImages>>,
 }
@@ -45,7 +42,8 @@ pub(super) struct Rounds {
 /// How long [`Rounds::finish`] waits at a time.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-fn take_stats(pane: &mut LivePane, stats: &FrameStats) {
+/// Takes the statistics of an image.
+pub(super) fn take_stats(pane: &mut LivePane, stats: &FrameStats) {
     pane.times = LiveTimes::of(stats);
     (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
 }
@@ -150,7 +148,7 @@ impl Rounds {
         let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
-        let project = contender.applied_to(&request.project);
+        let project = contender.applied_to(&request.project).compared();
         let shared = (&request.snapshot, &self.strands);
         let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
         let input = input_of(snapshot, &project, strands, &pane.camera);
@@ -158,39 +156,26 @@ impl Rounds {
         if self.textures.len() <= index {
             self.textures.resize_with(index + 1, || None);
         }
-        let window = window_device.images(&mut self.textures[index]);
-        let colored = request.view.measures && request.view.shows.colors().is_some();
-        if !colored {
-            // The image stays where it is drawn.
-            let (image, stats) = renderer.image(&input, size, true, window)?;
-            pane.image = image;
-            take_stats(pane, &stats);
-            if renderer.in_flight() > 0 {
-                // Its time is known when the device has finished it: see `Rounds::finish`.
-                pane.times = LiveTimes { whole: 0.0, ..pane.times };
-            }
-            if request.view.measures {
-                // A missing light has no transmittance, and the image does not need it.
-                let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
-                let _ = found.and_then(|found| {
-                    self.measure(request, index, (&project, &found), pane, &mut Picture::default())
-                });
-            }
-            return Ok(());
+        if request.view.measures && request.view.shows.colors().is_some() {
+            let mut textures = self.textures[index].take();
+            let window = window_device.images(&mut textures);
+            let drawn = self.draw_errors(request, index, (&project, size), pane, window);
+            self.textures[index] = textures;
+            return drawn;
         }
-        let mut picture = Picture::default();
-        let stats = renderer.picture(&input, size[0], size[1], &mut picture)?;
+        let window = window_device.images(&mut self.textures[index]);
+        // The image stays where it is drawn.
+        let (image, stats) = renderer.image(&input, size, true, window)?;
+        pane.image = image;
         take_stats(pane, &stats);
-        let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
-        let measured =
-            found.and_then(|found| self.measure(request, index, (&project, &found), pane, &mut picture));
-        match measured {
-            Ok(()) => {
-                let window = self.renderers.window.images(&mut self.textures[index]);
-                pane.image = Image::on(window, &mut picture);
-            }
-            // The plain image beside a colour scale would be mistaken for errors.
-            Err(why) => pane.colors_problem = Some(why),
+        if renderer.in_flight() > 0 {
+            // Its time is known when the device has finished it: see `Rounds::finish`.
+            pane.times = LiveTimes { whole: 0.0, ..pane.times };
+        }
+        if request.view.measures {
+            // A missing light has no transmittance, and the image does not need it.
+            let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
+            let _ = found.and_then(|found| self.measure(request, index, &found, pane));
         }
         Ok(())
     }
@@ -211,60 +196,6 @@ impl Rounds {
             }
         }
         found
-    }
-
-    /// Compares the transmittance of a pane with the exact one, and shows the difference if requested.
-    ///
-    /// # Errors
-    /// A sentence if there is no reference, or the false-colour image cannot be rendered.
-    fn measure(
-        &mut self,
-        request: &LiveRequest,
-        index: usize,
-        (drawn, found): (&Project, &[f32]),
-        pane: &mut LivePane,
-        picture: &mut Picture,
-    ) -> Result<(), String> {
-        let shared = &request.project;
-        let own = self.takes.instant(index).and_then(Result::ok);
-        let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
-        let exact = self.reference.transmittance(shared, snapshot, strands, request.view.light);
-        let exact = match exact {
-            Ok(exact) => exact,
-            Err(why) => {
-                pane.error = LiveError::Refused(why.clone());
-                return Err(why);
-            }
-        };
-        let drawn_by = (&pane.contender, pane.adapter.backend);
-        pane.error = if ExactReference::is(shared, drawn_by, (found, &exact)) {
-            LiveError::Reference
-        } else {
-            let of = errors(found, &exact);
-            LiveError::Measured { rmse: of.rmse, bias: of.bias, p99: of.p99 }
-        };
-        let Some(colors) = request.view.shows.colors() else { return Ok(()) };
-        let largest = if request.view.largest > 0.0 { request.view.largest } else { 1.0 };
-        if request.view.shows == LiveShows::PictureError {
-            let size = [request.width, request.height];
-            let exact = self.reference.picture(shared, snapshot, strands, size)?;
-            let is_itself = pane.error == LiveError::Reference
-                && pane.contender.transparency == Transparency::Exact
-                && *picture == *exact;
-            let mean = heat::of_pictures(&exact, largest, picture)?;
-            pane.flip = (!is_itself).then_some(mean);
-            return Ok(());
-        }
-        let signed = request.view.shows == LiveShows::TransmittanceBias;
-        let difference =
-            |(&found, &exact): (&f32, &f32)| if signed { found - exact } else { (found - exact).abs() };
-        let values: Vec<f32> = found.iter().zip(exact.iter()).map(difference).collect();
-        // False colours show the front strands in every pane, whatever its transparency mode.
-        let mut shown = drawn.clone();
-        shown.picture.transparency = Transparency::Sorted;
-        let input = input_of(snapshot, &shown, strands, &pane.camera);
-        let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), picture);
-        colored.map_err(|error| error.to_string())
     }
 
     /// The light along the ray through the chosen hair in the panes of the round.

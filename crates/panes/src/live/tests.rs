@@ -1,6 +1,7 @@
 //! Panes of a small scene on the CPU; lost devices need an adapter.
 
 mod against_exact;
+mod on_device;
 mod takes;
 
 use std::sync::Mutex;
@@ -89,7 +90,7 @@ fn pixels(pane: &LivePane) -> Picture {
 
 /// The image that the window would show without panes.
 fn alone(rig: &Rig, index: usize, width: u32, height: u32) -> Picture {
-    let project = rig.project.compare.panes[index].applied_to(&rig.project);
+    let project = rig.project.compare.panes[index].applied_to(&rig.project).compared();
     let camera = rig.snapshot.camera(&project.camera);
     let mut picture = Picture::default();
     let input = rig.snapshot.frame_input(&project, &camera);

@@ -28,7 +28,7 @@ pub use sections::{
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
 use lovelock_groom::{GroomSettings, HairLook, Haircut, Preset};
-use lovelock_render::{Light, PictureSettings, ShadowSettings};
+use lovelock_render::{Light, PictureSettings, ShadowSettings, StrandCount};
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
@@ -93,6 +93,15 @@ impl Default for Project {
 }
 
 impl Project {
+    /// The project as comparisons of shadow methods draw it: with the strands that the hairstyle stores, at which transmittance is
+    /// measured.
+    #[must_use]
+    pub fn compared(&self) -> Self {
+        let mut project = self.clone();
+        project.picture.strands = StrandCount::Stored;
+        project
+    }
+
     /// Switches to a shipped hairstyle with its colours and ties, and with its stiffness unless the user has changed that.
     pub fn set_preset(&mut self, preset: Preset) {
         self.change_hair(HairSource::Grown, preset);

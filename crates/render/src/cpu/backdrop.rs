@@ -39,7 +39,7 @@ impl Ground {
     /// Evaluates the corners of the cells of the tile at `origin`. `None` if there is no ground or all of it is fully lit.
     #[inline(always)]
     pub fn new(view: &View, origin: [f32; 2]) -> Option<Self> {
-        if view.uniform.ambient_up_ground.w <= 0.5 {
+        if view.uniform.ground_texels.x <= 0.5 {
             return None;
         }
         let size = view.uniform.size_scale_exposure;
@@ -147,8 +147,8 @@ fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 
     if is_ground == [0.0; N] {
         return out;
     }
-    let ambient = view.ambient(1.0);
-    let mut full = three(|c| ambient[c] * (0.5 * 3.141_59));
+    let ambient = view.ambient([0.0, 1.0, 0.0]);
+    let mut full = three(|c| ambient[c] * 3.141_59);
     let mut lit = [[full[0]; N], [full[1]; N], [full[2]; N]];
     for light in &view.lights {
         let facing = max(-light.direction.y, 0.0);

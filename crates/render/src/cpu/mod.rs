@@ -18,6 +18,7 @@
 mod backdrop;
 mod bins;
 mod body_depth;
+mod drawn;
 mod finish;
 mod hair;
 mod kept;

@@ -28,8 +28,9 @@ const SEGMENTS_AT_ONCE: usize = 128;
 #[derive(Debug)]
 pub(super) struct PlacedScene {
     pub width: Width,
-    pub details: StrandDetails,
     pub points: Vec<ShadedPoint>,
+    /// First points of the segments whose points both exist, in the order of points.
+    pub segments: Vec<u32>,
     pub surface: PlacedSurface,
     pub segment_bins: Bins,
     keys: SegmentKeys,
@@ -55,8 +56,8 @@ impl PlacedScene {
     pub fn new(width: Width) -> Self {
         Self {
             width,
-            details: StrandDetails::default(),
             points: Vec::new(),
+            segments: Vec::new(),
             surface: PlacedSurface::default(),
             segment_bins: Bins::default(),
             keys: SegmentKeys::default(),
@@ -70,16 +71,19 @@ impl PlacedScene {
     }
 
     /// Projects and shades the strand points, which have four packed `transmittance`s each.
-    pub fn shade(&mut self, view: &View, input: &FrameInput, strands: &Strands, transmittance: &[u32]) {
-        self.details.follow(input.style);
-        let from = PointsIn { strands, details: &self.details.words, transmittance };
+    pub fn shade(
+        &mut self,
+        view: &View,
+        (strands, details): (&Strands, &StrandDetails),
+        transmittance: &[u32],
+    ) {
+        let from = PointsIn { strands, details: &details.words, transmittance };
         shade_all(self.width, view, &from, &mut self.points);
-    }
-
-    /// First points of the segments whose points both exist, in the order of points.
-    pub fn segments(&self) -> &[u32] {
-        let segments = &self.details.segments;
-        &segments[..segments.partition_point(|&first| (first as usize + 1) < self.points.len())]
+        let whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
+        if self.segments.len() != whole || details.segments[..whole] != self.segments {
+            self.segments.clear();
+            self.segments.extend_from_slice(&details.segments[..whole]);
+        }
     }
 
     /// Sorts segments and triangles into tiles, after points are shaded. `hair_on_body` holds one word of packed transmittances per
@@ -99,8 +103,7 @@ impl PlacedScene {
                 !encloses(input.camera.eye, &skin.positions, &body.mesh.triangles)
             });
         let points = &self.points;
-        let whole = self.segments().len();
-        let segments = &self.details.segments[..whole];
+        let segments = &self.segments[..];
         let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
         rayon::join(
             || surface.place(view.uniform.clip_from_world, grid, body, hair_on_body, seen_from_without),
@@ -164,7 +167,7 @@ impl PlacedScene {
     ) {
         let opacity = view.uniform.width_opacity_tip_scalp.y;
         if transparency == Transparency::Sorted {
-            self.keys.sort(segments, &self.details.segments, &mut scratch.order);
+            self.keys.sort(segments, &self.segments, &mut scratch.order);
             let order = std::mem::take(&mut scratch.order);
             scratch.blend.clear();
             // In batches: segments behind an opaque tile are not fetched.
@@ -188,7 +191,7 @@ impl PlacedScene {
                 origin,
                 points: &self.points,
                 segments,
-                first_points: &self.details.segments,
+                first_points: &self.segments,
                 samples: &scratch.samples,
                 opacity,
             };

@@ -5,12 +5,13 @@ mod inspect;
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::PassTime;
-use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
+use lovelock_groom::{HairShading, Strands};
 use rayon::prelude::*;
 
 use super::backdrop::{Ground, ground_simd};
 use super::body_depth::{self, DepthMap};
+use super::drawn::DrawnStrands;
 use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
 use super::kept::{KeptInputs, Unchanged};
 use super::layers::{LayerTiles, finish_light};
@@ -18,9 +19,11 @@ use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of}
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
-use super::view::View;
+use super::view::{FibreView, View};
+use crate::fibre;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
+use crate::scene_light::SceneLight;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
@@ -33,6 +36,8 @@ const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 pub struct CpuRenderer {
     /// Interpolated strands, kept while nothing moves them.
     strands: Strands,
+    drawn: DrawnStrands,
+    light: Option<Box<SceneLight>>,
     kept: KeptInputs,
     keeps: bool,
     maps: Vec<LightMaps>,
@@ -43,6 +48,15 @@ pub struct CpuRenderer {
     plain: PlainTiles,
     layers: LayerTiles,
     scratch: Pool<Scratch>,
+}
+
+/// The hair of one picture.
+struct Hair<'a> {
+    /// The strands that the hairstyle stores, which cast shadows.
+    stored: &'a Strands,
+    drawn: &'a DrawnStrands,
+    /// Whether the points that are drawn are those of the last picture.
+    same_points: bool,
 }
 
 /// The output.
@@ -71,6 +85,8 @@ impl Default for CpuRenderer {
     fn default() -> Self {
         Self {
             strands: Strands::default(),
+            drawn: DrawnStrands::default(),
+            light: None,
             kept: KeptInputs::default(),
             keeps: true,
             maps: Vec::new(),
@@ -154,9 +170,20 @@ impl CpuRenderer {
             HairPose::Guides(_) if unchanged.hair => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
+        let mut drawn = std::mem::take(&mut self.drawn);
+        let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
         let interpolate_ms = watch.ms();
-        let stats = self.draw(input, strands, unchanged, width, height, target);
-        self.strands = made;
+        let mut light = self.light.take().unwrap_or_default();
+        let watch = Stopwatch::start();
+        light.follow(input);
+        let ambient_ms = watch.ms();
+        let hair = Hair { stored: strands, drawn: &drawn, same_points };
+        let mut stats = self.draw(input, (&hair, &light), unchanged, width, height, target);
+        (self.strands, self.drawn, self.light) = (made, drawn, Some(light));
+        if let Ok(stats) = &mut stats {
+            stats.draw_ms += ambient_ms;
+            stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms: ambient_ms });
+        }
         if stats.is_err() {
             self.kept.forget();
         }
@@ -166,17 +193,20 @@ impl CpuRenderer {
     fn draw(
         &mut self,
         input: &FrameInput,
-        strands: &Strands,
+        (hair, light): (&Hair, &SceneLight),
         unchanged: Unchanged,
         width: u32,
         height: u32,
         target: Target,
     ) -> Result<FrameStats, RenderError> {
         let watch = Stopwatch::start();
-        if unchanged.hair {
+        let strands = hair.drawn.strands(hair.stored);
+        if !unchanged.hair {
+            self.shadow.run(input, hair.stored, strands)?;
+        } else if hair.same_points {
             self.shadow.passes.clear();
         } else {
-            self.shadow.run(input, strands)?;
+            self.shadow.look_up_again(strands)?;
         }
         let shadow_ms = watch.ms();
 
@@ -189,14 +219,19 @@ impl CpuRenderer {
         if !unchanged.body {
             self.maps = self.draw_depth(input);
         }
-        let uniform = FrameUniform::new(input, width, height, &self.maps, DEPTH_TEXELS);
-        let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+        let drawn = hair.drawn.portion();
+        let uniform = FrameUniform::new(input, drawn, light, (width, height), &self.maps, DEPTH_TEXELS);
+        let tables = &light.tables;
+        let fibre = (input.look.shading == HairShading::Fibre)
+            .then(|| FibreView { tables, lights: fibre::lights(tables, input.lights) });
+        let view = View::new(&uniform, (&light.grid, fibre), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
         if !unchanged.body {
             passed("draw/body-depth", &part);
         }
 
         let part = Stopwatch::start();
-        self.placed.shade(&view, input, strands, &self.shadow.at_points);
+        let details = &hair.drawn.details;
+        self.placed.shade(&view, (strands, details), &self.shadow.at_points);
         passed("draw/points", &part);
 
         let part = Stopwatch::start();
@@ -271,7 +306,7 @@ impl CpuRenderer {
             shadow_ms,
             draw_ms: drawing.ms(),
             passes,
-            segments: self.placed.details.segments.len() as u64,
+            segments: self.placed.segments.len() as u64,
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,

@@ -3,11 +3,14 @@
 #![allow(clippy::inline_always)]
 
 use glam::{Mat4, Vec2, Vec3};
+use lovelock_appearance::fibre::FibreTables;
 use lovelock_shadow::ColumnMap;
 
 use super::body_depth::DepthMap;
 use super::math::{floor, index_of, max, min, three};
 use crate::MAX_LIGHTS;
+use crate::ambient::AmbientGrid;
+use crate::fibre::FibreLight;
 use crate::uniform::FrameUniform;
 
 /// Taps of a soft shadow on a surface. Six taps would show bands.
@@ -22,6 +25,16 @@ pub(super) struct View<'a> {
     /// Golden-angle discs for surfaces and for strands, as in the shader.
     pub surface_disc: [Vec2; SURFACE_TAPS],
     pub strand_disc: [Vec2; STRAND_TAPS],
+    /// Light from all directions among the hair.
+    pub grid: &'a AmbientGrid,
+    /// What scattering by fibres needs; without it hair is shaded by Kajiya-Kay.
+    pub fibre: Option<FibreView<'a>>,
+}
+
+/// Scattering by fibres.
+pub(super) struct FibreView<'a> {
+    pub tables: &'a FibreTables,
+    pub lights: [FibreLight; MAX_LIGHTS],
 }
 
 /// One light.
@@ -46,6 +59,7 @@ impl<'a> View<'a> {
     /// Combines the uniform with the maps of its lights.
     pub fn new(
         uniform: &'a FrameUniform,
+        (grid, fibre): (&'a AmbientGrid, Option<FibreView<'a>>),
         depth: &'a [DepthMap],
         columns: &'a [Option<ColumnMap>],
         texels: u32,
@@ -70,15 +84,21 @@ impl<'a> View<'a> {
                 columns: columns.get(k).and_then(Option::as_ref),
             })
             .collect();
-        Self { uniform, lights, surface_disc: disc(), strand_disc: disc() }
+        Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, fibre }
     }
 
-    /// Ambient light on a surface whose normal has the height `up`.
+    /// Light from all directions on a surface with the unit normal `n`: irradiance over pi.
     #[inline(always)]
-    pub fn ambient(&self, up: f32) -> [f32; 3] {
-        let (below, above) = (self.uniform.ambient_down_texels, self.uniform.ambient_up_ground);
-        let t = 0.5 + 0.5 * up;
-        three(|c| below[c] + (above[c] - below[c]) * t)
+    pub fn ambient(&self, n: [f32; 3]) -> [f32; 3] {
+        let [x, y, z] = n;
+        let basis = [1.0, y, z, x, 1.5 * y * y - 0.5, y * z, y * x, z * z - x * x, 2.0 * x * z];
+        let mut sum = [0.0; 3];
+        for (sh, basis) in self.uniform.surround.iter().zip(basis) {
+            for c in 0..3 {
+                sum[c] += sh[c] * basis;
+            }
+        }
+        three(|c| max(sum[c], 0.0))
     }
 }
 

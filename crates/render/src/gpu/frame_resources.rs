@@ -10,6 +10,8 @@ pub(super) struct FrameResources<'a> {
     pub columns: &'a wgpu::TextureView,
     pub linear: &'a wgpu::Sampler,
     pub compare: &'a wgpu::Sampler,
+    /// The grid of light from all directions.
+    pub ambient: &'a wgpu::TextureView,
 }
 
 impl<'a> FrameResources<'a> {
@@ -24,6 +26,7 @@ impl<'a> FrameResources<'a> {
             (2, wgpu::BindingResource::TextureView(self.columns)),
             (3, wgpu::BindingResource::Sampler(self.linear)),
             (15, wgpu::BindingResource::Sampler(self.compare)),
+            (16, wgpu::BindingResource::TextureView(self.ambient)),
         ];
         frame.into_iter().chain(own).collect()
     }

@@ -3,13 +3,16 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
-use lovelock_groom::StrandBounds;
+use lovelock_groom::fine::{FineStrands, Portion};
+use lovelock_groom::{HairShading, StrandBounds};
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
+use super::fine::FineBuffers;
 use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
 use super::light_kernels::LightKernels;
+use crate::strand_count::portion_of;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, HairPose};
 
@@ -18,11 +21,22 @@ use crate::{FrameInput, HairPose};
 #[repr(C)]
 struct ShadedPoint([u32; 8]);
 
+/// The width of a strand that is aimed at, pixels, on a card and on a software adapter.
+const TARGET_PIXELS: [f32; 2] = [0.35, 0.7];
+/// The most points of fine strands.
+const MOST_POINTS: u64 = 1 << 22;
+
 /// The buffers of the strands. Data of the hairstyle is uploaded when it changes. A frame uploads only guides, or its strands if they
 /// are given.
 #[derive(Debug)]
 pub(super) struct HairBuffers {
     style: StrandDetails,
+    list: FineStrands,
+    fine: FineBuffers,
+    /// The strands of the last frame.
+    portion: Option<(Portion, usize)>,
+    drawn: StrandDetails,
+    drawn_segments: GrowBuffer<u32>,
     extent: Option<StrandBounds>,
     interpolation: Interpolation,
     points: GrowBuffer<[f32; 4]>,
@@ -38,6 +52,11 @@ impl HairBuffers {
         let storage = wgpu::BufferUsages::STORAGE;
         Ok(Self {
             style: StrandDetails::default(),
+            list: FineStrands::default(),
+            fine: FineBuffers::new(gpu)?,
+            portion: None,
+            drawn: StrandDetails::default(),
+            drawn_segments: GrowBuffer::new(gpu, "segments of fine strands", storage),
             extent: None,
             interpolation: Interpolation::new(gpu)?,
             points: GrowBuffer::new(gpu, "strand points", storage),
@@ -49,11 +68,49 @@ impl HairBuffers {
         })
     }
 
-    /// Uploads the strands of one frame.
+    /// Uploads the strands of one frame of an image `height` pixels high.
     ///
     /// # Errors
     /// The hairstyle needs a larger buffer than the device supports.
-    pub fn write(&mut self, gpu: &Gpu, commands: &mut Commands, input: &FrameInput) -> Result<(), GpuError> {
+    pub fn write(
+        &mut self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &FrameInput,
+        height: u32,
+    ) -> Result<(), GpuError> {
+        self.write_stored(gpu, commands, input)?;
+        self.list.follow(input.style, 0);
+        let points = self.list.points_per_strand;
+        let most = (gpu.most_storage_bytes() / size_of::<ShadedPoint>() as u64).min(MOST_POINTS);
+        let target = TARGET_PIXELS[usize::from(gpu.is_software())];
+        self.portion = portion_of(input, height, target, (points, most)).map(|portion| (portion, points));
+        let Some((portion, _)) = self.portion else {
+            if self.drawn.follow(input.style) {
+                self.details.write(gpu, &self.drawn.words);
+            }
+            return Ok(());
+        };
+        let longer = self.list.follow(input.style, portion.drawn);
+        if self.drawn.follow_fine(input.style, &self.list, longer) {
+            self.details.write(gpu, &self.drawn.words);
+            self.drawn_segments.write(gpu, &self.drawn.segments);
+            self.fine.follow(gpu, input.style, &self.list);
+        }
+        let all = portion.drawn * points;
+        self.transmittance.reserve(gpu, all);
+        self.shaded.reserve(gpu, all);
+        self.fine.run(gpu, commands, (portion.drawn, points), self.points.raw());
+        Ok(())
+    }
+
+    /// Uploads or interpolates the stored strands.
+    fn write_stored(
+        &mut self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &FrameInput,
+    ) -> Result<(), GpuError> {
         let points = input.style.strands.points();
         let needed = points as u64 * size_of::<ShadedPoint>() as u64;
         if needed > gpu.most_storage_bytes() {
@@ -65,7 +122,6 @@ impl HairBuffers {
             )));
         }
         if self.style.follow(input.style) {
-            self.details.write(gpu, &self.style.words);
             self.segments.write(gpu, &self.style.segments);
             self.extent = None;
         }
@@ -110,7 +166,23 @@ impl HairBuffers {
         (bounds, extent.longest_strand())
     }
 
-    /// The strands as input of shadow methods.
+    /// The part of the fine strands that is drawn, with the points of each; `None` for stored strands.
+    pub fn portion(&self) -> Option<(Portion, usize)> {
+        self.portion
+    }
+
+    /// The strands that are drawn.
+    pub fn drawn(&self) -> GpuStrands<'_> {
+        let Some((portion, points)) = self.portion else { return self.strands() };
+        GpuStrands {
+            points: self.fine.points(),
+            point_count: (portion.drawn * points) as u32,
+            segments: self.drawn_segments.raw(),
+            segment_count: (portion.drawn * (points - 1)) as u32,
+        }
+    }
+
+    /// The stored strands, which cast shadows, as input of shadow methods.
     pub fn strands(&self) -> GpuStrands<'_> {
         GpuStrands {
             points: self.points.raw(),
@@ -124,7 +196,7 @@ impl HairBuffers {
     pub fn memory_bytes(&self) -> u64 {
         let own = [&self.details, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
         let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
-        own + self.interpolation.bytes()
+        own + self.drawn_segments.raw().size() + self.fine.bytes() + self.interpolation.bytes()
     }
 
     /// Four transmittances per point, written by shadow methods.
@@ -139,39 +211,44 @@ impl HairBuffers {
 
     /// Replaces the colours of shaded points by the transmittance of the first light.
     pub fn shade_values(&self, gpu: &Gpu, kernel: &Kernel, commands: &mut Commands, frame: &FrameResources) {
-        self.run_over_points(gpu, kernel, "draw/values", commands, frame);
+        self.run_over_points(gpu, kernel, "draw/values", commands, frame, []);
     }
 
     /// Projects and shades every point.
-    pub fn shade(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
-        self.run_over_points(gpu, &kernels.shade_points, "draw/points", commands, frame);
+    pub fn shade(
+        &self,
+        gpu: &Gpu,
+        (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
+        commands: &mut Commands,
+        frame: &FrameResources,
+    ) {
+        let kernel = &kernels.shade_points[usize::from(shading == HairShading::Fibre)];
+        self.run_over_points(gpu, kernel, "draw/points", commands, frame, [(8, tables.as_entire_binding())]);
     }
 
-    fn run_over_points(
+    fn run_over_points<const N: usize>(
         &self,
         gpu: &Gpu,
         kernel: &Kernel,
         name: &'static str,
         commands: &mut Commands,
         frame: &FrameResources,
+        more: [(u32, wgpu::BindingResource); N],
     ) {
-        let points = self.details.len() as u64;
+        let drawn = self.drawn();
+        let points = u64::from(drawn.point_count);
         if points == 0 {
             return;
         }
-        // `arrayLength` of the details is the number of points.
-        let details = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: self.details.raw(),
-            offset: 0,
-            size: std::num::NonZeroU64::new(points * 4),
-        });
         let own = [
-            (4, self.points.raw().as_entire_binding()),
-            (5, details),
+            (4, drawn.points.as_entire_binding()),
+            (5, self.details.raw().as_entire_binding()),
             (6, self.transmittance.raw().as_entire_binding()),
             (7, self.shaded.raw().as_entire_binding()),
         ];
-        let group = kernel.bind(gpu, &frame.with(own));
+        let mut all = frame.with(own);
+        all.extend(more);
+        let group = kernel.bind(gpu, &all);
         commands.compute(name, |pass| kernel.run(pass, &group, points));
     }
 }

@@ -10,7 +10,8 @@ pub(super) const LISTS: usize = 4;
 /// The kernels for one number of lights.
 #[derive(Debug)]
 pub(super) struct LightKernels {
-    pub shade_points: Kernel,
+    /// By whether hair scatters as fibres do.
+    pub shade_points: [Kernel; 2],
     pub ground: Kernel,
     /// The kernels that draw the pixels of each list.
     pub picture_lit: [Kernel; LISTS],
@@ -38,8 +39,10 @@ impl LightShaders {
             Kernel::specialised(gpu, label, source, entry, constants)
         };
         let lit = |list: f64| kernel("picture lit", &self.picture, "picture_lit", &[count, ("LIST", list)]);
+        let shade_points =
+            |fibre: f64| kernel("strand points", &self.points, "shade_points", &[count, ("FIBRE", fibre)]);
         Ok(LightKernels {
-            shade_points: kernel("strand points", &self.points, "shade_points", &[count])?,
+            shade_points: [shade_points(0.0)?, shade_points(1.0)?],
             ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
             picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
         })

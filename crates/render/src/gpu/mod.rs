@@ -1,11 +1,14 @@
 //! The GPU backend: wgpu compute and raster passes.
 
 mod eye;
+mod false_colors;
+mod fine;
 mod frame_resources;
 mod ground;
 mod hair;
 mod interpolate;
 mod layers;
+mod light_buffers;
 mod light_kernels;
 mod pipelines;
 mod present;
@@ -16,6 +19,7 @@ mod shrink;
 mod surface;
 mod targets;
 
+pub use false_colors::ColorScale;
 pub use pipelines::all_shaders;
 pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;

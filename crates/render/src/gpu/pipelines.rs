@@ -2,12 +2,13 @@
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
+use super::false_colors::FalseColorShaders;
 use super::layers::LayerShaders;
 use super::light_kernels::{LightShaders, LightVariants};
 use super::present::Present;
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
-use super::{eye, interpolate};
+use super::{eye, fine, interpolate};
 
 macro_rules! part {
     ($name:literal) => {
@@ -19,7 +20,8 @@ macro_rules! part {
 }
 
 const FRAME: ShaderPart = part!("frame.wgsl");
-const STRAND_SHADING: ShaderPart = part!("strand_shading.wgsl");
+const KAJIYA_KAY: ShaderPart = part!("kajiya_kay.wgsl");
+const FIBRE: ShaderPart = part!("fibre.wgsl");
 const STRAND_POINTS: ShaderPart = part!("strand_points.wgsl");
 const SURFACE: ShaderPart = part!("surface.wgsl");
 const SURFACE_SHADING: ShaderPart = part!("surface_shading.wgsl");
@@ -31,19 +33,24 @@ const TONE_MAP: ShaderPart = part!("tone_map.wgsl");
 const PICTURE: ShaderPart = part!("picture.wgsl");
 const LAYERS: ShaderPart = part!("layers.wgsl");
 const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
+const FALSE_COLORS: ShaderPart = part!("false_colors.wgsl");
 const PRESENT: ShaderPart = part!("present.wgsl");
 const SHRINK: ShaderPart = part!("shrink.wgsl");
 
 /// The shaders of these kernels and pipelines.
-fn own_shaders() -> [(&'static str, ShaderSource); 8] {
+fn own_shaders() -> [(&'static str, ShaderSource); 9] {
     [
-        ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
+        ("strand points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
         ("picture", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
         ("surface", &[FRAME, SURFACE]),
         ("depth", &[DEPTH]),
         ("layers", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS]),
-        ("values of points", &[FRAME, STRAND_SHADING, STRAND_POINTS, VALUE_POINTS]),
+        (
+            "false colours",
+            &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS, FALSE_COLORS],
+        ),
+        ("values of points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
@@ -58,7 +65,7 @@ pub(super) fn shrink_source() -> ShaderSource {
 pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
     let shrink = std::iter::once(("shrink".to_owned(), shrink_source()));
-    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).collect()
+    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).chain(fine::shaders()).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.
@@ -70,6 +77,8 @@ pub(super) struct Pipelines {
     pub present: Present,
     /// The parts of the kernels for layers, which are compiled on demand.
     pub layers: LayerShaders,
+    /// Those for false colours, likewise.
+    pub false_colors: FalseColorShaders,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body seen from the camera: all faces, and front faces only if it is closed.
@@ -89,7 +98,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, values, present] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, colors, values, present] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -112,7 +121,8 @@ impl Pipelines {
         Ok(Self {
             screen: ScreenKernels::new(gpu, &picture.1)?,
             present: Present::new(gpu, &present.1)?,
-            layers: LayerShaders { layers: layers.1, values: values.1 },
+            layers: LayerShaders { layers: layers.1, values: values.1.clone() },
+            false_colors: FalseColorShaders { colors: colors.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),

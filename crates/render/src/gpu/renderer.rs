@@ -1,34 +1,37 @@
 //! The GPU renderer.
 
+mod false_colors;
 mod flight;
 mod inspect;
 mod layers;
+mod picture;
 
 use std::sync::Arc;
 
 use glam::Vec4;
-use lovelock_base::clock::Stopwatch;
-use lovelock_gpu::{Commands, Gpu, GpuError, PassTime, PassTimer, Readback, Traffic, wgpu};
+use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
 use super::eye::{Area, Eye, EyeInput, HairOutput, Lists, WIDEST_PLAIN, too_large};
+use super::false_colors::FalseColors;
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
 use super::layers::LayerBuffers;
+use super::light_buffers::LightBuffers;
 use super::pipelines::Pipelines;
-use super::present::{HEAD_BYTES, MOST_LISTS};
+use super::present::MOST_LISTS;
 use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
-use crate::picture::check_size_for;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
+use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
 use flight::Flights;
 pub use flight::{Finished, MOST_IN_FLIGHT};
+pub use picture::PendingPicture;
 
 /// The most attempts to render a frame whose lists were too short. Each attempt has longer lists or half as many rows per band.
 const MOST_ATTEMPTS: u32 = 16;
@@ -43,6 +46,7 @@ pub struct GpuRenderer {
     hair: HairBuffers,
     surface: SurfaceBuffers,
     ground: Ground,
+    light: LightBuffers,
     eye: Eye,
     linear: wgpu::Sampler,
     compare: wgpu::Sampler,
@@ -51,8 +55,11 @@ pub struct GpuRenderer {
     targets: Option<Targets>,
     screen: Screen,
     layers: LayerBuffers,
+    false_colors: FalseColors,
     /// What the last picture knew of itself.
     last: FrameUniform,
+    /// Where its hair is.
+    seen: SeenHair,
     /// Readbacks of finished pictures.
     readbacks: Vec<Readback>,
     numbers: Vec<u8>,
@@ -91,6 +98,7 @@ impl GpuRenderer {
             hair: HairBuffers::new(&gpu)?,
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             ground: Ground::new(&gpu),
+            light: LightBuffers::new(&gpu),
             eye: Eye::new(&gpu)?,
             compare: device.create_sampler(&wgpu::SamplerDescriptor {
                 compare: Some(wgpu::CompareFunction::LessEqual),
@@ -106,7 +114,9 @@ impl GpuRenderer {
             targets: None,
             screen: Screen::new(&gpu),
             layers: LayerBuffers::new(&gpu),
+            false_colors: FalseColors::new(&gpu),
             last: FrameUniform::default(),
+            seen: SeenHair::default(),
             readbacks: Vec::new(),
             numbers: Vec::new(),
             heads: Vec::new(),
@@ -121,107 +131,6 @@ impl GpuRenderer {
     /// The device in use.
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
-    }
-
-    /// Renders `input` at `width` by `height` pixels and reads the picture back.
-    ///
-    /// # Errors
-    /// The size is out of range, maps do not fit, or the device is lost.
-    pub fn picture(
-        &mut self,
-        input: &FrameInput,
-        width: u32,
-        height: u32,
-        picture: &mut Picture,
-    ) -> Result<FrameStats, RenderError> {
-        let before = self.gpu.traffic();
-        for _ in 0..=MOST_ATTEMPTS {
-            let pending = self.begin_picture(input, width, height)?;
-            if let Some(stats) = self.finish_picture(pending, picture)? {
-                return Ok(FrameStats { traffic: self.gpu.traffic().since(before), ..stats });
-            }
-        }
-        let reason = "the lists of fragments did not settle; draw by the processor".to_owned();
-        Err(GpuError::Input(reason).into())
-    }
-
-    /// Starts to render `input` and to read the picture back, without waiting. Pictures are finished in the order in which they began,
-    /// each by [`GpuRenderer::finish_picture`], so that the device draws while the caller prepares the next one.
-    ///
-    /// # Errors
-    /// As [`GpuRenderer::picture`].
-    pub fn begin_picture(
-        &mut self,
-        input: &FrameInput,
-        width: u32,
-        height: u32,
-    ) -> Result<PendingPicture, RenderError> {
-        check_size_for(width, height, self.gpu.max_picture_side())?;
-        if input.known.is_some() {
-            return Err(RenderError::KnownOnGpu);
-        }
-        self.is_whole = false;
-        let gpu = Arc::clone(&self.gpu);
-        let (watch, before) = (Stopwatch::start(), gpu.traffic());
-        let mut timer = std::mem::take(&mut self.timer);
-        let mut readback = self.readbacks.pop().unwrap_or_default();
-        let output = Output::Memory(&mut readback);
-        let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height, output);
-        if let Err(error) = drawn {
-            // The incomplete timings are dropped, and errors of the driver belong to this picture.
-            self.timer = PassTimer::new(&gpu)?;
-            let _ = gpu.check();
-            return Err(error);
-        }
-        self.timer = timer;
-        readback.ask(&gpu);
-        Ok(PendingPicture {
-            readback,
-            size: [width, height],
-            lists: self.lists_of_frame(),
-            points: self.hair.strands().point_count,
-            // A software adapter has measured them already; a card tells them when it has finished.
-            passes: if gpu.is_software() { self.timer.times(&gpu) } else { Vec::new() },
-            begun_ms: watch.ms(),
-            traffic: gpu.traffic().since(before),
-        })
-    }
-
-    /// Waits for a picture if the device has not finished it. `None` if lists were too short: they have been enlarged, and the picture
-    /// must be begun again.
-    ///
-    /// # Errors
-    /// As [`GpuRenderer::picture`].
-    pub fn finish_picture(
-        &mut self,
-        mut pending: PendingPicture,
-        picture: &mut Picture,
-    ) -> Result<Option<FrameStats>, RenderError> {
-        let gpu = Arc::clone(&self.gpu);
-        let (watch, before) = (Stopwatch::start(), gpu.traffic());
-        pending.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
-        self.readbacks.push(pending.readback);
-        gpu.check()?;
-        let mut heads = [[0_u32; 2]; MOST_LISTS];
-        for (head, bytes) in heads.iter_mut().zip(self.heads.chunks_exact(HEAD_BYTES as usize)) {
-            let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
-            *head = [words[0], words[1]];
-        }
-        if self.settle(&pending.lists, &heads)? {
-            return Ok(None);
-        }
-        [picture.width, picture.height] = pending.size;
-        self.is_whole = true;
-        let passes = if pending.passes.is_empty() { self.timer.times(&gpu) } else { pending.passes };
-        let mut stats = self.stats(passes);
-        let whole_ms = pending.begun_ms + watch.ms();
-        stats.draw_ms = (whole_ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
-        stats.traffic = pending.traffic.plus(gpu.traffic().since(before));
-        if self.shadow.has_light() {
-            let points = f64::from(pending.points.max(1));
-            stats.mean_transmittance = (number_of_bytes(&self.numbers) / (255.0 * points)) as f32;
-        }
-        Ok(Some(stats))
     }
 
     /// The lists of the frame that was drawn last.
@@ -261,7 +170,7 @@ impl GpuRenderer {
         FrameStats {
             interpolate_ms: of("interpolate"),
             shadow_ms: of("shadow/"),
-            segments: u64::from(self.hair.strands().segment_count),
+            segments: u64::from(self.hair.drawn().segment_count),
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
@@ -294,7 +203,8 @@ impl GpuRenderer {
         }
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
-        self.hair.write(gpu, &mut commands, input)?;
+        self.hair.write(gpu, &mut commands, input, height)?;
+        self.light.write(gpu, &mut commands, input);
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
 
@@ -305,10 +215,18 @@ impl GpuRenderer {
             let columns_from_world = self.shadow.columns_from_world(maps.len());
             maps.push(LightMaps { columns_from_world, ..view });
         }
-        let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
+        let uniform = FrameUniform::new(
+            input,
+            self.hair.portion(),
+            self.light.light(),
+            (width, height),
+            &maps,
+            self.surface.texels,
+        );
         gpu.upload(&self.uniform, 0, &[uniform]);
         self.last = uniform;
         let seen = self.seen_hair(input, &uniform, [width, height]);
+        self.seen = seen;
         let Some(targets) = &self.targets else { return Err(RenderError::NoPicture) };
         let frame = FrameResources {
             uniform: &self.uniform,
@@ -316,13 +234,15 @@ impl GpuRenderer {
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,
+            ambient: self.light.cells(),
         };
         for (k, map) in maps.iter().enumerate() {
             self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
         }
         self.draw_body(gpu, &mut commands, targets);
         let lit = self.pipelines.lit.of(gpu, maps.len())?;
-        self.hair.shade(gpu, lit, &mut commands, &frame);
+        let shading = (lit, input.look.shading, self.light.tables());
+        self.hair.shade(gpu, shading, &mut commands, &frame);
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }
@@ -351,9 +271,9 @@ impl GpuRenderer {
         let present = &self.pipelines.present;
         present.collect(commands.encoder(), &lists);
         let report = match output {
-            Output::Memory(readback) => {
+            Output::Memory { readback, pixels: back } => {
                 let wanted = [
-                    (self.screen.pixels(), 4 * pixels),
+                    (self.screen.pixels(), if back { 4 * pixels } else { 0 }),
                     (self.shadow.sum(), 4 * SUM_WORDS),
                     (present.heads(), present.heads().size()),
                 ];
@@ -417,19 +337,6 @@ impl GpuRenderer {
     }
 }
 
-/// A picture that the device draws: see [`GpuRenderer::begin_picture`].
-#[derive(Debug)]
-pub struct PendingPicture {
-    readback: Readback,
-    size: [u32; 2],
-    lists: ListsOfFrame,
-    /// The number of strand points.
-    points: u32,
-    passes: Vec<PassTime>,
-    begun_ms: f64,
-    traffic: Traffic,
-}
-
 /// The lists with which a frame was drawn.
 #[derive(Clone, Copy, Debug)]
 struct ListsOfFrame {
@@ -441,8 +348,8 @@ struct ListsOfFrame {
 
 /// Where a finished picture goes.
 enum Output<'a> {
-    /// To memory, with what the frame reports.
-    Memory(&'a mut Readback),
+    /// To memory, if `pixels`, with what the frame reports.
+    Memory { readback: &'a mut Readback, pixels: bool },
     /// Into the texture `shown`, or that of the image `before` if a list was too short. `report` is a spare buffer for what the frame
     /// reports.
     Texture {
@@ -460,7 +367,7 @@ fn number_of_bytes(bytes: &[u8]) -> f64 {
 }
 
 /// See [`EyeInput`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct SeenHair {
     area: Area,
     reach: f32,
@@ -474,7 +381,7 @@ fn eye_input<'a>(
     uniform: &FrameUniform,
     drawn: HairOutput,
 ) -> EyeInput<'a> {
-    let strands = hair.strands();
+    let strands = hair.drawn();
     EyeInput {
         area: seen.area,
         reach: seen.reach,

@@ -115,7 +115,7 @@ impl GpuShadowStage {
                 maps: lights.len() as u32,
             };
             shadow.build(slot, gpu, commands, &from, input.shadow)?;
-            let strands = hair.strands();
+            let strands = hair.drawn();
             let targets = GpuTargets {
                 points: strands.points,
                 stride: 1,

@@ -67,6 +67,7 @@ impl Scene {
             shadow: &self.shadow,
             camera: &self.camera,
             picture: &self.picture,
+            surroundings: None,
             known: None,
         }
     }

@@ -4,6 +4,7 @@
 mod common;
 
 mod agreement;
+mod false_colors;
 mod inspect;
 mod layers;
 mod picture_cpu;

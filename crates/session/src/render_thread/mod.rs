@@ -17,7 +17,6 @@ use lovelock_render::{
 use crate::latest::{Latest, LatestJob};
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
-use crate::thinning::Thinning;
 use crate::window_device::WindowDevice;
 use samples::{Samples, jitter};
 
@@ -32,8 +31,6 @@ pub struct RenderRequest {
     pub size: [u32; 2],
     /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
     pub still: bool,
-    /// Whether strands narrower than a pixel are replaced by fewer and wider ones.
-    pub thinned: bool,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
 }
@@ -138,7 +135,6 @@ impl RenderThread {
             textures: None,
             last: None,
             samples: Samples::default(),
-            thinning: Thinning::default(),
             picture: Picture::default(),
             cost: None,
             transmittance: 1.0,
@@ -214,7 +210,6 @@ struct Worker {
     /// The request that was rendered last, and its samples so far.
     last: Option<RenderRequest>,
     samples: Samples,
-    thinning: Thinning,
     picture: Picture,
     /// The image that a device finished last: its size, and its time in milliseconds.
     cost: Option<([u32; 2], f64)>,
@@ -420,14 +415,7 @@ impl Worker {
             (Image::on(textures, picture), stats)
         } else {
             self.samples.forget();
-            let head = snapshot.guides.world_from_head.translation.into();
-            // A card would have to be given the other strands at the beginning and the end of each movement.
-            let thins = request.thinned && renderer.backend() == Backend::Cpu;
-            let thinned = thins.then(|| {
-                self.thinning.choose(&snapshot.scene.style, &project.look, (&camera, size[1], head))
-            });
-            let mut input = snapshot.frame_input(project, &camera);
-            input.style = thinned.as_ref().unwrap_or(input.style);
+            let input = snapshot.frame_input(project, &camera);
             renderer.image(&input, *size, *measured, textures)?
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {

@@ -57,7 +57,6 @@ impl Rig {
             snapshot,
             size: [64, 48],
             still: false,
-            thinned: false,
             measured: false,
         });
         while self.thread.busy().load(Ordering::Relaxed) {
@@ -244,7 +243,6 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         snapshot: Arc::clone(&rig.snapshot),
         size: [64, 48],
         still,
-        thinned: false,
         measured: false,
     };
     let wait = |samples: u32| loop {

@@ -34,7 +34,7 @@ pub fn compare(
     request: &CompareRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<CompareReport, ProjectError> {
-    let (project, _) = project.sanitised();
+    let project = project.sanitised().0.compared();
     let fps = request.fps.unwrap_or(project.recording.fps);
     let size = request.size.unwrap_or((project.recording.width, project.recording.height));
     check(&project, request, fps, size)?;

@@ -7,6 +7,8 @@ use lovelock_groom::simd_versions;
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
 use crate::cpu::view::View;
 
+/// Height over the skin at which light from all directions is looked up, metres: hair that lies on skin shadows it.
+const ABOVE_SKIN: f32 = 0.008;
 /// Positions that are shaded together.
 pub(crate) const LANES: usize = 16;
 type Lane = [f32; LANES];
@@ -86,7 +88,6 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     }
 
     let mut sum = [[0.0; LANES]; 3];
-    let mut open = [0.0; LANES];
     for (light, hair) in view.lights.iter().zip(&batch.hair) {
         let l = (-light.direction).to_array();
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
@@ -96,7 +97,6 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         let mut reached = f32::NEG_INFINITY;
         for lane in 0..LANES {
             facing[lane] = normal[0][lane] * l[0] + normal[1][lane] * l[1] + normal[2][lane] * l[2];
-            open[lane] += hair[lane];
             // At grazing angles the flat triangles of a round limb shadow each other.
             above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
             reached = max(facing[lane], reached);
@@ -133,16 +133,12 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         }
     }
 
-    let lights = view.lights.len();
-    let each = if lights > 0 { 1.0 / lights as f32 } else { 0.0 };
-    let closed = if lights > 0 { 0.0 } else { 1.0 };
-    let (below, above) = (view.ambient(-1.0), view.ambient(1.0));
-    for c in 0..3 {
-        let (below, above) = (below[c], above[c]);
-        for lane in 0..LANES {
-            let ambient = mix(below, above, 0.5 + 0.5 * normal[1][lane]);
-            let inside = 0.35 + 0.65 * (open[lane] * each + closed);
-            batch.color[c][lane] = sum[c][lane] + 0.5 * ambient * albedo[c][lane] * inside;
+    for lane in 0..LANES {
+        let at = |axis: usize| batch.position[axis][lane] + ABOVE_SKIN * normal[axis][lane];
+        let inside = view.grid.at([at(0), at(1), at(2)])[3];
+        let ambient = view.ambient([normal[0][lane], normal[1][lane], normal[2][lane]]);
+        for c in 0..3 {
+            batch.color[c][lane] = sum[c][lane] + ambient[c] * albedo[c][lane] * inside;
         }
     }
 }

@@ -12,6 +12,8 @@ use super::pool::Pool;
 use super::tile::{Grid, HairPlanes, STRIDE, TILE};
 use super::view::View;
 use crate::picture::check_size;
+use crate::scene_light::NO_LIGHT;
+use crate::strand_details::StrandDetails;
 use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError};
 
@@ -26,6 +28,7 @@ const LEAST_SHARE: f32 = 1e-6;
 pub struct ValueRenderer {
     strands: Strands,
     placed: PlacedScene,
+    details: StrandDetails,
     /// Full transmittance, one word per point.
     lit: Vec<u32>,
     tiles: Vec<[f32; 2]>,
@@ -62,6 +65,7 @@ impl Default for ValueRenderer {
         Self {
             strands: Strands::default(),
             placed: PlacedScene::new(Width::widest()),
+            details: StrandDetails::default(),
             lit: Vec::new(),
             tiles: Vec::new(),
             pixels: Vec::new(),
@@ -103,8 +107,8 @@ impl ValueRenderer {
             let (found, needed) = (values.len(), strands.points());
             return Err(RenderError::Known { of: "values (one per strand point)", found, needed });
         }
-        let uniform = FrameUniform::new(input, width, height, &[], 1);
-        let view = View::new(&uniform, &[], &[], 1);
+        let uniform = FrameUniform::new(input, None, &NO_LIGHT, (width, height), &[], 1);
+        let view = View::new(&uniform, (&NO_LIGHT.grid, None), &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
         // In place of colours: the value times 1 or 0, and 1 or 0. Their quotient is the mean of the values.
         self.placed.points.par_iter_mut().zip(values).with_min_len(8192).for_each(|(point, &value)| {
@@ -134,7 +138,8 @@ impl ValueRenderer {
     /// Projects the strand points.
     fn place(&mut self, view: &View, input: &FrameInput, strands: &Strands, width: u32, height: u32) -> Grid {
         self.lit.resize(strands.points(), u32::MAX);
-        self.placed.shade(view, input, strands, &self.lit);
+        self.details.follow(input.style);
+        self.placed.shade(view, (strands, &self.details), &self.lit);
         Grid::new(width, height)
     }
 }

@@ -11,6 +11,7 @@ use crate::cpu::points::ShadedPoint;
 use crate::cpu::tile::{Grid, STRIDE, TILE};
 use crate::cpu::view::View;
 use crate::picture::check_size;
+use crate::scene_light::NO_LIGHT;
 use crate::uniform::FrameUniform;
 
 /// The largest distance of hair from the pixel, pixels.
@@ -54,16 +55,15 @@ impl ValueRenderer {
         [width, height]: [u32; 2],
         pixel: [f32; 2],
     ) -> Option<HairHit> {
-        let uniform = FrameUniform::new(input, width, height, &[], 1);
-        let view = View::new(&uniform, &[], &[], 1);
+        let uniform = FrameUniform::new(input, None, &NO_LIGHT, (width, height), &[], 1);
+        let view = View::new(&uniform, (&NO_LIGHT.grid, None), &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
         let points = &self.placed.points;
         let near = |&first: &u32| {
             let (a, b) = (points.get(first as usize)?, points.get(first as usize + 1)?);
             candidate(first, a, b, pixel)
         };
-        let mut found: Vec<_> =
-            self.placed.segments().par_iter().with_min_len(8192).filter_map(near).collect();
+        let mut found: Vec<_> = self.placed.segments.par_iter().with_min_len(8192).filter_map(near).collect();
         found.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(b.depth.total_cmp(&a.depth)));
         self.placed.sort(&view, &grid, input, strands, &[]);
         let mut body = BodyBefore { renderer: self, grid: &grid, input, tiles: Vec::new() };

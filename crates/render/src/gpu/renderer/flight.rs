@@ -121,7 +121,7 @@ impl GpuRenderer {
         let report = report.map(|buffer| Report {
             buffer,
             lists: self.lists_of_frame(),
-            points: self.hair.strands().point_count,
+            points: self.hair.drawn().point_count,
             measured,
         });
         if report.is_some() {

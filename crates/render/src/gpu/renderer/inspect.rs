@@ -14,7 +14,7 @@ impl GpuRenderer {
     /// As there.
     pub fn transmittance(&mut self, light: usize) -> Result<Vec<f32>, RenderError> {
         self.check_light(light)?;
-        let mut words = vec![0; self.hair.strands().point_count as usize];
+        let mut words = vec![0; self.hair.drawn().point_count as usize];
         read_buffer(&self.gpu, self.hair.transmittance(), &mut words)?;
         Ok(unpack(&words, light))
     }

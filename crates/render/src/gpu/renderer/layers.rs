@@ -48,6 +48,7 @@ impl GpuRenderer {
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,
+            ambient: self.light.cells(),
         };
         let area = [seen.area.left, seen.area.top, seen.area.columns, seen.area.rows];
         let mut timer = PassTimer::new(&gpu)?;

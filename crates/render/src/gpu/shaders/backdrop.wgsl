@@ -22,7 +22,7 @@ fn light_of_cell(cell: vec2u) -> u32 {
     // Corners on both sides of the horizon do not determine the cell.
     let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
     let light = (packed & 0x3fffffffu) | select(0u, EVEN_LIGHT, all(spread < vec4f(ALIKE)));
-    return select(ALL_LIGHT, light, frame.ambient_up_ground.w > 0.5);
+    return select(ALL_LIGHT, light, frame.ground_texels.x > 0.5);
 }
 
 // The packed light on the ground at a pixel.

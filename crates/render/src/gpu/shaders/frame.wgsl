@@ -20,10 +20,8 @@ struct FrameUniform {
     eye_lights: vec4f,
     // Size in pixels, pixels that a metre covers at one metre, exposure as a factor.
     size_scale_exposure: vec4f,
-    // Light from above; w: 1 where the ground is drawn.
-    ambient_up_ground: vec4f,
-    // Light from below; w: texels of the body's depth maps.
-    ambient_down_texels: vec4f,
+    // 1 where the ground is drawn, texels of the body's depth maps.
+    ground_texels: vec4f,
     background_top: vec4f,
     background_bottom: vec4f,
     // Absorption of the hair; w: variation between strands.
@@ -32,6 +30,17 @@ struct FrameUniform {
     width_opacity_tip_scalp: vec4f,
     // Strength of the first and second highlight, their exponents.
     highlights: vec4f,
+    // The index of the strand at which the width of fading strands would reach 0, the slope of their widths, points per strand, and
+    // the number of points.
+    fading: vec4f,
+    // Share of grey strands, share of lightened locks, how much less pigment those have, strength of many scatterings.
+    colors: vec4f,
+    // Sine and cosine of the tilt, and variance, of the lobes R, TT, TRT and the rest.
+    lobes: array<vec4f, 4>,
+    // The corner of the grid of ambient light; w: reciprocal of its cells' edge.
+    ambient_grid: vec4f,
+    // Light from all directions: see `Surround` in appearance.
+    surround: array<vec4f, 9>,
     lights: array<LightUniform, 4>,
 }
 
@@ -40,6 +49,8 @@ struct FrameUniform {
 @group(0) @binding(15) var compare: sampler_comparison;
 @group(0) @binding(2) var hair_columns: texture_2d_array<f32>;
 @group(0) @binding(3) var linear_clamp: sampler;
+// Light from all directions among the hair: red, green and blue at hair, and the share that arrives at skin. See ambient.rs.
+@group(0) @binding(16) var ambient_cells: texture_3d<f32>;
 
 // The number of lights. Code per light is unrolled, because software adapters load a number with a constant index once for all threads
 // of a vector.
@@ -68,7 +79,7 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     }
     // Texels around a position are nearer by the slope of the plane over one texel. The slope is limited, because at grazing angles it
     // would be too large for other surfaces.
-    let texel = 1.0 / frame.ambient_down_texels.w;
+    let texel = 1.0 / frame.ground_texels.y;
     let z = at.z - texel * (abs(lean.x) + abs(lean.y)) / max(lean.z, 0.25);
     let turn = lean.xy / (1.0 + max(lean.z, 0.0));
     // A golden-angle disc: uniform for any number of taps, and the same for every pixel, so that it does not flicker. The map is as deep
@@ -110,7 +121,22 @@ fn columns_light(i: u32, p: vec3f) -> f32 {
     return textureSampleLevel(hair_columns, linear_clamp, min(at.xy, last), i, 0.0).r;
 }
 
-// Ambient light on a surface with normal `n`.
+// Light from all directions on a surface with the unit normal `n`: irradiance over pi.
 fn ambient(n: vec3f) -> vec3f {
-    return mix(frame.ambient_down_texels.xyz, frame.ambient_up_ground.xyz, 0.5 + 0.5 * n.y);
+    let sum = frame.surround[0].xyz
+        + frame.surround[1].xyz * n.y
+        + frame.surround[2].xyz * n.z
+        + frame.surround[3].xyz * n.x
+        + frame.surround[4].xyz * (1.5 * n.y * n.y - 0.5)
+        + frame.surround[5].xyz * (n.y * n.z)
+        + frame.surround[6].xyz * (n.y * n.x)
+        + frame.surround[7].xyz * (n.z * n.z - n.x * n.x)
+        + frame.surround[8].xyz * (2.0 * n.x * n.z);
+    return max(sum, vec3f(0.0));
+}
+
+// Light from all directions at a position among the hair.
+fn ambient_at(p: vec3f) -> vec4f {
+    let place = (p - frame.ambient_grid.xyz) * frame.ambient_grid.w;
+    return textureSampleLevel(ambient_cells, linear_clamp, place / vec3f(textureDimensions(ambient_cells)), 0.0);
 }

@@ -22,7 +22,7 @@ fn ground_light(ndc: vec2f) -> vec4f {
         return vec4f(1.0, 1.0, 1.0, 0.0);
     }
     let p = eye - ray * (eye.y / ray.y);
-    var full = 0.5 * ambient(UP) * 3.14159;
+    var full = ambient(UP) * 3.14159;
     var lit = full;
     if (LIGHTS > 0u) {
         full += share_of(0u);

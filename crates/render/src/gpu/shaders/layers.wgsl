@@ -49,16 +49,24 @@ fn layer_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     }
 }
 
-// Runs when the hair layer has transmittance and 1 in place of colours: their quotient is the mean, whatever multiplies both.
+// The least coverage of hair with which a pixel has a mean; less is rounding.
+const LEAST_SHARE: f32 = 1e-6;
+
+// The mean of the values of a pixel whose hair has values and 1 in place of colours: their quotient, whatever multiplies both.
+fn mean_of(hair: vec4f) -> f32 {
+    return hair.r / max(hair.g, LEAST_SHARE);
+}
+
+// Runs when the hair layer has transmittance and 1 in place of colours.
 @compute @workgroup_size(64)
 fn layer_transmittance(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
     if (i < hair_area.z * hair_area.w) {
         let pixel = hair_area.xy + vec2u(i % hair_area.z, i / hair_area.z);
         let hair = hair_of(pixel);
-        let mean = clamp(hair.r / max(hair.g, 1e-6), 0.0, 1.0);
+        let mean = clamp(mean_of(hair), 0.0, 1.0);
         let through = clamp(1.0 - (1.0 - hair.w) * (1.0 - mean), 0.0, 1.0);
-        data_layer[pixel.y * picture_size().x + pixel.x].y = select(1.0, through, hair.g > 1e-6);
+        data_layer[pixel.y * picture_size().x + pixel.x].y = select(1.0, through, hair.g > LEAST_SHARE);
     }
 }
 

@@ -16,6 +16,17 @@ struct ShadedPoint {
 @group(0) @binding(6) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
 @group(0) @binding(7) var<storage, read_write> shaded: array<ShadedPoint>;
 
+// The number of points that are drawn; the buffers may hold more.
+fn drawn_points() -> u32 {
+    return u32(frame.fading.w);
+}
+
+// The width of the strand of point `i` as a share of the full width: the last of fine strands fade.
+fn share_of_strand(i: u32) -> f32 {
+    let strand = i / max(u32(frame.fading.z), 1u);
+    return clamp((frame.fading.x - f32(strand)) * frame.fading.y, 0.0, 1.0);
+}
+
 struct Projected { pixel: vec2f, depth: f32, w: f32 }
 
 fn project(p: vec3f) -> Projected {
@@ -26,8 +37,26 @@ fn project(p: vec3f) -> Projected {
     return Projected(pixel, ndc.z, clip.w);
 }
 
-// A point to shade: its position, the unit tangent, the unit vector toward the eye, and the colours of the strand there.
-struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor }
+// Whether hair scatters as fibres do; otherwise it is shaded by Kajiya-Kay.
+override FIBRE: bool = true;
+
+// See cpu/points/mod.rs.
+const WHITENING: f32 = 97.381;
+const UNPIGMENTED: f32 = 0.03;
+const PAINTED_FROM: f32 = 0.2;
+
+// A point to shade: its position, the unit tangent, the unit vector toward the eye, and the colours or the scattering of the strand there.
+struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatter }
+
+// Factor on the absorption of a point.
+fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
+    let lock = f32(detail >> 26u) / 64.0;
+    let lightened = 1.0 - frame.width_opacity_tip_scalp.z * smoothstep(0.2, 1.0, along);
+    let whitened = select(1.0, UNPIGMENTED, fract(shade * WHITENING) < frame.colors.x);
+    let painted = select(0.0, smoothstep(0.0, PAINTED_FROM, along), lock < frame.colors.y);
+    let varied = max(1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0), 0.0);
+    return varied * lightened * whitened * (1.0 - frame.colors.z * painted);
+}
 
 // Like `body_light` for points without a surface: three taps on a disc perpendicular to the light.
 fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
@@ -35,7 +64,7 @@ fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
     // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
     let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * 0.006, 1.0);
     let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
-    let radius = max(light.radiance_blur.w, 1.0) / frame.ambient_down_texels.w;
+    let radius = max(light.radiance_blur.w, 1.0) / frame.ground_texels.y;
     let z = min(at.z, 1.0);
     let first = radius * sqrt(2.5 / 3.0) * vec2f(1.0, 0.0);
     let second = radius * sqrt(1.5 / 3.0) * vec2f(-0.737368878, 0.675490294);
@@ -52,15 +81,20 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
     let body = body_light_on_strand(k, point.p);
     let toward = -light.direction_specular.xyz;
+    let specular = light.direction_specular.w;
+    if (FIBRE) {
+        return light.radiance_blur.xyz * body * scattered(point.scatter, point.t, toward, point.v, lit, specular);
+    }
     return light.radiance_blur.xyz * (lit * body)
-        * strand_light(point.t, toward, point.v, point.color, light.direction_specular.w, lit);
+        * strand_light(point.t, toward, point.v, point.color, specular, lit);
 }
 
 @compute @workgroup_size(64)
 fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
+    let count = drawn_points();
     // Surplus threads repeat the last point: on software adapters code after a branch is slow.
-    let i = min(thread, arrayLength(&details) - 1u);
+    let i = min(thread, count - 1u);
     let detail = details[i];
     let taper = f32(detail & 0xffu) / 255.0;
     let along = f32((detail >> 8u) & 0xffu) / 255.0;
@@ -84,12 +118,17 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let to_eye = frame.eye_lights.xyz - p;
     let distance = max(length(to_eye), 1e-3);
     let v = to_eye / distance;
-    let variation = 1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0);
-    let tip = 1.0 - frame.width_opacity_tip_scalp.z * smoothstep(0.2, 1.0, along);
-    let color = strand_color(frame.absorption_variation.xyz * variation * tip);
+    let absorption = frame.absorption_variation.xyz * pigment_of(detail, along, shade);
+    var color: StrandColor;
+    var scatter: Scatter;
+    if (FIBRE) {
+        scatter = scatter_of(t, v, absorption);
+    } else {
+        color = strand_color(absorption);
+    }
 
     let transmittance = unpack4x8unorm(light_left[i]);
-    let point = Point(p, t, v, color);
+    let point = Point(p, t, v, color, scatter);
     var sum = vec3f(0.0);
     var inside = 1.0;
     if (LIGHTS > 0u) {
@@ -110,11 +149,15 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     }
     // Ambient light reaches the inside through the same hair; a part of it always does.
     inside /= f32(max(LIGHTS, 1u));
-    sum += 0.5 * ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
+    if (FIBRE) {
+        sum += ambient_at(p).xyz * scatter.albedo;
+    } else {
+        sum += ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
+    }
 
-    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
-    if (thread < arrayLength(&details)) {
+    if (thread < count) {
         shaded[i] = ShadedPoint(
             vec3f(here.pixel, here.depth),
             select(-1.0, half_width, visible),

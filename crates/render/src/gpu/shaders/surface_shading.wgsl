@@ -42,24 +42,19 @@ fn shade_surface(in: Surface) -> vec3f {
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);
     var sum = vec3f(0.0);
-    var inside = 1.0;
     if (LIGHTS > 0u) {
         sum += light_of(0u, place, in.hair.x);
-        inside = in.hair.x;
     }
     if (LIGHTS > 1u) {
         sum += light_of(1u, place, in.hair.y);
-        inside += in.hair.y;
     }
     if (LIGHTS > 2u) {
         sum += light_of(2u, place, in.hair.z);
-        inside += in.hair.z;
     }
     if (LIGHTS > 3u) {
         sum += light_of(3u, place, in.hair.w);
-        inside += in.hair.w;
     }
-    inside /= f32(max(LIGHTS, 1u));
-    sum += 0.5 * ambient(n) * albedo * (0.35 + 0.65 * inside);
+    // Hair that lies on skin shadows it: twin of `ABOVE_SKIN` in cpu/surface/shade.rs.
+    sum += ambient(n) * albedo * ambient_at(in.world + n * 0.008).w;
     return sum;
 }

@@ -1,4 +1,4 @@
-//! Projects and shades every strand point once: the twin of `strand_points.wgsl` and `strand_shading.wgsl`.
+//! Projects and shades every strand point once: the twin of `strand_points.wgsl`.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -7,9 +7,11 @@ use lovelock_groom::simd::Width;
 use lovelock_groom::{Strands, simd_versions};
 use rayon::prelude::*;
 
-use super::math::{exp, exp2, floor, log2, max, mix, pow, saturate, smoothstep};
+use super::math::{floor, max, saturate, smoothstep};
 use super::view::View;
-use crate::MAX_LIGHTS;
+
+mod fibre;
+mod kajiya_kay;
 
 /// Points that are shaded together.
 const LANES: usize = 16;
@@ -55,6 +57,33 @@ pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut V
 }
 
 type Lane = [f32; LANES];
+
+/// The multiple of the shade whose fraction tells which strands are grey; twin of `WHITENING` in strand_points.wgsl.
+const WHITENING: f32 = 97.381;
+/// What is left of the pigment in grey strands.
+const UNPIGMENTED: f32 = 0.03;
+/// The fraction of a strand's length from the root over which lightening begins.
+const PAINTED_FROM: f32 = 0.2;
+
+/// Points to shade.
+struct ShadedFrom<'a> {
+    here: &'a [Lane; 3],
+    /// Unit vectors along the strand and toward the eye.
+    tangent: &'a [Lane; 3],
+    to_eye: &'a [Lane; 3],
+    /// Sine and cosine of the eye's inclination to the plane across the strand.
+    sin_v: Lane,
+    cos_v: Lane,
+    /// Factor on the absorption.
+    pigment: Lane,
+    /// Four 8-bit transmittances.
+    packed: [i32; LANES],
+}
+
+#[inline(always)]
+fn fraction(x: f32) -> f32 {
+    x - floor(x)
+}
 
 /// The number of complete points: strands and hairstyle should have the same size, but surplus points are ignored.
 fn out_of(input: &PointsIn) -> usize {
@@ -158,94 +187,33 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         cos_v[lane] = max(1.0 - sin_v[lane] * sin_v[lane], 0.0).sqrt();
     }
 
-    // The colours of the fibre: paths of many lengths through absorbing hair.
-    let absorption = uniform.absorption_variation.to_array();
-    let (tip_lightening, variation) = (uniform.width_opacity_tip_scalp.z, absorption[3]);
-    let mut stretched = [0.0; LANES];
+    // Pigment of the strand there, as a factor on that of the hair.
+    let colors = uniform.colors.to_array();
+    let (tip_lightening, variation) = (uniform.width_opacity_tip_scalp.z, uniform.absorption_variation.w);
+    let [grey, highlights, lightening, _] = colors;
+    let mut pigment = [0.0; LANES];
     for lane in 0..LANES {
         let along = (detail[lane] >> 8 & 0xff) as f32 * (1.0 / 255.0);
         let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
+        let lock = (detail[lane] >> 26 & 0x3f) as f32 * (1.0 / 64.0);
         let lightened = 1.0 - tip_lightening * smoothstep(0.2, 1.0, along);
-        stretched[lane] = pow(max((1.0 + variation * (2.0 * shade - 1.0)) * lightened, 0.0), 0.7);
-    }
-    let mut body = [[0.0; LANES]; 3];
-    let mut body_log = [[0.0; LANES]; 3];
-    let mut second = [[0.0; LANES]; 3];
-    let mut through = [[0.0; LANES]; 3];
-    for c in 0..3 {
-        let sigma = pow(max(absorption[c], 0.0), 0.7);
-        for lane in 0..LANES {
-            let s = sigma * stretched[lane];
-            body[c][lane] = exp(-2.8 * s) + 0.012;
-            body_log[c][lane] = log2(body[c][lane]);
-            second[c][lane] = exp(-2.2 * s) + 0.02;
-            through[c][lane] = exp(-1.7 * s) + 0.02;
-        }
+        let whitened = if fraction(shade * WHITENING) < grey { UNPIGMENTED } else { 1.0 };
+        let painted = if lock < highlights { smoothstep(0.0, PAINTED_FROM, along) } else { 0.0 };
+        pigment[lane] = max(1.0 + variation * (2.0 * shade - 1.0), 0.0)
+            * lightened
+            * whitened
+            * (1.0 - lightening * painted);
     }
 
-    let mut sum = [[0.0; LANES]; 3];
-    let mut open = [0.0; LANES];
-    let [primary, secondary, primary_exponent, secondary_exponent] = uniform.highlights.to_array();
-    for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
-        // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
-        let shadow = light.body_light(&here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
-        let [lx, ly, lz] = (-light.direction).to_array();
-        let (radiance, specular) = (light.radiance.to_array(), light.specular);
-        let mut share = [0.0; LANES];
-        let mut diffuse = [0.0; LANES];
-        let mut depth = [0.0; LANES];
-        let mut reflected = [0.0; LANES];
-        let mut broad = [0.0; LANES];
-        let mut passed = [0.0; LANES];
-        for lane in 0..LANES {
-            let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
-            open[lane] += lit.sqrt();
-            share[lane] = lit * shadow[lane];
-            // Light that has passed through other hair is more coloured with depth.
-            depth[lane] = 1.0 + 0.45 * (1.0 - lit);
-            let sin_l = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
-            let cos_l = max(1.0 - sin_l * sin_l, 0.0).sqrt();
-            let (sin_v, cos_v) = (sin_v[lane], cos_v[lane]);
-            let cos_sum = cos_l * cos_v - sin_l * sin_v;
-            let sin_sum = sin_l * cos_v + cos_l * sin_v;
-            let shifted = pow(max(cos_sum * 0.992_81 - sin_sum * 0.119_71, 0.0), primary_exponent);
-            let shifted_back = pow(max(cos_sum * 0.975_90 + sin_sum * 0.218_23, 0.0), secondary_exponent);
-            let lv = lx * to_eye[0][lane] + ly * to_eye[1][lane] + lz * to_eye[2][lane];
-            let azimuth = (lv - sin_l * sin_v) / max(cos_l * cos_v, 1e-3);
-            let behind = saturate(0.5 - 0.5 * azimuth);
-            let front = 0.35 + 0.65 * saturate(0.5 + 0.5 * azimuth);
-            let straight = max(cos_sum, 0.0) * max(cos_sum, 0.0);
-            diffuse[lane] = 0.32 * cos_l;
-            reflected[lane] = specular * 0.13 * primary * shifted * front;
-            broad[lane] = specular * 0.40 * secondary * shifted_back * front;
-            passed[lane] = specular
-                * 0.50
-                * (behind * behind * behind)
-                * (behind * behind * behind)
-                * (straight * straight);
-        }
-        for c in 0..3 {
-            let radiance = radiance[c];
-            for lane in 0..LANES {
-                let deep = exp2(body_log[c][lane] * depth[lane]);
-                let shine = reflected[lane] + broad[lane] * second[c][lane] + passed[lane] * through[c][lane];
-                sum[c][lane] += radiance * share[lane] * (diffuse[lane] * deep + shine);
-            }
-        }
-    }
-
-    // Ambient light reaches the inside through the same hair; a part of it always does.
-    let ambient = view.ambient(0.3);
-    let lights = view.lights.len();
-    let each = if lights > 0 { 1.0 / lights as f32 } else { 0.0 };
-    let closed = if lights > 0 { 0.0 } else { 1.0 };
-    for c in 0..3 {
-        let ambient = 0.5 * ambient[c];
-        for lane in 0..LANES {
-            sum[c][lane] += ambient * body[c][lane] * mix(0.22, 1.0, open[lane] * each + closed);
-        }
-    }
+    let from = ShadedFrom { here: &here, tangent: &tangent, to_eye: &to_eye, sin_v, cos_v, pigment, packed };
+    let sum = match &view.fibre {
+        Some(fibre) => fibre::shade(view, fibre, &from),
+        None => kajiya_kay::shade(view, &from),
+    };
     let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip_scalp.x);
+    // The last of fine strands fade.
+    let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
+    let points_per_strand = max(points_per_strand, 1.0) as u32;
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
@@ -254,7 +222,9 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         hash[lane] = shade * 37.0 - floor(shade * 37.0);
         let w = at[2][lane];
         let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
-        let wide = 0.5 * width * taper * scale / max(w, 1e-3);
+        let strand = (first + lane) as u32 / points_per_strand;
+        let share = saturate((fade_end - strand as f32) * fade_slope);
+        let wide = 0.5 * width * taper * share * scale / max(w, 1e-3);
         // A NaN point is not drawn: every comparison with it is false.
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
         half_width[lane] = if drawn { wide } else { -1.0 };

@@ -1,0 +1,81 @@
+//! Why a picture of the surroundings could not be read.
+
+use std::path::PathBuf;
+
+use super::picture::{MAX_BLOCK_BYTES, MAX_FILE_BYTES, MAX_HEIGHT, MAX_WIDTH};
+
+/// What a file was wanted to be.
+const FORMATS: &str = "a Radiance (.hdr) or OpenEXR (.exr) picture";
+
+/// Why a file could not be read as a picture of the surroundings.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct EnvironmentError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    #[source]
+    pub problem: Problem,
+}
+
+/// What is wrong with a picture: what was found, and what was wanted.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// The system does not give the file's content.
+    #[error("cannot be read ({0}), wanted {FORMATS}")]
+    Io(#[from] std::io::Error),
+    /// A folder, a pipe or a device.
+    #[error("is {0}, wanted the file of {FORMATS}")]
+    NotAFile(&'static str),
+    /// The content is neither of the two formats.
+    #[error("contains {0}, wanted {FORMATS}")]
+    Format(String),
+    /// A format of the two, in a variant that is not read.
+    #[error("has {found}, wanted {wanted}")]
+    Variant {
+        /// The variant.
+        found: String,
+        /// Those that are read.
+        wanted: &'static str,
+    },
+    /// No pixels.
+    #[error("is {width} x {height} pixels, wanted at least 1 x 1")]
+    Empty {
+        /// Pixels per row.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// More pixels than the limit.
+    #[error("is {width} x {height} pixels, wanted at most {MAX_WIDTH} x {MAX_HEIGHT}")]
+    TooLarge {
+        /// Pixels per row.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// More bytes than the limit.
+    #[error("has {0} bytes, wanted at most {MAX_FILE_BYTES}")]
+    TooManyBytes(u64),
+    /// Pixels compressed together in larger pieces than the limit.
+    #[error(
+        "stores its pixels in pieces of {0} bytes, wanted at most {MAX_BLOCK_BYTES}: save it with smaller tiles"
+    )]
+    BlockTooLarge(u64),
+    /// The content ends early.
+    #[error("is cut short: found {found}, wanted {wanted}")]
+    CutShort {
+        /// What is there.
+        found: String,
+        /// What was announced.
+        wanted: String,
+    },
+    /// The content contradicts its format.
+    #[error("is damaged: found {found}, wanted {wanted}")]
+    Damaged {
+        /// What is there.
+        found: String,
+        /// What the format asks for.
+        wanted: &'static str,
+    },
+}

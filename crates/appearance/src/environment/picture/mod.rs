@@ -1,0 +1,81 @@
+//! Reading a picture of the surroundings, averaged to a small size while it is read.
+
+mod exr;
+mod radiance;
+mod reduce;
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Seek};
+use std::path::Path;
+
+pub use self::reduce::Notes;
+pub(super) use self::reduce::{Reduced, Reducer, luminance};
+use super::error::Problem;
+
+/// Pixels per row of the widest picture that is read.
+pub const MAX_WIDTH: u32 = 16_384;
+
+/// Rows of the highest picture that is read.
+pub const MAX_HEIGHT: u32 = 8192;
+
+/// Bytes of the largest file that is read: the largest picture with four floats per pixel, twice.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+
+/// Bytes of the largest piece that a file may ask to be held in memory at once.
+pub(super) const MAX_BLOCK_BYTES: u64 = 256 << 20;
+
+/// The largest radiance that is read; what exceeds it is taken as this. Six times the luminance of the sun in candela
+/// per square metre, and far from where sums of floats overflow.
+pub const LARGEST_RADIANCE: f32 = 1e10;
+
+/// Opens the file of a picture.
+///
+/// Asks what it is before it opens it: to open a pipe waits for its writer.
+pub(super) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
+    let found = fs::metadata(path)?;
+    if found.is_dir() {
+        return Err(Problem::NotAFile("a folder"));
+    }
+    if !found.is_file() {
+        return Err(Problem::NotAFile("a pipe or a device"));
+    }
+    if found.len() > MAX_FILE_BYTES {
+        return Err(Problem::TooManyBytes(found.len()));
+    }
+    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
+}
+
+/// Reads a picture. The first bytes decide on the format.
+pub(super) fn read(mut content: impl BufRead + Seek) -> Result<Reducer, Problem> {
+    let start = content.fill_buf()?;
+    if start.starts_with(&::exr::meta::magic_number::BYTES) {
+        exr::read(content)
+    } else if start.starts_with(b"#?") {
+        radiance::read(content)
+    } else {
+        Err(Problem::Format(describe(start)))
+    }
+}
+
+/// What the first bytes of a file look like, for an error.
+fn describe(start: &[u8]) -> String {
+    let known: [(&[u8], &str); 6] = [
+        (b"\x89PNG", "a PNG picture"),
+        (b"\xff\xd8\xff", "a JPEG picture"),
+        (b"II*\0", "a TIFF picture"),
+        (b"MM\0*", "a TIFF picture"),
+        (b"DDS ", "a DDS picture"),
+        (b"PF", "a PFM picture"),
+    ];
+    let start = &start[..start.len().min(16)];
+    if start.is_empty() {
+        return "nothing".to_owned();
+    }
+    if let Some((_, name)) = known.iter().find(|(magic, _)| start.starts_with(magic)) {
+        return (*name).to_owned();
+    }
+    match std::str::from_utf8(start) {
+        Ok(text) if !text.contains('\0') => format!("the text {text:?}"),
+        _ => format!("the bytes {start:02x?}"),
+    }
+}

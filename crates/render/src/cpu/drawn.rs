@@ -1,0 +1,64 @@
+//! The strands of a picture on the CPU: the stored ones, or fine ones that are made from them.
+
+use lovelock_groom::Strands;
+use lovelock_groom::fine::{FineStrands, ParentPoints, Portion, grow_fine};
+use lovelock_groom::simd::Width;
+
+use crate::FrameInput;
+use crate::strand_count::portion_of;
+use crate::strand_details::StrandDetails;
+
+/// The width of a strand that is aimed at, pixels: thinner ones cost as much and can hardly be told apart.
+const TARGET_PIXELS: f32 = 0.7;
+/// The most points of fine strands: 100 bytes each with everything that drawing keeps of them.
+const MOST_POINTS: u64 = 1 << 22;
+
+/// The strands of the last picture, kept while nothing moves them.
+#[derive(Debug, Default)]
+pub(super) struct DrawnStrands {
+    fine: FineStrands,
+    parents: ParentPoints,
+    strands: Strands,
+    /// Constant properties of the points that are drawn, and of some more.
+    pub details: StrandDetails,
+    portion: Option<Portion>,
+}
+
+impl DrawnStrands {
+    /// Makes the strands of `input` for a picture `height` pixels high from the `stored` ones of the frame, which may be the same as
+    /// those of the last one. Returns whether the points are the same.
+    pub fn follow(
+        &mut self,
+        width: Width,
+        input: &FrameInput,
+        height: u32,
+        (stored, unchanged): (&Strands, bool),
+    ) -> bool {
+        // Makes the list of this hairstyle known, without a strand.
+        self.fine.follow(input.style, 0);
+        let points = self.fine.points_per_strand;
+        let portion = portion_of(input, height, TARGET_PIXELS, (points, MOST_POINTS));
+        let before = std::mem::replace(&mut self.portion, portion);
+        let Some(portion) = portion else {
+            self.details.follow(input.style);
+            return unchanged && before.is_none();
+        };
+        let longer = self.fine.follow(input.style, portion.drawn);
+        self.details.follow_fine(input.style, &self.fine, longer);
+        let same = unchanged && before.is_some_and(|before| before.drawn == portion.drawn);
+        if !same {
+            grow_fine(width, &self.fine, portion.drawn, stored, &mut self.parents, &mut self.strands);
+        }
+        same
+    }
+
+    /// The strands that are drawn.
+    pub fn strands<'a>(&'a self, stored: &'a Strands) -> &'a Strands {
+        if self.portion.is_some() { &self.strands } else { stored }
+    }
+
+    /// The part of the fine strands that is drawn, with the points of each; `None` for stored strands.
+    pub fn portion(&self) -> Option<(Portion, usize)> {
+        self.portion.map(|portion| (portion, self.fine.points_per_strand))
+    }
+}

@@ -1,0 +1,73 @@
+//! Scattering by fibres, with light from all directions: the twin of `fibre.wgsl`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
+#![allow(clippy::inline_always)]
+
+use lovelock_appearance::fibre::arithmetic::acos;
+use lovelock_appearance::fibre::{PointLight, PointScatter, ScatterRow};
+
+use super::{LANES, Lane, ShadedFrom};
+use crate::MAX_LIGHTS;
+use crate::cpu::math::{log2, max};
+use crate::cpu::view::{FibreView, View};
+use crate::fibre::{FIBRES_PER_DEPTH, LEAST_TRANSMITTANCE};
+
+/// The light that points scatter toward the eye.
+#[inline(always)]
+pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane; 3] {
+    let uniform = view.uniform;
+    let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed } = from;
+    let absorption = uniform.absorption_variation.to_array();
+    let strength = uniform.colors.w;
+    let points: [PointScatter; LANES] = std::array::from_fn(|lane| {
+        let sigma = [0, 1, 2].map(|c| absorption[c] * pigment[lane]);
+        PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma)
+    });
+    let mut sum = [[0.0; LANES]; 3];
+    for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
+        // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
+        let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
+        let [lx, ly, lz] = (-light.direction).to_array();
+        let mut sin_l = [0.0; LANES];
+        let mut cos_l = [0.0; LANES];
+        let mut phi = [0.0; LANES];
+        let mut fibres = [0.0; LANES];
+        for lane in 0..LANES {
+            let sin = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
+            let cos = max(1.0 - sin * sin, 0.0).sqrt();
+            let lv = lx * to_eye[0][lane] + ly * to_eye[1][lane] + lz * to_eye[2][lane];
+            // Where light or eye look along the strand there is no azimuth; any is as good.
+            phi[lane] = acos((lv - sin * sin_v[lane]) / max(cos * cos_v[lane], 1e-4));
+            let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
+            fibres[lane] = -FIBRES_PER_DEPTH * std::f32::consts::LN_2 * log2(max(lit, LEAST_TRANSMITTANCE));
+            (sin_l[lane], cos_l[lane]) = (sin, cos);
+        }
+        let lobes = fibre.lights[k];
+        let mut rows: [[ScatterRow; 2]; LANES] = [[[0.0; 8]; 2]; LANES];
+        for lane in 0..LANES {
+            let eye = points[lane].eye;
+            rows[lane] = [fibre.tables.direct.row(eye, phi[lane]), fibre.tables.forward.row(eye, phi[lane])];
+        }
+        let radiance = light.radiance.to_array();
+        for lane in 0..LANES {
+            let at = PointLight {
+                sin_theta: sin_l[lane],
+                cos_theta: cos_l[lane],
+                phi: phi[lane],
+                fibres: fibres[lane],
+                fibres_behind: f32::INFINITY,
+            };
+            let found =
+                points[lane].radiance_of_rows(&rows[lane], lobes.variances, lobes.lobes, &at, strength);
+            for c in 0..3 {
+                sum[c][lane] += radiance[c] * shadow[lane] * found[c];
+            }
+        }
+    }
+    for lane in 0..LANES {
+        let around = view.grid.at([here[0][lane], here[1][lane], here[2][lane]]);
+        for c in 0..3 {
+            sum[c][lane] += around[c] * points[lane].albedo[c];
+        }
+    }
+    sum
+}

@@ -1,0 +1,40 @@
+//! Scattering of hair in the settings of a picture.
+
+use lovelock_appearance::fibre::{FibreTables, LOBES, LongitudinalLobe};
+
+use crate::Light;
+
+/// Fibres that light has crossed per unit of optical depth of the shadow maps: they store 0.15 per fibre by default, and the setting
+/// *Extinction* becomes a factor on the density of hair.
+pub(crate) const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
+
+/// The smallest transmittance that maps tell from none: half of a step of 8 bits.
+pub(crate) const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
+
+/// Variance of the directions from which the largest source sends light.
+const LARGEST_SOURCE: f32 = 0.25;
+
+/// The longitudinal lobes of one light: a large source widens them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FibreLight {
+    pub variances: [f32; LOBES],
+    pub lobes: [LongitudinalLobe; LOBES],
+}
+
+impl FibreLight {
+    /// The lobes of a light whose share of sharp highlights is `specular`, 0 to 1.
+    pub fn new(tables: &FibreTables, specular: f32) -> Self {
+        let wider = LARGEST_SOURCE * (1.0 - specular.clamp(0.0, 1.0));
+        let variances = tables.variances.map(|v| v + wider);
+        Self { variances, lobes: variances.map(LongitudinalLobe::quick) }
+    }
+}
+
+/// The lobes of the lights that are on.
+pub(crate) fn lights<const N: usize>(tables: &FibreTables, lights: &[Light]) -> [FibreLight; N] {
+    let mut out = [FibreLight::default(); N];
+    for (out, light) in out.iter_mut().zip(lights.iter().filter(|light| light.enabled)) {
+        *out = FibreLight::new(tables, light.normalized().specular);
+    }
+    out
+}
