@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use lovelock_groom::{HairFormat, Unit, UpAxis};
 use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::convert::written_extensions;
+use lovelock_jobs::reference::ReferenceScene;
 use lovelock_project::project::RecordingSection;
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, Transparency};
@@ -223,14 +224,18 @@ pub(crate) struct Bench {
     /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
-    /// sorting exactly.
+    /// sorting exactly. `reference` writes scenes for a path tracer and our images of them; `reference-curly` and
+    /// `reference-curly-red-side`, for example, some or one of them.
     pub(crate) scenes: Vec<BenchTarget>,
     /// Change a setting of every scene, such as simulation.gravity=12; may be given several times.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<Assignment>,
-    /// File for the numbers as comma-separated values.
+    /// File for the numbers as comma-separated values; for reference scenes their folder.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
+    /// The most strands of reference scenes, which are then wider; all strands if none is given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) strands: Option<u32>,
     /// Earlier run to compare with: the output of `lovelock bench --json`. Stages are compared by their multiples of the machine's
     /// yardstick, so the earlier run may come from another machine; those that slowed by over 10 % are marked.
     #[arg(long, value_name = "FILE.json")]
@@ -238,7 +243,8 @@ pub(crate) struct Bench {
     /// Frames to measure, 1 to 1000; steps of 1/60 s in scenes that are not rendered.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
-    /// Size in pixels; that of the scene if none is given: 1280x720, and 800x600 for woman-300k and dog-2m.
+    /// Size in pixels; that of the scene if none is given: 1280x720, 800x600 for woman-300k and dog-2m, and 384x384 for reference
+    /// scenes.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
     /// Shadow method; that of the scene if none is given.
@@ -259,6 +265,7 @@ pub(crate) enum BenchTarget {
     Locks(Vec<LockScene>),
     VoxelMap,
     OccupancyOrder,
+    Reference(Vec<ReferenceScene>),
 }
 
 impl FromStr for BenchTarget {
@@ -269,11 +276,12 @@ impl FromStr for BenchTarget {
             "locks" => Ok(Self::Locks(LockScene::ALL.to_vec())),
             "voxel-map" => Ok(Self::VoxelMap),
             "occupancy-order" => Ok(Self::OccupancyOrder),
+            _ if id.starts_with("reference") => ReferenceScene::named(id).map(Self::Reference),
             _ if id.starts_with("locks-") => Ok(Self::Locks(vec![id.parse()?])),
             _ => id
                 .parse()
                 .map(Self::Scene)
-                .map_err(|error: String| format!("{error}, locks, voxel-map or occupancy-order")),
+                .map_err(|error: String| format!("{error}, locks, voxel-map, occupancy-order or reference")),
         }
     }
 }

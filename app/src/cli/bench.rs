@@ -3,9 +3,11 @@
 use std::ops::ControlFlow;
 
 use lovelock_jobs::bench::{Baseline, BenchRequest, bench};
+use lovelock_jobs::reference::{ReferenceRequest, ReferenceScene, write_reference};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
+use lovelock_render::Backend;
 
 use super::args::{Bench, BenchTarget};
 use super::output::Output;
@@ -13,6 +15,10 @@ use super::source::apply;
 
 /// Measures the scenes and prints the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
+    let references = references(task)?;
+    if !references.is_empty() {
+        return write_references(task, references, output);
+    }
     let mut request = BenchRequest {
         frames: task.frames,
         size: task.size,
@@ -28,6 +34,8 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
                 BenchTarget::Locks(locks) => request.locks.extend(locks),
                 BenchTarget::VoxelMap => request.voxel_map = true,
                 BenchTarget::OccupancyOrder => request.occupancy_order = true,
+                // Never beside others.
+                BenchTarget::Reference(_) => {}
             }
         }
     }
@@ -63,4 +71,66 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
         write_whole(out, report.csv().as_bytes())?;
     }
     output.result(&report, || report.to_string())
+}
+
+/// Width and height of reference scenes, pixels.
+const REFERENCE_SIZE: (u32, u32) = (384, 384);
+
+/// The reference scenes of the request, which nothing else may stand beside.
+fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
+    let mut references: Vec<ReferenceScene> = Vec::new();
+    let mut others = false;
+    for target in &task.scenes {
+        match target {
+            BenchTarget::Reference(scenes) => {
+                for scene in scenes {
+                    if !references.contains(scene) {
+                        references.push(*scene);
+                    }
+                }
+            }
+            _ => others = true,
+        }
+    }
+    let refuse = |message: &str| Err(ProjectError::option(message));
+    if references.is_empty() {
+        if task.strands.is_some() {
+            return refuse("--strands: found without reference scenes; must stand beside `reference`");
+        }
+        return Ok(references);
+    }
+    if others {
+        return refuse("reference scenes are not measured; must be the only scenes of a command");
+    }
+    if task.baseline.is_some() {
+        return refuse("--baseline: found with reference scenes, which are not measured; leave it out");
+    }
+    Ok(references)
+}
+
+/// Writes reference scenes and prints what `scenes.json` says.
+fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -> Result<(), ProjectError> {
+    let Some(out) = &task.out else {
+        return Err(ProjectError::option("--out: not found; reference scenes need a folder"));
+    };
+    if out.is_file() {
+        return Err(ProjectError::input(out, format!("{}: found a file; must be a folder", out.display())));
+    }
+    let request = ReferenceRequest {
+        scenes,
+        out: out.clone(),
+        size: task.size.unwrap_or(REFERENCE_SIZE),
+        most_strands: task.strands.map(|most| most as usize),
+        backend: task.backend.unwrap_or(Backend::Cpu),
+    };
+    let change = |project: &mut Project| {
+        project.shadow.method = task.shadow.unwrap_or(project.shadow.method);
+        project.picture.transparency = task.transparency.unwrap_or(project.picture.transparency);
+        apply(&task.set, project)
+    };
+    let report = write_reference(&request, &change, &mut |what| {
+        eprintln!("rendering {what}");
+        ControlFlow::Continue(())
+    })?;
+    output.result(&report, || format!("{} scenes in {}", report.scenes.len(), out.display()))
 }

@@ -160,3 +160,47 @@ fn locks_are_measured_through_the_dance_with_changed_settings() {
     let unknown = run(dir.path(), ["bench", "locks-wig"]);
     assert!(unknown.refused(2).contains("locks-80cm"));
 }
+
+#[test]
+fn reference_scenes_are_written_and_stand_alone() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let scene = "reference-smooth-black-front";
+    let args = [
+        "bench",
+        scene,
+        "--size",
+        "16x16",
+        "--strands",
+        "200",
+        "--json",
+        "-o",
+        "a b",
+        "--set",
+        "look.roughness=0.5",
+    ];
+    let json = run(dir.path(), args).done().json();
+    let entry = &json["scenes"][0];
+    assert_eq!(entry["name"], "smooth-black-front");
+    assert_eq!(entry["fibre"]["longitudinal_roughness"], 0.5);
+    for key in ["strands_file", "image_file", "picture_file"] {
+        let file = dir.path().join("a b").join(entry[key].as_str().expect(key));
+        assert!(file.is_file(), "{}", file.display());
+    }
+    let written = std::fs::read_to_string(dir.path().join("a b/scenes.json")).expect("the file");
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&written).expect("JSON"), json);
+    let wrong: [(&[&str], &str); 6] = [
+        (&[scene], "--out"),
+        (&[scene, "smooth", "-o", "x"], "only scenes"),
+        (&["smooth", "--strands", "9"], "--strands"),
+        (&[scene, "--strands", "0", "-o", "x"], "--strands"),
+        (&["reference-green", "-o", "x"], "dark-brown"),
+        (&[scene, "-o", "a b/scenes.json"], "folder"),
+    ];
+    for (args, named) in wrong {
+        let args: Vec<&str> = ["bench"].iter().chain(args).copied().collect();
+        let ran = run(dir.path(), &args);
+        let line = ran.refused(2);
+        assert!(line.contains(named), "{args:?}: {line}");
+        assert!(!dir.path().join("x").exists());
+    }
+}

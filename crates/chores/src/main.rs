@@ -1,4 +1,4 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, count and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, reference, count and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
@@ -8,6 +8,8 @@ mod count;
 mod interchange;
 mod latency;
 mod layers;
+mod python;
+mod reference;
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -31,6 +33,8 @@ enum Chore {
         #[arg(long, value_name = "PROGRAM")]
         beside: Option<std::path::PathBuf>,
     },
+    /// Renders hair beside a path tracer, and compares
+    Reference(reference::Arguments),
     /// Counts instructions by valgrind and compares them with the counts in the tree
     Count {
         /// Replace the counts in the tree
@@ -51,6 +55,7 @@ fn main() -> ExitCode {
         Chore::Interchange => interchange::run(),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
+        Chore::Reference(arguments) => reference::run(&arguments),
         Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };

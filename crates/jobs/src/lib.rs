@@ -5,9 +5,11 @@
 //! - [`farm`]: a recording as a job for many machines.
 //! - [`convert`]: hair files from one format to another.
 //! - [`info`]: what a file holds.
+//! - [`reference`](mod@reference): scenes for a path tracer, beside our images of them.
 
 pub mod bench;
 pub mod convert;
 pub mod farm;
 pub mod info;
 pub mod record;
+pub mod reference;

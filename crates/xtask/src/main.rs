@@ -1,4 +1,4 @@
-//! Chores of the workspace: run, test, ci, layers, latency, count and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, ci, layers, latency, reference, count and assets. `cargo xtask` lists them.
 //!
 //! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
@@ -64,6 +64,13 @@ enum Chore {
         #[arg(long, value_name = "PROGRAM")]
         beside: Option<std::path::PathBuf>,
     },
+    /// Renders hair beside a path tracer in Python, installed below target, and compares; `cargo xtask reference --help` says how
+    #[command(disable_help_flag = true)]
+    Reference {
+        /// Arguments of the chore
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Counts the instructions of the inner loops by valgrind, and names counts that differ from those in the tree by over 5 % (Linux)
     Count {
         /// Replace the counts in the tree instead
@@ -95,6 +102,7 @@ fn main() -> ExitCode {
             let beside = beside.into_iter().flat_map(|program| ["--beside".into(), program.into_os_string()]);
             chore("latency", ["--inputs".into(), inputs.to_string().into()].into_iter().chain(beside))
         }
+        Chore::Reference { arguments } => chore("reference", arguments),
         Chore::Count { write } => chore("count", write.then(|| "--write".into())),
         Chore::Assets { preview } => chore(
             "assets",

@@ -1,10 +1,10 @@
 //! EXR files of the program, read by the Python package of `OpenEXR`.
 
+use crate::python::environment;
 use anyhow::{Context as _, ensure};
 use lovelock_xtask::tool;
 use serde_json::{Value, json};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// The library of the format's authors in the Python Package Index.
@@ -17,7 +17,7 @@ pub(super) fn run(folder: &Path) -> anyhow::Result<()> {
     let more = ["--frames", "7..8", "--fps", "23.976", "--size", "320x180", "--backend", "cpu", "-o"];
     tool::run(tool::cargo(&record).args(more).arg(&frames))?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/interchange/exr_facts.py");
-    let python = environment(&folder.join("python-exr"))?;
+    let python = environment(&folder.join("python-exr"), &PACKAGES)?;
     let output = Command::new(&python)
         .arg(&script)
         .arg(frames.join("frame_000007.exr"))
@@ -64,25 +64,6 @@ fn check(found: &Value) -> anyhow::Result<()> {
         ensure!((low..=high).contains(&value), "{name}: found {value}, expected {low} to {high}");
     }
     Ok(())
-}
-
-/// Creates a virtual environment with the packages if there is none. Returns the path of its Python.
-fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
-    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so that an incomplete environment is created again.
-    let made = folder.join("made");
-    if fs::read_to_string(&made).is_ok_and(|packages| packages == PACKAGES.join(" ")) {
-        return Ok(python);
-    }
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
-    }
-    println!("Creating a Python environment with {}.", PACKAGES[0]);
-    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
-    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-    tool::run(Command::new(&python).args(pip).args(PACKAGES))?;
-    fs::write(&made, PACKAGES.join(" "))?;
-    Ok(python)
 }
 
 #[cfg(test)]

@@ -7,12 +7,13 @@ mod pictures;
 mod program;
 mod stage;
 
+use crate::python::environment;
 use anyhow::{Context as _, ensure};
 use lovelock_metrics::{Image, flip};
 use lovelock_xtask::{system, tool};
 use pictures::Picture;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// The program of FLIP's authors in the Python Package Index.
@@ -28,7 +29,7 @@ const LIMIT: f64 = 1e-3;
 pub(crate) fn run() -> anyhow::Result<()> {
     system::prepare_interchange()?;
     let folder = tool::root().join("target/interchange");
-    let python = environment(&folder.join("python"))?;
+    let python = environment(&folder.join("python"), &[&[PACKAGE][..], &BESIDE].concat())?;
     check_flip(&python, &folder)?;
     exr::run(&folder)?;
     let lovelock = program::build()?;
@@ -87,26 +88,6 @@ fn compare(ours: &[f64], theirs: &[f64]) -> anyhow::Result<()> {
         ensure!(difference <= LIMIT, "the mean of pair {index} is off by {difference:.6}");
     }
     Ok(())
-}
-
-/// Creates a virtual environment with the packages if there is none. Returns the path of its Python.
-fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
-    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so that an incomplete environment is created again.
-    let made = folder.join("made");
-    let wanted = [&[PACKAGE][..], &BESIDE].concat();
-    if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted.join(" ")) {
-        return Ok(python);
-    }
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
-    }
-    println!("Creating a Python environment with {}.", wanted.join(", "));
-    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
-    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-    tool::run(Command::new(&python).args(pip).args(&wanted))?;
-    fs::write(&made, wanted.join(" "))?;
-    Ok(python)
 }
 
 #[cfg(test)]

@@ -1,0 +1,27 @@
+//! Virtual environments of Python for programs of others.
+
+use anyhow::Context as _;
+use lovelock_xtask::tool;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Creates a virtual environment with the packages in `folder` if there is none. Returns the path of its Python.
+pub(crate) fn environment(folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    // Written last, so that an incomplete environment is created again.
+    let made = folder.join("made");
+    let wanted = packages.join(" ");
+    if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted) {
+        return Ok(python);
+    }
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
+    }
+    println!("Creating a Python environment with {}.", packages.join(", "));
+    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    tool::run(Command::new(&python).args(pip).args(packages))?;
+    fs::write(&made, wanted)?;
+    Ok(python)
+}

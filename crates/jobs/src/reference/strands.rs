@@ -1,0 +1,159 @@
+//! The drawn strands as text for a path tracer.
+
+use std::fmt::Write;
+use std::ops::Range;
+
+use glam::Vec3;
+use lovelock_groom::{Strands, interpolate};
+use lovelock_render::{FrameInput, HairPose};
+
+/// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
+const MOST_RADII: f32 = 200.0;
+
+/// The least radius in the file, as a fraction of the strand's largest. A curve of no width has no normal.
+const LEAST_TAPER: f32 = 0.02;
+
+/// The strands of one picture, root first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawnStrands {
+    /// World space, metres.
+    pub(super) points: Vec<Vec3>,
+    /// Half of the width at each point, metres.
+    pub(super) half_widths: Vec<f32>,
+    /// The points of each strand.
+    pub(super) strands: Vec<Range<usize>>,
+}
+
+/// The strands that a renderer draws of `input`, and their half widths.
+///
+/// The width is [`shadow_width`](lovelock_groom::HairLook::shadow_width) times the taper: a strand that stands for thirty hairs
+/// is as wide as thirty hairs. The path tracer then sees the optical depth that the shadows of Lovelock see. The eye of Lovelock
+/// sees it as well if `look.width_scale` and `picture.strand_opacity` are 1, as in the scenes.
+pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
+    let mut made = Strands::default();
+    let strands = match input.hair {
+        HairPose::Strands(strands) => strands,
+        HairPose::Guides(guides) => {
+            interpolate(input.style, guides, &mut made);
+            &made
+        }
+    };
+    let set = &input.style.strands;
+    let half = 0.5 * input.look.shadow_width(set.count());
+    DrawnStrands {
+        points: (0..strands.points()).map(|i| strands.point(i)).collect(),
+        half_widths: (0..strands.points()).map(|i| half * set.taper.get(i).copied().unwrap_or(1.0)).collect(),
+        strands: strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize).collect(),
+    }
+}
+
+impl DrawnStrands {
+    /// The strands with their points and half widths transformed.
+    pub(super) fn map(&self, to: impl Fn(Vec3) -> Vec3, scale: f32) -> Self {
+        Self {
+            points: self.points.iter().map(|&p| to(p)).collect(),
+            half_widths: self.half_widths.iter().map(|w| w * scale).collect(),
+            strands: self.strands.clone(),
+        }
+    }
+
+    /// Control points of cubic B-splines as text: `x y z radius` per line in the unit of the points, and an empty line between
+    /// strands. Strands of a single point are left out.
+    ///
+    /// A B-spline ends before its last control point, so each end is continued by its own mirror image, and the curve begins and
+    /// ends at the strand's ends. Segments longer than 200 radii are divided evenly.
+    pub(super) fn text(&self) -> String {
+        let mut text = String::new();
+        for strand in self.strands.iter().filter(|strand| strand.len() > 1) {
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            for (p, radius) in self.controls(strand) {
+                // Writing to a string does not fail.
+                let _ = writeln!(text, "{:.5} {:.5} {:.5} {radius:.6}", p.x, p.y, p.z);
+            }
+        }
+        text
+    }
+
+    /// The control points of a strand and their radii.
+    fn controls(&self, strand: &Range<usize>) -> Vec<(Vec3, f32)> {
+        let widths = &self.half_widths[strand.clone()];
+        let least = LEAST_TAPER * widths.iter().copied().fold(0.0, f32::max);
+        let ends: Vec<_> =
+            self.points[strand.clone()].iter().copied().zip(widths.iter().map(|w| w.max(least))).collect();
+        let mut controls = Vec::with_capacity(ends.len() + 2);
+        for pair in ends.windows(2) {
+            let [(a, from), (b, to)] = [pair[0], pair[1]];
+            let parts =
+                (a.distance(b) / (MOST_RADII * from.min(to)).max(f32::MIN_POSITIVE)).ceil().clamp(1.0, 1e3);
+            for part in 0..parts as u32 {
+                let along = part as f32 / parts;
+                controls.push((a.lerp(b, along), from + (to - from) * along));
+            }
+        }
+        controls.extend(ends.last());
+        // Mirrored and not repeated: a curve whose first three points are one has no direction there.
+        if let ([first, second, ..], [.., before, last]) = (controls.as_slice(), controls.as_slice()) {
+            let (start, end) = ((2.0 * first.0 - second.0, first.1), (2.0 * last.0 - before.0, last.1));
+            controls.insert(0, start);
+            controls.push(end);
+        }
+        controls
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn strands(points: &[[f32; 3]], half_widths: &[f32], lengths: &[usize]) -> DrawnStrands {
+        let mut first = 0;
+        let ranges = lengths.iter().map(|&length| {
+            first += length;
+            first - length..first
+        });
+        DrawnStrands {
+            points: points.iter().copied().map(Vec3::from).collect(),
+            half_widths: half_widths.to_vec(),
+            strands: ranges.collect(),
+        }
+    }
+
+    #[test]
+    fn ends_are_continued_and_strands_are_separated() {
+        let two = strands(
+            &[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [5.0, 0.0, 0.0], [5.0, 2.0, 1.0], [9.0, 9.0, 9.0]],
+            &[0.5, 0.25, 0.5, 0.5, 0.5],
+            &[2, 2, 1],
+        );
+        let expected = "0.00000 -1.00000 0.00000 0.500000\n\
+                        0.00000 0.00000 0.00000 0.500000\n\
+                        0.00000 1.00000 0.00000 0.250000\n\
+                        0.00000 2.00000 0.00000 0.250000\n\
+                        \n\
+                        5.00000 -2.00000 -1.00000 0.500000\n\
+                        5.00000 0.00000 0.00000 0.500000\n\
+                        5.00000 2.00000 1.00000 0.500000\n\
+                        5.00000 4.00000 2.00000 0.500000\n";
+        assert_eq!(two.text(), expected);
+        // The curve begins where the strand does: (p0 + 4 p1 + p2) / 6.
+        let controls = two.controls(&(2..4));
+        assert!(((controls[0].0 + 4.0 * controls[1].0 + controls[2].0) / 6.0).distance(Vec3::X * 5.0) < 1e-6);
+    }
+
+    #[test]
+    fn no_segment_is_longer_than_200_radii() {
+        let long = strands(&[[0.0; 3], [0.0, -50.0, 0.0], [0.0, -51.0, 0.0]], &[0.1, 0.1, 0.1], &[3]);
+        let controls = long.controls(&(0..3));
+        // 500 radii are three parts: 3 + 1 segments, 5 points, and one more at either end.
+        assert_eq!(controls.len(), 7);
+        assert!(controls.windows(2).all(|pair| pair[0].0.distance(pair[1].0) <= MOST_RADII * 0.1 + 1e-3));
+    }
+
+    #[test]
+    fn a_tip_of_no_width_keeps_some() {
+        let strand = strands(&[[0.0; 3], [0.0, 1.0, 0.0]], &[0.5, 0.0], &[2]);
+        assert!(strand.controls(&(0..2)).iter().all(|(_, radius)| *radius >= 0.5 * LEAST_TAPER));
+    }
+}
