@@ -117,7 +117,7 @@ impl Default for HairLook {
             width_scale: 0.3,
             primary_strength: 0.6,
             secondary_strength: 0.8,
-            roughness: 0.3,
+            roughness: 0.2,
             roughness_around: 0.3,
             scale_tilt: 2.0_f32.to_radians(),
             refraction: 1.55,

@@ -126,8 +126,8 @@ const SMOOTH: GroomSettings = GroomSettings {
     wave_length: 0.12,
     taper: 0.25,
     look: HairLook {
-        eumelanin: 2.6,
-        pheomelanin: 0.05,
+        eumelanin: 1.1,
+        pheomelanin: 0.15,
         shading: HairShading::Fibre,
         grey: 0.0,
         dye: Vec3::new(0.25, 0.02, 0.08),
@@ -141,7 +141,7 @@ const SMOOTH: GroomSettings = GroomSettings {
         width_scale: 0.3,
         primary_strength: 0.6,
         secondary_strength: 0.8,
-        roughness: 0.3,
+        roughness: 0.2,
         roughness_around: 0.3,
         scale_tilt: 0.034_906_585,
         refraction: 1.55,
@@ -176,7 +176,7 @@ const CURLY: GroomSettings = GroomSettings {
     curl_wander: 0.6,
     wave: 0.0,
     taper: 0.3,
-    look: HairLook { eumelanin: 0.2, pheomelanin: 2.6, roughness: 0.35, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.25, pheomelanin: 0.9, roughness: 0.25, ..SMOOTH.look },
     ..SMOOTH
 };
 
@@ -203,7 +203,7 @@ const LONG: GroomSettings = GroomSettings {
     curl_wander: 0.5,
     wave: 0.009,
     wave_length: 0.10,
-    look: HairLook { eumelanin: 0.35, pheomelanin: 0.1, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.25, pheomelanin: 0.06, ..SMOOTH.look },
     ..SMOOTH
 };
 
@@ -242,7 +242,7 @@ const BUN: GroomSettings = GroomSettings {
     strays: 0.01,
     stray_reach: 0.003,
     wave: 0.002,
-    look: HairLook { eumelanin: 0.7, pheomelanin: 0.12, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.55, pheomelanin: 0.12, ..SMOOTH.look },
     ..PONYTAIL
 };
 

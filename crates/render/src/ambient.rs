@@ -200,8 +200,8 @@ impl AmbientGrid {
                         // Light from the positive end comes in there.
                         let k = if side == 0 { CELLS - 1 - step } else { step };
                         let at = first + k * stride;
-                        let n = crossed + 0.5 * fibres[at];
-                        let head = blocked + 0.5 * solid[at];
+                        // Without its own hair: what is seen of a cell is the outermost of it.
+                        let (n, head) = (crossed, blocked);
                         for c in 0..3 {
                             out[k][c] += radiance[c] * (1.0 / 6.0) * arithmetic::exp(-n * rates[c] - head);
                         }

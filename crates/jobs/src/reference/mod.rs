@@ -18,7 +18,7 @@ use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::{Access, write_whole};
 use lovelock_record::write_png;
-use lovelock_render::{Backend, Camera, FrameInput, Layers, Picture, Renderer};
+use lovelock_render::{Backend, Camera, FrameInput, Layers, Picture, Renderer, StrandCount};
 use lovelock_session::clock::STEP_SECS;
 use lovelock_session::engine::Engine;
 use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
@@ -120,14 +120,14 @@ pub struct ReferenceFibre {
 }
 
 impl ReferenceFibre {
-    /// The fibre that the settings of a project describe. Lovelock has one roughness for both directions.
+    /// The fibre that the settings of a project describe.
     fn of(project: &Project) -> Self {
         Self {
             sigma_a: project.look.absorption(),
             longitudinal_roughness: project.look.roughness,
-            azimuthal_roughness: project.look.roughness,
-            scale_tilt_degrees: -2.0,
-            index: 1.55,
+            azimuthal_roughness: project.look.roughness_around,
+            scale_tilt_degrees: -project.look.scale_tilt.to_degrees(),
+            index: project.look.refraction,
         }
     }
 }
@@ -158,6 +158,11 @@ pub fn write_reference(
             return Err(ProjectError::Cancelled);
         }
         let mut project = scene.project();
+        project.picture.strands = StrandCount::Stored;
+        if let Some(most) = request.most_strands {
+            project.picture.strands = StrandCount::Fixed;
+            project.picture.strand_number = most as f32;
+        }
         change(&mut project)?;
         let hair = match settled.take() {
             Some((preset, hair)) if preset == scene.hair => hair,
@@ -183,19 +188,14 @@ struct Hair {
 impl Hair {
     /// Settles the hair and writes its strands.
     fn settle(preset: Preset, project: &Project, request: &ReferenceRequest) -> Result<Self, ProjectError> {
-        let mut scene = load(project)?;
-        let count = scene.style.strands.count();
-        if let Some(most) = request.most_strands.filter(|most| *most < count) {
-            let thinned = Arc::new(scene.style.thinned(most as f32 / count as f32));
-            scene = Arc::new(Scene { style: thinned, ..(*scene).clone() });
-        }
+        let scene = load(project)?;
         let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
         engine.follow(project);
         engine.settle();
         let snapshot = engine.snapshot();
         let any = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 1.0 };
         let input = without_body(&snapshot, project, &any);
-        let drawn = drawn_strands(&input);
+        let drawn = drawn_strands(&input, request.size.1);
         let camera = view::camera_for(&drawn.points, &input.world_from_head);
         let head_from_world = input.world_from_head.inverse();
         let in_mm = drawn.map(|p| head_from_world.transform_point3(p) * MM, MM);

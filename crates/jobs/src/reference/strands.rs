@@ -4,8 +4,7 @@ use std::fmt::Write;
 use std::ops::Range;
 
 use glam::Vec3;
-use lovelock_groom::{Strands, interpolate};
-use lovelock_render::{FrameInput, HairPose};
+use lovelock_render::{DrawnHair, FrameInput};
 
 /// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
 const MOST_RADII: f32 = 200.0;
@@ -29,21 +28,13 @@ pub(super) struct DrawnStrands {
 /// The width is [`shadow_width`](lovelock_groom::HairLook::shadow_width) times the taper: a strand that stands for thirty hairs
 /// is as wide as thirty hairs. The path tracer then sees the optical depth that the shadows of Lovelock see. The eye of Lovelock
 /// sees it as well if `look.width_scale` and `picture.strand_opacity` are 1, as in the scenes.
-pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
-    let mut made = Strands::default();
-    let strands = match input.hair {
-        HairPose::Strands(strands) => strands,
-        HairPose::Guides(guides) => {
-            interpolate(input.style, guides, &mut made);
-            &made
-        }
-    };
-    let set = &input.style.strands;
-    let half = 0.5 * input.look.shadow_width(set.count());
+pub(super) fn drawn_strands(input: &FrameInput<'_>, height: u32) -> DrawnStrands {
+    let drawn = DrawnHair::of(input, height);
+    let strands = &drawn.strands;
     DrawnStrands {
         points: (0..strands.points()).map(|i| strands.point(i)).collect(),
-        half_widths: (0..strands.points()).map(|i| half * set.taper.get(i).copied().unwrap_or(1.0)).collect(),
         strands: strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize).collect(),
+        half_widths: drawn.half_widths,
     }
 }
 

@@ -13,6 +13,34 @@ const TARGET_PIXELS: f32 = 0.7;
 /// The most points of fine strands: 100 bytes each with everything that drawing keeps of them.
 const MOST_POINTS: u64 = 1 << 22;
 
+/// The strands that an image draws, for other programs.
+#[derive(Clone, Debug)]
+pub struct DrawnHair {
+    /// Their points, world space, metres.
+    pub strands: Strands,
+    /// Half of the width of the hairs that each point stands for, metres: what blocks light. The eye sees it as wide if
+    /// `look.width_scale` and `picture.strand_opacity` are 1.
+    pub half_widths: Vec<f32>,
+}
+
+impl DrawnHair {
+    /// The strands of an image of `input` that is `height` pixels high.
+    pub fn of(input: &FrameInput, height: u32) -> Self {
+        let mut made = Strands::default();
+        let stored = input.hair.strands(input.style, &mut made);
+        let mut drawn = DrawnStrands::default();
+        drawn.follow(Width::widest(), input, height, (stored, false));
+        let (portion, points) =
+            drawn.portion().unwrap_or_else(|| (Portion::of_all(input.style.strands.count()), 1));
+        let half = 0.5 * input.look.diameter * input.look.real_hairs / portion.sum().max(1.0);
+        let strands = drawn.strands(stored).clone();
+        let taper = |i: usize| (drawn.details.words.get(i).copied().unwrap_or(255) & 0xff) as f32 / 255.0;
+        let half_widths =
+            (0..strands.points()).map(|i| half * portion.share(i / points) * taper(i)).collect();
+        Self { strands, half_widths }
+    }
+}
+
 /// The strands of the last picture, kept while nothing moves them.
 #[derive(Debug, Default)]
 pub(super) struct DrawnStrands {

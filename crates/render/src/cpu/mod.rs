@@ -35,6 +35,7 @@ mod transparency;
 mod values;
 mod view;
 
+pub use drawn::DrawnHair;
 pub(crate) use layers::show_row;
 pub use renderer::CpuRenderer;
 pub use values::{HairHit, ValuePicture, ValueRenderer};
