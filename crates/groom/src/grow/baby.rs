@@ -7,7 +7,7 @@ use lovelock_base::random::SplitMix64;
 const LENGTHS: [f32; 2] = [0.008, 0.030];
 /// Wavelengths of their waves, and the largest amplitude, metres.
 const WAVE_LENGTHS: [f32; 2] = [0.010, 0.022];
-const WAVE: f32 = 0.0009;
+const WAVE: f32 = 0.0006;
 
 /// The properties of one baby hair.
 #[derive(Clone, Copy)]
@@ -39,9 +39,9 @@ impl Baby {
         let length = between(LENGTHS, rng.unit().powi(2));
         Self {
             length,
-            width: 0.4 + 0.25 * rng.unit(),
-            slope: 0.55 * rng.bell(),
-            bend: 14.0 * rng.bell(),
+            width: 0.3 + 0.2 * rng.unit(),
+            slope: 0.4 * rng.bell(),
+            bend: 8.0 * rng.bell(),
             wave: WAVE * (0.3 + 0.7 * rng.unit()),
             wave_length: between(WAVE_LENGTHS, rng.unit()),
             phase: rng.angle(),

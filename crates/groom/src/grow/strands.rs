@@ -133,7 +133,10 @@ pub(super) fn of_wisp(
     for (strand_root, &w) in cell.roots.iter().zip(&weights) {
         let nearest = centres.iter().min_by(|a, b| apart(a.0, w).total_cmp(&apart(b.0, w)));
         let gathers_to = *nearest.unwrap_or(&(w, 0.0));
-        let own = Strand::new(settings, cell, &curve, strand_root, w, gathers_to, lock.length, &mut rng);
+        let mut own = Strand::new(settings, cell, &curve, strand_root, w, gathers_to, &mut rng);
+        if strand_root.is_baby {
+            own = own.into_baby(lock.length, &mut rng);
+        }
         let width = own.baby.map_or(EDGE_WIDTH + (1.0 - EDGE_WIDTH) * strand_root.density, |baby| baby.width);
         let taper = own.baby.map_or(settings.taper, |_| Baby::TAPER);
         for k in 0..points {
@@ -188,7 +191,6 @@ impl Strand {
         root: &Root,
         weights: [f32; 3],
         (gathers_to, lock_phase): ([f32; 3], f32),
-        length: f32,
         rng: &mut SplitMix64,
     ) -> Self {
         let from_middle = root.on.position.distance(cell.centre.position) / (2.0 * cell.spread);
@@ -197,7 +199,7 @@ impl Strand {
         let angle = rng.angle();
         let out = settings.stray_reach * (0.4 + 0.6 * rng.unit());
         let wander = settings.curl_wander;
-        let grown = Self {
+        Self {
             weights,
             from_guides: root.on.position - curve.blend(weights, 0.0),
             gathers_to,
@@ -209,20 +211,21 @@ impl Strand {
             curl_phase: lock_phase + (0.3 + if strays { 2.0 } else { 0.0 }) * wander * rng.bell(),
             curl_size: 1.0 + 0.3 * wander * rng.bell(),
             baby: None,
-        };
-        if !root.is_baby {
-            return grown;
         }
+    }
+
+    /// The same strand as a baby hair of a wisp `length` metres long.
+    fn into_baby(self, length: f32, rng: &mut SplitMix64) -> Self {
         let baby = Baby::new(rng);
         Self {
-            gathers_to: weights,
-            reach: (baby.length / length).min(grown.reach),
+            gathers_to: self.weights,
+            reach: (baby.length / length).min(self.reach),
             stray: Vec3::ZERO,
             frizz: 0.0,
             depth: Baby::DEPTH,
-            curl_size: Baby::CURL * grown.curl_size,
+            curl_size: Baby::CURL * self.curl_size,
             baby: Some(baby),
-            ..grown
+            ..self
         }
     }
 

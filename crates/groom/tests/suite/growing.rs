@@ -133,7 +133,7 @@ fn baby_hairs_are_few_short_and_fine_and_grow_at_the_hairline() {
         assert!(length > 0.007, "{length} m long");
         // The strip of 8 mm, and the nearest vertex that is up to an edge of the mesh farther than the hairline.
         assert!(edge < 0.014, "{edge} m from the hairline");
-        assert!((0.38..0.67).contains(&width), "{width} of the width of other hair");
+        assert!((0.28..0.52).contains(&width), "{width} of the width of other hair");
     }
     assert_eq!(short(0.0).0.len(), 0);
 }
