@@ -66,7 +66,7 @@ impl Default for PictureSettings {
     fn default() -> Self {
         Self {
             exposure_stops: 0.0,
-            ambient: 0.7,
+            ambient: 0.6,
             surroundings_turn: 0.0,
             background_top: Vec3::new(0.135, 0.145, 0.163),
             background_bottom: Vec3::new(0.25, 0.262, 0.282),

@@ -38,15 +38,15 @@ pub(super) fn encode<const N: usize>(color: &mut [[f32; N]; 3], exposure: f32) {
                 15.5 * x4 * x2 - 40.14 * x4 * x1 + 31.96 * x4 - 6.868 * x2 * x1 + 0.4298 * x2 + 0.1191 * x1
                     - 0.00232;
             // A little contrast.
-            curved[c][x] = pow(max(curve, 0.0), 1.04);
+            curved[c][x] = pow(max(curve, 0.0), 1.08);
         }
     }
     // A little saturation, so that natural hair colours do not turn grey.
     for x in 0..N {
         let grey = curved[0][x] * 0.2126 + curved[1][x] * 0.7152 + curved[2][x] * 0.0722;
-        curved[0][x] = max(grey + 1.14 * (curved[0][x] - grey), 0.0);
-        curved[1][x] = max(grey + 1.14 * (curved[1][x] - grey), 0.0);
-        curved[2][x] = max(grey + 1.14 * (curved[2][x] - grey), 0.0);
+        curved[0][x] = max(grey + 1.18 * (curved[0][x] - grey), 0.0);
+        curved[1][x] = max(grey + 1.18 * (curved[1][x] - grey), 0.0);
+        curved[2][x] = max(grey + 1.18 * (curved[2][x] - grey), 0.0);
     }
     for (row, out) in OUTSET.iter().zip(color) {
         for x in 0..N {
@@ -74,10 +74,10 @@ mod tests {
             let (low, high) = (f64::from(LOW), f64::from(HIGH));
             let x = (c.max(1e-10).log2().clamp(low, high) - low) / (high - low);
             let p = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];
-            p.iter().rev().fold(0.0, |sum, c| sum * x + c).max(0.0).powf(1.04)
+            p.iter().rev().fold(0.0, |sum, c| sum * x + c).max(0.0).powf(1.08)
         });
         let grey = y[0] * 0.2126 + y[1] * 0.7152 + y[2] * 0.0722;
-        apply(&OUTSET, y.map(|c| (grey + 1.14 * (c - grey)).max(0.0))).map(|c| {
+        apply(&OUTSET, y.map(|c| (grey + 1.18 * (c - grey)).max(0.0))).map(|c| {
             let linear = c.clamp(0.0, 1.0).powf(2.2);
             if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
         })

@@ -21,9 +21,9 @@ fn agx(linear: vec3f) -> vec3f {
     let x4 = x2 * x2;
     var y = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
     // A little contrast and saturation, so that natural hair colours do not turn grey.
-    y = pow(max(y, vec3f(0.0)), vec3f(1.04));
+    y = pow(max(y, vec3f(0.0)), vec3f(1.08));
     let grey = dot(y, vec3f(0.2126, 0.7152, 0.0722));
-    y = max(grey + 1.14 * (y - grey), vec3f(0.0));
+    y = max(grey + 1.18 * (y - grey), vec3f(0.0));
     return pow(clamp(outset * y, vec3f(0.0), vec3f(1.0)), vec3f(2.2));
 }
 
