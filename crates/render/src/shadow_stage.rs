@@ -4,10 +4,11 @@ use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::PassTime;
 use lovelock_groom::Strands;
+use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -27,6 +28,8 @@ pub(crate) struct ShadowStage {
     /// The times of builds and lookups, added up over lights.
     pub passes: Vec<PassTime>,
     vertices: [Vec<f32>; 3],
+    /// The places at which strands are looked up.
+    asked: [Vec<f32>; 3],
     /// Whether the last run was completed.
     is_whole: bool,
 }
@@ -64,9 +67,8 @@ impl LightShadow {
     }
 
     /// Looks up strand points and vertices, unless their transmittance is given.
-    fn look_up(&mut self, strands: &Strands, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
-        let points = [&strands.x, &strands.y, &strands.z];
-        let [v, w, u] = vertices;
+    fn look_up(&mut self, points: [&[f32]; 3], vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
+        let [v, w, u] = vertices.each_ref().map(Vec::as_slice);
         let asked = [(points, &mut self.at_points), ([v, w, u], &mut self.at_vertices)];
         for (([x, y, z], answers), known) in asked.into_iter().zip(known) {
             answers.resize(x.len(), 1.0);
@@ -88,11 +90,17 @@ impl std::fmt::Debug for ShadowStage {
 }
 
 impl ShadowStage {
-    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices.
+    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices. Fine strands, each of so
+    /// many points, are looked up at places that are apart: see [`moved_apart`].
     ///
     /// # Errors
     /// The map would exceed its memory limit, or given transmittance does not match the picture.
-    pub fn run(&mut self, input: &FrameInput, stored: &Strands, drawn: &Strands) -> Result<(), RenderError> {
+    pub fn run(
+        &mut self,
+        input: &FrameInput,
+        stored: &Strands,
+        drawn: (&Strands, Option<usize>),
+    ) -> Result<(), RenderError> {
         self.is_whole = false;
         let lights: Vec<Light> = input
             .lights
@@ -110,7 +118,7 @@ impl ShadowStage {
         let empty: &[Vec3] = &[];
         let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
         if let Some(known) = input.known {
-            known.check(lights.len(), drawn.points(), positions.len())?;
+            known.check(lights.len(), drawn.0.points(), positions.len())?;
         }
         self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
             values.clear();
@@ -132,7 +140,7 @@ impl ShadowStage {
             .zip(&lights)
             .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, stored))?;
         self.passed("shadow/build", &part);
-        self.look_up(input.known, drawn);
+        self.look_up(input, drawn);
 
         let part = Stopwatch::start();
         self.columns.clear();
@@ -147,23 +155,34 @@ impl ShadowStage {
     ///
     /// # Errors
     /// There was none.
-    pub fn look_up_again(&mut self, drawn: &Strands) -> Result<(), RenderError> {
+    pub fn look_up_again(
+        &mut self,
+        input: &FrameInput,
+        drawn: (&Strands, Option<usize>),
+    ) -> Result<(), RenderError> {
         if !self.is_whole {
             return Err(RenderError::NoPicture);
         }
         self.passes.clear();
-        self.look_up(None, drawn);
+        self.look_up(input, drawn);
         Ok(())
     }
 
-    fn look_up(&mut self, known: Option<KnownTransmittance>, drawn: &Strands) {
-        let vertices = &self.vertices;
+    fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
+        let known = input.known;
         let part = Stopwatch::start();
+        let reach = soft_reach(input.lights);
+        let mut asked = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
+        if let Some(points) = points.filter(|_| reach > 0.0) {
+            moved_apart(drawn, points, reach, &mut self.asked);
+            asked = self.asked.each_ref().map(Vec::as_slice);
+        }
+        let vertices = &self.vertices;
         self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
             let known = known.map_or([None; 2], |known| {
                 [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
             });
-            shadow.look_up(drawn, vertices, known);
+            shadow.look_up(asked, vertices, known);
         });
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, drawn.points(), &mut self.at_points);
@@ -202,6 +221,12 @@ impl ShadowStage {
         }
         self.lights.get(light).ok_or(RenderError::NoLight { light, lights: self.lights.len() })
     }
+}
+
+/// How far apart fine strands look up shadows, metres: half of the softness of the first light.
+pub(crate) fn soft_reach(lights: &[Light]) -> f32 {
+    let key = lights.iter().find(|light| light.enabled);
+    key.map_or(0.0, |light| 0.5 * light.normalized().softness)
 }
 
 /// Points that are packed or summed together.

@@ -5,6 +5,7 @@
 use rayon::prelude::*;
 
 use super::children::{FineStrand, FineStrands, MOST_POINTS};
+use super::order::place;
 use crate::simd::Width;
 use crate::{Strands, simd_versions};
 
@@ -48,6 +49,27 @@ impl ParentPoints {
 
     fn axes<'a>(&'a self, strands: &'a Strands) -> [&'a [f32]; 3] {
         if self.even { [&strands.x, &strands.y, &strands.z] } else { [&self.x, &self.y, &self.z] }
+    }
+}
+
+/// Writes the points of `strands`, of which each has `points`, moved by a random distance of up to `reach` (metres) along each axis, which is
+/// constant along a strand.
+///
+/// Shadows of a large light are soft: strands that look up the map of its middle at such places together take many samples of it.
+pub fn moved_apart(strands: &Strands, points: usize, reach: f32, out: &mut [Vec<f32>; 3]) {
+    for (axis, (out, from)) in out.iter_mut().zip([&strands.x, &strands.y, &strands.z]).enumerate() {
+        out.resize(from.len(), 0.0);
+        let of_strand = |(i, (out, from)): (usize, (&mut [f32], &[f32]))| {
+            let offset = reach * place(i as u32)[axis];
+            for (out, from) in out.iter_mut().zip(from) {
+                *out = from + offset;
+            }
+        };
+        out.par_chunks_mut(points.max(1))
+            .zip(from.par_chunks(points.max(1)))
+            .with_min_len(256)
+            .enumerate()
+            .for_each(of_strand);
     }
 }
 
