@@ -66,11 +66,12 @@ impl LightShadow {
         self.shadow.build(&from, input.shadow)
     }
 
-    /// Looks up strand points and vertices, unless their transmittance is given.
-    fn look_up(&mut self, points: [&[f32]; 3], vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
-        let [v, w, u] = vertices.each_ref().map(Vec::as_slice);
-        let asked = [(points, &mut self.at_points), ([v, w, u], &mut self.at_vertices)];
-        for (([x, y, z], answers), known) in asked.into_iter().zip(known) {
+    /// Looks up strand points, if any are passed, and vertices, unless their transmittance is given.
+    fn look_up(&mut self, points: Option<[&[f32]; 3]>, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
+        let vertices = vertices.each_ref().map(Vec::as_slice);
+        let asked = [(points, &mut self.at_points), (Some(vertices), &mut self.at_vertices)];
+        for ((asked, answers), known) in asked.into_iter().zip(known) {
+            let Some([x, y, z]) = asked else { continue };
             answers.resize(x.len(), 1.0);
             match known {
                 Some(known) => answers.copy_from_slice(known),
@@ -169,20 +170,19 @@ impl ShadowStage {
     }
 
     fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
-        let known = input.known;
         let part = Stopwatch::start();
         let reach = soft_reach(input.lights);
-        let mut asked = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
-        if let Some(points) = points.filter(|_| reach > 0.0) {
-            moved_apart(drawn, points, reach, &mut self.asked);
-            asked = self.asked.each_ref().map(Vec::as_slice);
+        let positions = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
+        let apart = points.filter(|_| reach > 0.0 && input.known.is_none());
+        if let Some(points) = apart {
+            self.look_up_apart(positions, points, reach);
         }
         let vertices = &self.vertices;
         self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
-            let known = known.map_or([None; 2], |known| {
+            let known = input.known.map_or([None; 2], |known| {
                 [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
             });
-            shadow.look_up(asked, vertices, known);
+            shadow.look_up(apart.is_none().then_some(positions), vertices, known);
         });
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, drawn.points(), &mut self.at_points);
@@ -190,6 +190,25 @@ impl ShadowStage {
         pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
         self.mean = at_points.first().map_or(1.0, |values| mean(values));
         self.passed("shadow/ask", &part);
+    }
+
+    /// Looks up points at the places of their strands, in pieces, because copies of all positions would need much memory.
+    fn look_up_apart(&mut self, positions: [&[f32]; 3], points: usize, reach: f32) {
+        let count = positions.iter().map(|axis| axis.len()).min().unwrap_or(0);
+        for light in &mut self.lights {
+            light.at_points.resize(count, 1.0);
+        }
+        for from in (0..count).step_by(POINTS_AT_ONCE) {
+            let until = (from + POINTS_AT_ONCE).min(count);
+            for (axis, (asked, positions)) in self.asked.iter_mut().zip(positions).enumerate() {
+                asked.resize(until - from, 0.0);
+                moved_apart(positions, (axis, from), points, reach, asked);
+            }
+            let [x, y, z] = &self.asked;
+            self.lights.par_iter_mut().for_each(|light| {
+                light.shadow.transmittance_at(x, y, z, &mut light.at_points[from..until]);
+            });
+        }
     }
 
     fn passed(&mut self, name: &str, part: &Stopwatch) {
@@ -228,6 +247,9 @@ pub(crate) fn soft_reach(lights: &[Light]) -> f32 {
     let key = lights.iter().find(|light| light.enabled);
     key.map_or(0.0, |light| 0.5 * light.normalized().softness)
 }
+
+/// Points that are looked up together at places of their own.
+const POINTS_AT_ONCE: usize = 1 << 18;
 
 /// Points that are packed or summed together.
 const PIECE: usize = 8192;

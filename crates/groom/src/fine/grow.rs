@@ -52,25 +52,24 @@ impl ParentPoints {
     }
 }
 
-/// Writes the points of `strands`, of which each has `points`, moved by a random distance of up to `reach` (metres) along each axis, which is
-/// constant along a strand.
+/// Writes the points `from` to `from + out.len()` of one axis of strands, of which each has `points`, moved by a random distance of up to
+/// `reach` (metres), which is constant along a strand.
 ///
 /// Shadows of a large light are soft: strands that look up the map of its middle at such places together take many samples of it.
-pub fn moved_apart(strands: &Strands, points: usize, reach: f32, out: &mut [Vec<f32>; 3]) {
-    for (axis, (out, from)) in out.iter_mut().zip([&strands.x, &strands.y, &strands.z]).enumerate() {
-        out.resize(from.len(), 0.0);
-        let of_strand = |(i, (out, from)): (usize, (&mut [f32], &[f32]))| {
-            let offset = reach * place(i as u32)[axis];
-            for (out, from) in out.iter_mut().zip(from) {
-                *out = from + offset;
-            }
-        };
-        out.par_chunks_mut(points.max(1))
-            .zip(from.par_chunks(points.max(1)))
-            .with_min_len(256)
-            .enumerate()
-            .for_each(of_strand);
-    }
+pub fn moved_apart(
+    positions: &[f32],
+    (axis, from): (usize, usize),
+    points: usize,
+    reach: f32,
+    out: &mut [f32],
+) {
+    out.par_chunks_mut(POINTS_PER_TASK).enumerate().for_each(|(piece, out)| {
+        let first = from + piece * POINTS_PER_TASK;
+        for (k, out) in out.iter_mut().enumerate() {
+            let i = first + k;
+            *out = positions[i] + reach * place((i / points) as u32)[axis];
+        }
+    });
 }
 
 /// Writes the points of the first `count` fine strands, of the stored `strands` of one frame, to `out`. The result has the same bytes for

@@ -307,7 +307,7 @@ impl CpuRenderer {
             shadow_ms,
             draw_ms: drawing.ms(),
             passes,
-            segments: self.placed.segments.len() as u64,
+            segments: self.placed.segments().len() as u64,
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
