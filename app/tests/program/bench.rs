@@ -124,7 +124,7 @@ fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
     let wrong: [(&[&str], &str); 9] = [
         (&["bench", "wig"], "smooth-2m"),
-        (&["bench", "wig"], "voxel-map or occupancy-order"),
+        (&["bench", "wig"], "voxel-map, occupancy-order or reference"),
         (&["bench", "--baseline", "none.json"], "none.json"),
         (&["bench", "--frames", "0"], "1..=1000"),
         (&["bench", "--backend", "magic"], "expected auto, gpu or cpu"),

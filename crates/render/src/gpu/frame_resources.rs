@@ -26,7 +26,7 @@ impl<'a> FrameResources<'a> {
             (2, wgpu::BindingResource::TextureView(self.columns)),
             (3, wgpu::BindingResource::Sampler(self.linear)),
             (15, wgpu::BindingResource::Sampler(self.compare)),
-            (16, wgpu::BindingResource::TextureView(self.ambient)),
+            (22, wgpu::BindingResource::TextureView(self.ambient)),
         ];
         frame.into_iter().chain(own).collect()
     }

@@ -225,7 +225,7 @@ pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     s.look.real_hairs = 8000.0;
     s.lights = Light::default_rig();
     s.shadow = ShadowSettings::default();
-    s.picture = PictureSettings::default();
+    s.picture = PictureSettings { strands: StrandCount::Stored, ambient: 0.5, ..PictureSettings::default() };
     s
 }
 

@@ -82,7 +82,7 @@ fn light_between_strands_brightens_fair_hair_most() {
     let gain = |eumelanin: f32| {
         let mut scene = fibres(tuft_scene(400));
         scene.shadow.method = ShadowMethod::Exact;
-        (scene.look.eumelanin, scene.look.real_hairs) = (eumelanin, 8_000.0);
+        (scene.look.eumelanin, scene.look.real_hairs) = (eumelanin, 60_000.0);
         scene.picture.ambient = 0.0;
         let with = light(&scene).element_sum();
         scene.look.many_scattering = 0.0;

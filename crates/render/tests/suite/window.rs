@@ -113,8 +113,8 @@ fn images_stay_on_the_device_and_nothing_waits_or_is_created() {
             let has_lists = matches!(transparency, Transparency::Sorted | Transparency::Exact);
             let back = if has_lists { 8 * HEADS_BYTES } else { 0 };
             assert_eq!((all.bytes_back, all.waits, all.created), (back, 0, 0), "{named}");
-            // The strands and the body go up, and little else.
-            let moved = 16 * scene.strands.x.len() as u64 + 32 * 81;
+            // The strands, the body and the grid of light from all directions go up, and little else.
+            let moved = 16 * scene.strands.x.len() as u64 + 32 * 81 + 8 * 32 * 32 * 32;
             assert!(all.bytes_up >= 8 * moved && all.bytes_up < 8 * (moved + 4096), "{named}");
             // Control: a picture in memory is waited for and copied.
             let (_, stats) = rig.picture(&scene);

@@ -5,7 +5,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use crate::cpu::math::{exp, max, min, saturate, sin, smoothstep};
+use crate::cpu::math::{max, min, saturate, sin, smoothstep};
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::tile::{BLOCK_HEIGHT, BLOCK_LANES, BLOCK_WIDTH, BLOCKS_IN_ROW, TILE};
 
@@ -44,17 +44,6 @@ pub(crate) fn bounds(a: &ShadedPoint, b: &ShadedPoint) -> [f32; 4] {
     let (ax, ay) = (a.run_y.abs() * reach, a.run_x.abs() * reach);
     let (bx, by) = (b.run_y.abs() * reach, b.run_x.abs() * reach);
     [min(a.x - ax, b.x - bx), min(a.y - ay, b.y - by), max(a.x + ax, b.x + bx), max(a.y + ay, b.y + by)]
-}
-
-/// Opacity of a strand where it covers a pixel most.
-///
-/// Many strands below a pixel let through `exp(-opacity * sum of widths)`, whatever their number: that is what one of them does too.
-/// From half a pixel on this goes over into the opacity of a strand that fills the pixel.
-#[inline(always)]
-pub(crate) fn opacity_of(opacity: f32, half_width: f32) -> f32 {
-    let width = half_width * 2.0;
-    let thin = 1.0 - exp(-opacity * width);
-    thin + (opacity * min(width, 1.0) - thin) * smoothstep(0.5, 2.0, width)
 }
 
 /// Receives the blocks of a segment. A trait, because closures are not always inlined.
@@ -97,7 +86,8 @@ pub(crate) fn each_span(
         return;
     }
     let (half_a, half_b) = (max(a.half_width, 0.5), max(b.half_width, 0.5));
-    let (opacity_a, opacity_b) = (opacity_of(opacity, a.half_width), opacity_of(opacity, b.half_width));
+    let (opacity_a, opacity_b) =
+        (opacity * min(a.half_width * 2.0, 1.0), opacity * min(b.half_width * 2.0, 1.0));
     let streaked = max(half_a, half_b) > 0.8;
     // The intersection of a row with the ribbon: a middle that moves from row to row, and half a width.
     let steep = nx.abs() > 0.05;

@@ -10,7 +10,7 @@ use crate::cpu::view::View;
 /// Height over the skin at which light from all directions is looked up, metres: hair that lies on skin shadows it.
 const ABOVE_SKIN: f32 = 0.008;
 /// How far light reaches around skin past its edge, as a cosine: red light travels furthest below the surface.
-const WRAP: [f32; 3] = [0.2, 0.11, 0.07];
+const WRAP: [f32; 3] = [0.12, 0.09, 0.07];
 /// Positions that are shaded together.
 pub(crate) const LANES: usize = 16;
 type Lane = [f32; LANES];

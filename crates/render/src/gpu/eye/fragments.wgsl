@@ -27,13 +27,6 @@ fn opacity_of(fragment: Fragment) -> f32 {
     return fragment.alpha * dot(select(vec4f(0.0), vec4f(0.25), fragment.seen), vec4f(1.0));
 }
 
-// Opacity of a strand where it covers a pixel most: see `opacity_of` in cpu/hair/segment.rs.
-fn opacity_of_strand(half_width: f32) -> f32 {
-    let width = half_width * 2.0;
-    let thin = 1.0 - exp(-eye.opacity * width);
-    return thin + (eye.opacity * min(width, 1.0) - thin) * smoothstep(0.5, 2.0, width);
-}
-
 @compute @workgroup_size(64)
 fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
@@ -59,8 +52,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let half_a = max(a.half_width, 0.5);
     let half_b = max(b.half_width, 0.5);
     let reach = max(half_a, half_b) + 0.5;
-    let opacity_a = opacity_of_strand(a.half_width);
-    let opacity_b = opacity_of_strand(b.half_width);
+    let opacity_a = eye.opacity * min(a.half_width * 2.0, 1.0);
+    let opacity_b = eye.opacity * min(b.half_width * 2.0, 1.0);
     let streaked = max(half_a, half_b) > 0.8;
     let blue_hash = unpack2x16float(a.color.y);
     let color_a = vec3f(unpack2x16float(a.color.x), blue_hash.x);

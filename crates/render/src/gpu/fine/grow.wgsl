@@ -50,9 +50,9 @@ fn stored_at(strand: u32, j: u32, links: u32) -> vec3f {
     let own = first_point[strand + 1u] - first - 1u;
     let at = f32(j) / f32(links) * f32(own);
     let i = min(u32(at), own - 1u);
-    let from = stored[first + i].xyz;
+    let low = stored[first + i].xyz;
     let exact = stored[first + min(j, own)].xyz;
-    return select(from + (stored[first + i + 1u].xyz - from) * (at - f32(i)), exact, own == links);
+    return select(low + (stored[first + i + 1u].xyz - low) * (at - f32(i)), exact, own == links);
 }
 
 fn bezier(control: u32, t: f32) -> f32 {
@@ -89,6 +89,6 @@ fn grow_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     }
     let at = f32(k) * (f32(strand.length_shade & 0xffffu) * (1.0 / 65535.0));
     let i = min(u32(at), links - 1u);
-    let from = mixed(strand, i, links);
-    put(thread, from + (mixed(strand, i + 1u, links) - from) * (at - f32(i)));
+    let low = mixed(strand, i, links);
+    put(thread, low + (mixed(strand, i + 1u, links) - low) * (at - f32(i)));
 }

@@ -129,21 +129,21 @@ fn faded(first: f32, length: f32, curve: f32, sigma: vec3f) -> vec3f {
 }
 
 // Radiance toward the eye per irradiance of a light toward which `l` points. `lit` is the transmittance of the hair before it.
-fn scattered(of: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32) -> vec3f {
+fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32) -> vec3f {
     let sin_l = clamp(dot(t, l), -1.0, 1.0);
     let cos_l = sqrt(max(1.0 - sin_l * sin_l, 0.0));
-    let phi = acos(clamp((dot(l, v) - sin_l * of.sin_v) / max(cos_l * of.cos_v, 1e-4), -1.0, 1.0));
+    let phi = acos(clamp((dot(l, v) - sin_l * s.sin_v) / max(cos_l * s.cos_v, 1e-4), -1.0, 1.0));
     let light = vec2f(sin_l, cos_l);
     let azimuth = step_of(phi * (f32(AZIMUTHS - 1u) / PI), AZIMUTHS);
-    let direct = row_at(0u, of.eye, azimuth, AZIMUTHS);
-    let after = row_at(TABLE, of.eye, azimuth, AZIMUTHS);
+    let direct = row_at(0u, s.eye, azimuth, AZIMUTHS);
+    let after = row_at(TABLE, s.eye, azimuth, AZIMUTHS);
 
     let n = clamp(-FIBRES_PER_DEPTH * log(max(lit, LEAST_TRANSMITTANCE)), 0.0, MOST_FIBRES);
     let unhit = exp(-n);
-    let reached = exp(-n * (1.0 - of.forward));
+    let reached = exp(-n * (1.0 - s.forward));
     let psi = clamp(reached - unhit, vec3f(0.0), vec3f(1.0));
     let hit = clamp(1.0 - unhit / reached, vec3f(0.0), vec3f(1.0));
-    let added = clamp(of.spread * (n * of.forward + 1e-4) / (hit + 1e-4), vec3f(0.0), vec3f(WIDEST));
+    let added = clamp(s.spread * (n * s.forward + 1e-4) / (hit + 1e-4), vec3f(0.0), vec3f(WIDEST));
     let share = psi + 1e-6;
     let x = dot(share, added) / dot(share, vec3f(1.0));
 
@@ -152,30 +152,30 @@ fn scattered(of: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32)
     let v_r = frame.lobes[0].z + wider;
     let v_tt = frame.lobes[1].z + wider;
     let v_trt = frame.lobes[2].z + wider;
-    let once_r = lobe_at(quick_lobe(v_r), light, of.tilted_r);
-    let once_tt = lobe_at(quick_lobe(v_tt), light, of.tilted_tt);
-    let once_trt = lobe_at(quick_lobe(v_trt), light, of.tilted_trt);
-    let once_rest = lobe_at(quick_lobe(frame.lobes[3].z + wider), light, of.tilted_rest);
-    let after_r = lobe_at(quick_lobe(v_r + x), light, of.tilted_r);
+    let once_r = lobe_at(quick_lobe(v_r), light, s.tilted_r);
+    let once_tt = lobe_at(quick_lobe(v_tt), light, s.tilted_tt);
+    let once_trt = lobe_at(quick_lobe(v_trt), light, s.tilted_trt);
+    let once_rest = lobe_at(quick_lobe(frame.lobes[3].z + wider), light, s.tilted_rest);
+    let after_r = lobe_at(quick_lobe(v_r + x), light, s.tilted_r);
     let after_tt = vec3f(
-        lobe_at(quick_lobe(v_tt + added.r), light, of.tilted_tt),
-        lobe_at(quick_lobe(v_tt + added.g), light, of.tilted_tt),
-        lobe_at(quick_lobe(v_tt + added.b), light, of.tilted_tt),
+        lobe_at(quick_lobe(v_tt + added.r), light, s.tilted_tt),
+        lobe_at(quick_lobe(v_tt + added.g), light, s.tilted_tt),
+        lobe_at(quick_lobe(v_tt + added.b), light, s.tilted_tt),
     );
-    let after_trt = lobe_at(quick_lobe(v_trt + x), light, of.tilted_trt);
+    let after_trt = lobe_at(quick_lobe(v_trt + x), light, s.tilted_trt);
 
     let same_side = clamp(0.5 + (0.5 * PI - phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
-    let back_once = same_side * lobe_at(quick_lobe(of.backscatter_variance), light, of.tilted_rest);
-    let back_after = same_side * lobe_at(quick_lobe(of.backscatter_variance + x), light, of.tilted_rest);
+    let back_once = same_side * lobe_at(quick_lobe(s.backscatter_variance), light, s.tilted_rest);
+    let back_after = same_side * lobe_at(quick_lobe(s.backscatter_variance + x), light, s.tilted_rest);
 
     let strength = frame.colors.w;
     let single = once_r * direct.a.x
-        + once_tt * faded(direct.a.y, direct.a.z, direct.a.w, of.sigma)
-        + once_trt * faded(direct.b.x, direct.b.y, direct.b.z, of.sigma)
-        + once_rest * of.rest;
+        + once_tt * faded(direct.a.y, direct.a.z, direct.a.w, s.sigma)
+        + once_trt * faded(direct.b.x, direct.b.y, direct.b.z, s.sigma)
+        + once_rest * s.rest;
     let global = after_r * after.a.x
-        + after_tt * faded(after.a.y, after.a.z, after.a.w, of.sigma)
-        + after_trt * (faded(after.b.x, after.b.y, after.b.z, of.sigma) + of.rest);
-    return unhit * (single + strength * of.backscatter * back_once)
-        + strength * psi * (global + of.backscatter * back_after);
+        + after_tt * faded(after.a.y, after.a.z, after.a.w, s.sigma)
+        + after_trt * (faded(after.b.x, after.b.y, after.b.z, s.sigma) + s.rest);
+    return unhit * (single + strength * s.backscatter * back_once)
+        + strength * psi * (global + s.backscatter * back_after);
 }

@@ -50,7 +50,7 @@ struct FrameUniform {
 @group(0) @binding(2) var hair_columns: texture_2d_array<f32>;
 @group(0) @binding(3) var linear_clamp: sampler;
 // Light from all directions among the hair: red, green and blue at hair, and the share that arrives at skin. See ambient.rs.
-@group(0) @binding(16) var ambient_cells: texture_3d<f32>;
+@group(0) @binding(22) var ambient_cells: texture_3d<f32>;
 
 // The number of lights. Code per light is unrolled, because software adapters load a number with a constant index once for all threads
 // of a vector.

@@ -13,7 +13,7 @@ struct Surface {
 struct Place { world: vec3f, n: vec3f, v: vec3f, albedo: vec3f, skin: f32 }
 
 // How far light reaches around skin past its edge, as a cosine: red light travels furthest below the surface.
-const WRAP: vec3f = vec3f(0.2, 0.11, 0.07);
+const WRAP: vec3f = vec3f(0.12, 0.09, 0.07);
 
 // The light that a position reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, place: Place, left: f32) -> vec3f {
