@@ -223,7 +223,8 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and simulate-402 and simulate-20k, which are
+    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, far, middle, near and still (fine strands that scatter,
+    /// from a whole figure to a head of 100,000 strands), and simulate-402 and simulate-20k, which are
     /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against

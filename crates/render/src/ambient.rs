@@ -5,6 +5,8 @@
 //! [`lovelock_appearance::fibre::ManyRow`]). A cell holds the mean over the six directions, so a point of hair only reads eight cells.
 //! Both backends use the same grid.
 
+use std::ops::Range;
+
 use glam::{Vec3, Vec3A};
 use lovelock_appearance::environment::{Environment, Surround};
 use lovelock_appearance::fibre::{CosineStep, FibreTables, arithmetic};
@@ -78,6 +80,10 @@ pub(crate) struct AmbientGrid {
     fibres: Vec<f32>,
     solid: Vec<f32>,
     blurred: Vec<f32>,
+    /// Light of one axis, line after line.
+    by_line: Vec<[[f32; 4]; CELLS]>,
+    /// The points of each line of hair, and the share of all hair that it stands for.
+    hair: Vec<(Range<usize>, f32)>,
 }
 
 impl Default for AmbientGrid {
@@ -90,6 +96,8 @@ impl Default for AmbientGrid {
             fibres: Vec::new(),
             solid: Vec::new(),
             blurred: Vec::new(),
+            by_line: Vec::new(),
+            hair: Vec::new(),
         }
     }
 }
@@ -97,7 +105,12 @@ impl Default for AmbientGrid {
 impl AmbientGrid {
     /// Builds the grid.
     pub fn build(&mut self, input: &FrameInput, around: &Around, tables: &FibreTables) {
-        let points = HairPoints::new(input);
+        let points = HairPoints::new(input, std::mem::take(&mut self.hair));
+        self.build_from(&points, input, around, tables);
+        self.hair = points.lines;
+    }
+
+    fn build_from(&mut self, points: &HairPoints, input: &FrameInput, around: &Around, tables: &FibreTables) {
         let (low, high) = points.bounds();
         if low.x > high.x {
             // Without hair everything is open.
@@ -110,7 +123,7 @@ impl AmbientGrid {
         let widest = (high - low).max_element();
         self.cell = (widest / (CELLS as f32 - 2.0 * MARGIN)).max(SMALLEST_CELL);
         self.origin = 0.5 * (low + high) - Vec3::splat(0.5 * CELLS as f32 * self.cell);
-        self.deposit(&points, input);
+        self.deposit(points, input);
         self.add_head(input);
         self.light(input, around, tables);
     }
@@ -183,14 +196,13 @@ impl AmbientGrid {
         let (fibres, solid) = (&self.fibres, &self.solid);
         // Lines along x, y and z, each from both ends. The sums of a direction are the same for any number of threads.
         for (axis, stride) in [(0, 1), (1, CELLS), (2, CELLS * CELLS)] {
-            let lines: Vec<usize> = (0..CELLS * CELLS)
-                .map(|line| match axis {
-                    0 => line * CELLS,
-                    1 => line / CELLS * CELLS * CELLS + line % CELLS,
-                    _ => line,
-                })
-                .collect();
-            let of_line = |&first: &usize| {
+            let first_of = |line: usize| match axis {
+                0 => line * CELLS,
+                1 => line / CELLS * CELLS * CELLS + line % CELLS,
+                _ => line,
+            };
+            let of_line = |line: usize| {
+                let first = first_of(line);
                 let mut out = [[0.0_f32; 4]; CELLS];
                 for (side, radiance) in
                     [around.axes[2 * axis], around.axes[2 * axis + 1]].into_iter().enumerate()
@@ -212,9 +224,10 @@ impl AmbientGrid {
                 }
                 out
             };
-            let found: Vec<[[f32; 4]; CELLS]> = lines.par_iter().map(of_line).collect();
-            for (first, line) in lines.iter().zip(&found) {
-                for (k, light) in line.iter().enumerate() {
+            (0..CELLS * CELLS).into_par_iter().map(of_line).collect_into_vec(&mut self.by_line);
+            for (line, lit) in self.by_line.iter().enumerate() {
+                let first = first_of(line);
+                for (k, light) in lit.iter().enumerate() {
                     let cell = &mut self.cells[first + k * stride];
                     for c in 0..4 {
                         cell[c] += light[c];
@@ -261,36 +274,36 @@ impl AmbientGrid {
 struct HairPoints<'a> {
     axes: [&'a [f32]; 3],
     /// The points of each line, and the share of all hair that it stands for.
-    lines: Vec<(std::ops::Range<usize>, f32)>,
+    lines: Vec<(Range<usize>, f32)>,
 }
 
 impl<'a> HairPoints<'a> {
-    fn new(input: &FrameInput<'a>) -> Self {
+    /// The hair of `input`, in the memory of `lines`.
+    fn new(input: &FrameInput<'a>, mut lines: Vec<(Range<usize>, f32)>) -> Self {
+        lines.clear();
         let all = input.style.strands.count().max(1) as f32;
         match input.hair {
             HairPose::Guides(frame) => {
                 let guides = &frame.guides;
                 let points = guides.points_per_guide;
-                let lines = input.style.wisps.iter().flat_map(|wisp| {
-                    let share = wisp.strand_count as f32 / (3.0 * all);
-                    wisp.guides.map(|guide| (guide as usize * points..(guide as usize + 1) * points, share))
-                });
                 let known = guides.x.len().min(guides.y.len()).min(guides.z.len());
-                let lines = lines.filter(|(line, _)| line.end <= known).collect();
+                for wisp in &input.style.wisps {
+                    let share = wisp.strand_count as f32 / (3.0 * all);
+                    let of = wisp.guides.map(|guide| guide as usize * points..(guide as usize + 1) * points);
+                    lines.extend(of.into_iter().filter(|line| line.end <= known).map(|line| (line, share)));
+                }
                 Self { axes: [&guides.x, &guides.y, &guides.z], lines }
             }
             HairPose::Strands(strands) => {
                 let every = strands.count().div_ceil(MOST_STRANDS).max(1);
                 let known = strands.x.len().min(strands.y.len()).min(strands.z.len());
-                let lines: Vec<_> = strands
-                    .first_point
-                    .windows(2)
-                    .step_by(every)
-                    .map(|ends| ends[0] as usize..ends[1] as usize)
-                    .filter(|line| line.start <= line.end && line.end <= known)
-                    .collect();
+                let ends = strands.first_point.windows(2).step_by(every);
+                let of = ends.map(|ends| ends[0] as usize..ends[1] as usize);
+                lines.extend(
+                    of.filter(|line| line.start <= line.end && line.end <= known).map(|line| (line, 1.0)),
+                );
                 let share = 1.0 / lines.len().max(1) as f32;
-                let lines = lines.into_iter().map(|line| (line, share)).collect();
+                lines.iter_mut().for_each(|line| line.1 = share);
                 Self { axes: [&strands.x, &strands.y, &strands.z], lines }
             }
         }

@@ -4,10 +4,11 @@ use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::PassTime;
 use lovelock_groom::Strands;
+use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -27,6 +28,8 @@ pub(crate) struct ShadowStage {
     /// The times of builds and lookups, added up over lights.
     pub passes: Vec<PassTime>,
     vertices: [Vec<f32>; 3],
+    /// The places at which strands are looked up.
+    asked: [Vec<f32>; 3],
     /// Whether the last run was completed.
     is_whole: bool,
 }
@@ -63,12 +66,12 @@ impl LightShadow {
         self.shadow.build(&from, input.shadow)
     }
 
-    /// Looks up strand points and vertices, unless their transmittance is given.
-    fn look_up(&mut self, strands: &Strands, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
-        let points = [&strands.x, &strands.y, &strands.z];
-        let [v, w, u] = vertices;
-        let asked = [(points, &mut self.at_points), ([v, w, u], &mut self.at_vertices)];
-        for (([x, y, z], answers), known) in asked.into_iter().zip(known) {
+    /// Looks up strand points, if any are passed, and vertices, unless their transmittance is given.
+    fn look_up(&mut self, points: Option<[&[f32]; 3]>, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
+        let vertices = vertices.each_ref().map(Vec::as_slice);
+        let asked = [(points, &mut self.at_points), (Some(vertices), &mut self.at_vertices)];
+        for ((asked, answers), known) in asked.into_iter().zip(known) {
+            let Some([x, y, z]) = asked else { continue };
             answers.resize(x.len(), 1.0);
             match known {
                 Some(known) => answers.copy_from_slice(known),
@@ -88,11 +91,17 @@ impl std::fmt::Debug for ShadowStage {
 }
 
 impl ShadowStage {
-    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices.
+    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices. Fine strands, each of so
+    /// many points, are looked up at places that are apart: see [`moved_apart`].
     ///
     /// # Errors
     /// The map would exceed its memory limit, or given transmittance does not match the picture.
-    pub fn run(&mut self, input: &FrameInput, stored: &Strands, drawn: &Strands) -> Result<(), RenderError> {
+    pub fn run(
+        &mut self,
+        input: &FrameInput,
+        stored: &Strands,
+        drawn: (&Strands, Option<usize>),
+    ) -> Result<(), RenderError> {
         self.is_whole = false;
         let lights: Vec<Light> = input
             .lights
@@ -110,7 +119,7 @@ impl ShadowStage {
         let empty: &[Vec3] = &[];
         let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
         if let Some(known) = input.known {
-            known.check(lights.len(), drawn.points(), positions.len())?;
+            known.check(lights.len(), drawn.0.points(), positions.len())?;
         }
         self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
             values.clear();
@@ -132,7 +141,7 @@ impl ShadowStage {
             .zip(&lights)
             .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, stored))?;
         self.passed("shadow/build", &part);
-        self.look_up(input.known, drawn);
+        self.look_up(input, drawn);
 
         let part = Stopwatch::start();
         self.columns.clear();
@@ -147,23 +156,33 @@ impl ShadowStage {
     ///
     /// # Errors
     /// There was none.
-    pub fn look_up_again(&mut self, drawn: &Strands) -> Result<(), RenderError> {
+    pub fn look_up_again(
+        &mut self,
+        input: &FrameInput,
+        drawn: (&Strands, Option<usize>),
+    ) -> Result<(), RenderError> {
         if !self.is_whole {
             return Err(RenderError::NoPicture);
         }
         self.passes.clear();
-        self.look_up(None, drawn);
+        self.look_up(input, drawn);
         Ok(())
     }
 
-    fn look_up(&mut self, known: Option<KnownTransmittance>, drawn: &Strands) {
-        let vertices = &self.vertices;
+    fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
         let part = Stopwatch::start();
+        let reach = soft_reach(input.lights);
+        let positions = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
+        let apart = points.filter(|_| reach > 0.0 && input.known.is_none());
+        if let Some(points) = apart {
+            self.look_up_apart(positions, points, reach);
+        }
+        let vertices = &self.vertices;
         self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
-            let known = known.map_or([None; 2], |known| {
+            let known = input.known.map_or([None; 2], |known| {
                 [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
             });
-            shadow.look_up(drawn, vertices, known);
+            shadow.look_up(apart.is_none().then_some(positions), vertices, known);
         });
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, drawn.points(), &mut self.at_points);
@@ -171,6 +190,25 @@ impl ShadowStage {
         pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
         self.mean = at_points.first().map_or(1.0, |values| mean(values));
         self.passed("shadow/ask", &part);
+    }
+
+    /// Looks up points at the places of their strands, in pieces, because copies of all positions would need much memory.
+    fn look_up_apart(&mut self, positions: [&[f32]; 3], points: usize, reach: f32) {
+        let count = positions.iter().map(|axis| axis.len()).min().unwrap_or(0);
+        for light in &mut self.lights {
+            light.at_points.resize(count, 1.0);
+        }
+        for from in (0..count).step_by(POINTS_AT_ONCE) {
+            let until = (from + POINTS_AT_ONCE).min(count);
+            for (axis, (asked, positions)) in self.asked.iter_mut().zip(positions).enumerate() {
+                asked.resize(until - from, 0.0);
+                moved_apart(positions, (axis, from), points, reach, asked);
+            }
+            let [x, y, z] = &self.asked;
+            self.lights.par_iter_mut().for_each(|light| {
+                light.shadow.transmittance_at(x, y, z, &mut light.at_points[from..until]);
+            });
+        }
     }
 
     fn passed(&mut self, name: &str, part: &Stopwatch) {
@@ -203,6 +241,15 @@ impl ShadowStage {
         self.lights.get(light).ok_or(RenderError::NoLight { light, lights: self.lights.len() })
     }
 }
+
+/// How far apart fine strands look up shadows, metres: half of the softness of the first light.
+pub(crate) fn soft_reach(lights: &[Light]) -> f32 {
+    let key = lights.iter().find(|light| light.enabled);
+    key.map_or(0.0, |light| 0.5 * light.normalized().softness)
+}
+
+/// Points that are looked up together at places of their own.
+const POINTS_AT_ONCE: usize = 1 << 18;
 
 /// Points that are packed or summed together.
 const PIECE: usize = 8192;

@@ -14,7 +14,7 @@ pub(crate) struct StrandDetails {
     /// See [`pack_detail`].
     pub words: Vec<u32>,
     /// First point of each segment, in the order of strands.
-    pub segments: Vec<u32>,
+    pub segments: Arc<Vec<u32>>,
 }
 
 impl StrandDetails {
@@ -24,13 +24,13 @@ impl StrandDetails {
             return false;
         }
         self.fine = 0;
-        self.segments.clear();
+        let mut segments = Vec::with_capacity(style.strands.segments());
         self.words.clear();
         self.words.resize(style.strands.points(), 0);
         let locks = Locks::new(style);
         for (s, ends) in style.strands.first_point.windows(2).enumerate() {
             let (first, end) = (ends[0], ends[1]);
-            self.segments.extend(first..end.saturating_sub(1).max(first));
+            segments.extend(first..end.saturating_sub(1).max(first));
             for i in first..end {
                 self.words[i as usize] = pack_detail(
                     style.strands.taper.get(i as usize).copied().unwrap_or(1.0),
@@ -41,7 +41,7 @@ impl StrandDetails {
                 );
             }
         }
-        self.style = Some(Arc::clone(style));
+        (self.style, self.segments) = (Some(Arc::clone(style)), Arc::new(segments));
         true
     }
 
@@ -55,10 +55,10 @@ impl StrandDetails {
         let set = &style.strands;
         let points = fine.points_per_strand;
         let last = points.saturating_sub(1).max(1);
-        self.segments.clear();
-        self.segments.extend(
-            (0..count).flat_map(|i| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32),
-        );
+        let of_strand = |i: usize| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32;
+        let mut segments = Vec::with_capacity(count * points.saturating_sub(1));
+        segments.extend((0..count).flat_map(of_strand));
+        self.segments = Arc::new(segments);
         self.words.clear();
         self.words.reserve(count * points);
         let locks = Locks::new(style);

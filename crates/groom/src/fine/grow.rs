@@ -5,6 +5,7 @@
 use rayon::prelude::*;
 
 use super::children::{FineStrand, FineStrands, MOST_POINTS};
+use super::order::place;
 use crate::simd::Width;
 use crate::{Strands, simd_versions};
 
@@ -49,6 +50,26 @@ impl ParentPoints {
     fn axes<'a>(&'a self, strands: &'a Strands) -> [&'a [f32]; 3] {
         if self.even { [&strands.x, &strands.y, &strands.z] } else { [&self.x, &self.y, &self.z] }
     }
+}
+
+/// Writes the points `from` to `from + out.len()` of one axis of strands, of which each has `points`, moved by a random distance of up to
+/// `reach` (metres), which is constant along a strand.
+///
+/// Shadows of a large light are soft: strands that look up the map of its middle at such places together take many samples of it.
+pub fn moved_apart(
+    positions: &[f32],
+    (axis, from): (usize, usize),
+    points: usize,
+    reach: f32,
+    out: &mut [f32],
+) {
+    out.par_chunks_mut(POINTS_PER_TASK).enumerate().for_each(|(piece, out)| {
+        let first = from + piece * POINTS_PER_TASK;
+        for (k, out) in out.iter_mut().enumerate() {
+            let i = first + k;
+            *out = positions[i] + reach * place((i / points) as u32)[axis];
+        }
+    });
 }
 
 /// Writes the points of the first `count` fine strands, of the stored `strands` of one frame, to `out`. The result has the same bytes for

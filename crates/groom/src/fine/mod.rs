@@ -17,5 +17,5 @@ mod portion;
 mod tests;
 
 pub use children::{FineStrand, FineStrands};
-pub use grow::{ParentPoints, grow_fine};
+pub use grow::{ParentPoints, grow_fine, moved_apart};
 pub use portion::Portion;

@@ -25,6 +25,13 @@ pub(super) fn evenly(set: &StrandSet) -> Vec<u32> {
     keys.into_iter().map(|(_, strand)| strand).collect()
 }
 
+/// A place within a cube of half edge 1 for strand `i` of the list: constant along the strand and in time. Twin of `place_of` in
+/// grow.wgsl.
+pub(super) fn place(i: u32) -> [f32; 3] {
+    let h = hash(i);
+    [h, h >> 10, h >> 20].map(|bits| (bits & 0x3ff) as f32 * (2.0 / 1023.0) - 1.0)
+}
+
 /// A hash of a number, spread over all 32 bits (Mueller's multiplicative mix).
 pub(super) fn hash(x: u32) -> u32 {
     let x = (x ^ (x >> 16)).wrapping_mul(0x45d9_f3b);

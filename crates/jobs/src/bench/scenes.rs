@@ -3,9 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
+use lovelock_base::settings::Settings;
 use lovelock_groom::{GroomSettings, Preset};
 use lovelock_project::Project;
-use lovelock_render::{ShadowMethod, Transparency};
+use lovelock_render::{ShadowMethod, StrandCount, Transparency};
 
 /// A measured scene: the default project with more or other hair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,14 @@ pub enum BenchScene {
     Woman300k,
     /// 400,000 strands of 5 segments, as many as the dog of Sintorn and Assarsson 2009 has; short fur on a head.
     Dog2M,
+    /// The smooth hairstyle as images show it by default, with fibres that scatter: the whole figure in the image.
+    Far,
+    /// The same with head and shoulders in the image.
+    Middle,
+    /// The same with the head filling the image, and 25,000 strands.
+    Near,
+    /// As near, with 100,000 strands: a still image.
+    Still,
     /// The guides of the published smooth hairstyle, simulated by each method without rendering: 402 of 30 links.
     Simulate402,
     /// The same with each of 20,100 strands simulated individually.
@@ -32,7 +41,7 @@ pub enum BenchScene {
 
 impl BenchScene {
     /// All of them, by paper and from small to large.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::Smooth,
         Self::Curly,
         Self::Smooth500k,
@@ -40,6 +49,10 @@ impl BenchScene {
         Self::Smooth2M,
         Self::Woman300k,
         Self::Dog2M,
+        Self::Far,
+        Self::Middle,
+        Self::Near,
+        Self::Still,
         Self::Simulate402,
         Self::Simulate20k,
     ];
@@ -54,6 +67,10 @@ impl BenchScene {
             Self::Smooth2M => "smooth-2m",
             Self::Woman300k => "woman-300k",
             Self::Dog2M => "dog-2m",
+            Self::Far => "far",
+            Self::Middle => "middle",
+            Self::Near => "near",
+            Self::Still => "still",
             Self::Simulate402 => "simulate-402",
             Self::Simulate20k => "simulate-20k",
         }
@@ -85,9 +102,22 @@ impl BenchScene {
     pub fn project(self) -> Project {
         let mut project = Project::default();
         project.set_preset(if self == Self::Curly { Preset::Curly } else { Preset::Smooth });
+        if matches!(self, Self::Far | Self::Middle | Self::Near | Self::Still) {
+            (project.camera.distance, project.picture.strands, project.picture.strand_number) = match self {
+                Self::Far => (4.0, StrandCount::BySize, 0.0),
+                Self::Middle => (1.6, StrandCount::BySize, 0.0),
+                Self::Near => (0.7, StrandCount::Fixed, 25_000.0),
+                _ => (0.7, StrandCount::Fixed, 100_000.0),
+            };
+            project.picture = project.picture.clamped();
+            return project;
+        }
+        // As the papers: the stored strands, shaded by Kajiya-Kay.
+        project = project.compared();
         let groom = &mut project.hair.groom;
         match self {
             Self::Smooth | Self::Curly | Self::Simulate402 => {}
+            Self::Far | Self::Middle | Self::Near | Self::Still => {}
             Self::Simulate20k => groom.strands_per_wisp = 150,
             // 134 wisps of 30 segments per strand: 4,020 segments for each strand of a wisp.
             Self::Smooth500k => groom.strands_per_wisp = 125,

@@ -122,7 +122,7 @@ impl ExactReference {
         exact.shadow.method = ShadowMethod::Exact;
         exact.picture.transparency = Transparency::Exact;
         // The panes do not affect the reference.
-        exact.compare = lovelock_project::project::CompareSection { panes: Vec::new() };
+        exact.compare.panes = Vec::new();
         let camera = snapshot.camera(&exact.camera);
         let key = PictureKey { instant: Instant(Arc::clone(snapshot)), project: exact, camera, size };
         if let Some((held, found)) = &self.picture

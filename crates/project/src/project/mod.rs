@@ -97,11 +97,12 @@ impl Default for Project {
 
 impl Project {
     /// The project as comparisons of shadow methods draw it: with the strands that the hairstyle stores, at which transmittance is
-    /// measured.
+    /// measured, and with the shading of [`CompareSection::shading`].
     #[must_use]
     pub fn compared(&self) -> Self {
         let mut project = self.clone();
         project.picture.strands = StrandCount::Stored;
+        project.look.shading = self.compare.shading;
         project
     }
 

@@ -1,7 +1,7 @@
 //! The sections of a project that belong to no other crate.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairOperation, HairTie, Haircut, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairOperation, HairShading, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
@@ -318,6 +318,8 @@ impl TimelineSection {
 pub struct CompareSection {
     /// The panes, from the left and the top: 1 to [`CompareSection::MOST_PANES`].
     pub panes: Vec<Contender>,
+    /// How hair in panes is shaded.
+    pub shading: HairShading,
 }
 
 impl CompareSection {
@@ -341,6 +343,6 @@ impl Default for CompareSection {
             ShadowMethod::OccupancyMaps,
             ShadowMethod::Exact,
         ];
-        Self { panes: methods.map(pane).to_vec() }
+        Self { panes: methods.map(pane).to_vec(), shading: HairShading::KajiyaKay }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
-use lovelock_groom::{HairTie, Preset};
+use lovelock_groom::{HairShading, HairTie, Preset};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, Transparency};
 
@@ -395,7 +395,12 @@ impl Settings for TimelineSection {
 }
 
 impl Settings for CompareSection {
-    const TABLE: &'static [Setting<Self>] = &[];
+    const TABLE: &'static [Setting<Self>] = &[Setting::choice::<HairShading>(
+        field!(Self, shading),
+        "Shading of panes",
+        "How hair in panes is shaded: by Kajiya-Kay, as the papers on shadows do it, or by scattering in the \
+         fibres. Panes draw the strands that the hairstyle stores.",
+    )];
 
     fn parts(&self) -> Vec<Part<'_>> {
         list("panes", &self.panes).collect()
@@ -407,7 +412,7 @@ impl Settings for CompareSection {
 
     fn reconcile(&mut self) {
         if self.panes.is_empty() {
-            *self = Self::default();
+            self.panes = Self::default().panes;
         }
         self.panes.truncate(Self::MOST_PANES);
     }

@@ -132,7 +132,7 @@ fn nearest_of(
     }
     let opacity = view.uniform.width_opacity_tip_scalp.y;
     let mut sink = Nearest { samples, near: &mut near };
-    let firsts = &placed.segments;
+    let firsts = placed.segments();
     for &segment in placed.segment_bins.of(tile) {
         let first = firsts[segment as usize] as usize;
         let (a, b) = (&placed.points[first], &placed.points[first + 1]);

@@ -1,5 +1,7 @@
 //! Hair and body sorted into the tiles of a picture, and what is visible of them in each.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
@@ -29,8 +31,9 @@ const SEGMENTS_AT_ONCE: usize = 128;
 pub(super) struct PlacedScene {
     pub width: Width,
     pub points: Vec<ShadedPoint>,
-    /// First points of the segments whose points both exist, in the order of points.
-    pub segments: Vec<u32>,
+    /// First points of segments, in the order of points; see [`PlacedScene::segments`].
+    all_segments: Arc<Vec<u32>>,
+    whole: usize,
     pub surface: PlacedSurface,
     pub segment_bins: Bins,
     keys: SegmentKeys,
@@ -57,7 +60,8 @@ impl PlacedScene {
         Self {
             width,
             points: Vec::new(),
-            segments: Vec::new(),
+            all_segments: Arc::default(),
+            whole: 0,
             surface: PlacedSurface::default(),
             segment_bins: Bins::default(),
             keys: SegmentKeys::default(),
@@ -79,11 +83,13 @@ impl PlacedScene {
     ) {
         let from = PointsIn { strands, details: &details.words, transmittance };
         shade_all(self.width, view, &from, &mut self.points);
-        let whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
-        if self.segments.len() != whole || details.segments[..whole] != self.segments {
-            self.segments.clear();
-            self.segments.extend_from_slice(&details.segments[..whole]);
-        }
+        self.all_segments = Arc::clone(&details.segments);
+        self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
+    }
+
+    /// First points of the segments whose points both exist, in the order of points.
+    pub fn segments(&self) -> &[u32] {
+        &self.all_segments[..self.whole]
     }
 
     /// Sorts segments and triangles into tiles, after points are shaded. `hair_on_body` holds one word of packed transmittances per
@@ -103,7 +109,7 @@ impl PlacedScene {
                 !encloses(input.camera.eye, &skin.positions, &body.mesh.triangles)
             });
         let points = &self.points;
-        let segments = &self.segments[..];
+        let segments = &self.all_segments[..self.whole];
         let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
         rayon::join(
             || surface.place(view.uniform.clip_from_world, grid, body, hair_on_body, seen_from_without),
@@ -167,7 +173,7 @@ impl PlacedScene {
     ) {
         let opacity = view.uniform.width_opacity_tip_scalp.y;
         if transparency == Transparency::Sorted {
-            self.keys.sort(segments, &self.segments, &mut scratch.order);
+            self.keys.sort(segments, self.segments(), &mut scratch.order);
             let order = std::mem::take(&mut scratch.order);
             scratch.blend.clear();
             // In batches: segments behind an opaque tile are not fetched.
@@ -191,7 +197,7 @@ impl PlacedScene {
                 origin,
                 points: &self.points,
                 segments,
-                first_points: &self.segments,
+                first_points: self.segments(),
                 samples: &scratch.samples,
                 opacity,
             };

@@ -201,12 +201,13 @@ impl CpuRenderer {
     ) -> Result<FrameStats, RenderError> {
         let watch = Stopwatch::start();
         let strands = hair.drawn.strands(hair.stored);
+        let asked = (strands, hair.drawn.portion().map(|(_, points)| points));
         if !unchanged.hair {
-            self.shadow.run(input, hair.stored, strands)?;
+            self.shadow.run(input, hair.stored, asked)?;
         } else if hair.same_points {
             self.shadow.passes.clear();
         } else {
-            self.shadow.look_up_again(strands)?;
+            self.shadow.look_up_again(input, asked)?;
         }
         let shadow_ms = watch.ms();
 
@@ -306,7 +307,7 @@ impl CpuRenderer {
             shadow_ms,
             draw_ms: drawing.ms(),
             passes,
-            segments: self.placed.segments.len() as u64,
+            segments: self.placed.segments().len() as u64,
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,

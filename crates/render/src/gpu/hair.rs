@@ -12,6 +12,7 @@ use super::fine::FineBuffers;
 use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
 use super::light_kernels::LightKernels;
+use crate::shadow_stage::soft_reach;
 use crate::strand_count::portion_of;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, HairPose};
@@ -100,7 +101,8 @@ impl HairBuffers {
         let all = portion.drawn * points;
         self.transmittance.reserve(gpu, all);
         self.shaded.reserve(gpu, all);
-        self.fine.run(gpu, commands, (portion.drawn, points), self.points.raw());
+        let reach = soft_reach(input.lights);
+        self.fine.run(gpu, commands, (portion.drawn, points), reach, self.points.raw());
         Ok(())
     }
 
@@ -180,6 +182,11 @@ impl HairBuffers {
             segments: self.drawn_segments.raw(),
             segment_count: (portion.drawn * (points - 1)) as u32,
         }
+    }
+
+    /// The places at which the shadows of the drawn points are looked up.
+    pub fn asked(&self) -> &wgpu::Buffer {
+        if self.portion.is_some() { self.fine.asked() } else { self.points.raw() }
     }
 
     /// The stored strands, which cast shadows, as input of shadow methods.

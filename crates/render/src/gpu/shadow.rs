@@ -117,7 +117,7 @@ impl GpuShadowStage {
             shadow.build(slot, gpu, commands, &from, input.shadow)?;
             let strands = hair.drawn();
             let targets = GpuTargets {
-                points: strands.points,
+                points: hair.asked(),
                 stride: 1,
                 count: strands.point_count,
                 out: hair.transmittance(),

@@ -4,11 +4,11 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{HairLook, Hairstyle, StrandSet, Strands};
+use lovelock_groom::{HairLook, HairShading, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
     Backend, Camera, FrameInput, HairPose, Light, Picture, PictureSettings, RenderError, Renderer,
-    ShadowMethod, ShadowSettings,
+    ShadowMethod, ShadowSettings, StrandCount,
 };
 
 /// The renderer that all tests of a binary share: creating one takes seconds with a software adapter.
@@ -101,7 +101,13 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
     Scene {
         style: Arc::new(Hairstyle { strands: set, ..Hairstyle::default() }),
         strands,
-        look: HairLook { real_hairs: lines.len() as f32, variation: 0.0, ..HairLook::default() },
+        look: HairLook {
+            real_hairs: lines.len() as f32,
+            variation: 0.0,
+            shading: HairShading::KajiyaKay,
+            roughness: 0.3,
+            ..HairLook::default()
+        },
         body: None,
         lights: vec![Light { direction: Vec3::new(0.0, -0.6, -0.8), ..Light::default() }],
         shadow: ShadowSettings { method: ShadowMethod::None, ..ShadowSettings::default() },
@@ -111,6 +117,8 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
             background_bottom: Vec3::ZERO,
             ground: false,
             strand_opacity: 1.0,
+            strands: StrandCount::Stored,
+            ambient: 0.5,
             ..PictureSettings::default()
         },
     }

@@ -5,6 +5,8 @@ mod common;
 
 mod agreement;
 mod false_colors;
+mod fibre;
+mod fine;
 mod inspect;
 mod layers;
 mod picture_cpu;

@@ -9,6 +9,8 @@ use crate::cpu::view::View;
 
 /// Height over the skin at which light from all directions is looked up, metres: hair that lies on skin shadows it.
 const ABOVE_SKIN: f32 = 0.008;
+/// How far light reaches around skin past its edge, as a cosine: red light travels furthest below the surface.
+const WRAP: [f32; 3] = [0.2, 0.11, 0.07];
 /// Positions that are shaded together.
 pub(crate) const LANES: usize = 16;
 type Lane = [f32; LANES];
@@ -101,7 +103,7 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
             above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
             reached = max(facing[lane], reached);
         }
-        if reached <= -0.12 {
+        if reached <= -WRAP[0] {
             continue;
         }
         let mut place = [[0.0; LANES]; 3];
@@ -111,7 +113,7 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
             }
         }
         let lit = light.body_light(&place, &light.lean_of(&normal), 0.003, &view.surface_disc);
-        let mut matt = [0.0; LANES];
+        let mut shares = [0.0; LANES];
         let mut gloss = [0.0; LANES];
         for lane in 0..LANES {
             let (hx, hy, hz) =
@@ -120,15 +122,16 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
             let nh = (normal[0][lane] * hx + normal[1][lane] * hy + normal[2][lane] * hz) * inverse;
             let shine = exp2(24.0 * log2(max(nh, 1e-12)));
             let share = lit[lane] * hair[lane];
-            matt[lane] = share * saturate((facing[lane] + 0.12) / 1.12) * 0.318;
+            shares[lane] = share * 0.318;
             gloss[lane] = share
                 * saturate(facing[lane])
                 * (0.014 * (1.0 - batch.scalp[lane]) * specular * (shine + rim[lane]));
         }
         for c in 0..3 {
-            let radiance = radiance[c];
+            let (radiance, wrap) = (radiance[c], WRAP[c]);
             for lane in 0..LANES {
-                sum[c][lane] += radiance * (albedo[c][lane] * matt[lane] + gloss[lane]);
+                let matt = shares[lane] * saturate((facing[lane] + wrap) / (1.0 + wrap));
+                sum[c][lane] += radiance * (albedo[c][lane] * matt + gloss[lane]);
             }
         }
     }

@@ -63,7 +63,8 @@ impl ValueRenderer {
             let (a, b) = (points.get(first as usize)?, points.get(first as usize + 1)?);
             candidate(first, a, b, pixel)
         };
-        let mut found: Vec<_> = self.placed.segments.par_iter().with_min_len(8192).filter_map(near).collect();
+        let mut found: Vec<_> =
+            self.placed.segments().par_iter().with_min_len(8192).filter_map(near).collect();
         found.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(b.depth.total_cmp(&a.depth)));
         self.placed.sort(&view, &grid, input, strands, &[]);
         let mut body = BodyBefore { renderer: self, grid: &grid, input, tiles: Vec::new() };

@@ -4,7 +4,9 @@ struct Grow {
     // Strands, points per strand.
     strands: u32,
     points: u32,
-    pad: vec2u,
+    // How far apart strands look up shadows, metres.
+    reach: f32,
+    pad: u32,
 }
 
 // Twin of `FineStrand`.
@@ -25,6 +27,22 @@ struct Strand {
 @group(0) @binding(2) var<storage, read> first_point: array<u32>;
 @group(0) @binding(3) var<storage, read> stored: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> grown: array<vec4f>;
+// The places at which shadows are looked up.
+@group(0) @binding(5) var<storage, read_write> asked: array<vec4f>;
+
+// See `place` in groom.
+fn place_of(strand: u32) -> vec3f {
+    var h = strand;
+    h = (h ^ (h >> 16u)) * 0x45d9f3bu;
+    h = (h ^ (h >> 16u)) * 0x45d9f3bu;
+    h = h ^ (h >> 16u);
+    return vec3f(vec3u(h, h >> 10u, h >> 20u) & vec3u(0x3ffu)) * (2.0 / 1023.0) - 1.0;
+}
+
+fn put(thread: u32, p: vec3f) {
+    grown[thread] = vec4f(p, 0.0);
+    asked[thread] = vec4f(p + grow.reach * place_of(thread / grow.points), 0.0);
+}
 
 // The point of a stored strand at the fraction `j / links` of its points.
 fn stored_at(strand: u32, j: u32, links: u32) -> vec3f {
@@ -66,11 +84,11 @@ fn grow_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     let k = thread % grow.points;
     let links = grow.points - 1u;
     if (strand.parent_a == strand.parent_b && strand.parent_a == strand.parent_c) {
-        grown[thread] = vec4f(stored_at(strand.parent_a, k, links), 0.0);
+        put(thread, stored_at(strand.parent_a, k, links));
         return;
     }
     let at = f32(k) * (f32(strand.length_shade & 0xffffu) * (1.0 / 65535.0));
     let i = min(u32(at), links - 1u);
     let from = mixed(strand, i, links);
-    grown[thread] = vec4f(from + (mixed(strand, i + 1u, links) - from) * (at - f32(i)), 0.0);
+    put(thread, from + (mixed(strand, i + 1u, links) - from) * (at - f32(i)));
 }

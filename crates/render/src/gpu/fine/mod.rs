@@ -14,7 +14,8 @@ const GROW: ShaderPart =
 struct GrowUniform {
     strands: u32,
     points: u32,
-    pad: [u32; 2],
+    reach: f32,
+    pad: u32,
 }
 
 /// A [`FineStrand`] as words.
@@ -33,6 +34,7 @@ pub(in crate::gpu) struct FineBuffers {
     list: GrowBuffer<StrandWords>,
     first_point: GrowBuffer<u32>,
     points: GrowBuffer<[f32; 4]>,
+    asked: GrowBuffer<[f32; 4]>,
 }
 
 impl FineBuffers {
@@ -53,6 +55,7 @@ impl FineBuffers {
             list: GrowBuffer::new(gpu, "list of fine strands", storage),
             first_point: GrowBuffer::new(gpu, "first points of stored strands", storage),
             points: GrowBuffer::new(gpu, "points of fine strands", storage),
+            asked: GrowBuffer::new(gpu, "places of lookups", storage),
         })
     }
 
@@ -63,18 +66,21 @@ impl FineBuffers {
         self.first_point.write(gpu, &style.strands.first_point);
     }
 
-    /// Encodes making the points of the first `count` strands from the `stored` ones.
+    /// Encodes making the points of the first `count` strands from the `stored` ones, and the places at which their shadows are looked
+    /// up, which are up to `reach` metres apart.
     pub fn run(
         &mut self,
         gpu: &Gpu,
         commands: &mut Commands,
         (count, points): (usize, usize),
+        reach: f32,
         stored: &wgpu::Buffer,
     ) {
         let all = count * points;
         self.points.reserve(gpu, all);
+        self.asked.reserve(gpu, all);
         // Both fit, because the points fit a buffer.
-        let uniform = GrowUniform { strands: count as u32, points: points as u32, pad: [0; 2] };
+        let uniform = GrowUniform { strands: count as u32, points: points as u32, reach, pad: 0 };
         gpu.upload(&self.uniform, 0, &[uniform]);
         let resources = [
             (0, self.uniform.as_entire_binding()),
@@ -82,6 +88,7 @@ impl FineBuffers {
             (2, self.first_point.raw().as_entire_binding()),
             (3, stored.as_entire_binding()),
             (4, self.points.raw().as_entire_binding()),
+            (5, self.asked.raw().as_entire_binding()),
         ];
         let group = self.kernel.bind(gpu, &resources);
         commands.compute("interpolate/fine", |pass| self.kernel.run(pass, &group, all as u64));
@@ -92,9 +99,17 @@ impl FineBuffers {
         self.points.raw()
     }
 
+    /// The places at which the shadows of the points are looked up.
+    pub fn asked(&self) -> &wgpu::Buffer {
+        self.asked.raw()
+    }
+
     /// GPU memory in use, bytes.
     pub fn bytes(&self) -> u64 {
-        self.list.raw().size() + self.first_point.raw().size() + self.points.raw().size()
+        self.list.raw().size()
+            + self.first_point.raw().size()
+            + self.points.raw().size()
+            + self.asked.raw().size()
     }
 }
 

@@ -12,15 +12,18 @@ struct Surface {
 // A position to shade: its unit normal, the unit vector toward the eye, its colour, and its fraction of bare skin.
 struct Place { world: vec3f, n: vec3f, v: vec3f, albedo: vec3f, skin: f32 }
 
+// How far light reaches around skin past its edge, as a cosine: red light travels furthest below the surface.
+const WRAP: vec3f = vec3f(0.2, 0.11, 0.07);
+
 // The light that a position reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     let light = frame.lights[k];
     let l = -light.direction_specular.xyz;
     let facing = dot(place.n, l);
     // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
-    let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
+    let wrapped = clamp((facing + WRAP) / (1.0 + WRAP), vec3f(0.0), vec3f(1.0));
     var sum = vec3f(0.0);
-    if (wrapped > 0.0) {
+    if (wrapped.r > 0.0) {
         // At grazing angles the flat triangles of a round limb shadow each other.
         let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
         let lit = body_light(k, above, lean_of(k, place.n), 0.003, SURFACE_TAPS) * left;

@@ -1,0 +1,94 @@
+//! Scattering by fibres in images.
+
+use crate::common;
+
+use common::{Scene, one_strand, scene, tuft_scene};
+use glam::Vec3;
+use lovelock_groom::HairShading;
+use lovelock_render::{Backend, CpuRenderer, Layers, ShadowMethod};
+use lovelock_testkit::flip;
+
+fn fibres(mut scene: Scene) -> Scene {
+    scene.look.shading = HairShading::Fibre;
+    scene
+}
+
+/// Mean light of the pixels.
+fn light(scene: &Scene) -> Vec3 {
+    let mut layers = Layers::default();
+    CpuRenderer::default().layers(&scene.input(), 64, 64, false, &mut layers).expect("layers");
+    layers.light.iter().map(|&[r, g, b, _]| Vec3::new(r, g, b)).sum::<Vec3>() / (64.0 * 64.0)
+}
+
+#[test]
+fn both_backends_scatter_alike() {
+    // Measured on a software adapter: see the printed figures. The control has other fibres.
+    let (w, h) = (240, 180);
+    for (eumelanin, method) in
+        [(0.05, ShadowMethod::VoxelMap), (1.3, ShadowMethod::VoxelMap), (8.0, ShadowMethod::None)]
+    {
+        let mut scene = fibres(tuft_scene(400));
+        scene.look.eumelanin = eumelanin;
+        (scene.look.grey, scene.look.highlights) = (0.2, 0.3);
+        scene.shadow.method = method;
+        let Some(card) = scene.draw_by(Backend::Gpu, w, h) else { return };
+        let processor = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+        scene.look.roughness *= 0.6;
+        let other = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+        let difference = flip(&card.rgba, &processor.rgba, w, h);
+        let control = flip(&card.rgba, &other.rgba, w, h);
+        println!("{eumelanin}: {difference:?}; smoother fibres {control:?}");
+        assert!(difference.mean < 0.005 && difference.p99 < 0.06, "{difference:?}");
+        assert!(control.mean > 1.5 * difference.mean, "{control:?}");
+    }
+}
+
+#[test]
+fn a_lone_strand_in_white_surroundings_shows_their_light() {
+    // White fibres scatter everything: in light from all sides they are as bright as it, whatever their shape.
+    let mut scene = fibres(scene(&one_strand()));
+    (scene.look.eumelanin, scene.look.pheomelanin) = (0.0, 0.0);
+    scene.lights.clear();
+    scene.look.tip_lightening = 0.0;
+    let one = light(&scene);
+    scene.look.eumelanin = 8.0;
+    let black = light(&scene);
+    scene.picture.ambient *= 2.0;
+    let twice = light(&scene);
+    assert!(one.min_element() > 0.0 && black.element_sum() < 0.25 * one.element_sum(), "{one} {black}");
+    assert!((twice / black - 2.0).abs().max_element() < 1e-3, "{twice} {black}");
+}
+
+#[test]
+fn extreme_fibres_and_no_lights_give_finite_images() {
+    for (roughness, sigma, width) in
+        [(0.05, 0.0, 0.0), (1.0, 100.0, 1.0), (f32::NAN, f32::NAN, f32::NAN), (0.0, 1e9, 1e9)]
+    {
+        for lights in [0, 1] {
+            let mut scene = fibres(tuft_scene(60));
+            (scene.look.roughness, scene.look.roughness_around) = (roughness, roughness);
+            (scene.look.eumelanin, scene.look.diameter) = (sigma, width * 80e-6);
+            (scene.look.grey, scene.look.dye_amount, scene.look.refraction) =
+                (roughness, roughness, roughness);
+            scene.lights.truncate(lights);
+            let found = light(&scene);
+            assert!(found.is_finite() && found.min_element() >= 0.0, "{roughness} {sigma}: {found}");
+        }
+    }
+}
+
+#[test]
+fn light_between_strands_brightens_fair_hair_most() {
+    let gain = |eumelanin: f32| {
+        let mut scene = fibres(tuft_scene(400));
+        scene.shadow.method = ShadowMethod::Exact;
+        (scene.look.eumelanin, scene.look.real_hairs) = (eumelanin, 8_000.0);
+        scene.picture.ambient = 0.0;
+        let with = light(&scene).element_sum();
+        scene.look.many_scattering = 0.0;
+        with / light(&scene).element_sum()
+    };
+    let (fair, black) = (gain(0.05), gain(8.0));
+    println!("light between strands: fair hair {fair}, black hair {black}");
+    assert!(fair > 1.3 && black < 1.3 && fair > 1.2 * black, "{fair} {black}");
+}

@@ -1,0 +1,136 @@
+//! Fine strands: their number changes the grain of an image and nothing else.
+
+use crate::common;
+
+use std::sync::Arc;
+
+use common::{Scene, scene};
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{GroomSettings, GuideFrame, Hairstyle, PlainHead, Strands, grow, interpolate};
+use lovelock_render::{Backend, CpuRenderer, FrameStats, Layers, Light, ShadowMethod, StrandCount};
+use lovelock_testkit::flip;
+
+/// A head of short hair of 2,000 strands, without the head.
+fn wig() -> Scene {
+    let settings = GroomSettings { wisps: 100, strands_per_wisp: 20, ..GroomSettings::default() };
+    let style: Arc<Hairstyle> = Arc::new(grow(&settings, &PlainHead.scalp(48), &PlainHead).expect("hair"));
+    let mut strands = Strands::default();
+    interpolate(&style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+    let mut scene = scene(&[]);
+    (scene.style, scene.strands, scene.look) = (style, strands, settings.look);
+    scene.shadow.method = ShadowMethod::VoxelMap;
+    scene.lights = Light::default_rig();
+    scene.camera.target = Vec3::new(0.0, 0.08, 0.0);
+    scene.camera.eye = scene.camera.target + Vec3::new(-0.3, 0.15, -0.9);
+    scene.picture.strands = StrandCount::Fixed;
+    scene
+}
+
+fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> (f64, FrameStats) {
+    let mut layers = Layers::default();
+    let stats = renderer.layers(&scene.input(), side, side, false, &mut layers).expect("layers");
+    let sum: f64 =
+        layers.light.iter().map(|[r, g, b, _]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b)).sum();
+    (sum / f64::from(side * side), stats)
+}
+
+#[test]
+fn the_number_of_strands_changes_neither_brightness_nor_shadow() {
+    let mut scene = wig();
+    let mut renderer = CpuRenderer::default();
+    for (distance, side) in [(0.9, 320), (3.0, 320)] {
+        scene.camera.eye = scene.camera.target + Vec3::new(-0.3, 0.15, -0.9).normalize() * distance;
+        let mut found = Vec::new();
+        for count in [3_000.0, 10_000.0, 30_000.0, 100_000.0] {
+            scene.picture.strand_number = count;
+            let (luminance, stats) = drawn(&mut renderer, &scene, side);
+            println!(
+                "{distance} m, {count}: luminance {luminance:.5}, transmittance {}",
+                stats.mean_transmittance
+            );
+            found.push((luminance, stats.mean_transmittance));
+        }
+        let (luminance, transmittance) = found[3];
+        for &(other, t) in &found {
+            assert!((other / luminance - 1.0).abs() < LUMINANCE, "{found:?}");
+            assert!((t - transmittance).abs() < 0.01, "{found:?}");
+        }
+        // The control: hair of a fifth more width.
+        scene.look.real_hairs *= 1.2;
+        let (wider, stats) = drawn(&mut renderer, &scene, side);
+        scene.look.real_hairs /= 1.2;
+        let changed = (wider / luminance - 1.0).abs() > LUMINANCE;
+        assert!(changed || (stats.mean_transmittance - transmittance).abs() > 0.01, "{wider} {luminance}");
+    }
+}
+
+/// Difference of the mean luminance between numbers of strands.
+const LUMINANCE: f64 = 0.02;
+
+#[test]
+fn nothing_appears_at_once_while_the_camera_comes_closer() {
+    let mut scene = wig();
+    let mut renderer = CpuRenderer::default();
+    // The largest change of the mean of 8 by 8 pixels from image to image: what an eye sees as a jump.
+    let mut largest = |scene: &mut Scene, strands: StrandCount| {
+        scene.picture.strands = strands;
+        scene.picture.strand_number = 6_000.0;
+        let (mut before, mut most): (Option<Vec<f64>>, f64) = (None, 0.0);
+        let mut counts = Vec::new();
+        for step in 0..12 {
+            let distance = 1.6 - 0.004 * f64::from(step);
+            let away = Vec3::new(-0.3, 0.15, -0.9).normalize();
+            scene.camera.eye = scene.camera.target + away * distance as f32;
+            let mut picture = lovelock_render::Picture::default();
+            let stats = renderer.picture(&scene.input(), 256, 256, &mut picture).expect("a picture");
+            counts.push(stats.segments);
+            let mut blocks = vec![0.0; 32 * 32];
+            for (i, pixel) in picture.rgba.chunks_exact(4).enumerate() {
+                let block = i / 256 / 8 * 32 + i % 256 / 8;
+                blocks[block] += pixel[..3].iter().map(|&c| f64::from(c)).sum::<f64>() / (3.0 * 64.0);
+            }
+            if let Some(before) = &before {
+                let change = blocks.iter().zip(before).map(|(a, b)| (a - b).abs());
+                most = change.fold(most, f64::max);
+            }
+            before = Some(blocks);
+        }
+        (most, counts)
+    };
+    let (fixed, _) = largest(&mut scene, StrandCount::Fixed);
+    let (by_size, counts) = largest(&mut scene, StrandCount::BySize);
+    println!("largest change of a block: fixed {fixed:.3}, by size {by_size:.3}; segments {counts:?}");
+    assert!(counts.windows(2).any(|two| two[0] != two[1]), "the number follows the distance");
+    assert!(by_size < fixed + 1.0, "{by_size} {fixed}");
+}
+
+#[test]
+fn both_backends_draw_the_same_fine_strands() {
+    let mut scene = wig();
+    scene.picture.strand_number = 9_000.0;
+    let (w, h) = (240, 240);
+    let Some(card) = scene.draw_by(Backend::Gpu, w, h) else { return };
+    let processor = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+    scene.picture.strand_number = 6_000.0;
+    let fewer = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+    let difference = flip(&card.rgba, &processor.rgba, w, h);
+    let control = flip(&card.rgba, &fewer.rgba, w, h);
+    println!("{difference:?}; other strands {control:?}");
+    assert!(difference.mean < 0.01, "{difference:?}");
+    assert!(control.mean > 1.5 * difference.mean, "{control:?}");
+}
+
+#[test]
+fn strands_that_belong_to_no_hairstyle_are_drawn_as_they_are() {
+    let mut scene = wig();
+    let whole = drawn(&mut CpuRenderer::default(), &scene, 64).1.segments;
+    // One strand less than the hairstyle has.
+    let ends = scene.strands.first_point.len() - 1;
+    let points = scene.strands.first_point[ends - 1] as usize;
+    scene.strands.first_point = scene.strands.first_point[..ends].into();
+    for axis in [&mut scene.strands.x, &mut scene.strands.y, &mut scene.strands.z] {
+        axis.truncate(points);
+    }
+    let odd = drawn(&mut CpuRenderer::default(), &scene, 64).1.segments;
+    assert!(odd < whole && odd > 0, "{odd} {whole}");
+}
