@@ -45,9 +45,15 @@ impl Source {
         print_problems(&problems);
         if let Some(take) = project.take.file.clone() {
             allow(task, &project, &take.path, &mut access)?;
+            // The light is not recorded.
+            let mut named = Vec::new();
+            if let Some(path) = &task.surroundings {
+                named.push((Place::Surroundings, required(path, &mut access)?));
+                project.set_surroundings_file(path);
+            }
             apply(&task.set, &mut project)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
-            return Ok(Self { project, access, name, named: Vec::new() });
+            return Ok(Self { project, access, name, named });
         }
         let file_name = |path: &PathBuf| {
             path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
@@ -57,20 +63,17 @@ impl Source {
             project.set_preset(preset(id)?);
             names.push(id.clone());
         }
-        let places = [(Place::Hair, &task.hair), (Place::Body, &task.body), (Place::Motion, &task.motion)];
+        let places = [
+            (Place::Hair, &task.hair),
+            (Place::Body, &task.body),
+            (Place::Motion, &task.motion),
+            (Place::Surroundings, &task.surroundings),
+        ];
         let mut named = Vec::new();
         for (place, path) in places {
             let Some(path) = path else { continue };
-            // A file that is named on the command line is required.
-            if !path.is_file() {
-                return Err(ProjectError::input(
-                    path,
-                    format!("{}: not found; must be a file", path.display()),
-                ));
-            }
-            access.pick(path);
             names.push(file_name(path));
-            named.push((place, path.clone()));
+            named.push((place, required(path, &mut access)?));
         }
         if let Some(path) = &task.hair {
             project.set_hair_file(path);
@@ -80,6 +83,9 @@ impl Source {
         }
         if let Some(path) = &task.motion {
             project.set_motion_file(path);
+        }
+        if let Some(path) = &task.surroundings {
+            project.set_surroundings_file(path);
         }
         apply(&task.set, &mut project)?;
         Ok(Self { project, access, name: names.join(", "), named })
@@ -138,6 +144,15 @@ impl Source {
         bar.done();
         refused.map_or(result, Err)
     }
+}
+
+/// Grants access to a file that is named on the command line, which must be there.
+fn required(path: &Path, access: &mut Access) -> Result<PathBuf, ProjectError> {
+    if !path.is_file() {
+        return Err(ProjectError::input(path, format!("{}: not found; must be a file", path.display())));
+    }
+    access.pick(path);
+    Ok(path.to_owned())
 }
 
 /// Grants access to the files that are named beside a take, which plays as recorded, so they must be its own.

@@ -44,6 +44,7 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
         FileKind::Hair => opened.project.set_hair_file(path),
         FileKind::Character => opened.project.set_body_file(path),
         FileKind::Motion => opened.project.set_motion_file(path),
+        FileKind::Surroundings => opened.project.set_surroundings_file(path),
         FileKind::Take => (opened.project, opened.problems) = project_of_take(path)?,
     }
     Ok(opened)
@@ -223,6 +224,8 @@ impl Window {
         match purpose {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
+            // Another kind of file is a problem of the surroundings, which the loader reports.
+            Purpose::Surroundings => self.open_part(path, |project| project.set_surroundings_file(path)),
             Purpose::SaveProject => self.save_to(path),
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume | Purpose::Curves => {
                 let access = self.session.access().clone();

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use lovelock_jobs::info::FileKind;
+use lovelock_project::Project;
 use lovelock_project::files::FileRef;
 use lovelock_project::project::{Contender, load_project_with, save_project};
 use lovelock_session::take::project_of_take;
@@ -23,19 +24,23 @@ impl Window {
                 self.project_path = None;
                 self.session.set_project_path(None);
             }
-            Ok(kind) => {
-                self.session.pick(path);
-                self.change("file", |project| match kind {
-                    FileKind::Hair => project.set_hair_file(path),
-                    FileKind::Character => project.set_body_file(path),
-                    FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
-                });
-                // The project may have named the file before without having access to it.
-                let project = self.history.project().clone();
-                self.session.reload(&project);
-            }
+            Ok(kind) => self.open_part(path, |project| match kind {
+                FileKind::Hair => project.set_hair_file(path),
+                FileKind::Character => project.set_body_file(path),
+                FileKind::Surroundings => project.set_surroundings_file(path),
+                FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
+            }),
             Err(error) => self.warn([error.to_string()]),
         }
+    }
+
+    /// Makes a file that the user picked a part of the project.
+    pub(super) fn open_part(&mut self, path: &Path, set: impl FnOnce(&mut Project)) {
+        self.session.pick(path);
+        self.change("file", set);
+        // The project may have named the file before without having access to it.
+        let project = self.history.project().clone();
+        self.session.reload(&project);
     }
 
     /// Plays a take with the project that it was recorded from. One undo step restores the previous project.

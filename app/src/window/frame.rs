@@ -324,7 +324,7 @@ impl Window {
             .and_then(std::path::Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
-            Purpose::Open | Purpose::Beside => folder,
+            Purpose::Open | Purpose::Beside | Purpose::Surroundings => folder,
             Purpose::SaveProject => self
                 .project_path
                 .clone()
@@ -346,7 +346,11 @@ impl Window {
                 "USD holds all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
                     .to_owned(),
             ),
-            Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
+            Purpose::Open
+            | Purpose::Beside
+            | Purpose::Surroundings
+            | Purpose::SaveProject
+            | Purpose::Picture => dialog,
         });
     }
 
@@ -388,6 +392,7 @@ pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.simulation != after.simulation, "simulation"),
         (before.shadow != after.shadow, "shadow"),
         (before.lights != after.lights, "light"),
+        (before.surroundings != after.surroundings, "surroundings"),
         (before.picture != after.picture, "picture"),
         (before.body != after.body, "body"),
         (before.motion != after.motion, "motion"),

@@ -24,6 +24,7 @@ mod recorder;
 mod screenshot;
 mod session;
 mod side_panels;
+mod swatch;
 
 #[cfg(test)]
 mod testing;

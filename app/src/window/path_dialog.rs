@@ -17,6 +17,8 @@ pub(crate) enum Purpose {
     Open,
     /// Comparing with a take.
     Beside,
+    /// Light from a picture of the surroundings.
+    Surroundings,
     /// Saving the project.
     SaveProject,
     /// Recording a film.
@@ -45,8 +47,9 @@ const NO_DIALOG_SECS: f64 = 0.5;
 impl Purpose {
     fn title(self) -> &'static str {
         match self {
-            Self::Open => "Open a project, take, hairstyle, character or motion",
+            Self::Open => "Open a project, take, hairstyle, character, motion or surroundings",
             Self::Beside => "Compare with a take",
+            Self::Surroundings => "Light from a picture of the surroundings: .hdr or .exr",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record images to a folder",
@@ -59,7 +62,7 @@ impl Purpose {
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open => "Open file",
+            Self::Open | Self::Surroundings => "Open file",
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture | Self::Curves => "Save file",
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
@@ -70,7 +73,7 @@ impl Purpose {
     /// The extension that is added if none is given.
     fn extension(self) -> Option<&'static str> {
         match self {
-            Self::Open | Self::Beside | Self::Sequence | Self::Resume => None,
+            Self::Open | Self::Beside | Self::Surroundings | Self::Sequence | Self::Resume => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Preview => Some("apng"),
@@ -209,6 +212,10 @@ impl PathDialog {
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &readable()).pick_file()),
             Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),
+            Purpose::Surroundings => {
+                let extensions = FileKind::Surroundings.extensions();
+                Box::pin(dialog.add_filter("Surroundings", &extensions).pick_file())
+            }
             Purpose::Sequence | Purpose::Resume => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),

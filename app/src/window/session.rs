@@ -17,7 +17,7 @@ use lovelock_session::stats::{PassHistory, StageHistory};
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
-use super::panels::{body, hair};
+use super::panels::{body, hair, surroundings};
 
 /// Number of frames in the plot of stage times.
 const PLOTTED_FRAMES: usize = 240;
@@ -55,6 +55,7 @@ pub(crate) struct Session {
     pub(crate) problems: Vec<Problem>,
     pub(crate) hair: hair::LoadedHair,
     pub(crate) body: body::LoadedBody,
+    pub(crate) surroundings: surroundings::LoadedSurroundings,
     pub(crate) stages: StageHistory,
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
@@ -117,6 +118,7 @@ impl Session {
             problems: Vec::new(),
             hair: hair::LoadedHair::default(),
             body: body::LoadedBody::default(),
+            surroundings: surroundings::LoadedSurroundings::default(),
             stages: StageHistory::new(PLOTTED_FRAMES),
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
@@ -339,6 +341,10 @@ impl Session {
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
             joints,
             notes: notes(&[Place::Body, Place::Motion]),
+        };
+        self.surroundings = surroundings::LoadedSurroundings {
+            picture: scene.surroundings.clone(),
+            notes: notes(&[Place::Surroundings]),
         };
         self.problems = problems;
         self.scene = Some(scene);

@@ -62,7 +62,7 @@ impl Window {
     }
 
     pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
-        let mut recording = None;
+        let (mut recording, mut picks_light) = (None, false);
         let axes = camera_control::axes(&project.camera);
         Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -73,10 +73,13 @@ impl Window {
                 });
                 section(ui, "Light", true, |ui| {
                     panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);
+                    ui.separator();
+                    self.problems(ui, &[Place::Surroundings]);
+                    picks_light = panels::surroundings::ui(ui, project, &self.session.surroundings).is_some();
                 });
                 section(ui, "Look", false, |ui| {
                     let default = project.hair.groom.look;
-                    panels::look::hair(ui, &mut project.look, &default);
+                    panels::look::hair(ui, &mut project.look, &default, &mut project.picture);
                 });
                 section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
                 section(ui, "Recording", false, |ui| {
@@ -97,6 +100,9 @@ impl Window {
                 });
             });
         });
+        if picks_light {
+            self.open_path_dialog(Purpose::Surroundings);
+        }
         match recording {
             Some(panels::recording::RecordingRequest::Film) => self.open_path_dialog(Purpose::Film),
             Some(panels::recording::RecordingRequest::Sequence) => self.open_path_dialog(Purpose::Sequence),

@@ -5,6 +5,7 @@
 //! The simulator moves its [`Guides`] to a [`GuideFrame`] in world space, from which [`interpolate()`] makes the
 //! [`Strands`] that are shadowed and drawn.
 
+mod colours;
 pub mod fine;
 mod frame;
 mod grow;
@@ -30,6 +31,7 @@ mod whole_part;
 
 pub mod simd;
 
+pub use colours::{HAIR_COLOURS, HairColour};
 pub use frame::WispCurve;
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};

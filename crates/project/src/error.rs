@@ -124,6 +124,8 @@ pub enum Place {
     Shadow,
     /// The lights.
     Lights,
+    /// The picture of the surroundings.
+    Surroundings,
     /// The camera.
     Camera,
     /// Settings of the picture.
@@ -150,6 +152,7 @@ impl Place {
             Self::Simulation => "simulation",
             Self::Shadow => "shadow",
             Self::Lights => "lights",
+            Self::Surroundings => "surroundings",
             Self::Camera => "camera",
             Self::Picture => "picture",
             Self::Recording => "recording",

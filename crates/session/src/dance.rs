@@ -16,7 +16,7 @@ use crate::engine::{Engine, LastSteps};
 use crate::health::{Gauge, health};
 use crate::prepare::{load, settled_at, simulate_to};
 use crate::progress::{Progress, report_progress};
-use crate::scene::Scene;
+use crate::scene::{Scene, SurroundingsLoader};
 use crate::snapshot::FrameSnapshot;
 use crate::take::TakePlayer;
 use crate::totals::Totals;
@@ -67,7 +67,11 @@ impl Dance {
         report_progress(progress, Progress::Loading { what: "opening the take".to_owned() })?;
         let path =
             access.read(Place::Take, file).map_err(|problem| ProjectError::input(&file.path, problem))?;
-        let (player, problems) = TakePlayer::open(&path, access)?;
+        let (mut player, mut problems) = TakePlayer::open(&path, access)?;
+        let mut light = SurroundingsLoader::default();
+        let picture = light.load(project, access, &mut problems);
+        problems.extend(light.notes());
+        player.set_surroundings(picture, light.notes());
         Ok((Self(Source::Take { player: Box::new(player), fps, seam: None }), problems))
     }
 

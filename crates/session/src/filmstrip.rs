@@ -11,6 +11,7 @@ use lovelock_project::files::Access;
 use lovelock_render::{CpuRenderer, DeviceImages, Image, Picture};
 
 use crate::latest::LatestJob;
+use crate::scene::SurroundingsLoader;
 use crate::take::TakePlayer;
 use crate::threads::lower_priority;
 use crate::window_device::WindowDevice;
@@ -60,6 +61,7 @@ impl Filmstrip {
             left: Arc::clone(&left),
             on_drawn: Box::new(on_drawn),
             open: None,
+            surroundings: SurroundingsLoader::default(),
             window,
             textures: None,
         };
@@ -93,6 +95,7 @@ struct Worker {
     left: Arc<Mutex<Vec<FilmstripPicture>>>,
     on_drawn: Box<dyn Fn() + Send>,
     open: Option<(PathBuf, Access, Box<TakePlayer>)>,
+    surroundings: SurroundingsLoader,
     window: WindowDevice,
     textures: Option<DeviceImages>,
 }
@@ -143,6 +146,9 @@ impl Worker {
             self.open = Some((file.path.clone(), request.access.clone(), Box::new(player)));
         }
         let Some((.., player)) = &mut self.open else { return Ok(()) };
+        // The window reports problems.
+        let picture = self.surroundings.load(&request.project, &request.access, &mut Vec::new());
+        player.set_surroundings(picture, Vec::new());
         for &secs in &request.secs {
             if self.jobs.is_closed() || self.jobs.has_newer() {
                 return Ok(());

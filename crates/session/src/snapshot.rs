@@ -65,7 +65,7 @@ impl FrameSnapshot {
             shadow: &project.shadow,
             camera,
             picture: &project.picture,
-            surroundings: None,
+            surroundings: self.scene.surroundings.as_ref(),
             known: None,
         }
     }

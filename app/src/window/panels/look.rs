@@ -1,57 +1,75 @@
 //! Colour and width of the hair, and the image as a whole.
 
-use egui::{Color32, Ui};
-use lovelock_groom::HairLook;
-use lovelock_render::PictureSettings;
+use egui::Ui;
+use lovelock_groom::{HAIR_COLOURS, HairColour, HairLook, HairShading};
+use lovelock_render::{PictureSettings, StrandCount};
 
-use crate::window::control::{row, section, settings};
-use crate::window::theme;
+use crate::window::control::{section, setting, settings};
+use crate::window::swatch::swatch;
 
-/// Natural colours: name, eumelanin, pheomelanin.
-const COLORS: [(&str, f32, f32); 6] = [
-    ("Black", 8.0, 0.0),
-    ("Dark brown", 2.6, 0.1),
-    ("Brown", 1.3, 0.1),
-    ("Red", 0.25, 0.8),
-    ("Blond", 0.3, 0.05),
-    ("White", 0.03, 0.0),
-];
+const PIGMENT: [&str; 5] = ["eumelanin", "pheomelanin", "variation", "grey", "tip_lightening"];
 
-const HAIR: [&str; 10] = [
-    "eumelanin",
-    "pheomelanin",
-    "variation",
-    "tip_lightening",
-    "primary_strength",
-    "secondary_strength",
-    "roughness",
-    "width_scale",
-    "diameter",
-    "real_hairs",
-];
+const LIGHTENED: [&str; 2] = ["highlights", "highlight_lightening"];
+
+const DYE: [&str; 2] = ["dye_amount", "dye"];
+
+/// What only scattering in fibres uses.
+const SCATTERING: [&str; 4] = ["roughness_around", "scale_tilt", "refraction", "many_scattering"];
+
+/// What only the two highlights of Kajiya and Kay use.
+const HIGHLIGHTS: [&str; 2] = ["primary_strength", "secondary_strength"];
+
+const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 
 const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
 
 const BACKGROUND: [&str; 3] = ["ground", "background_top", "background_bottom"];
 
-/// The controls of the hair's look; `default` is that of the style.
-pub(crate) fn hair(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
-    row(ui, "Natural colours", "Sets the melanin of a natural colour.", false, look, *default, |ui, look| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 3.0;
-            for (name, eumelanin, pheomelanin) in COLORS {
-                let sample = HairLook { eumelanin, pheomelanin, ..*look };
-                let button = egui::Button::new("  ").fill(swatch(&sample));
-                let response = ui.add(button).on_hover_text(name);
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-                if response.clicked() {
-                    (look.eumelanin, look.pheomelanin) = (eumelanin, pheomelanin);
-                }
-            }
-        })
-        .response
+/// The controls of the hair's look; `default` is that of the style. `picture` has the number of strands.
+pub(crate) fn hair(ui: &mut Ui, look: &mut HairLook, default: &HairLook, picture: &mut PictureSettings) {
+    swatches(ui, look);
+    section(ui, "Pigment", true, |ui| settings(ui, &PIGMENT, look, default));
+    section(ui, "Lightened locks", false, |ui| settings(ui, &LIGHTENED, look, default));
+    section(ui, "Dye", false, |ui| settings(ui, &DYE, look, default));
+    section(ui, "Fibre", true, |ui| fibre(ui, look, default));
+    section(ui, "Strands", false, |ui| {
+        strands(ui, picture);
+        settings(ui, &WIDTH, look, default);
     });
-    settings(ui, &HAIR, look, default);
+}
+
+/// The natural colours as swatches. They keep the variation and the lighter tips of `look`.
+fn swatches(ui: &mut Ui, look: &mut HairLook) {
+    let worn = HairColour::of(look);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(4.0, 4.0);
+        for colour in &HAIR_COLOURS {
+            let mut sample = *look;
+            colour.apply(&mut sample);
+            if swatch(ui, colour.name, &sample, worn == Some(colour)).clicked() {
+                *look = sample;
+            }
+        }
+    });
+}
+
+fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
+    settings(ui, &["shading", "roughness"], look, default);
+    match look.shading {
+        HairShading::Fibre => settings(ui, &SCATTERING, look, default),
+        HairShading::KajiyaKay => settings(ui, &HIGHLIGHTS, look, default),
+    }
+}
+
+/// How many strands are drawn.
+fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
+    let default = PictureSettings::default();
+    setting(ui, "strands", picture, &default);
+    match picture.strands {
+        StrandCount::BySize => drop(setting(ui, "strand_detail", picture, &default)),
+        StrandCount::Fixed => drop(setting(ui, "strand_number", picture, &default)),
+        StrandCount::Stored => {}
+    }
 }
 
 /// The controls of the image.
@@ -59,9 +77,4 @@ pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings) {
     let default = PictureSettings::default();
     settings(ui, &PICTURE, picture, &default);
     section(ui, "Background", false, |ui| settings(ui, &BACKGROUND, picture, &default));
-}
-
-/// The approximate colour of hair with this look.
-fn swatch(look: &HairLook) -> Color32 {
-    theme::from_linear((0.7 * HairLook::body_color(look.absorption())).to_array())
 }

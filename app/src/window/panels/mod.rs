@@ -10,6 +10,7 @@ pub(crate) mod recording;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;
+pub(crate) mod surroundings;
 pub(crate) mod ties;
 
 #[cfg(test)]

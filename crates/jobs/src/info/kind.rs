@@ -22,6 +22,8 @@ pub enum FileKind {
     Project,
     /// A take.
     Take,
+    /// A picture of the surroundings: Radiance or `OpenEXR`.
+    Surroundings,
 }
 
 /// The kinds of files that can be read, with their extensions, for messages.
@@ -32,7 +34,8 @@ fn readable() -> String {
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 5] = [Self::Hair, Self::Character, Self::Motion, Self::Project, Self::Take];
+    pub const ALL: [Self; 6] =
+        [Self::Hair, Self::Character, Self::Motion, Self::Project, Self::Take, Self::Surroundings];
 
     /// The name in sentences.
     pub fn label(self) -> &'static str {
@@ -42,6 +45,7 @@ impl FileKind {
             Self::Motion => "motion",
             Self::Project => "project",
             Self::Take => "take",
+            Self::Surroundings => "surroundings",
         }
     }
 
@@ -53,6 +57,7 @@ impl FileKind {
             Self::Motion => vec!["bvh"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Take => vec![TAKE_EXTENSION],
+            Self::Surroundings => vec!["hdr", "exr"],
         }
     }
 
@@ -101,6 +106,7 @@ impl FileKind {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             // The start of every chunk in `record::take`.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
+            [0x76, 0x2f, 0x31, 0x01, ..] | [b'#', b'?', ..] => return Some(Self::Surroundings),
             _ => {}
         }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();

@@ -1,10 +1,12 @@
 //! `lovelock info`: describes the contents of a file.
 
 mod kind;
+mod surroundings;
 mod take;
 mod text;
 
 pub use kind::FileKind;
+pub use surroundings::SurroundingsInfo;
 pub use take::{RegrownInfo, TakeInfo};
 
 use std::collections::BTreeMap;
@@ -40,6 +42,8 @@ pub enum Content {
     Project(ProjectInfo),
     /// A recorded simulation.
     Take(TakeInfo),
+    /// A picture of the surroundings.
+    Surroundings(SurroundingsInfo),
 }
 
 /// Description of a project file.
@@ -57,6 +61,8 @@ pub struct ProjectInfo {
     pub motion: String,
     /// The hairstyle: a preset's id, or a file.
     pub hair: String,
+    /// The picture of the surroundings, or `null`.
+    pub surroundings: Option<String>,
     /// Id of the shadow method.
     pub shadow: String,
     /// Number of lights.
@@ -71,7 +77,7 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Describes a hair, character, motion, project or take file.
+/// Describes a hair, character, motion, project or take file, or a picture of the surroundings.
 ///
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
@@ -88,6 +94,7 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
         FileKind::Motion => Content::Motion(load_motion(path).map_err(|error| refuse(&error))?.info()),
         FileKind::Project => Content::Project(project_info(path)?),
         FileKind::Take => Content::Take(TakeInfo::of(path)?),
+        FileKind::Surroundings => Content::Surroundings(SurroundingsInfo::of(path)?),
     };
     Ok(Info { file: path.display().to_string(), content })
 }
@@ -119,6 +126,7 @@ fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
             HairSource::Grown => project.hair.preset.id().to_owned(),
             HairSource::File => name(&project.hair.file),
         },
+        surroundings: project.surroundings.file.as_ref().map(|file| file.path.display().to_string()),
         shadow: project.shadow.method.to_string(),
         lights: project.lights.len(),
         width: project.recording.width,

@@ -7,6 +7,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Motion(_) => "motion",
         Content::Project(_) => "project",
         Content::Take(_) => "take",
+        Content::Surroundings(_) => "surroundings",
     }
 }
 
@@ -52,6 +53,29 @@ fn broken_files_are_counted_or_refused_in_one_line_with_exit_2() {
             }
         }
     }
+}
+
+#[test]
+fn a_picture_of_the_surroundings_is_described() {
+    let dir = tempfile::tempdir().expect("a folder");
+    // The content decides on the kind, not the name.
+    let path = dir.path().join("sky");
+    exr::prelude::write_rgb_file(&path, 24, 8, |_, y| if y == 0 { (9.0, 6.0, 3.0) } else { (0.1, 0.1, 0.1) })
+        .expect("a picture");
+    let sky = info(&path).expect("a picture");
+    assert_eq!(kind_of(&sky), "surroundings");
+    let json = serde_json::to_value(&sky).expect("JSON");
+    assert_eq!(json["kind"], "surroundings");
+    assert_eq!(
+        (&json["format"], &json["width"], &json["height"]),
+        (&"OpenEXR".into(), &24.into(), &8.into())
+    );
+    assert!(json["notes"].as_array().is_some_and(|notes| notes.len() == 1), "stretched: {json}");
+    assert!(sky.to_string().contains("24 x 8 pixels"), "{sky}");
+    let broken = dir.path().join("broken.hdr");
+    std::fs::write(&broken, "#?RADIANCE").expect("a file");
+    let error = info(&broken).expect_err("no picture");
+    assert!(error.exit_code() == 2 && error.to_string().contains("broken.hdr"), "{error}");
 }
 
 #[test]

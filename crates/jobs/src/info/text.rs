@@ -63,12 +63,29 @@ impl fmt::Display for Info {
                 line(f, "hair", &project.hair)?;
                 line(f, "shadow", &project.shadow)?;
                 line(f, "lights", project.lights)?;
+                if let Some(surroundings) = &project.surroundings {
+                    line(f, "surround", surroundings)?;
+                }
                 line(
                     f,
                     "film",
                     format_args!("{}x{} at {} a second", project.width, project.height, project.fps),
                 )?;
                 remarks(f, &project.dropped, &project.notes)
+            }
+            Content::Surroundings(picture) => {
+                line(f, "kind", format_args!("surroundings, {}", picture.format))?;
+                line(f, "size", format_args!("{} x {} pixels", picture.width, picture.height))?;
+                let [r, g, b] = picture.mean;
+                line(f, "mean", format_args!("{r:.3}, {g:.3}, {b:.3}"))?;
+                match &picture.strongest {
+                    Some(light) => {
+                        let [x, y, z] = light.direction;
+                        line(f, "strongest", format_args!("from {x:.2}, {y:.2}, {z:.2}"))?;
+                    }
+                    None => line(f, "strongest", "no direction stands out")?,
+                }
+                remarks(f, &picture.dropped, &picture.notes)
             }
             Content::Take(take) => {
                 line(f, "kind", &take.format)?;

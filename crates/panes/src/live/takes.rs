@@ -54,6 +54,11 @@ impl PaneTakes {
             }
         }
         for held in &mut self.held {
+            if let Ok(player) = &mut held.player
+                && player.set_surroundings(request.snapshot.scene.surroundings.clone(), Vec::new())
+            {
+                held.instant = None;
+            }
             held.go_to(request.snapshot.position_secs);
         }
     }

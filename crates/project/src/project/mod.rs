@@ -22,7 +22,7 @@ pub use file::{
 };
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
-    MotionSection, MotionSource, RecordingSection, TakeSection, TimelineSection,
+    MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
 };
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
@@ -57,6 +57,8 @@ pub struct Project {
     pub shadow: ShadowSettings,
     /// The lights, at most [`lovelock_render::MAX_LIGHTS`].
     pub lights: Vec<Light>,
+    /// The light from all directions.
+    pub surroundings: SurroundingsSection,
     /// The camera.
     pub camera: CameraSection,
     /// Settings of the whole image.
@@ -82,6 +84,7 @@ impl Default for Project {
             simulation: SimulationSettings::default(),
             shadow: ShadowSettings::default(),
             lights: Light::default_rig(),
+            surroundings: SurroundingsSection::default(),
             camera: CameraSection::default(),
             picture: PictureSettings::default(),
             recording: RecordingSection::default(),
@@ -148,6 +151,11 @@ impl Project {
         self.motion.file = Some(FileRef::new(path));
     }
 
+    /// Takes the light from all directions from a picture that the user picked.
+    pub fn set_surroundings_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.surroundings.file = Some(FileRef::new(path));
+    }
+
     /// Plays a take that the user picked.
     pub fn set_take(&mut self, path: impl Into<std::path::PathBuf>) {
         self.take.file = Some(FileRef::new(path));
@@ -159,15 +167,18 @@ impl Project {
         let motion =
             (self.motion.source == MotionSource::File).then_some(self.motion.file.as_ref()).flatten();
         let hair = (self.hair.source == HairSource::File).then_some(self.hair.file.as_ref()).flatten();
+        let surroundings = (crate::error::Place::Surroundings, self.surroundings.file.as_ref());
         let take = self.take.file.as_ref();
         if take.is_some() {
-            // The take itself names the files that it was made from.
-            return take.into_iter().map(|file| (crate::error::Place::Take, file)).collect();
+            // The take itself names the files of body, motion and hair.
+            let used = [(crate::error::Place::Take, take), surroundings];
+            return used.into_iter().filter_map(|(place, file)| Some((place, file?))).collect();
         }
         [
             (crate::error::Place::Body, body),
             (crate::error::Place::Motion, motion),
             (crate::error::Place::Hair, hair),
+            surroundings,
         ]
         .into_iter()
         .filter_map(|(place, file)| Some((place, file?)))
@@ -176,9 +187,10 @@ impl Project {
 
     /// Every file that the project refers to, used or not.
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let Self { body, motion, hair, recording, take, compare, .. } = self;
-        [&mut body.file, &mut motion.file, &mut hair.file, &mut recording.output, &mut take.file]
-            .into_iter()
+        let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
+        let own = [&mut body.file, &mut motion.file, &mut hair.file, &mut surroundings.file];
+        own.into_iter()
+            .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()
     }

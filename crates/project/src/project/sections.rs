@@ -260,6 +260,14 @@ impl RecordingSection {
     pub const MOST_SUBFRAMES: u32 = 64;
 }
 
+/// What surrounds the figure and gives it light from all directions.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SurroundingsSection {
+    /// A picture of the surroundings, Radiance (`.hdr`) or OpenEXR (`.exr`); a sky above a ground where none.
+    pub file: Option<FileRef>,
+}
+
 /// A recorded simulation that plays in place of one that runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

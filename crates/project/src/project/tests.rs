@@ -138,6 +138,31 @@ fn a_moved_project_finds_its_files() {
 }
 
 #[test]
+fn a_picture_of_the_surroundings_is_kept_beside_the_project_and_with_a_take() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("p.lovelock");
+    let picture = dir.path().join("skies/dusk ü.hdr");
+    std::fs::create_dir(dir.path().join("skies")).expect("a folder");
+    let mut project = Project::default();
+    assert_eq!(project.surroundings.file, None, "a sky above a ground");
+    project.set_surroundings_file(&picture);
+    project.picture.surroundings_turn = 0.5;
+    save_project(&path, &project).expect("saved");
+    let text = std::fs::read_to_string(&path).expect("text");
+    assert!(text.contains("skies/dusk ü.hdr") && !text.contains(&dir.path().display().to_string()), "{text}");
+    let (opened, problems) = load_project(&path).expect("opened");
+    assert_eq!(opened, project);
+    assert!(problems.len() == 1 && problems[0].place == Place::Surroundings, "{problems:?}");
+    assert!(problems[0].is_failure() && problems[0].message.contains("dusk ü.hdr"), "{problems:?}");
+    std::fs::write(&picture, b"#?RADIANCE").expect("a file");
+    assert_eq!(load_project(&path).expect("opened"), (project.clone(), Vec::new()));
+
+    project.set_take(dir.path().join("a.take"));
+    let places: Vec<_> = project.files().into_iter().map(|(place, _)| place).collect();
+    assert_eq!(places, [Place::Take, Place::Surroundings], "a take records no light");
+}
+
+#[test]
 fn a_file_outside_is_not_loaded_until_it_is_picked() {
     let dir = tempfile::tempdir().expect("a folder");
     let folder = dir.path().join("project");

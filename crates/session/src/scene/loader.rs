@@ -9,9 +9,9 @@ use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 
-use super::Scene;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
+use super::{Scene, SurroundingsLoader};
 
 /// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
@@ -51,6 +51,7 @@ pub struct SceneLoader {
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
     operations: OperationCache,
+    surroundings: SurroundingsLoader,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
     colliders: Option<(Arc<BodyPart>, ColliderEdits, ColliderLists)>,
 }
@@ -77,7 +78,7 @@ impl SceneLoader {
     /// Loads the scene of a project.
     ///
     /// Each part may fail on its own. The previous part is then kept, or a fallback is used (the dancer, the body's own clip, the
-    /// grown hairstyle), and a problem says so.
+    /// grown hairstyle, the sky above the ground), and a problem says so.
     ///
     /// # Errors
     /// If the load is cancelled, or not even the dancer can be loaded.
@@ -103,13 +104,15 @@ impl SceneLoader {
             );
             Problem::new(Place::Hair, ProblemKind::Ignored, message)
         }));
+        control.at("loading the surroundings", 0.85)?;
+        let surroundings = self.surroundings.load(&project, access, &mut problems);
         control.at("computing the path of the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);
         control.at("done", 1.0)?;
 
-        let notes: Vec<Problem> =
-            [&body.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned().collect();
+        let of_parts = [&body.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned();
+        let notes: Vec<Problem> = of_parts.chain(self.surroundings.notes()).collect();
         let [colliders, sheltering] = self.colliders(&body, &project.body.colliders);
         let scene = Scene {
             body: Arc::clone(&body.body),
@@ -124,6 +127,7 @@ impl SceneLoader {
             field_lift_m: project.body.colliders.field.lift_m(),
             style: result.style,
             head_path,
+            surroundings,
             notes: notes.into(),
         };
         Ok((Arc::new(scene), problems))

@@ -5,15 +5,18 @@ mod dancer;
 mod head_path;
 mod loader;
 mod parts;
+mod surroundings;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
+pub(crate) use surroundings::SurroundingsLoader;
 
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_appearance::environment::Panorama;
 use lovelock_groom::{Hairstyle, Obstacle};
 use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance};
 use lovelock_simulation::BodyPart;
@@ -55,7 +58,9 @@ pub struct Scene {
     pub style: Arc<Hairstyle>,
     /// The path of the head.
     pub head_path: Arc<HeadPath>,
-    /// Notes about the files of body, motion and hair: guesses, and ignored contents.
+    /// The picture of the surroundings that gives light from all directions, if there is one.
+    pub surroundings: Option<Arc<Panorama>>,
+    /// Notes about the files of body, motion, hair and surroundings: guesses, and ignored contents.
     pub notes: Arc<[lovelock_project::error::Problem]>,
 }
 
@@ -138,6 +143,8 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 mod collider_tests;
 #[cfg(test)]
 mod operation_tests;
+#[cfg(test)]
+mod surroundings_tests;
 #[cfg(test)]
 mod tests {
     use super::frames_in;

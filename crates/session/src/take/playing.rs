@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use lovelock_appearance::environment::Panorama;
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::{Pose, Skin, pose_at, skin};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_project::project::project_of_text;
+use lovelock_project::project::{SurroundingsSection, project_of_text};
 use lovelock_record::{
     AssetState, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, hairstyle_fingerprint,
 };
@@ -35,6 +36,8 @@ pub struct TakePlayer {
     scene: Arc<Scene>,
     /// Scenes with the projects that they were loaded from, the most recently used last.
     scenes: Vec<(Project, Arc<Scene>)>,
+    /// The picture that gives light, and notes about it.
+    surroundings: (Option<Arc<Panorama>>, Vec<Problem>),
     frame: TakeFrame,
     pose: Pose,
     pool: SnapshotPool,
@@ -57,6 +60,8 @@ impl TakePlayer {
         let text = reader.project_at(start).unwrap_or_else(|_| Arc::from(reader.header().project.as_str()));
         let (mut project, mut problems) = project_of_text(path, &text)?;
         project.take.file = None;
+        // The light is that of the project that plays the take.
+        project.surroundings = SurroundingsSection::default();
         // Files beside the take may be read, as for a project.
         let mut access = access.clone();
         access.set_take(path);
@@ -81,6 +86,7 @@ impl TakePlayer {
             text,
             scene: Arc::clone(&scene),
             scenes: vec![(made_of(&project), scene)],
+            surroundings: (None, Vec::new()),
             frame,
             pose: Pose::default(),
             pool: SnapshotPool::default(),
@@ -115,6 +121,32 @@ impl TakePlayer {
     /// The scene of the last snapshot.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
+    }
+
+    /// Sets the picture of the surroundings that gives light from all directions, and notes about it. A take records none.
+    /// Returns whether it is another picture than before.
+    pub fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
+        let others = self.surroundings.0.as_ref().map(Arc::as_ptr) != picture.as_ref().map(Arc::as_ptr);
+        self.surroundings = (picture, notes);
+        for at in 0..self.scenes.len() {
+            let lit = self.lit(&self.scenes[at].1);
+            if Arc::ptr_eq(&self.scene, &self.scenes[at].1) {
+                self.scene = Arc::clone(&lit);
+            }
+            self.scenes[at].1 = lit;
+        }
+        others
+    }
+
+    /// The scene in the light of the surroundings.
+    fn lit(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+        let (picture, notes) = &self.surroundings;
+        if picture.as_ref().map(Arc::as_ptr) == scene.surroundings.as_ref().map(Arc::as_ptr) {
+            return Arc::clone(scene);
+        }
+        let others = scene.notes.iter().filter(|note| note.place != Place::Surroundings);
+        let notes = others.chain(notes).cloned().collect();
+        Arc::new(Scene { surroundings: picture.clone(), notes, ..(**scene).clone() })
     }
 
     /// Number of frames.
@@ -227,7 +259,8 @@ impl TakePlayer {
         if Arc::ptr_eq(&text, &self.text) || text == self.text {
             return self.check_guides();
         }
-        let (project, _) = project_of_text(self.reader.path(), &text)?;
+        let (mut project, _) = project_of_text(self.reader.path(), &text)?;
+        project.surroundings = SurroundingsSection::default();
         let key = made_of(&project);
         if let Some(place) = self.scenes.iter().position(|(of, _)| *of == key) {
             self.scenes[place..].rotate_left(1);
@@ -237,6 +270,7 @@ impl TakePlayer {
             if self.scenes.len() == MOST_SCENES {
                 self.scenes.remove(0);
             }
+            let scene = self.lit(&scene);
             self.scenes.push((key, scene));
         }
         if let Some((_, scene)) = self.scenes.last() {

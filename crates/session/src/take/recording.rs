@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::ProjectError;
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::project::text_of_project;
 use lovelock_record::{
     FrameRate, TakeAsset, TakeFrame, TakeHeader, TakeReport, TakeWriter, hairstyle_fingerprint,
@@ -49,6 +49,8 @@ impl TakeRecording {
         let assets = project
             .files()
             .into_iter()
+            // A take records no light.
+            .filter(|(place, _)| *place != Place::Surroundings)
             .filter_map(|(place, file)| TakeAsset::of_file(place.label(), &file.path).ok());
         let rate = 1.0 / engine.step_secs();
         let header = TakeHeader {

@@ -1,5 +1,6 @@
 //! Position in a take during playback: forwards, backwards and looped.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use lovelock_project::error::ProjectError;
@@ -19,6 +20,11 @@ impl TakeTransport {
     pub(crate) fn new(player: TakePlayer) -> Self {
         let looping = player.project().motion.looping;
         Self { player, secs: 0.0, looping }
+    }
+
+    /// The position in `file`, seconds; `None` if another one plays.
+    pub(crate) fn position_in(&self, file: &Path) -> Option<f64> {
+        (self.player.path() == file).then_some(self.secs)
     }
 
     pub(crate) fn set_looping(&mut self, looping: bool) {

@@ -11,7 +11,7 @@ use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 
 use super::{Event, Outbox};
-use crate::scene::{LoadControl, Scene, SceneLoader};
+use crate::scene::{LoadControl, Scene, SceneLoader, SurroundingsLoader};
 use crate::take::TakePlayer;
 
 /// The result of a load.
@@ -60,6 +60,14 @@ pub(super) struct LoadThread {
     cancelled: Arc<AtomicBool>,
     progress: Arc<Progress>,
     thread: Option<JoinHandle<()>>,
+}
+
+/// What has been loaded, for reuse.
+#[derive(Default)]
+struct Loaders {
+    scene: SceneLoader,
+    /// For takes, whose scenes have loaders of their own.
+    surroundings: SurroundingsLoader,
 }
 
 /// The state on the thread.
@@ -137,6 +145,7 @@ fn same_files(a: &Project, b: &Project) -> bool {
         (&a.hair.file, &b.hair.file),
         (&a.body.file, &b.body.file),
         (&a.motion.file, &b.motion.file),
+        (&a.surroundings.file, &b.surroundings.file),
     ];
     sources(a) == sources(b) && files.iter().all(|(a, b)| a == b)
 }
@@ -155,9 +164,9 @@ impl Drop for LoadThread {
 
 impl LoadState {
     fn run(&self, deliver: &dyn Fn(Loaded)) {
-        let mut loader = SceneLoader::new();
+        let mut loaders = Loaders::default();
         while let Some((project, access)) = self.next() {
-            let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
+            let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loaders, &project, &access)));
             let replaced = {
                 let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
                 requests.begun = None;
@@ -182,7 +191,7 @@ impl LoadState {
                 Ok(Err(error)) => self.outbox.send(Event::LoadFailed { message: error.to_string() }),
                 Err(panic) => {
                     // Its cached parts may be incomplete.
-                    loader = SceneLoader::new();
+                    loaders = Loaders::default();
                     self.outbox.panicked("loader", &*panic);
                 }
             }
@@ -209,7 +218,7 @@ impl LoadState {
 
     fn load(
         &self,
-        loader: &mut SceneLoader,
+        loaders: &mut Loaders,
         project: &Arc<Project>,
         access: &Access,
     ) -> Result<(Loaded, Vec<Problem>), ProjectError> {
@@ -220,12 +229,17 @@ impl LoadState {
             progress("opening the take", 0.0);
             match access.read(Place::Take, file).map(|path| TakePlayer::open(&path, access)) {
                 Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(ProjectError::Cancelled),
-                Ok(Ok((player, problems))) => return Ok((Loaded::Take(Box::new(player)), problems)),
+                Ok(Ok((mut player, mut problems))) => {
+                    progress("loading the surroundings", 0.9);
+                    let light = &mut loaders.surroundings;
+                    player.set_surroundings(light.load(project, access, &mut problems), light.notes());
+                    return Ok((Loaded::Take(Box::new(player)), problems));
+                }
                 Ok(Err(error)) => untaken = Some(Problem::not_loaded(Place::Take, error)),
                 Err(problem) => untaken = Some(problem),
             }
         }
-        let (scene, mut problems) = loader.load(
+        let (scene, mut problems) = loaders.scene.load(
             project,
             access,
             &mut LoadControl { cancelled: &self.cancelled, progress: &mut progress },
@@ -259,10 +273,11 @@ mod tests {
         changed.motion.speed = 0.5;
         assert!(same_files(&project, &changed));
         let file = Some(FileRef::new("other"));
-        let others: [fn(&mut Project, Option<FileRef>); 7] = [
+        let others: [fn(&mut Project, Option<FileRef>); 8] = [
             |p, file| p.hair.file = file,
             |p, file| p.body.file = file,
             |p, file| p.motion.file = file,
+            |p, file| p.surroundings.file = file,
             |p, file| p.take.file = file,
             |p, _| p.hair.source = HairSource::File,
             |p, _| p.body.source = BodySource::File,

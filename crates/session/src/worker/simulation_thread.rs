@@ -265,7 +265,12 @@ impl SimulationThread {
         match loaded {
             Loaded::Take(player) => {
                 self.end_take(Some("another take was opened"));
+                // A take that is opened again, for example with other surroundings, continues.
+                let secs = self.take.as_ref().and_then(|take| take.position_in(player.path()));
                 let mut take = TakeTransport::new(*player);
+                if let Some(secs) = secs {
+                    take.seek(secs);
+                }
                 if let Some(project) = &self.project {
                     take.set_looping(project.motion.looping);
                 }

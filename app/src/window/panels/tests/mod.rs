@@ -2,18 +2,22 @@ mod every_control;
 mod one_by_one;
 mod reasons;
 mod recording;
+mod surroundings;
 mod ties;
 mod undo;
 mod untouched;
 
+use std::sync::Arc;
+
 use egui::Ui;
 use egui_kittest::Harness;
 use glam::Vec3;
-use lovelock_groom::{HairTie, Preset, TieKind, TieReach};
+use lovelock_appearance::environment::Panorama;
+use lovelock_groom::{HairShading, HairTie, Preset, TieKind, TieReach};
 use lovelock_motion::ColliderEdit;
 use lovelock_project::Project;
 use lovelock_project::project::HairSource;
-use lovelock_render::{PassTime, VoxelDeposit};
+use lovelock_render::{PassTime, StrandCount, VoxelDeposit};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
 use super::recording::State;
@@ -27,6 +31,7 @@ pub(super) struct Bench {
     pub(super) selected_light: usize,
     pub(super) hair: super::hair::LoadedHair,
     pub(super) body: super::body::LoadedBody,
+    pub(super) surroundings: super::surroundings::LoadedSurroundings,
     pub(super) stages: StageHistory,
     pub(super) passes: PassHistory,
     pub(super) clip_frames: u64,
@@ -62,6 +67,10 @@ impl Bench {
                 head: "hips/spine/neck/head".to_owned(),
                 notes: Vec::new(),
             },
+            surroundings: super::surroundings::LoadedSurroundings {
+                picture: Some(surroundings()),
+                notes: vec!["3 pixels negative: taken as 0".to_owned()],
+            },
             stages,
             passes,
             clip_frames: 480,
@@ -70,6 +79,13 @@ impl Bench {
             scissors: false,
         }
     }
+}
+
+/// A picture of the surroundings with a warm lamp at the figure's left, +X.
+pub(super) fn surroundings() -> Arc<Panorama> {
+    let lamp = |at: usize| if at % 16 == 4 && at / 16 == 3 { Vec3::new(90.0, 60.0, 30.0) } else { Vec3::ONE };
+    let pixels: Vec<Vec3> = (0..16 * 8).map(lamp).collect();
+    Arc::new(Panorama::from_pixels(16, 8, &pixels).expect("a picture"))
 }
 
 pub(super) type Show = fn(&mut Ui, &mut Bench);
@@ -109,10 +125,11 @@ pub(super) const PANELS: [(&str, Show); 11] = [
     }),
     ("Light", |ui, b| {
         super::light::ui(ui, &mut b.project.lights, &mut b.selected_light, [Vec3::X, Vec3::Y, Vec3::Z]);
+        super::surroundings::ui(ui, &mut b.project, &b.surroundings);
     }),
     ("Look", |ui, b| {
         let default = b.project.hair.groom.look;
-        super::look::hair(ui, &mut b.project.look, &default);
+        super::look::hair(ui, &mut b.project.look, &default, &mut b.project.picture);
     }),
     ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture)),
     ("Recording", |ui, b| {
@@ -148,6 +165,9 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_hair_file("/a/b c/straight.hair");
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
     files.set_motion_file("/a/b c/ü.bvh");
+    files.set_surroundings_file("/a/b c/a panorama of a rather long name that says much.exr");
+    files.look.shading = HairShading::KajiyaKay;
+    files.picture.strands = StrandCount::Fixed;
     files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
     let patch = HairTie { reach: TieReach::InSphere, sphere_at_ring: false, ..HairTie::default() };
     files.hair.ties.push(HairTie { kind: TieKind::Bun, ..patch });

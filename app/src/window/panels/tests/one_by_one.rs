@@ -1,9 +1,9 @@
 //! The panels one by one.
 
-use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable;
+use egui::accesskit::{Role, Toggled};
+use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairTie, Preset, TieKind, Unit};
+use lovelock_groom::{GroomSettings, HAIR_COLOURS, HairTie, Preset, TieKind, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, HairSource, MotionSource};
 use lovelock_render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
@@ -307,18 +307,53 @@ fn the_sphere_sets_the_light_direction() {
 }
 
 #[test]
-fn natural_colours_set_the_pigments() {
+fn swatches_apply_natural_colours_and_mark_the_one_in_use() {
+    let mut project = Project::default();
+    project.look.dye_amount = 0.5;
+    let mut harness = panel("Look", project);
+    let marked = |harness: &egui_kittest::Harness<'_, Shown<Bench>>| {
+        let is_marked = |colour: &&lovelock_groom::HairColour| {
+            control(harness, Role::Button, colour.name).accesskit_node().toggled() == Some(Toggled::True)
+        };
+        HAIR_COLOURS.iter().filter(is_marked).map(|colour| colour.name).collect::<Vec<_>>()
+    };
+    assert!(marked(&harness).is_empty(), "dyed hair has no natural colour");
+    for colour in &HAIR_COLOURS {
+        let before = harness.state().state.project.look;
+        let at = control(&harness, Role::Button, colour.name).rect().center();
+        assert!(tooltip_at(&mut harness, at).is_some_and(|said| said.contains(colour.name)));
+        control(&harness, Role::Button, colour.name).click();
+        harness.run();
+        let mut wanted = before;
+        colour.apply(&mut wanted);
+        assert_eq!(harness.state().state.project.look, wanted, "{}", colour.name);
+        assert_eq!(marked(&harness), [colour.name]);
+    }
+    // A swatch with the keyboard focus is chosen by Enter.
+    control(&harness, Role::Button, "Black").focus();
+    harness.run();
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    assert_eq!(marked(&harness), ["Black"]);
+    let at = control(&harness, Role::SpinButton, "Grey").rect().center();
+    type_at(&mut harness, at, "50");
+    assert!(marked(&harness).is_empty(), "half grey hair is not black");
+}
+
+#[test]
+fn controls_of_the_other_shading_and_of_other_counts_of_strands_are_hidden() {
     let mut harness = panel("Look", Project::default());
-    let at = control(&harness, Role::Button, "Black").rect().center();
-    assert!(tooltip_at(&mut harness, at).is_some_and(|said| said.contains("Black")));
-    control(&harness, Role::Button, "Black").click();
-    harness.run();
-    let black = harness.state().state.project.look;
-    control(&harness, Role::Button, "Blond").click();
-    harness.run();
-    let blond = harness.state().state.project.look;
-    assert!(blond.eumelanin < black.eumelanin);
-    assert_eq!(blond.roughness, black.roughness, "only the pigments change");
+    for (shown, hidden) in [("Refraction", "Primary highlight"), ("Strand detail", "Strand number")] {
+        assert!(harness.query_by_role_and_label(Role::SpinButton, shown).is_some(), "{shown}");
+        assert!(harness.query_by_role_and_label(Role::SpinButton, hidden).is_none(), "{hidden}");
+    }
+    choose(&mut harness, "Shading", "Kajiya-Kay");
+    choose(&mut harness, "Strands", "Fixed number");
+    for (hidden, shown) in [("Refraction", "Primary highlight"), ("Strand detail", "Strand number")] {
+        assert!(harness.query_by_role_and_label(Role::SpinButton, shown).is_some(), "{shown}");
+        assert!(harness.query_by_role_and_label(Role::SpinButton, hidden).is_none(), "{hidden}");
+    }
+    assert!(harness.query_by_role_and_label(Role::SpinButton, "Roughness").is_some(), "both have it");
 }
 
 #[test]
