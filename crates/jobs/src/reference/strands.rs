@@ -4,8 +4,10 @@ use std::fmt::Write;
 use std::ops::Range;
 
 use glam::Vec3;
+use lovelock_groom::fine::{FineStrands, ParentPoints, grow_fine};
+use lovelock_groom::simd::Width;
 use lovelock_groom::{Strands, interpolate};
-use lovelock_render::{FrameInput, HairPose};
+use lovelock_render::{FrameInput, HairPose, StrandCount};
 
 /// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
 const MOST_RADII: f32 = 200.0;
@@ -24,14 +26,15 @@ pub(super) struct DrawnStrands {
     pub(super) strands: Vec<Range<usize>>,
 }
 
-/// The strands that a renderer draws of `input`, and their half widths.
+/// The strands that a renderer draws of `input`, and their half widths. `picture.strands` must be a fixed number or the stored ones:
+/// others depend on the size of the image.
 ///
 /// The width is [`shadow_width`](lovelock_groom::HairLook::shadow_width) times the taper: a strand that stands for thirty hairs
 /// is as wide as thirty hairs. The path tracer then sees the optical depth that the shadows of Lovelock see. The eye of Lovelock
 /// sees it as well if `look.width_scale` and `picture.strand_opacity` are 1, as in the scenes.
 pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
     let mut made = Strands::default();
-    let strands = match input.hair {
+    let stored = match input.hair {
         HairPose::Strands(strands) => strands,
         HairPose::Guides(guides) => {
             interpolate(input.style, guides, &mut made);
@@ -39,15 +42,46 @@ pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
         }
     };
     let set = &input.style.strands;
-    let half = 0.5 * input.look.shadow_width(set.count());
-    DrawnStrands {
-        points: (0..strands.points()).map(|i| strands.point(i)).collect(),
-        half_widths: (0..strands.points()).map(|i| half * set.taper.get(i).copied().unwrap_or(1.0)).collect(),
-        strands: strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize).collect(),
+    if input.picture.strands == StrandCount::Stored {
+        return DrawnStrands::new(stored, 0.5 * input.look.shadow_width(set.count()), &set.taper);
     }
+    let count = input.picture.strand_number.max(1.0) as usize;
+    let (mut fine, mut grown) = (FineStrands::default(), Strands::default());
+    fine.follow(input.style, count);
+    grow_fine(Width::widest(), &fine, count, stored, &mut ParentPoints::default(), &mut grown);
+    let points = fine.points_per_strand;
+    let tapers: Vec<f32> = fine
+        .strands
+        .iter()
+        .take(grown.count())
+        .flat_map(|strand| {
+            // A strand has the taper of its first parent.
+            let parent = strand.parents[0] as usize;
+            let ends = set
+                .first_point
+                .get(parent..parent + 2)
+                .map_or(0..0, |ends| ends[0] as usize..ends[1] as usize);
+            let own = set.taper.get(ends).unwrap_or(&[]);
+            (0..points).map(move |k| {
+                let at =
+                    k as f32 / points.saturating_sub(1).max(1) as f32 * own.len().saturating_sub(1) as f32;
+                own.get(at.round() as usize).copied().unwrap_or(1.0)
+            })
+        })
+        .collect();
+    DrawnStrands::new(&grown, 0.5 * input.look.shadow_width(grown.count()), &tapers)
 }
 
 impl DrawnStrands {
+    fn new(strands: &Strands, half_width: f32, tapers: &[f32]) -> Self {
+        let half_widths = (0..strands.points()).map(|i| half_width * tapers.get(i).copied().unwrap_or(1.0));
+        Self {
+            points: (0..strands.points()).map(|i| strands.point(i)).collect(),
+            half_widths: half_widths.collect(),
+            strands: strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize).collect(),
+        }
+    }
+
     /// The strands with their points and half widths transformed.
     pub(super) fn map(&self, to: impl Fn(Vec3) -> Vec3, scale: f32) -> Self {
         Self {

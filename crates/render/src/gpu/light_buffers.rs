@@ -53,7 +53,10 @@ impl LightBuffers {
             self.tables.write(gpu, &all);
         }
         let cells = &self.light.grid.cells;
-        cells.par_iter().map(|cell| cell.map(|x| f16::from_f32(x.min(f16::MAX.to_f32())).to_bits())).collect_into_vec(&mut self.staging);
+        cells
+            .par_iter()
+            .map(|cell| cell.map(|x| f16::from_f32(x.min(f16::MAX.to_f32())).to_bits()))
+            .collect_into_vec(&mut self.staging);
         self.staged.write(gpu, &self.staging);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
