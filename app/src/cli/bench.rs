@@ -120,7 +120,7 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
         scenes,
         out: out.clone(),
         size: task.size.unwrap_or(REFERENCE_SIZE),
-        most_strands: task.strands.map(|most| most as usize),
+        strands: task.strands.map(|strands| strands as usize),
         backend: task.backend.unwrap_or(Backend::Cpu),
     };
     let change = |project: &mut Project| {

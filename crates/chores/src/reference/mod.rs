@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Size in pixels; 384x384, or 256x256 with --quick
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// The most strands, which are then wider, so that the path tracer needs less memory
+    /// Strands of a hairstyle, the wider the fewer; 12000 if none is given
     #[arg(long, value_name = "N")]
     strands: Option<u32>,
     /// Stops by which both images are brightened before they are compared: a single light leaves hair dark

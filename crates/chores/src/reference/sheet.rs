@@ -50,9 +50,8 @@ impl Sheet {
             .iter()
             .fold([0, 0], |[w, h], tile| [w.max(tile.side[0] as usize), h.max(tile.side[1] as usize)]);
         let rows = self.names.len();
-        // A name is written below the images of a scene if it does not fit above its neighbour's.
         let columns = self.tiles.len().min(COLUMNS);
-        let block = LINE + rows * (height + GAP);
+        let block = 2 * LINE + rows * (height + GAP);
         let blocks = self.tiles.len().div_ceil(COLUMNS);
         let legend = format!("from above: {}", self.names.join(", "));
         let across = (columns * (width + GAP)).max(Canvas::text_width(&legend)) + GAP;
@@ -61,10 +60,13 @@ impl Sheet {
         for (i, tile) in self.tiles.iter().enumerate() {
             let x = (GAP + i % COLUMNS * (width + GAP)) as i32;
             let y = LINE + i / COLUMNS * block;
-            canvas.text(x, y as i32 + 2, &tile.name, INK);
+            // The hairstyle above the rest, because long names do not fit.
+            let (hair, rest) = tile.name.split_once('-').unwrap_or((&tile.name, ""));
+            canvas.text(x, y as i32 + 2, hair, INK);
+            canvas.text(x, (y + LINE) as i32, rest, INK);
             for (row, rgba) in tile.images.iter().enumerate() {
                 let image = Image::new(tile.side[0], tile.side[1], rgba)?;
-                canvas.put(x, (y + LINE + row * (height + GAP)) as i32, &image);
+                canvas.put(x, (y + 2 * LINE + row * (height + GAP)) as i32, &image);
             }
         }
         Ok(canvas)
@@ -95,9 +97,9 @@ mod tests {
         (0..7).for_each(|i| sheet.add(&format!("scene-{i}"), &[grey(1.0)], &grey(0.0)));
         let canvas = sheet.draw().expect("a sheet");
         let at = |x: usize, y: usize| canvas.rgba()[4 * (y * canvas.width() + x)];
-        let block = LINE + 2 * (10 + GAP);
+        let block = 2 * LINE + 2 * (10 + GAP);
         for (x, y) in [(0, 0), (5, 0), (0, 1)] {
-            let (x, y) = (GAP + x * (200 + GAP) + 100, LINE + y * block + LINE + 5);
+            let (x, y) = (GAP + x * (200 + GAP) + 100, LINE + y * block + 2 * LINE + 5);
             assert_eq!((at(x, y), at(x, y + 10 + GAP)), (255, 0), "{x}, {y}");
         }
     }

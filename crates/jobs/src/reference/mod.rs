@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
-use lovelock_groom::Preset;
+use lovelock_groom::{HairLook, Preset};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::{Access, write_whole};
@@ -41,8 +41,8 @@ pub struct ReferenceRequest {
     pub out: PathBuf,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// The most strands; a hairstyle with more is thinned evenly and its strands are widened.
-    pub most_strands: Option<usize>,
+    /// The number of strands that are drawn, instead of the scene's own. The fewer, the wider they are.
+    pub strands: Option<usize>,
     /// What draws.
     pub backend: Backend,
 }
@@ -121,13 +121,13 @@ pub struct ReferenceFibre {
 
 impl ReferenceFibre {
     /// The fibre that the settings of a project describe.
-    fn of(project: &Project) -> Self {
+    fn of(look: &HairLook) -> Self {
         Self {
-            sigma_a: project.look.absorption(),
-            longitudinal_roughness: project.look.roughness,
-            azimuthal_roughness: project.look.roughness_around,
-            scale_tilt_degrees: -project.look.scale_tilt.to_degrees(),
-            index: project.look.refraction,
+            sigma_a: look.absorption(),
+            longitudinal_roughness: look.roughness,
+            azimuthal_roughness: look.roughness_around,
+            scale_tilt_degrees: -look.scale_tilt.to_degrees(),
+            index: look.refraction,
         }
     }
 }
@@ -158,12 +158,14 @@ pub fn write_reference(
             return Err(ProjectError::Cancelled);
         }
         let mut project = scene.project();
-        project.picture.strands = StrandCount::Stored;
-        if let Some(most) = request.most_strands {
-            project.picture.strands = StrandCount::Fixed;
-            project.picture.strand_number = most as f32;
+        if let Some(strands) = request.strands {
+            project.picture.strand_number = strands as f32;
         }
         change(&mut project)?;
+        if project.picture.strands == StrandCount::BySize {
+            let message = "picture.strands: found by-size; must be fixed or stored for a path tracer";
+            return Err(ProjectError::option(message));
+        }
         let hair = match settled.take() {
             Some((preset, hair)) if preset == scene.hair => hair,
             _ => Hair::settle(scene.hair, &project, request)?,
@@ -188,14 +190,13 @@ struct Hair {
 impl Hair {
     /// Settles the hair and writes its strands.
     fn settle(preset: Preset, project: &Project, request: &ReferenceRequest) -> Result<Self, ProjectError> {
-        let scene = load(project)?;
-        let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
+        let mut engine = Engine::at_rest(load(project)?, project.simulation, STEP_SECS);
         engine.follow(project);
         engine.settle();
         let snapshot = engine.snapshot();
         let any = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 1.0 };
         let input = without_body(&snapshot, project, &any);
-        let drawn = drawn_strands(&input, request.size.1);
+        let drawn = drawn_strands(&input);
         let camera = view::camera_for(&drawn.points, &input.world_from_head);
         let head_from_world = input.world_from_head.inverse();
         let in_mm = drawn.map(|p| head_from_world.transform_point3(p) * MM, MM);
@@ -247,7 +248,7 @@ impl Hair {
                 direction: vector(direction),
                 irradiance: irradiance.map(|light| light.color * light.intensity).sum(),
             },
-            fibre: ReferenceFibre::of(project),
+            fibre: ReferenceFibre::of(&project.look),
             image_file,
             picture_file,
         })
@@ -286,7 +287,7 @@ mod tests {
             scenes: vec!["reference-smooth-red-back".parse().expect("a scene")],
             out: folder.path().join("scenes"),
             size: (24, 24),
-            most_strands: Some(300),
+            strands: Some(300),
             backend: Backend::Cpu,
         };
         let mut seen = Vec::new();
@@ -300,7 +301,7 @@ mod tests {
         let read = |file: &str| std::fs::read(request.out.join(file)).expect("a file");
         let text = String::from_utf8(read(&entry.strands_file)).expect("text");
         assert_eq!(text.split("\n\n").count(), entry.strands);
-        assert!((250..=300).contains(&entry.strands), "{}", entry.strands);
+        assert_eq!(entry.strands, 300);
         // 100,000 hairs of 80 µm in 300 strands, in millimetres.
         let widest =
             text.lines().filter_map(|line| line.split(' ').nth(3)?.parse::<f32>().ok()).fold(0.0, f32::max);

@@ -7,13 +7,16 @@ use glam::Vec3;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::project::MotionSource;
-use lovelock_render::{Light, Transparency};
+use lovelock_render::{Light, StrandCount, Transparency};
 
 /// What every id begins with.
 const PREFIX: &str = "reference";
 
 /// Irradiance of the light on a surface that faces it. A white diffuse surface then reflects almost 1.
 const IRRADIANCE: f32 = 3.0;
+
+/// Strands that are drawn: two thirds of a pixel wide in an image of 384 pixels.
+const STRANDS: f32 = 12_000.0;
 
 /// A hairstyle of one colour in one light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,12 +157,14 @@ impl ReferenceScene {
         project.motion.source = MotionSource::Rest;
         [project.look.eumelanin, project.look.pheomelanin] = self.color.melanin();
         (project.look.variation, project.look.tip_lightening) = (0.0, 0.0);
+        (project.look.grey, project.look.dye_amount, project.look.highlights) = (0.0, 0.0, 0.0);
         project.look.width_scale = 1.0;
         project.lights =
             vec![Light { intensity: IRRADIANCE, specular: 1.0, softness: 0.0, ..Light::default() }];
         let picture = &mut project.picture;
         (picture.ambient, picture.exposure_stops, picture.strand_opacity) = (0.0, 0.0, 1.0);
         picture.ground = false;
+        (picture.strands, picture.strand_number) = (StrandCount::Fixed, STRANDS);
         picture.transparency = Transparency::Exact;
         project
     }

@@ -23,13 +23,15 @@ pub(super) struct DrawnStrands {
     pub(super) strands: Vec<Range<usize>>,
 }
 
-/// The strands that a renderer draws of `input`, and their half widths.
+/// The strands that a renderer draws of `input`, and their half widths. `picture.strands` must be a fixed number or the stored ones:
+/// others depend on the size of the image.
 ///
 /// The width is [`shadow_width`](lovelock_groom::HairLook::shadow_width) times the taper: a strand that stands for thirty hairs
 /// is as wide as thirty hairs. The path tracer then sees the optical depth that the shadows of Lovelock see. The eye of Lovelock
 /// sees it as well if `look.width_scale` and `picture.strand_opacity` are 1, as in the scenes.
-pub(super) fn drawn_strands(input: &FrameInput<'_>, height: u32) -> DrawnStrands {
-    let drawn = DrawnHair::of(input, height);
+pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
+    // Scenes have a fixed number of strands, which does not depend on the height of the image.
+    let drawn = DrawnHair::of(input, 1);
     let strands = &drawn.strands;
     DrawnStrands {
         points: (0..strands.points()).map(|i| strands.point(i)).collect(),
