@@ -264,7 +264,7 @@ impl RecordingSection {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SurroundingsSection {
-    /// A picture of the surroundings, Radiance (`.hdr`) or OpenEXR (`.exr`); a sky above a ground where none.
+    /// A picture of the surroundings, Radiance (`.hdr`) or `OpenEXR` (`.exr`); a sky above a ground where none.
     pub file: Option<FileRef>,
 }
 
