@@ -237,7 +237,7 @@ impl Settings for HairLook {
         Setting::number(
             field!(Self, many_scattering),
             [0.0, 1.0],
-            "Light between strands",
+            "Between strands",
             "Share of the light that reaches the eye by way of other strands. Without it light hair is \
              too dark.",
         )

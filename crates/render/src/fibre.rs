@@ -8,6 +8,10 @@ use crate::Light;
 /// *Extinction* becomes a factor on the density of hair.
 pub(crate) const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 
+/// Fibres of the point's own strand in the maps: a stored strand stands for many hairs, and on the mean half of them lie before the ones
+/// that are seen.
+pub(crate) const OWN_FIBRES: f32 = 0.5;
+
 /// The smallest transmittance that maps tell from none: half of a step of 8 bits.
 pub(crate) const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
 

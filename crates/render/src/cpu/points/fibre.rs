@@ -9,7 +9,7 @@ use super::{LANES, Lane, ShadedFrom};
 use crate::MAX_LIGHTS;
 use crate::cpu::math::{log2, max};
 use crate::cpu::view::{FibreView, View};
-use crate::fibre::{FIBRES_PER_DEPTH, LEAST_TRANSMITTANCE};
+use crate::fibre::{FIBRES_PER_DEPTH, LEAST_TRANSMITTANCE, OWN_FIBRES};
 
 /// The light that points scatter toward the eye.
 #[inline(always)]
@@ -38,7 +38,8 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
             // Where light or eye look along the strand there is no azimuth; any is as good.
             phi[lane] = acos((lv - sin * sin_v[lane]) / max(cos * cos_v[lane], 1e-4));
             let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
-            fibres[lane] = -FIBRES_PER_DEPTH * std::f32::consts::LN_2 * log2(max(lit, LEAST_TRANSMITTANCE));
+            let crossed = -FIBRES_PER_DEPTH * std::f32::consts::LN_2 * log2(max(lit, LEAST_TRANSMITTANCE));
+            fibres[lane] = max(crossed - OWN_FIBRES, 0.0);
             (sin_l[lane], cos_l[lane]) = (sin, cos);
         }
         let lobes = fibre.lights[k];

@@ -13,6 +13,7 @@ const MANY: u32 = 2u * TABLE;
 const SMALLEST_COSINE: f32 = 0.05;
 const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
+const OWN_FIBRES: f32 = 0.5;
 const MOST_FIBRES: f32 = 40.0;
 const LARGEST_SOURCE: f32 = 0.25;
 const WIDEST: f32 = 20.0;
@@ -138,7 +139,8 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32) 
     let direct = row_at(0u, s.eye, azimuth, AZIMUTHS);
     let after = row_at(TABLE, s.eye, azimuth, AZIMUTHS);
 
-    let n = clamp(-FIBRES_PER_DEPTH * log(max(lit, LEAST_TRANSMITTANCE)), 0.0, MOST_FIBRES);
+    let crossed = -FIBRES_PER_DEPTH * log(max(lit, LEAST_TRANSMITTANCE));
+    let n = clamp(crossed - OWN_FIBRES, 0.0, MOST_FIBRES);
     let unhit = exp(-n);
     let reached = exp(-n * (1.0 - s.forward));
     let psi = clamp(reached - unhit, vec3f(0.0), vec3f(1.0));
