@@ -141,7 +141,7 @@ impl Settings for PictureSettings {
         .soft([0.25, 4.0]),
         Setting::number(
             field!(Self, strand_number),
-            [1_000.0, 120_000.0],
+            [100.0, 120_000.0],
             "Strand number",
             "Number of strands when it is fixed.",
         )

@@ -227,7 +227,7 @@ mod tests {
             ("lovelock → lovelock-gpu", "app may use jobs, study"),
             ("lovelock-project → lovelock-session", "project may use render"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
-            ("lovelock-groom → lovelock-motion", "groom may use base"),
+            ("lovelock-groom → lovelock-motion", "groom may use appearance, base"),
             ("lovelock-record → lovelock-session", "record may use groom, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
