@@ -109,9 +109,9 @@ pub struct ReferenceIrradiance {
 pub struct ReferenceFibre {
     /// Absorption per radius, linear sRGB.
     pub sigma_a: Vec3,
-    /// Roughness along the fibre, β_M.
+    /// Roughness along the fibre. Symbol: `beta_m`.
     pub longitudinal_roughness: f32,
-    /// Roughness around the fibre, β_N.
+    /// Roughness around the fibre. Symbol: `beta_n`.
     pub azimuthal_roughness: f32,
     /// Tilt of the scales in degrees. Negative: they open toward the tip, while the curves run from the root.
     pub scale_tilt_degrees: f32,

@@ -1,6 +1,6 @@
 //! Where the camera stands.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec3, Vec4};
 use lovelock_render::Camera;
 
 /// Vertical field of view, radians.
@@ -35,7 +35,7 @@ pub(super) fn camera_for(points: &[Vec3], world_from_head: &Affine3A) -> Camera 
 /// The camera's axes in world space: right, up, and from the target to the camera.
 pub(super) fn axes(camera: &Camera) -> [Vec3; 3] {
     let rows = camera.view_from_world().transpose();
-    [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate())
+    [rows.x_axis, rows.y_axis, rows.z_axis].map(Vec4::truncate)
 }
 
 #[cfg(test)]
