@@ -191,6 +191,7 @@ impl Drawn {
         let input = FrameInput {
             style: &self.style,
             hair: HairPose::Strands(&self.strands),
+            guides: None,
             look: &self.look,
             body: None,
             world_from_head: Affine3A::IDENTITY,

@@ -282,8 +282,12 @@ impl<'a> HairPoints<'a> {
     fn new(input: &FrameInput<'a>, mut lines: Vec<(Range<usize>, f32)>) -> Self {
         lines.clear();
         let all = input.style.strands.count().max(1) as f32;
-        match input.hair {
-            HairPose::Guides(frame) => {
+        let guides = match input.hair {
+            HairPose::Guides(frame) => Some(frame),
+            HairPose::Strands(_) => input.guides,
+        };
+        match (guides, input.hair) {
+            (Some(frame), _) | (None, HairPose::Guides(frame)) => {
                 let guides = &frame.guides;
                 let points = guides.points_per_guide;
                 let known = guides.x.len().min(guides.y.len()).min(guides.z.len());
@@ -294,7 +298,7 @@ impl<'a> HairPoints<'a> {
                 }
                 Self { axes: [&guides.x, &guides.y, &guides.z], lines }
             }
-            HairPose::Strands(strands) => {
+            (None, HairPose::Strands(strands)) => {
                 let every = strands.count().div_ceil(MOST_STRANDS).max(1);
                 let known = strands.x.len().min(strands.y.len()).min(strands.z.len());
                 let ends = strands.first_point.windows(2).step_by(every);

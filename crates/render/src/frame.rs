@@ -17,6 +17,9 @@ pub struct FrameInput<'a> {
     pub style: &'a Arc<Hairstyle>,
     /// The positions of its strands.
     pub hair: HairPose<'a>,
+    /// The guides of the same instant, if they are known: light from all directions is computed from them, so that it does not depend
+    /// on how strands are given.
+    pub guides: Option<&'a GuideFrame>,
     /// Colour and width of the hair.
     pub look: &'a HairLook,
     /// The body and its skinned surface. Without it only hair is drawn.

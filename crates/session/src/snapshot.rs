@@ -58,6 +58,7 @@ impl FrameSnapshot {
         FrameInput {
             style: &self.scene.style,
             hair: HairPose::Guides(&self.guides),
+            guides: Some(&self.guides),
             look: &project.look,
             body: Some((&self.scene.body, &self.skin)),
             world_from_head: self.guides.world_from_head,

@@ -60,6 +60,7 @@ impl Scene {
         FrameInput {
             style: &self.style,
             hair: HairPose::Strands(&self.strands),
+            guides: None,
             look: &self.look,
             body: self.body.as_ref().map(|(body, skin)| (body, skin)),
             world_from_head: Affine3A::IDENTITY,
@@ -221,8 +222,12 @@ pub fn tuft_scene(strands: u32) -> Scene {
 pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     let mut s = scene(lines);
     s.body = Some(grid(-0.08, 0.3, 48, Vec3::new(0.35, 0.25, 0.2)));
-    s.look = HairLook::default();
-    s.look.real_hairs = 8000.0;
+    s.look = HairLook {
+        shading: HairShading::KajiyaKay,
+        roughness: 0.3,
+        real_hairs: 8000.0,
+        ..HairLook::default()
+    };
     s.lights = Light::default_rig();
     s.shadow = ShadowSettings::default();
     s.picture = PictureSettings { strands: StrandCount::Stored, ambient: 0.5, ..PictureSettings::default() };

@@ -83,6 +83,10 @@ fn light_between_strands_brightens_fair_hair_most() {
         let mut scene = fibres(tuft_scene(400));
         scene.shadow.method = ShadowMethod::Exact;
         (scene.look.eumelanin, scene.look.real_hairs) = (eumelanin, 60_000.0);
+        // From behind, where light only comes through hair.
+        scene.lights.truncate(1);
+        scene.lights[0].direction = Vec3::new(0.0, -0.3, 1.0);
+        scene.body = None;
         scene.picture.ambient = 0.0;
         let with = light(&scene).element_sum();
         scene.look.many_scattering = 0.0;

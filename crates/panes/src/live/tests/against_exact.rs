@@ -4,7 +4,7 @@ use super::*;
 
 /// The exact transmittance of the first light, by the engine's renderer.
 fn exact(rig: &Rig) -> Vec<f32> {
-    let mut project = rig.project.clone();
+    let mut project = rig.project.compared();
     project.shadow.method = ShadowMethod::Exact;
     let camera = rig.snapshot.camera(&project.camera);
     let mut renderer = CpuRenderer::default();

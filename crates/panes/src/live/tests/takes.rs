@@ -42,7 +42,7 @@ fn a_pane_shows_its_own_take_at_the_time_of_all() {
     // It is the picture that the take itself gives.
     let (mut player, _) = TakePlayer::open(&path, &access).expect("a take");
     let snapshot = player.snapshot(0.2).expect("a frame");
-    let project = end.contender.applied_to(&rig.project);
+    let project = end.contender.applied_to(&rig.project).compared();
     let camera = snapshot.camera(&project.camera);
     let mut picture = Picture::default();
     let input = snapshot.frame_input(&project, &camera);

@@ -7,7 +7,7 @@ use lovelock_groom::simd::Width;
 use lovelock_groom::{Strands, simd_versions};
 use rayon::prelude::*;
 
-use super::math::{floor, max, saturate, smoothstep};
+use super::math::{exp, floor, max, saturate, smoothstep};
 use super::view::View;
 
 mod fibre;
@@ -78,6 +78,17 @@ struct ShadedFrom<'a> {
     pigment: Lane,
     /// Four 8-bit transmittances.
     packed: [i32; LANES],
+}
+
+/// The width with which a strand is drawn, pixels.
+///
+/// Many fine strands below a pixel let through `exp(-opacity * sum of widths)`, whatever their number: one of them is drawn so narrow
+/// that it does the same. From half a pixel on this goes over into the width itself.
+#[inline(always)]
+fn thin(width: f32, opacity: f32, fine: bool) -> f32 {
+    let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);
+    let narrow = narrow + (width - narrow) * smoothstep(0.5, 2.0, width);
+    if fine { narrow } else { width }
 }
 
 #[inline(always)]
@@ -214,6 +225,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     // The last of fine strands fade.
     let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
     let points_per_strand = max(points_per_strand, 1.0) as u32;
+    let (opacity, fine) = (uniform.width_opacity_tip_scalp.y, points_per_strand > 1);
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
@@ -224,7 +236,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
         let strand = (first + lane) as u32 / points_per_strand;
         let share = saturate((fade_end - strand as f32) * fade_slope);
-        let wide = 0.5 * width * taper * share * scale / max(w, 1e-3);
+        let wide = 0.5 * thin(width * taper * share * scale / max(w, 1e-3), opacity, fine);
         // A NaN point is not drawn: every comparison with it is false.
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
         half_width[lane] = if drawn { wide } else { -1.0 };

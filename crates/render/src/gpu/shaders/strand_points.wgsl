@@ -21,6 +21,13 @@ fn drawn_points() -> u32 {
     return u32(frame.fading.w);
 }
 
+// The width with which a strand is drawn: see `thin` in cpu/points/mod.rs.
+fn thin(width: f32) -> f32 {
+    let opacity = frame.width_opacity_tip_scalp.y;
+    let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);
+    return select(width, narrow + (width - narrow) * smoothstep(0.5, 2.0, width), frame.fading.z > 1.5);
+}
+
 // The width of the strand of point `i` as a share of the full width: the last of fine strands fade.
 fn share_of_strand(i: u32) -> f32 {
     let strand = i / max(u32(frame.fading.z), 1u);
@@ -155,7 +162,8 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         sum += ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
     }
 
-    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let width = frame.width_opacity_tip_scalp.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let half_width = 0.5 * thin(width);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
     if (thread < count) {
         shaded[i] = ShadedPoint(
