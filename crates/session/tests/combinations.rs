@@ -63,6 +63,7 @@ fn draw_all(name: &str, mut project: Project) {
         // Tied hair is behind the head.
         project.camera.azimuth = BEHIND;
     }
+    project = project.compared();
     let snapshot = instant(name, &project);
     let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
     let mut draw = |method, transparency| draw(&mut renderer, &snapshot, &mut project, method, transparency);
@@ -116,7 +117,7 @@ fn the_same_by_both_backends() {
         Err(error) => return lovelock_testkit::skip_without_adapter(&error),
     };
     let mut cpu = Renderer::open(Backend::Cpu).expect("the processor");
-    let mut project = Project::default();
+    let mut project = Project::default().compared();
     // From behind: the edges of eyes and face differ as they do in any combination.
     (project.camera.distance, project.camera.azimuth) = (0.6, 2.6);
     let snapshot = instant("default", &project);

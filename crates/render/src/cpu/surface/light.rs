@@ -93,7 +93,11 @@ impl SurfaceLight {
                 edges
             }
         };
-        let shares = edges.shares(x as f32 + 0.5, y as f32 + 0.5);
+        // The centre of a pixel may lie beside a triangle that covers some of its samples. Colours are not extrapolated there: across
+        // a narrow triangle between two materials they change too fast.
+        let shares = edges.shares(x as f32 + 0.5, y as f32 + 0.5).map(|share| share.max(0.0));
+        let sum = shares[0] + shares[1] + shares[2];
+        let shares = shares.map(|share| share / sum.max(1e-6));
         self.push(surface, triangle, shares, y * STRIDE + x, weight);
         if self.batch.count == LANES {
             self.flush(width, view, out);
