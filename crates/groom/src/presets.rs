@@ -101,9 +101,7 @@ const SMOOTH: GroomSettings = GroomSettings {
     face_framing: 0.25,
     fringe: 0.0,
     fringe_length: 0.09,
-    hairline: 0.15,
-    hairline_softness: 0.012,
-    baby_hairs: 0.04,
+    hairline: 0.5,
     part_position: 0.022,
     part_strength: 1.0,
     sweep: 0.5,
@@ -181,7 +179,6 @@ const CURLY: GroomSettings = GroomSettings {
 };
 
 const LONG: GroomSettings = GroomSettings {
-    seed: 4,
     wisps: 180,
     strands_per_wisp: 30,
     segments_per_strand: 40,
@@ -229,7 +226,6 @@ const PONYTAIL: GroomSettings = GroomSettings {
     stray_reach: 0.010,
     wave: 0.004,
     wave_length: 0.16,
-    baby_hairs: 0.05,
     taper: 0.35,
     look: HairLook { eumelanin: 4.0, pheomelanin: 0.0, ..SMOOTH.look },
     ..SMOOTH

@@ -64,7 +64,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Opt
 const CUT: [&str; 7] =
     ["length", "layering", "length_variation", "face_framing", "fringe", "fringe_length", "taper"];
 
-const SHAPE: [&str; 11] = [
+const SHAPE: [&str; 9] = [
     "part_position",
     "part_strength",
     "sweep",
@@ -74,8 +74,6 @@ const SHAPE: [&str; 11] = [
     "hold",
     "ends",
     "hairline",
-    "hairline_softness",
-    "baby_hairs",
 ];
 
 const TEXTURE: [&str; 12] = [

@@ -217,6 +217,5 @@ pub(super) fn inside_hairline(p: Vec3) -> f32 {
     let radius = p.x.hypot(p.z - 0.002).max(0.02);
     let rise = (at(azimuth + 1.0) - at(azimuth - 1.0)) / (2.0_f32.to_radians() * radius);
     let line = (p.y - at(azimuth)) / (1.0 + rise * rise).sqrt();
-    // Around the ears hair begins sooner than it does at the forehead, and is dense at once.
-    line.min(2.5 * (ear(Vec3::new(p.x.abs(), p.y, p.z)) - 0.0045))
+    line.min(ear(Vec3::new(p.x.abs(), p.y, p.z)) - 0.0045)
 }

@@ -1,7 +1,7 @@
 //! `cargo xtask assets`: makes the dancer, `assets/dancer.glb`.
 //!
 //! The figure is one signed distance function ([`figure`], [`head`]), meshed by surface nets ([`mesh`]), remeshed with regular
-//! triangles ([`remesh`]), cut along the borders of clothes ([`seams`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and animated by a score of key
+//! triangles ([`remesh`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and animated by a score of key
 //! poses ([`score`], [`dance`]). The same source gives the same bytes.
 
 mod dance;
@@ -17,7 +17,6 @@ mod remesh;
 mod rig;
 mod score;
 mod sdf;
-mod seams;
 mod weights;
 
 #[cfg(test)]
@@ -30,16 +29,8 @@ use anyhow::Context;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Distances from the hairline between which the scalp mask rises from 0 to 1, in metres: hair grows denser over more than a
-/// centimetre, and so does the shade that its roots give the skin.
-const MASK_RISE: [f32; 2] = [-0.007, 0.017];
-/// Waves of the hairline, because no forehead has a straight one: wave vectors in radians per metre, and amplitudes in metres.
-/// They are several vertices long, so that none of them shows as teeth.
-const WAVES: [(Vec3, f32); 3] = [
-    (Vec3::new(150.0, 40.0, 90.0), 0.0012),
-    (Vec3::new(-110.0, 130.0, 150.0), 0.0010),
-    (Vec3::new(250.0, -90.0, 40.0), 0.0008),
-];
+/// Half of the width over which the scalp mask goes from 0 to 1, in metres.
+const HAIRLINE_HALF_WIDTH: f32 = 0.004;
 
 /// Generates all shipped assets; with a preview folder, also writes images of the figure there.
 pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
@@ -78,13 +69,12 @@ fn make() -> glb::Dancer {
     net.positions.par_iter_mut().for_each(|p| *p = mesh::project(&distance, *p));
     remesh::remesh(&mut net, &distance, &figure::edge_length, 6);
     remesh::snap(&mut net, &distance, &paint::seam, &figure::edge_length);
-    let places = seams::cut(&mut net, &distance, &paint::BORDERS);
     let joints = rig::joints();
     let influences = weights::influences(&net, joints.len());
     let clips = [score::dance(), score::idle()].iter().map(|score| score.sample(&joints)).collect();
     glb::Dancer {
         normals: mesh::normals(&distance, &net.positions),
-        colours: places.iter().map(|p| paint::colour(*p)).collect(),
+        colours: net.positions.iter().map(|p| paint::colour(*p)).collect(),
         scalp: net.positions.iter().map(|p| scalp(*p)).collect(),
         influences,
         joints,
@@ -99,6 +89,5 @@ fn scalp(p: Vec3) -> f32 {
     if p.y < head::CHIN_Y {
         return 0.0;
     }
-    let wave = WAVES.iter().map(|(wave, size)| size * (wave.dot(p) + 0.7).sin()).sum::<f32>();
-    smoothstep(MASK_RISE[0], MASK_RISE[1], head::inside_hairline(p) + wave)
+    smoothstep(-HAIRLINE_HALF_WIDTH, HAIRLINE_HALF_WIDTH, head::inside_hairline(p))
 }

@@ -4,7 +4,6 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::comb::Comb;
-use super::hairline::Hairline;
 use crate::{GroomSettings, ScalpIndex, ScalpPoint};
 use lovelock_base::random::SplitMix64;
 
@@ -14,20 +13,6 @@ const SAMPLES_PER_CELL: usize = 32;
 const ROUNDS: usize = 8;
 /// Distance that the parting adds between its sides while the cells relax, so that no cell crosses it; metres.
 const PART_GAP: f32 = 0.03;
-
-/// The largest share of baby hairs among the strands of a wisp: each wisp keeps hair of its own length.
-const MOST_BABIES: f32 = 0.5;
-
-/// The root of one strand.
-#[derive(Clone, Copy)]
-pub(super) struct Root {
-    /// Its place.
-    pub on: ScalpPoint,
-    /// Density of roots around it, relative to that inside the scalp: 0 to 1.
-    pub density: f32,
-    /// Whether its strand is a baby hair.
-    pub is_baby: bool,
-}
 
 /// The part of the scalp that one wisp covers.
 pub(super) struct Cell {
@@ -39,8 +24,8 @@ pub(super) struct Cell {
     pub side: f32,
     /// 1 for a wisp of the fringe, else 0.
     pub fringe: f32,
-    /// The roots of its strands, those of baby hairs last.
-    pub roots: Vec<Root>,
+    /// The roots of its strands.
+    pub roots: Vec<ScalpPoint>,
     /// A number for its own random streams.
     pub stream: u64,
 }
@@ -51,14 +36,14 @@ pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Co
     let wisps = settings.wisps as usize;
     let each = settings.strands_per_wisp as usize;
     let per_cell = SAMPLES_PER_CELL.max(each * if each <= 64 { 3 } else { 2 });
-    let points = index.scalp().sample(wisps * per_cell, settings.hairline, settings.seed);
-    let hairline = Hairline::new(settings, index.scalp());
-    let samples = thinned(settings, &hairline, &points);
+    let samples = index.scalp().sample(wisps * per_cell, settings.hairline, settings.seed);
     if samples.is_empty() {
         return Vec::new();
     }
-    let feature = |p: &ScalpPoint| p.position.extend(0.5 * PART_GAP * comb.divided_side(p.position));
-    let features: Vec<Vec4> = samples.par_iter().map(|s| feature(&s.on)).collect();
+    let features: Vec<Vec4> = samples
+        .par_iter()
+        .map(|s| s.position.extend(0.5 * PART_GAP * comb.divided_side(s.position)))
+        .collect();
     // Samples are independent, so the first ones are as good as any.
     let few = &features[..features.len().min(wisps * SAMPLES_PER_CELL)];
     let mut centres = spaced(few, wisps);
@@ -80,61 +65,28 @@ pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Co
     for (sample, &owner) in samples.iter().zip(&owners) {
         members[owner as usize].push(*sample);
     }
-    let strip: Vec<ScalpPoint> = if settings.baby_hairs > 0.0 {
-        points.into_par_iter().filter(|p| hairline.has_baby_hairs(p)).collect()
-    } else {
-        Vec::new()
-    };
-    let owners: Vec<u32> = strip.par_iter().map(|p| nearest(&centres, feature(p))).collect();
-    let mut babies = vec![Vec::new(); centres.len()];
-    for (point, &owner) in strip.iter().zip(&owners) {
-        babies[owner as usize].push(Root { on: *point, density: 1.0, is_baby: true });
-    }
-    let babies_per_sample = settings.baby_hairs * (wisps * each) as f32 / strip.len().max(1) as f32;
     (0..centres.len())
         .into_par_iter()
-        .map(|w| {
-            let mut rng = SplitMix64::of_stream(settings.seed, 0xce11_0000 + w as u64);
-            // Rounded by chance, so that the sum over all wisps is what the settings ask for.
-            let wanted = babies_per_sample * babies[w].len() as f32 + rng.unit();
-            let most = (MOST_BABIES * each as f32).min(babies[w].len() as f32);
-            let roots = [each - wanted.min(most) as usize, wanted.min(most) as usize];
-            cell(settings, index, comb, centres[w].truncate(), [&members[w], &babies[w]], roots, w as u64)
-        })
+        .map(|w| cell(settings, index, comb, centres[w].truncate(), &members[w], w as u64))
         .collect()
 }
 
-/// The samples that remain where roots thin toward the hairline.
-fn thinned(settings: &GroomSettings, hairline: &Hairline<'_>, points: &[ScalpPoint]) -> Vec<Root> {
-    let densities: Vec<f32> = points.par_iter().map(|p| hairline.density(p)).collect();
-    let mut rng = SplitMix64::of_stream(settings.seed, 0x7417);
-    let root = |(on, density): (&ScalpPoint, f32)| Root { on: *on, density, is_baby: false };
-    let all = points.iter().zip(densities).map(root);
-    let left: Vec<Root> = all.clone().filter(|r| rng.unit() < r.density).collect();
-    // A scalp narrower than the softness is all edge.
-    if left.is_empty() { all.map(|r| Root { density: 1.0, ..r }).collect() } else { left }
-}
-
-/// One cell: its samples, the samples of its baby hairs, and how many of either become roots.
+/// One cell, from the samples inside it.
 fn cell(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
     comb: &Comb,
     middle: Vec3,
-    [members, babies]: [&[Root]; 2],
-    [count, baby_count]: [usize; 2],
+    members: &[ScalpPoint],
     stream: u64,
 ) -> Cell {
-    let mut rng = SplitMix64::of_stream(settings.seed, 0xce12_0000 + stream);
+    let mut rng = SplitMix64::of_stream(settings.seed, 0xce11_0000 + stream);
     let on_scalp = index.closest(middle).expect("a scalp with samples has triangles");
-    let own = [Root { on: on_scalp, density: 1.0, is_baby: false }];
+    let own = [on_scalp];
     let members = if members.is_empty() { &own[..] } else { members };
-    let centre = if on_scalp.mask >= settings.hairline { on_scalp } else { members[0].on };
-    let mut roots = choose(settings, index, members, count, &mut rng);
-    if baby_count > 0 {
-        roots.extend(choose(settings, index, babies, baby_count, &mut rng));
-    }
-    let squares: f32 = members.iter().map(|m| m.on.position.distance_squared(centre.position)).sum();
+    let centre = if on_scalp.mask >= settings.hairline { on_scalp } else { members[0] };
+    let roots = choose(settings, index, members, settings.strands_per_wisp as usize, &mut rng);
+    let squares: f32 = members.iter().map(|m| m.position.distance_squared(centre.position)).sum();
     let p = (centre.position - comb.centre) / comb.half;
     let before = p.z > 0.45 && p.x.abs() < 0.6 && p.y > 0.2;
     Cell {
@@ -148,15 +100,14 @@ fn cell(
 }
 
 /// Chooses `count` samples, each as far as possible from the earlier ones (farthest point sampling), which leaves
-/// neither clusters nor rows. Distances count less where roots are to be sparse. If there are too few samples, more are
-/// interpolated between them.
+/// neither clusters nor rows. If there are too few samples, more are interpolated between them.
 fn choose(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
-    members: &[Root],
+    members: &[ScalpPoint],
     count: usize,
     rng: &mut SplitMix64,
-) -> Vec<Root> {
+) -> Vec<ScalpPoint> {
     let mut chosen = Vec::with_capacity(count);
     if count > 300 {
         chosen.extend_from_slice(&members[..count.min(members.len())]);
@@ -168,9 +119,9 @@ fn choose(
             chosen.push(pick);
             let mut widest = -1.0;
             for (m, (member, gap)) in members.iter().zip(&mut gaps).enumerate() {
-                *gap = gap.min(member.on.position.distance_squared(pick.on.position));
-                if *gap * member.density > widest {
-                    (widest, next) = (*gap * member.density, m);
+                *gap = gap.min(member.position.distance_squared(pick.position));
+                if *gap > widest {
+                    (widest, next) = (*gap, m);
                 }
             }
         }
@@ -178,8 +129,8 @@ fn choose(
     while chosen.len() < count {
         let mut pick = || members[(rng.unit() * members.len() as f32) as usize % members.len()];
         let (a, b) = (pick(), pick());
-        let between = index.closest(a.on.position.lerp(b.on.position, rng.unit())).unwrap_or(a.on);
-        chosen.push(if between.mask >= settings.hairline { Root { on: between, ..a } } else { a });
+        let between = index.closest(a.position.lerp(b.position, rng.unit())).unwrap_or(a);
+        chosen.push(if between.mask >= settings.hairline { between } else { a });
     }
     chosen
 }

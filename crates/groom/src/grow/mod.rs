@@ -1,19 +1,16 @@
 //! Growing a hairstyle: cells of roots, combed paths, guides, strands.
 //!
 //! 1. [`comb`]: the parting, the whorl, and the direction of the hair at each point of the head.
-//! 2. [`hairline`]: how roots thin toward the edge of the scalp.
-//! 3. [`cells`]: the scalp divided among wisps, and the roots of each wisp's strands.
-//! 4. [`path`]: how a wisp leaves the scalp, follows the head, falls and drapes.
-//! 5. [`cut`]: the length of each wisp.
-//! 6. [`guides`]: three guides of equal links around each path, outside the body.
-//! 7. [`strands`]: curl, waves, frizz, locks, strays, baby hairs and tips, as offsets from the guides.
+//! 2. [`cells`]: the scalp divided among wisps, and the roots of each wisp's strands.
+//! 3. [`path`]: how a wisp leaves the scalp, follows the head, falls and drapes.
+//! 4. [`cut`]: the length of each wisp.
+//! 5. [`guides`]: three guides of equal links around each path, outside the body.
+//! 6. [`strands`]: curl, waves, frizz, locks, strays and tips, as offsets from the guides.
 
-mod baby;
 mod cells;
 mod comb;
 mod cut;
 mod guides;
-mod hairline;
 mod path;
 mod strands;
 

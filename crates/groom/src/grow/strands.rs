@@ -3,10 +3,9 @@
 use glam::{Vec2, Vec3};
 
 use super::GUIDE_POINTS;
-use super::baby::Baby;
-use super::cells::{Cell, Root};
+use super::cells::Cell;
 use super::comb::Comb;
-use crate::{GroomSettings, Guides, Obstacle, StrandSet, Wisp, WispCurve};
+use crate::{GroomSettings, Guides, Obstacle, ScalpPoint, StrandSet, Wisp, WispCurve};
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::random::SplitMix64;
 
@@ -17,8 +16,6 @@ const ROOT_JOIN: f32 = 0.03;
 const NEAR: f32 = 0.008;
 /// Approximate number of strands in each of the smaller locks of a wisp.
 const STRANDS_PER_LOCK: usize = 6;
-/// Width of hair at the very edge of the scalp, relative to that inside.
-const EDGE_WIDTH: f32 = 0.6;
 
 /// The strands of one wisp, as in [`StrandSet`].
 pub(super) struct WispStrands {
@@ -82,12 +79,6 @@ impl Skin {
         let n = n0.lerp(n1, t).normalize_or(n0);
         (d0 + (d1 - d0) * t + n.dot(point - m0.lerp(m1, t)), n)
     }
-
-    /// Unit direction along the skin and across a wisp with this tangent, at the guides' parameter `u`.
-    fn across(&self, u: f32, tangent: Vec3) -> Vec3 {
-        let (_, _, n) = self.0[(u as usize).min(GUIDE_POINTS - 1)];
-        n.cross(tangent).normalize_or(n.any_orthonormal_vector())
-    }
 }
 
 /// Makes the strands of the wisp of `cell` along its `guides`.
@@ -116,7 +107,7 @@ pub(super) fn of_wisp(
     };
     let wisp_shade = rng.unit();
     let flat = Flat::new(cell, guides);
-    let weights: Vec<[f32; 3]> = cell.roots.iter().map(|r| flat.weights(r.on.position)).collect();
+    let weights: Vec<[f32; 3]> = cell.roots.iter().map(|r| flat.weights(r.position)).collect();
     let centres: Vec<([f32; 3], f32)> =
         weights.iter().step_by(STRANDS_PER_LOCK).map(|&w| (w, settings.locks * rng.bell())).collect();
 
@@ -132,19 +123,14 @@ pub(super) fn of_wisp(
     };
     for (strand_root, &w) in cell.roots.iter().zip(&weights) {
         let nearest = centres.iter().min_by(|a, b| apart(a.0, w).total_cmp(&apart(b.0, w)));
-        let gathers_to = *nearest.unwrap_or(&(w, 0.0));
-        let mut own = Strand::new(settings, cell, &curve, strand_root, w, gathers_to, &mut rng);
-        if strand_root.is_baby {
-            own = own.into_baby(lock.length, &mut rng);
-        }
-        let width = own.baby.map_or(EDGE_WIDTH + (1.0 - EDGE_WIDTH) * strand_root.density, |baby| baby.width);
-        let taper = own.baby.map_or(settings.taper, |_| Baby::TAPER);
+        let own =
+            Strand::new(settings, cell, &curve, strand_root, w, *nearest.unwrap_or(&(w, 0.0)), &mut rng);
         for k in 0..points {
             let t = k as f32 / (points - 1) as f32;
             let u = (GUIDE_POINTS - 1) as f32 * own.reach * t;
             strands.guide_param.push(u);
             strands.offset.push(own.offset(settings, comb, obstacle, &curve, &lock, u));
-            strands.taper.push(width * thickness(taper, t));
+            strands.taper.push(thickness(settings.taper, t));
         }
         strands.weights.push(w);
         strands.shade.push((0.45 * wisp_shade + 0.55 * rng.unit()).clamp(0.0, 1.0));
@@ -179,8 +165,6 @@ struct Strand {
     phases: [f32; 6],
     curl_phase: f32,
     curl_size: f32,
-    /// What makes it a baby hair, if it is one.
-    baby: Option<Baby>,
 }
 
 impl Strand {
@@ -188,12 +172,12 @@ impl Strand {
         settings: &GroomSettings,
         cell: &Cell,
         curve: &WispCurve,
-        root: &Root,
+        root: &ScalpPoint,
         weights: [f32; 3],
         (gathers_to, lock_phase): ([f32; 3], f32),
         rng: &mut SplitMix64,
     ) -> Self {
-        let from_middle = root.on.position.distance(cell.centre.position) / (2.0 * cell.spread);
+        let from_middle = root.position.distance(cell.centre.position) / (2.0 * cell.spread);
         let shorter = 0.6 * rng.unit() + 0.4 * (from_middle * from_middle).min(1.0);
         let strays = rng.unit() < settings.strays;
         let angle = rng.angle();
@@ -201,7 +185,7 @@ impl Strand {
         let wander = settings.curl_wander;
         Self {
             weights,
-            from_guides: root.on.position - curve.blend(weights, 0.0),
+            from_guides: root.position - curve.blend(weights, 0.0),
             gathers_to,
             reach: 1.0 - settings.length_variation * shorter - if strays { 0.15 * rng.unit() } else { 0.0 },
             stray: if strays { Vec3::new(angle.cos(), angle.sin(), 0.0) * out } else { Vec3::ZERO },
@@ -210,22 +194,6 @@ impl Strand {
             phases: std::array::from_fn(|_| rng.angle()),
             curl_phase: lock_phase + (0.3 + if strays { 2.0 } else { 0.0 }) * wander * rng.bell(),
             curl_size: 1.0 + 0.3 * wander * rng.bell(),
-            baby: None,
-        }
-    }
-
-    /// The same strand as a baby hair of a wisp `length` metres long.
-    fn into_baby(self, length: f32, rng: &mut SplitMix64) -> Self {
-        let baby = Baby::new(rng);
-        Self {
-            gathers_to: self.weights,
-            reach: (baby.length / length).min(self.reach),
-            stray: Vec3::ZERO,
-            frizz: 0.0,
-            depth: Baby::DEPTH,
-            curl_size: Baby::CURL * self.curl_size,
-            baby: Some(baby),
-            ..self
         }
     }
 
@@ -291,9 +259,6 @@ impl Strand {
         if self.stray != Vec3::ZERO {
             displaced += frame * (self.stray * t * t.sqrt());
         }
-        if let Some(baby) = &self.baby {
-            displaced += baby.sideways(arc) * lock.skin.across(u, frame.z_axis);
-        }
 
         let mut point = blended + displaced;
         // Some strands lie deeper than others, so that hair fills a volume instead of a shell; none enters the skin.
@@ -301,13 +266,11 @@ impl Strand {
         if distance < NEAR {
             (distance, n) = obstacle.distance(point);
         }
-        let (sinks_over, clear) = if self.baby.is_some() { (0.006, 0.0008) } else { (0.02, 0.0015) };
-        let near = smoothstep(0.06, 0.02, distance) * smoothstep(0.0, sinks_over, arc);
+        let near = smoothstep(0.06, 0.02, distance) * smoothstep(0.0, 0.02, arc);
         let sunk = distance - self.depth * near * distance.max(0.0);
-        let margin = (0.4 * arc).min(clear);
+        let margin = (0.4 * arc).min(0.0015);
         point += n * (sunk.max(margin) - distance);
-        // A baby hair sinks so far that it may meet the skin elsewhere, such as an ear.
-        if sunk < margin || self.baby.is_some() {
+        if sunk < margin {
             let (distance, n) = obstacle.distance(point);
             point += n * (margin - distance).max(0.0);
         }

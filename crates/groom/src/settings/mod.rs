@@ -36,10 +36,6 @@ pub struct GroomSettings {
     pub fringe_length: f32,
     /// Threshold on the scalp's mask above which hair grows.
     pub hairline: f32,
-    /// Distance from the edge of the scalp over which roots become as dense as inside, metres.
-    pub hairline_softness: f32,
-    /// Fraction of all strands that are short fine hairs at the edge of the scalp.
-    pub baby_hairs: f32,
 
     /// Where the parting meets the forehead: 0 in the middle, positive on the wearer's left, metres.
     pub part_position: f32,

@@ -77,20 +77,6 @@ impl Settings for GroomSettings {
             "How far back on the forehead hair begins.",
         ),
         Setting::number(
-            field!(Self, hairline_softness),
-            [0.0, 0.03],
-            "Hairline softness",
-            "Distance from the edge of the hair over which it grows denser. 0 is the straight edge of a wig.",
-        )
-        .unit(Unit::METRES_AS_MM),
-        Setting::number(
-            field!(Self, baby_hairs),
-            [0.0, 0.25],
-            "Baby hairs",
-            "Fraction of strands that are short, fine and a little wavy, along the hairline.",
-        )
-        .unit(Unit::FRACTION),
-        Setting::number(
             field!(Self, part_position),
             [-0.06, 0.06],
             "Parting position",

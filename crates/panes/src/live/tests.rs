@@ -291,7 +291,7 @@ fn a_probe_follows_a_strand_and_reads_each_pane_there() {
     rig.draw(shown.clone());
     assert!(rig.live.probe().latest().is_none());
     // The densest of many rays, and slices of centimetres, so that an inexact method differs along much of the ray.
-    rig.project.compare.panes[2].shadow.opacity_maps.slices = 8;
+    rig.project.compare.panes[2].shadow.opacity_maps.slices = 16;
     let shown = LiveRequest { project: Arc::new(rig.project.clone()), ..shown };
     let mut found: Option<(u64, (f32, f32), ProbedHair)> = None;
     for number in 1..480_u64 {

@@ -84,14 +84,7 @@ impl Groom {
     /// A preset as the default project grows it.
     pub fn preset(preset: Preset) -> Self {
         let scalp = PlainHead.scalp(40);
-        // With the plain edge of the published hair, whose strands are all of one width.
-        let settings = GroomSettings {
-            hairline: 0.5,
-            hairline_softness: 0.0,
-            baby_hairs: 0.0,
-            ..GroomSettings::preset(preset)
-        };
-        let style = lovelock_groom::grow(&settings, &scalp, &PlainHead);
+        let style = lovelock_groom::grow(&GroomSettings::preset(preset), &scalp, &PlainHead);
         Self::at_rest(preset.id(), &style.expect("a preset grows"))
     }
 
