@@ -307,7 +307,9 @@ impl<'a> HairPoints<'a> {
                     of.filter(|line| line.start <= line.end && line.end <= known).map(|line| (line, 1.0)),
                 );
                 let share = 1.0 / lines.len().max(1) as f32;
-                lines.iter_mut().for_each(|line| line.1 = share);
+                for line in &mut lines {
+                    line.1 = share;
+                }
                 Self { axes: [&strands.x, &strands.y, &strands.z], lines }
             }
         }

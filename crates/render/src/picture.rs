@@ -99,7 +99,7 @@ impl Settings for PictureSettings {
         ),
         Setting::number(
             field!(Self, surroundings_turn),
-            [-3.141_593, 3.141_593],
+            [-std::f64::consts::PI, std::f64::consts::PI],
             "Turn surroundings",
             "Turns the picture of the surroundings around the figure.",
         )

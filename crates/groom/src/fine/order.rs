@@ -34,7 +34,7 @@ pub(super) fn place(i: u32) -> [f32; 3] {
 
 /// A hash of a number, spread over all 32 bits (Mueller's multiplicative mix).
 pub(super) fn hash(x: u32) -> u32 {
-    let x = (x ^ (x >> 16)).wrapping_mul(0x45d9_f3b);
-    let x = (x ^ (x >> 16)).wrapping_mul(0x45d9_f3b);
+    let x = (x ^ (x >> 16)).wrapping_mul(0x045d_9f3b);
+    let x = (x ^ (x >> 16)).wrapping_mul(0x045d_9f3b);
     x ^ (x >> 16)
 }

@@ -116,8 +116,13 @@ impl BenchScene {
         project = project.compared();
         let groom = &mut project.hair.groom;
         match self {
-            Self::Smooth | Self::Curly | Self::Simulate402 => {}
-            Self::Far | Self::Middle | Self::Near | Self::Still => {}
+            Self::Smooth
+            | Self::Curly
+            | Self::Simulate402
+            | Self::Far
+            | Self::Middle
+            | Self::Near
+            | Self::Still => {}
             Self::Simulate20k => groom.strands_per_wisp = 150,
             // 134 wisps of 30 segments per strand: 4,020 segments for each strand of a wisp.
             Self::Smooth500k => groom.strands_per_wisp = 125,

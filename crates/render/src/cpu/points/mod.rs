@@ -58,7 +58,7 @@ pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut V
 
 type Lane = [f32; LANES];
 
-/// The multiple of the shade whose fraction tells which strands are grey; twin of `WHITENING` in strand_points.wgsl.
+/// The multiple of the shade whose fraction tells which strands are grey; twin of `WHITENING` in `strand_points.wgsl`.
 const WHITENING: f32 = 97.381;
 /// What is left of the pigment in grey strands.
 const UNPIGMENTED: f32 = 0.03;
