@@ -60,7 +60,7 @@ fn the_default_project_looks_the_same_on_both() {
     assert!(difference.mean < MEAN && difference.p99 < P99, "{difference:?}");
     assert!(control.mean > MEAN && control.p99 > P99, "the control: {control:?}");
 
-    // Fewer strands of the same width in all, as the CPU draws them in smaller images: measured mean 0.0032. The control, the same
+    // Fewer strands of the same width in all, as the CPU draws them in smaller images. The control, the same
     // strands in half of their width, has more than 1.5 times as much.
     let mut with = |strand_number: f32, look: &HairLook| {
         let snapshot = engine.snapshot();
