@@ -237,8 +237,8 @@ pub(crate) struct Bench {
     /// File for the numbers as comma-separated values; for reference scenes their folder.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Strands of reference scenes, the wider the fewer; 12000 if none is given.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=120_000))]
+    /// Strands of reference scenes, 100 to 120000, the wider the fewer; 12000 if none is given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=120_000))]
     pub(crate) strands: Option<u32>,
     /// Earlier run to compare with: the output of `lovelock bench --json`. Stages are compared by their multiples of the machine's
     /// yardstick, so the earlier run may come from another machine; those that slowed by over 10 % are marked.

@@ -191,8 +191,8 @@ fn reference_scenes_are_written_and_stand_alone() {
     let wrong: [(&[&str], &str); 6] = [
         (&[scene], "--out"),
         (&[scene, "smooth", "-o", "x"], "only scenes"),
-        (&["smooth", "--strands", "9"], "--strands"),
-        (&[scene, "--strands", "0", "-o", "x"], "--strands"),
+        (&["smooth", "--strands", "900"], "--strands"),
+        (&[scene, "--strands", "99", "-o", "x"], "--strands"),
         (&["reference-green", "-o", "x"], "dark-brown"),
         (&[scene, "-o", "a b/scenes.json"], "folder"),
     ];

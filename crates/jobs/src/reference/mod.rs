@@ -41,7 +41,7 @@ pub struct ReferenceRequest {
     pub out: PathBuf,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// The number of strands that are drawn, instead of the scene's own. The fewer, the wider they are.
+    /// The number of strands that are drawn, 100 to 120,000, instead of the scene's own. The fewer, the wider they are.
     pub strands: Option<usize>,
     /// What draws.
     pub backend: Backend,
