@@ -294,12 +294,14 @@ impl Session {
             snapshot: Arc::clone(frame),
             size: size.map(side),
             still: still && automatic,
+            moving: automatic && !still,
             measured: self.view.measured,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = same
             && self.drawn.as_ref().is_some_and(|drawn| {
-                (drawn.still, drawn.size, drawn.measured) == (request.still, request.size, request.measured)
+                (drawn.still, drawn.moving, drawn.size, drawn.measured)
+                    == (request.still, request.moving, request.size, request.measured)
             });
         if !fresh {
             self.painter.request(request.clone());

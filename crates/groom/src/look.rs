@@ -318,7 +318,7 @@ impl HairLook {
     }
 
     /// Factor on the stretched absorption after which light has the colour of the hair.
-    pub const BODY_PATH: f32 = 2.8;
+    pub const BODY_PATH: f32 = 5.2;
 
     /// Exponent of the absorption: 1 would be one length of path for all light.
     pub const STRETCH: f32 = 0.7;

@@ -97,7 +97,7 @@ pub struct PointLight {
 }
 
 /// What a point of a strand scatters toward the eye. It depends on the eye and the absorption, and on no light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PointScatter {
     /// Rows of the tables for the eye's cosine.
     pub eye: CosineStep,

@@ -206,7 +206,11 @@ fn amounts(project: &Project, loaded: &Scene, report: &SceneReport) -> Amounts {
     }
 }
 
-fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {
+/// The scene of a project whose files can all be read.
+///
+/// # Errors
+/// The first problem.
+pub(crate) fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {
     let cancelled = AtomicBool::new(false);
     let mut silent = |_: &str, _: f32| {};
     let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };

@@ -10,23 +10,23 @@ mod view;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
 use lovelock_groom::{HairLook, Preset};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_project::files::{Access, write_whole};
+use lovelock_project::files::write_whole;
 use lovelock_record::write_png;
 use lovelock_render::{Backend, Camera, FrameInput, Layers, Picture, Renderer, StrandCount};
 use lovelock_session::clock::STEP_SECS;
 use lovelock_session::engine::Engine;
-use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 use lovelock_session::snapshot::FrameSnapshot;
 use serde::Serialize;
 
 pub use scenes::{ReferenceColor, ReferenceLight, ReferenceScene};
 use strands::drawn_strands;
+
+use crate::bench::load;
 
 /// Millimetres in a metre. Files are in millimetres: rays start anew about 1e-4 units off a surface, which in metres is wider
 /// than a hair.
@@ -263,17 +263,6 @@ fn without_body<'a>(snapshot: &'a FrameSnapshot, project: &'a Project, camera: &
 fn write_picture(path: &Path, picture: &Picture) -> Result<(), ProjectError> {
     write_png(path, picture.width, picture.height, &picture.rgba)
         .map_err(|error| ProjectError::output(path, error))
-}
-
-fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {
-    let cancelled = AtomicBool::new(false);
-    let mut silent = |_: &str, _: f32| {};
-    let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
-    let (scene, problems) = SceneLoader::new().load(project, &Access::default(), &mut control)?;
-    match problems.first() {
-        Some(problem) => Err(ProjectError::work(problem)),
-        None => Ok(scene),
-    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 // Inlined into the loops that `simd_versions!` compiles; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
+pub(super) use lovelock_appearance::fibre::arithmetic::{clamp, exp, exp2, three};
+
 /// Adding this to a number below 2^22 rounds it to an integer, which is then in the lowest bits.
 const ROUND: f32 = 12_582_912.0;
 
@@ -21,12 +23,6 @@ pub(super) fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// `x` clamped to `low` and `high`; `low` for NaN.
-#[inline(always)]
-pub(super) fn clamp(x: f32, low: f32, high: f32) -> f32 {
-    min(max(x, low), high)
-}
-
 /// `x` clamped to 0 and 1; 0 for NaN.
 #[inline(always)]
 pub(super) fn saturate(x: f32) -> f32 {
@@ -37,13 +33,6 @@ pub(super) fn saturate(x: f32) -> f32 {
 #[inline(always)]
 pub(super) fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
-}
-
-/// Three numbers, one per channel or axis. Unlike `map` of an array it is always inlined, which the loop around it needs to
-/// vectorise.
-#[inline(always)]
-pub(super) fn three(of: impl Fn(usize) -> f32) -> [f32; 3] {
-    [of(0), of(1), of(2)]
 }
 
 /// 0 below `low`, 1 above `high`, smooth between, as in WGSL.
@@ -64,23 +53,6 @@ pub(super) fn floor(x: f32) -> f32 {
 #[inline(always)]
 pub(super) fn index_of(x: f32) -> u32 {
     (x + ROUND).to_bits() & 0x003f_ffff
-}
-
-/// 2 to the power of `x`, which is clamped to -126..127; relative error below 3e-7.
-#[inline(always)]
-pub(super) fn exp2(x: f32) -> f32 {
-    let x = clamp(x, -126.0, 127.0);
-    let shifted = x + ROUND;
-    let f = x - (shifted - ROUND);
-    // Minimax on -0.5..0.5 (Remez, relative error 4e-8 before rounding).
-    let p = 0.000_154_653_75;
-    let p = p * f + 0.001_339_989_4;
-    let p = p * f + 0.009_618_031;
-    let p = p * f + 0.055_503_32;
-    let p = p * f + 0.240_226_51;
-    let p = p * f + 0.693_147_2;
-    let p = p * f + 1.0;
-    f32::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 23))
 }
 
 /// Logarithm to base 2 of `x` above 1e-37; absolute error below 3e-7 near 1, relative below that elsewhere.
@@ -104,12 +76,6 @@ pub(super) fn log2(x: f32) -> f32 {
 #[inline(always)]
 pub(super) fn pow(x: f32, y: f32) -> f32 {
     exp2(y * log2(max(x, 1e-30)))
-}
-
-/// e to the power of `x`.
-#[inline(always)]
-pub(super) fn exp(x: f32) -> f32 {
-    exp2(x * std::f32::consts::LOG2_E)
 }
 
 /// Sine for `x` within ±1e4; absolute error below 2e-6 within ±200.

@@ -87,6 +87,11 @@ impl<'a> View<'a> {
         Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, fibre }
     }
 
+    /// Points of each fine strand; 1 if stored strands are drawn.
+    pub fn points_per_strand(&self) -> usize {
+        self.uniform.fading.z.max(1.0) as usize
+    }
+
     /// Light from all directions on a surface with the unit normal `n`: irradiance over pi.
     #[inline(always)]
     pub fn ambient(&self, n: [f32; 3]) -> [f32; 3] {

@@ -7,8 +7,8 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{HairLook, HairShading, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, FrameInput, HairPose, Light, Picture, PictureSettings, RenderError, Renderer,
-    ShadowMethod, ShadowSettings, StrandCount,
+    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Light, Picture, PictureSettings,
+    RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
 };
 
 /// The renderer that all tests of a binary share: creating one takes seconds with a software adapter.
@@ -23,6 +23,18 @@ fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
             }
         })
         .as_ref()
+}
+
+/// A renderer on a device, and images of that device; `None` without an adapter.
+pub fn on_device() -> Option<(GpuRenderer, DeviceImages)> {
+    let gpu = match Renderer::open(Backend::Gpu) {
+        Ok(renderer) => Arc::clone(renderer.gpu().expect("a device")),
+        Err(error) => {
+            lovelock_testkit::skip_without_adapter(&error);
+            return None;
+        }
+    };
+    Some((GpuRenderer::new(&gpu).expect("shaders compile"), DeviceImages::new(&gpu)))
 }
 
 /// A scene of strands in front of a camera that looks at the origin from one metre along +Z.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_render::{
-    Backend, ColorScale, DeviceImages, GpuRenderer, Picture, RenderError, Renderer, ShadowMethod, Traffic,
-    Transparency, ValueRenderer,
+    ColorScale, DeviceImages, GpuRenderer, Picture, RenderError, ShadowMethod, Traffic, Transparency,
+    ValueRenderer,
 };
 
-use crate::common::{Scene, grid, scene, tuft};
+use crate::common::{Scene, grid, on_device, scene, tuft};
 
 const SIZE: [u32; 2] = [160, 120];
 const BEHIND: f32 = 0.3;
@@ -21,15 +21,8 @@ struct Rig {
 
 impl Rig {
     fn new() -> Option<Self> {
-        let gpu = match Renderer::open(Backend::Gpu) {
-            Ok(renderer) => Arc::clone(renderer.gpu().expect("a device")),
-            Err(error) => {
-                lovelock_testkit::skip_without_adapter(&error);
-                return None;
-            }
-        };
-        let renderer = GpuRenderer::new(&gpu).expect("shaders compile");
-        Some(Self { images: DeviceImages::new(&gpu), renderer })
+        let (renderer, images) = on_device()?;
+        Some(Self { renderer, images })
     }
 
     /// The picture of a scene, and its false colours.

@@ -6,11 +6,11 @@ use std::time::Duration;
 use glam::Vec3;
 use lovelock_groom::{Hairstyle, Strands};
 use lovelock_render::{
-    Backend, DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, Picture, RenderError, Renderer,
-    ShadowMethod, Shrinker, Traffic, Transparency,
+    DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, Picture, RenderError, ShadowMethod,
+    Shrinker, Traffic, Transparency,
 };
 
-use crate::common::{Scene, grid, scene, tuft};
+use crate::common::{Scene, grid, on_device, scene, tuft};
 
 const SIZE: [u32; 2] = [160, 120];
 const PIXEL_BYTES: u64 = 4 * SIZE[0] as u64 * SIZE[1] as u64;
@@ -24,15 +24,8 @@ struct Rig {
 
 impl Rig {
     fn new() -> Option<Self> {
-        let gpu = match Renderer::open(Backend::Gpu) {
-            Ok(renderer) => Arc::clone(renderer.gpu().expect("a device")),
-            Err(error) => {
-                lovelock_testkit::skip_without_adapter(&error);
-                return None;
-            }
-        };
-        let renderer = GpuRenderer::new(&gpu).expect("shaders compile");
-        Some(Self { images: DeviceImages::new(&gpu), renderer })
+        let (renderer, images) = on_device()?;
+        Some(Self { renderer, images })
     }
 
     fn image(&mut self, scene: &Scene) -> (Arc<DeviceImage>, FrameStats) {

@@ -11,7 +11,8 @@ use std::time::Duration;
 use lovelock_project::Project;
 use lovelock_project::project::backend_label;
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameStats, Gpu, GpuError, Image, Picture, RenderError, Renderer,
+    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, Image, Picture, RenderError,
+    Renderer,
 };
 
 use crate::latest::{Latest, LatestJob};
@@ -19,6 +20,9 @@ use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
 use crate::window_device::WindowDevice;
 use samples::{Samples, jitter};
+
+/// The detail of strands while something moves, as a fraction of that at rest.
+const MOVING_DETAIL: f32 = 0.5;
 
 /// What to render.
 #[derive(Clone, Debug)]
@@ -31,6 +35,8 @@ pub struct RenderRequest {
     pub size: [u32; 2],
     /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
     pub still: bool,
+    /// Whether something moves and an image of full quality follows when it rests: then the CPU draws fewer strands by their size.
+    pub moving: bool,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
 }
@@ -415,7 +421,12 @@ impl Worker {
             (Image::on(textures, picture), stats)
         } else {
             self.samples.forget();
-            let input = snapshot.frame_input(project, &camera);
+            // The CPU draws half as many strands, twice as wide, of an image that is soon replaced.
+            let mut moving = project.picture;
+            if request.moving && renderer.backend() == Backend::Cpu {
+                moving.strand_detail *= MOVING_DETAIL;
+            }
+            let input = FrameInput { picture: &moving, ..snapshot.frame_input(project, &camera) };
             renderer.image(&input, *size, *measured, textures)?
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {

@@ -57,6 +57,7 @@ impl Rig {
             snapshot,
             size: [64, 48],
             still: false,
+            moving: false,
             measured: false,
         });
         while self.thread.busy().load(Ordering::Relaxed) {
@@ -243,6 +244,7 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         snapshot: Arc::clone(&rig.snapshot),
         size: [64, 48],
         still,
+        moving: false,
         measured: false,
     };
     let wait = |samples: u32| loop {

@@ -18,10 +18,12 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
     let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed } = from;
     let absorption = uniform.absorption_variation.to_array();
     let strength = uniform.colors.w;
-    let points: [PointScatter; LANES] = std::array::from_fn(|lane| {
-        let sigma = [0, 1, 2].map(|c| absorption[c] * pigment[lane]);
-        PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma)
-    });
+    let mut points = [PointScatter::default(); LANES];
+    for (lane, point) in points.iter_mut().enumerate() {
+        let p = pigment[lane];
+        let sigma = [absorption[0] * p, absorption[1] * p, absorption[2] * p];
+        *point = PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma);
+    }
     let mut sum = [[0.0; LANES]; 3];
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
@@ -48,7 +50,7 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
             let eye = points[lane].eye;
             rows[lane] = [fibre.tables.direct.row(eye, phi[lane]), fibre.tables.forward.row(eye, phi[lane])];
         }
-        let radiance = light.radiance.to_array();
+        let mut found = [[0.0; LANES]; 3];
         for lane in 0..LANES {
             let at = PointLight {
                 sin_theta: sin_l[lane],
@@ -57,10 +59,16 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
                 fibres: fibres[lane],
                 fibres_behind: f32::INFINITY,
             };
-            let found =
+            let [r, g, b] =
                 points[lane].radiance_of_rows(&rows[lane], lobes.variances, lobes.lobes, &at, strength);
-            for c in 0..3 {
-                sum[c][lane] += radiance[c] * shadow[lane] * found[c];
+            found[0][lane] = r;
+            found[1][lane] = g;
+            found[2][lane] = b;
+        }
+        let radiance = light.radiance.to_array();
+        for c in 0..3 {
+            for lane in 0..LANES {
+                sum[c][lane] += radiance[c] * shadow[lane] * found[c][lane];
             }
         }
     }

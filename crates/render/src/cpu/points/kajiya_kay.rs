@@ -26,10 +26,10 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
         let sigma = pow(max(absorption[c], 0.0), 0.7);
         for lane in 0..LANES {
             let s = sigma * stretched[lane];
-            body[c][lane] = exp(-2.8 * s) + 0.012;
+            body[c][lane] = exp(-5.2 * s) + 0.012;
             body_log[c][lane] = log2(body[c][lane]);
-            second[c][lane] = exp(-2.2 * s) + 0.02;
-            through[c][lane] = exp(-1.7 * s) + 0.02;
+            second[c][lane] = exp(-4.1 * s) + 0.02;
+            through[c][lane] = exp(-3.15 * s) + 0.02;
         }
     }
 

@@ -49,11 +49,22 @@ pub(super) struct PointsIn<'a> {
 }
 
 /// Shades all points, in parallel.
+///
+/// Fine strands are so many that scattering is computed at every second point; the colours between are the means of their neighbours.
 pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut Vec<ShadedPoint>) {
     out.resize(out_of(input), ShadedPoint::default());
-    out.par_chunks_mut(PIECE)
-        .enumerate()
-        .for_each(|(piece, out)| shade_points_simd(width, view, input, piece * PIECE, out));
+    let points = view.points_per_strand();
+    let is_sparse = points > 2 && view.fibre.is_some();
+    let piece = if is_sparse { points * (PIECE / points).max(1) } else { PIECE };
+    out.par_chunks_mut(piece).enumerate().for_each(|(k, out)| {
+        if is_sparse {
+            for (strand, out) in out.chunks_mut(points).enumerate() {
+                shade_strand_simd(width, view, input, k * piece + strand * points, out);
+            }
+        } else {
+            shade_points_simd(width, view, input, k * piece, out);
+        }
+    });
 }
 
 type Lane = [f32; LANES];
@@ -109,16 +120,69 @@ simd_versions! {
     }
 }
 
+simd_versions! {
+    /// [`shade_strand`] for the vectors of `width`.
+    fn shade_strand_simd(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) -> () {
+        shade_strand(view, input, first, out)
+    }
+}
+
 /// Shades the points from `first` on.
 #[inline(always)]
 fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
     for (group, out) in out.chunks_mut(LANES).enumerate() {
-        shade_group(view, input, first + group * LANES, out);
+        let mut indices = [0; LANES];
+        for (lane, index) in indices.iter_mut().enumerate() {
+            *index = first + group * LANES + lane;
+        }
+        let shaded = shade_group::<true>(view, input, &indices);
+        out.copy_from_slice(&shaded[..out.len()]);
     }
 }
 
+/// Shades the strand whose first point is `first`: every second point and the last one, and then the points between.
 #[inline(always)]
-fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
+fn shade_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
+    let last = out.len() - 1;
+    let mut indices = [0; LANES];
+    for start in (0..=last.div_ceil(2)).step_by(LANES) {
+        for (lane, index) in indices.iter_mut().enumerate() {
+            *index = first + (2 * (start + lane)).min(last);
+        }
+        let shaded = shade_group::<true>(view, input, &indices);
+        for (index, shaded) in indices.iter().zip(shaded) {
+            out[index - first] = shaded;
+        }
+    }
+    for start in (0..last.div_ceil(2)).step_by(LANES) {
+        for (lane, index) in indices.iter_mut().enumerate() {
+            *index = first + (2 * (start + lane) + 1).min(last);
+        }
+        let placed = shade_group::<false>(view, input, &indices);
+        for (index, mut placed) in indices.iter().zip(placed) {
+            let k = index - first;
+            // Of an even number of points the last one is odd, and shaded already.
+            if k < last {
+                let (a, b) = (out[k - 1], out[k + 1]);
+                for c in 0..3 {
+                    placed.color[c] = 0.5 * (a.color[c] + b.color[c]);
+                }
+                if a.half_width < 0.0 || b.half_width < 0.0 {
+                    placed.half_width = -1.0;
+                }
+                out[k] = placed;
+            }
+        }
+    }
+}
+
+/// The points of `indices`, with their colours or black.
+#[inline(always)]
+fn shade_group<const COLORED: bool>(
+    view: &View,
+    input: &PointsIn,
+    indices: &[usize; LANES],
+) -> [ShadedPoint; LANES] {
     let Strands { x, y, z, .. } = input.strands;
     let last = out_of(input) - 1;
     let mut here = [[0.0; LANES]; 3];
@@ -127,7 +191,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     let mut detail = [0_i32; LANES];
     let mut packed = [0_i32; LANES];
     for lane in 0..LANES {
-        let i = (first + lane).min(last);
+        let i = indices[lane].min(last);
         let word = input.details[i];
         let (a, b) =
             (i.saturating_sub(1 - (word >> 24 & 1) as usize), (i + 1 - (word >> 25 & 1) as usize).min(last));
@@ -198,7 +262,57 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         cos_v[lane] = max(1.0 - sin_v[lane] * sin_v[lane], 0.0).sqrt();
     }
 
-    // Pigment of the strand there, as a factor on that of the hair.
+    let sum = if COLORED {
+        let pigment = pigment_of(view, &detail);
+        let from =
+            ShadedFrom { here: &here, tangent: &tangent, to_eye: &to_eye, sin_v, cos_v, pigment, packed };
+        match &view.fibre {
+            Some(fibre) => fibre::shade(view, fibre, &from),
+            None => kajiya_kay::shade(view, &from),
+        }
+    } else {
+        [[0.0; LANES]; 3]
+    };
+    let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip_scalp.x);
+    // The last of fine strands fade.
+    let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
+    let points_per_strand = max(points_per_strand, 1.0) as u32;
+    let (opacity, fine) = (uniform.width_opacity_tip_scalp.y, points_per_strand > 1);
+    let mut hash = [0.0; LANES];
+    let mut half_width = [0.0; LANES];
+    for lane in 0..LANES {
+        let taper = (detail[lane] & 0xff) as f32 * (1.0 / 255.0);
+        let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
+        hash[lane] = shade * 37.0 - floor(shade * 37.0);
+        let w = at[2][lane];
+        let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
+        let strand = indices[lane] as u32 / points_per_strand;
+        let share = saturate((fade_end - strand as f32) * fade_slope);
+        let wide = 0.5 * thin(width * taper * share * scale / max(w, 1e-3), opacity, fine);
+        // A NaN point is not drawn: every comparison with it is false.
+        let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
+        half_width[lane] = if drawn { wide } else { -1.0 };
+    }
+    let mut out = [ShadedPoint::default(); LANES];
+    for (lane, out) in out.iter_mut().enumerate() {
+        *out = ShadedPoint {
+            x: at[0][lane],
+            y: at[1][lane],
+            depth: crate::camera::NEAR_METRES / max(at[2][lane], 1e-4),
+            half_width: half_width[lane],
+            run_x: run[0][lane],
+            run_y: run[1][lane],
+            color: [sum[0][lane], sum[1][lane], sum[2][lane]],
+            hash: hash[lane],
+        };
+    }
+    out
+}
+
+/// Pigment of strands at points, as a factor on that of the hair.
+#[inline(always)]
+fn pigment_of(view: &View, detail: &[i32; LANES]) -> Lane {
+    let uniform = view.uniform;
     let colors = uniform.colors.to_array();
     let (tip_lightening, variation) = (uniform.width_opacity_tip_scalp.z, uniform.absorption_variation.w);
     let [grey, highlights, lightening, _] = colors;
@@ -215,44 +329,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
             * whitened
             * (1.0 - lightening * painted);
     }
-
-    let from = ShadedFrom { here: &here, tangent: &tangent, to_eye: &to_eye, sin_v, cos_v, pigment, packed };
-    let sum = match &view.fibre {
-        Some(fibre) => fibre::shade(view, fibre, &from),
-        None => kajiya_kay::shade(view, &from),
-    };
-    let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip_scalp.x);
-    // The last of fine strands fade.
-    let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
-    let points_per_strand = max(points_per_strand, 1.0) as u32;
-    let (opacity, fine) = (uniform.width_opacity_tip_scalp.y, points_per_strand > 1);
-    let mut hash = [0.0; LANES];
-    let mut half_width = [0.0; LANES];
-    for lane in 0..LANES {
-        let taper = (detail[lane] & 0xff) as f32 * (1.0 / 255.0);
-        let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
-        hash[lane] = shade * 37.0 - floor(shade * 37.0);
-        let w = at[2][lane];
-        let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
-        let strand = (first + lane) as u32 / points_per_strand;
-        let share = saturate((fade_end - strand as f32) * fade_slope);
-        let wide = 0.5 * thin(width * taper * share * scale / max(w, 1e-3), opacity, fine);
-        // A NaN point is not drawn: every comparison with it is false.
-        let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
-        half_width[lane] = if drawn { wide } else { -1.0 };
-    }
-    for (lane, out) in out.iter_mut().enumerate() {
-        *out = ShadedPoint {
-            x: at[0][lane],
-            y: at[1][lane],
-            depth: crate::camera::NEAR_METRES / max(at[2][lane], 1e-4),
-            half_width: half_width[lane],
-            run_x: run[0][lane],
-            run_y: run[1][lane],
-            color: [sum[0][lane], sum[1][lane], sum[2][lane]],
-            hash: hash[lane],
-        };
-    }
+    pigment
 }
 
 /// The rows of a matrix.

@@ -54,7 +54,7 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     }
     let mut albedo = [[0.0; LANES]; 3];
     for c in 0..3 {
-        let root = 0.3 * (exp(-2.8 * pow(max(absorption[c], 0.0), 0.7)) + 0.012);
+        let root = 0.3 * (exp(-5.2 * pow(max(absorption[c], 0.0), 0.7)) + 0.012);
         for lane in 0..LANES {
             albedo[c][lane] = mix(batch.albedo[c][lane], root, paint[lane]);
         }
