@@ -199,6 +199,7 @@ impl Drawn {
             shadow: &self.shadow,
             camera: &camera,
             picture: &self.settings,
+            is_draft: false,
             surroundings: None,
             known: None,
         };

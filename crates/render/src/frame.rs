@@ -34,6 +34,9 @@ pub struct FrameInput<'a> {
     pub camera: &'a Camera,
     /// Settings of the picture as a whole.
     pub picture: &'a PictureSettings,
+    /// Whether a better image follows soon, as while something moves in a window: then the CPU draws half as many strands by their
+    /// size, and computes scattering at every second point of them.
+    pub is_draft: bool,
     /// A picture of the surroundings that gives light from all directions, in place of sky and ground.
     pub surroundings: Option<&'a Arc<Panorama>>,
     /// Transmittance that replaces the result of the shadow method; supported by the CPU backend only.

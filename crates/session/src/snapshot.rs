@@ -66,6 +66,7 @@ impl FrameSnapshot {
             shadow: &project.shadow,
             camera,
             picture: &project.picture,
+            is_draft: false,
             surroundings: self.scene.surroundings.as_ref(),
             known: None,
         }

@@ -130,18 +130,18 @@ fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], i: usize) -> 
     let b = (random.bits() % NEIGHBOURS as u64) as usize;
     let c = (b + 1 + (random.bits() % (NEIGHBOURS as u64 - 1)) as usize) % NEIGHBOURS;
     let strays = random.unit() < STRAYS;
-    let reach = if strays { 0.9 } else { 0.22 };
+    let reach = if strays { 0.9 } else { 0.5 };
     let mut weights = [[0; 4]; 2];
     for of in &mut weights {
         // Roots fill the space between the parents. Toward the tip the child gathers to its first parent.
         let root = 0.5 * random.unit();
-        let along = [root, 0.75 * root + 0.12 * random.signed(), 0.4 * root, 0.25 * root];
+        let along = [root, 0.5 * root + 0.12 * random.signed(), 0.0, 0.0];
         for (k, (weight, mean)) in of.iter_mut().zip(along).enumerate() {
             let loose = if k > 1 { reach * random.signed() } else { 0.0 };
             *weight = ((mean + loose).clamp(-1.0, 1.0) * 127.0).round() as i8;
         }
     }
-    let shorter = random.unit() * random.unit() * if strays { 0.35 } else { 0.12 };
+    let shorter = random.unit() * random.unit() * if strays { 0.2 } else { 0.05 };
     let own = style.strands.shade.get(parent as usize).copied().unwrap_or(0.5);
     FineStrand {
         parents: [parent, near[b], near[c]],

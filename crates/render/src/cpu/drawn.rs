@@ -10,6 +10,8 @@ use crate::strand_details::StrandDetails;
 
 /// The width of a strand that is aimed at, pixels: thinner ones cost as much and can hardly be told apart.
 const TARGET_PIXELS: f32 = 0.7;
+/// The same in a draft.
+const DRAFT_PIXELS: f32 = 1.4;
 /// The most points of fine strands: 100 bytes each with everything that drawing keeps of them.
 const MOST_POINTS: u64 = 1 << 22;
 
@@ -65,7 +67,8 @@ impl DrawnStrands {
         // Makes the list of this hairstyle known, without a strand.
         self.fine.follow(input.style, 0);
         let points = self.fine.points_per_strand;
-        let portion = portion_of(input, height, TARGET_PIXELS, (points, MOST_POINTS));
+        let target = if input.is_draft { DRAFT_PIXELS } else { TARGET_PIXELS };
+        let portion = portion_of(input, height, target, (points, MOST_POINTS));
         let before = std::mem::replace(&mut self.portion, portion);
         let Some(portion) = portion else {
             self.details.follow(input.style);

@@ -80,9 +80,10 @@ impl PlacedScene {
         view: &View,
         (strands, details): (&Strands, &StrandDetails),
         transmittance: &[u32],
+        is_draft: bool,
     ) {
         let from = PointsIn { strands, details: &details.words, transmittance };
-        shade_all(self.width, view, &from, &mut self.points);
+        shade_all(self.width, view, &from, is_draft, &mut self.points);
         self.all_segments = Arc::clone(&details.segments);
         self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
     }

@@ -232,7 +232,7 @@ impl CpuRenderer {
 
         let part = Stopwatch::start();
         let details = &hair.drawn.details;
-        self.placed.shade(&view, (strands, details), &self.shadow.at_points);
+        self.placed.shade(&view, (strands, details), &self.shadow.at_points, input.is_draft);
         passed("draw/points", &part);
 
         let part = Stopwatch::start();

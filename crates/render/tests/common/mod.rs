@@ -80,6 +80,7 @@ impl Scene {
             shadow: &self.shadow,
             camera: &self.camera,
             picture: &self.picture,
+            is_draft: false,
             surroundings: None,
             known: None,
         }

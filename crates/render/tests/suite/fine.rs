@@ -7,7 +7,9 @@ use std::sync::Arc;
 use common::{Scene, scene};
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GroomSettings, GuideFrame, Hairstyle, PlainHead, Strands, grow, interpolate};
-use lovelock_render::{Backend, CpuRenderer, FrameStats, Layers, Light, ShadowMethod, StrandCount};
+use lovelock_render::{
+    Backend, CpuRenderer, FrameInput, FrameStats, Layers, Light, Picture, ShadowMethod, StrandCount,
+};
 use lovelock_testkit::flip;
 
 /// A head of short hair of 2,000 strands, without the head.
@@ -38,12 +40,11 @@ fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> (f64, FrameSta
 fn the_number_of_strands_changes_neither_brightness_nor_shadow() {
     let mut scene = wig();
     let mut renderer = CpuRenderer::default();
-    // Measured 1.2 % near. From afar, where the hair is 40 pixels high, 4.7 %: children gather to their parents, so their outline is
-    // a little smaller.
-    for (distance, side, most) in [(0.9, 320, LUMINANCE), (3.0, 320, 0.055)] {
+    for (distance, side) in [(0.9, 320), (3.0, 320)] {
         scene.camera.eye = scene.camera.target + Vec3::new(-0.3, 0.15, -0.9).normalize_or_zero() * distance;
         let mut found = Vec::new();
-        for count in [3_000.0, 10_000.0, 30_000.0, 100_000.0] {
+        let (few, all) = ([3_000.0, 100_000.0], [3_000.0, 10_000.0, 30_000.0, 100_000.0]);
+        for &count in lovelock_testkit::suite::cases(&few, &all) {
             scene.picture.strand_number = count;
             let (luminance, stats) = drawn(&mut renderer, &scene, side);
             println!(
@@ -53,9 +54,9 @@ fn the_number_of_strands_changes_neither_brightness_nor_shadow() {
             found.push((luminance, stats.mean_transmittance));
         }
         let luminance = found.iter().map(|of| of.0).sum::<f64>() / found.len() as f64;
-        let transmittance = found[3].1;
+        let transmittance = found[found.len() - 1].1;
         for &(other, t) in &found {
-            assert!((other / luminance - 1.0).abs() < most, "{found:?}");
+            assert!((other / luminance - 1.0).abs() < LUMINANCE, "{found:?}");
             assert!((t - transmittance).abs() < 0.01, "{found:?}");
         }
         // The control: hair of a fifth more width.
@@ -84,7 +85,7 @@ fn nothing_appears_at_once_while_the_camera_comes_closer() {
             let distance = 1.6 - 0.004 * f64::from(step);
             let away = Vec3::new(-0.3, 0.15, -0.9).normalize_or_zero();
             scene.camera.eye = scene.camera.target + away * distance as f32;
-            let mut picture = lovelock_render::Picture::default();
+            let mut picture = Picture::default();
             let stats = renderer.picture(&scene.input(), 256, 256, &mut picture).expect("a picture");
             counts.push(stats.segments);
             let mut blocks = vec![0.0; 32 * 32];
@@ -119,8 +120,30 @@ fn both_backends_draw_the_same_fine_strands() {
     let difference = flip(&card.rgba, &processor.rgba, w, h);
     let control = flip(&card.rgba, &fewer.rgba, w, h);
     println!("{difference:?}; other strands {control:?}");
-    assert!(difference.mean < 0.01, "{difference:?}");
-    assert!(control.mean > 1.5 * difference.mean, "{control:?}");
+    // Measured on a software adapter: mean 0.0002, where the control has 0.0085.
+    assert!(difference.mean < 0.001, "{difference:?}");
+    assert!(control.mean > 0.004, "{control:?}");
+}
+
+#[test]
+fn a_draft_is_near_the_image_that_follows_it() {
+    let mut scene = wig();
+    scene.picture.strands = StrandCount::BySize;
+    scene.camera.eye = scene.camera.target + Vec3::new(-0.3, 0.15, -0.9).normalize_or_zero() * 1.2;
+    let (w, h) = (320, 320);
+    let mut drawn = |is_draft: bool, scale: f32| {
+        scene.picture.exposure_stops = scale;
+        let mut picture = Picture::default();
+        let input = FrameInput { is_draft, ..scene.input() };
+        let stats = CpuRenderer::default().picture(&input, w, h, &mut picture).expect("a picture");
+        (picture.rgba, stats.segments)
+    };
+    let ((whole, many), (draft, fewer), (brighter, _)) =
+        (drawn(false, 0.0), drawn(true, 0.0), drawn(false, 1.0));
+    let (difference, control) = (flip(&whole, &draft, w, h), flip(&whole, &brighter, w, h));
+    println!("a draft {difference:?} with {fewer} of {many} segments; a stop brighter {control:?}");
+    assert!(fewer < many && fewer > many / 3);
+    assert!(difference.mean < 0.5 * control.mean, "{difference:?} {control:?}");
 }
 
 #[test]

@@ -21,9 +21,6 @@ use crate::stats::StageTimes;
 use crate::window_device::WindowDevice;
 use samples::{Samples, jitter};
 
-/// The detail of strands while something moves, as a fraction of that at rest.
-const MOVING_DETAIL: f32 = 0.5;
-
 /// What to render.
 #[derive(Clone, Debug)]
 pub struct RenderRequest {
@@ -35,7 +32,7 @@ pub struct RenderRequest {
     pub size: [u32; 2],
     /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
     pub still: bool,
-    /// Whether something moves and an image of full quality follows when it rests: then the CPU draws fewer strands by their size.
+    /// Whether something moves and an image of full quality follows when it rests: then this one is a draft.
     pub moving: bool,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
@@ -421,12 +418,7 @@ impl Worker {
             (Image::on(textures, picture), stats)
         } else {
             self.samples.forget();
-            // The CPU draws half as many strands, twice as wide, of an image that is soon replaced.
-            let mut moving = project.picture;
-            if request.moving && renderer.backend() == Backend::Cpu {
-                moving.strand_detail *= MOVING_DETAIL;
-            }
-            let input = FrameInput { picture: &moving, ..snapshot.frame_input(project, &camera) };
+            let input = FrameInput { is_draft: request.moving, ..snapshot.frame_input(project, &camera) };
             renderer.image(&input, *size, *measured, textures)?
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {

@@ -50,11 +50,18 @@ pub(super) struct PointsIn<'a> {
 
 /// Shades all points, in parallel.
 ///
-/// Fine strands are so many that scattering is computed at every second point; the colours between are the means of their neighbours.
-pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut Vec<ShadedPoint>) {
+/// In a draft, scattering by fibres is computed at every second point of fine strands; the colours between are the means of their
+/// neighbours.
+pub(super) fn shade_all(
+    width: Width,
+    view: &View,
+    input: &PointsIn,
+    is_draft: bool,
+    out: &mut Vec<ShadedPoint>,
+) {
     out.resize(out_of(input), ShadedPoint::default());
     let points = view.points_per_strand();
-    let is_sparse = points > 2 && view.fibre.is_some();
+    let is_sparse = is_draft && points > 2 && view.fibre.is_some();
     let piece = if is_sparse { points * (PIECE / points).max(1) } else { PIECE };
     out.par_chunks_mut(piece).enumerate().for_each(|(k, out)| {
         if is_sparse {

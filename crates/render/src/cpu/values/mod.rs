@@ -139,7 +139,7 @@ impl ValueRenderer {
     fn place(&mut self, view: &View, input: &FrameInput, strands: &Strands, width: u32, height: u32) -> Grid {
         self.lit.resize(strands.points(), u32::MAX);
         self.details.follow(input.style);
-        self.placed.shade(view, (strands, &self.details), &self.lit);
+        self.placed.shade(view, (strands, &self.details), &self.lit, false);
         Grid::new(width, height)
     }
 }
