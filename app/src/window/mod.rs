@@ -24,7 +24,6 @@ mod recorder;
 mod screenshot;
 mod session;
 mod side_panels;
-mod swatch;
 
 #[cfg(test)]
 mod testing;

@@ -23,6 +23,7 @@ mod scene_light;
 mod shadow_stage;
 mod strand_count;
 mod strand_details;
+mod strand_portion;
 mod transparency;
 mod uniform;
 

@@ -4,8 +4,8 @@ use egui::Ui;
 use lovelock_groom::{HAIR_COLOURS, HairColour, HairLook, HairShading};
 use lovelock_render::{PictureSettings, StrandCount};
 
+use super::swatch::swatch;
 use crate::window::control::{section, setting, settings};
-use crate::window::swatch::swatch;
 
 const PIGMENT: [&str; 5] = ["eumelanin", "pheomelanin", "variation", "grey", "tip_lightening"];
 

@@ -11,6 +11,7 @@ pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;
 pub(crate) mod surroundings;
+mod swatch;
 pub(crate) mod ties;
 
 #[cfg(test)]

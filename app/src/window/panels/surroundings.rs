@@ -159,7 +159,7 @@ fn mesh(picture: &Panorama, rect: Rect, turn: f32) -> Mesh {
 }
 
 /// Adds the triangles of a grid of vertices.
-pub(crate) fn grid(mesh: &mut Mesh, columns: usize, rows: usize) {
+pub(super) fn grid(mesh: &mut Mesh, columns: usize, rows: usize) {
     let first = mesh.vertices.len() - columns * rows;
     for row in 1..rows {
         for column in 1..columns {

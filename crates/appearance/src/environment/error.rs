@@ -1,8 +1,18 @@
-//! Why a picture of the surroundings could not be read.
+//! Why a picture of the surroundings could not be read, and the limits it must keep.
 
 use std::path::PathBuf;
 
-use super::picture::{MAX_BLOCK_BYTES, MAX_FILE_BYTES, MAX_HEIGHT, MAX_WIDTH};
+/// Pixels per row of the widest picture that is read.
+pub const MAX_WIDTH: u32 = 16_384;
+
+/// Rows of the highest picture that is read.
+pub const MAX_HEIGHT: u32 = 8192;
+
+/// Bytes of the largest file that is read: the largest picture with four floats per pixel, twice.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+
+/// Bytes of the largest piece that a file may ask to be held in memory at once.
+pub(super) const MAX_BLOCK_BYTES: u64 = 256 << 20;
 
 /// What a file was wanted to be.
 const FORMATS: &str = "a Radiance (.hdr) or OpenEXR (.exr) picture";

@@ -32,9 +32,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-pub use self::error::{EnvironmentError, Problem};
+pub use self::error::{EnvironmentError, MAX_FILE_BYTES, MAX_HEIGHT, MAX_WIDTH, Problem};
 pub use self::panorama::{Panorama, Thumbnail};
-pub use self::picture::{LARGEST_RADIANCE, MAX_FILE_BYTES, MAX_HEIGHT, MAX_WIDTH, Notes};
+pub use self::picture::{LARGEST_RADIANCE, Notes};
 pub use self::strongest::Strongest;
 pub use self::surround::Surround;
 

@@ -5,8 +5,8 @@ use lovelock_groom::fine::{FineStrands, ParentPoints, Portion, grow_fine};
 use lovelock_groom::simd::Width;
 
 use crate::FrameInput;
-use crate::strand_count::portion_of;
 use crate::strand_details::StrandDetails;
+use crate::strand_portion::portion_of;
 
 /// The width of a strand that is aimed at, pixels: thinner ones cost as much and can hardly be told apart.
 const TARGET_PIXELS: f32 = 0.7;

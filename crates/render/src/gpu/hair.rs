@@ -13,8 +13,8 @@ use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
 use super::light_kernels::LightKernels;
 use crate::shadow_stage::soft_reach;
-use crate::strand_count::portion_of;
 use crate::strand_details::StrandDetails;
+use crate::strand_portion::portion_of;
 use crate::{FrameInput, HairPose};
 
 /// Twin of `ShadedPoint` in the shaders; never read on the CPU.

@@ -12,6 +12,8 @@ use lovelock_testkit::{Flip, flip};
 /// to 0.036. The smallest defect below, strands half as wide, has 0.0147 and 0.30.
 const MEAN: f32 = 0.005;
 const P99: f32 = 0.06;
+/// A shadow on the ground covers a small part of its picture, so it is held to less: 0.00009 was measured.
+const GROUND_MEAN: f32 = 0.0005;
 
 fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
     let (w, h) = (320, 240);
@@ -156,12 +158,18 @@ fn the_shadow_on_the_ground_ends_with_its_map() {
         s.shadow.voxel_map.resolution = resolution;
         let Some(difference) = compared(&s, &s) else { return };
         println!("{method}, {resolution}: {difference:?}");
-        assert!(difference.mean < MEAN && difference.p99 < P99, "{method}, {resolution}: {difference:?}");
+        assert!(
+            difference.mean < GROUND_MEAN && difference.p99 < P99,
+            "{method}, {resolution}: {difference:?}"
+        );
     }
     let mut bright = over_ground();
     bright.shadow.method = ShadowMethod::None;
     let Some(control) = compared(&s, &bright) else { return };
-    assert!(control.mean > MEAN, "the control, a ground without shadow: {control:?}");
+    assert!(
+        control.mean > 5.0 * GROUND_MEAN && control.p99 > P99,
+        "the control, a ground without shadow: {control:?}"
+    );
 }
 
 #[test]

@@ -142,6 +142,7 @@ impl RenderThread {
             cost: None,
             transmittance: 1.0,
             refused: None,
+            lost: None,
             failed: 0,
             card_given_up: false,
         };
@@ -220,6 +221,8 @@ struct Worker {
     transmittance: f32,
     /// The project with which the window's device was lost too often.
     refused: Option<Arc<Project>>,
+    /// The window's device that was lost last.
+    lost: Option<Arc<Gpu>>,
     /// Number of consecutive failures of the device.
     failed: u32,
     /// Whether [`Backend::Auto`] means the CPU because the GPU failed repeatedly.
@@ -323,18 +326,24 @@ impl Worker {
 
     /// Reports an error. Returns whether to render the request again.
     fn take_error(&mut self, error: &RenderError, request: &RenderRequest) -> bool {
-        self.fail(error.to_string());
-        let opened_on_window = self.opened.as_ref().and_then(|opened| opened.window.as_ref());
-        let window = self.window.get();
-        if opened_on_window.or(window.as_ref()).is_some_and(|gpu| gpu.is_lost()) {
-            // The window opens another device and asks again.
+        let opened_on_window = self.opened.as_ref().and_then(|opened| opened.window.clone());
+        if let Some(gpu) = opened_on_window.or_else(|| self.window.get()).filter(|gpu| gpu.is_lost()) {
+            // The window opens another device and asks again. A loss that two images notice is one loss.
             self.opened = None;
+            let known = self.lost.as_ref().is_some_and(|lost| lost.device == gpu.device);
+            if known && self.failures.latest().is_some_and(|last| last.pictures == self.images.number()) {
+                return false;
+            }
+            // What failed first may not name the loss.
+            self.fail(gpu.check().map_or_else(|loss| loss.to_string(), |()| error.to_string()));
+            self.lost = Some(gpu);
             self.failed = self.failed.saturating_add(1);
             if self.failed >= MOST_FAILURES {
                 self.give_up(request);
             }
             return false;
         }
+        self.fail(error.to_string());
         device_is_gone(error) && self.try_again(request.project.picture.backend)
     }
 
@@ -397,6 +406,12 @@ impl Worker {
         let renderer = match &mut self.opened {
             Some(opened) => &mut opened.renderer,
             none => {
+                // A lost device stays lost: do not open it again.
+                if backend != Backend::Cpu
+                    && let Some(gpu) = window.as_ref().filter(|gpu| gpu.is_lost())
+                {
+                    gpu.check()?;
+                }
                 let renderer = (self.open)(backend, window.as_ref())?;
                 let (name, backend_in_use) = (renderer.adapter().to_owned(), renderer.backend());
                 let software = renderer.is_software();

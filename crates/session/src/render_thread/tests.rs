@@ -222,6 +222,8 @@ fn a_lost_window_device_is_not_retried_until_the_window_has_another_one() {
     gpu.device.destroy();
     rig.draw(Backend::Gpu);
     assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 1), "it waits for the window");
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 1), "another request is the same loss");
     assert!(rig.thread.error().is_some_and(|said| said.contains("lost")));
     // The CPU goes on, in memory.
     rig.draw(Backend::Cpu);

@@ -14,8 +14,8 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
 
-use super::{MAX_BLOCK_BYTES, MAX_HEIGHT, MAX_WIDTH, Reducer};
-use crate::environment::error::Problem;
+use super::Reducer;
+use crate::environment::error::{MAX_BLOCK_BYTES, MAX_HEIGHT, MAX_WIDTH, Problem};
 
 /// What a file must have.
 const WANTED: &str = "a flat layer with the channels R, G and B at full resolution";

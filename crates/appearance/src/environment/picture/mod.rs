@@ -10,19 +10,7 @@ use std::path::Path;
 
 pub use self::reduce::Notes;
 pub(super) use self::reduce::{Reduced, Reducer, luminance};
-use super::error::Problem;
-
-/// Pixels per row of the widest picture that is read.
-pub const MAX_WIDTH: u32 = 16_384;
-
-/// Rows of the highest picture that is read.
-pub const MAX_HEIGHT: u32 = 8192;
-
-/// Bytes of the largest file that is read: the largest picture with four floats per pixel, twice.
-pub const MAX_FILE_BYTES: u64 = 4 << 30;
-
-/// Bytes of the largest piece that a file may ask to be held in memory at once.
-pub(super) const MAX_BLOCK_BYTES: u64 = 256 << 20;
+use super::error::{MAX_FILE_BYTES, Problem};
 
 /// The largest radiance that is read; what exceeds it is taken as this. Six times the luminance of the sun in candela
 /// per square metre, and far from where sums of floats overflow.

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::{LARGEST_RADIANCE, MAX_HEIGHT, MAX_WIDTH};
-use crate::environment::error::Problem;
+use super::LARGEST_RADIANCE;
+use crate::environment::error::{MAX_HEIGHT, MAX_WIDTH, Problem};
 
 /// Size of the picture that the light is taken from, width and height. Three orders of harmonics need far less; the
 /// direction of the sun is found to within its own diameter.

@@ -5,8 +5,8 @@ use egui::{Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 use glam::Vec3;
 use lovelock_groom::HairLook;
 
-use super::panels::surroundings::grid;
-use super::theme;
+use super::surroundings::grid;
+use crate::window::theme;
 
 /// Size of a swatch, points.
 const SIZE: Vec2 = vec2(28.0, 46.0);
@@ -15,7 +15,7 @@ const STRANDS: usize = 9;
 const POINTS: usize = 15;
 
 /// A button that shows strands of `look` from root to tip, marked if it is the one in use.
-pub(crate) fn swatch(ui: &mut Ui, name: &str, look: &HairLook, selected: bool) -> Response {
+pub(super) fn swatch(ui: &mut Ui, name: &str, look: &HairLook, selected: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(SIZE, Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, selected, name));
     if ui.is_rect_visible(rect) {
