@@ -3,19 +3,24 @@
 #![allow(clippy::inline_always)]
 
 use lovelock_appearance::fibre::arithmetic::acos;
-use lovelock_appearance::fibre::{PointLight, PointScatter, ScatterRow};
+use lovelock_appearance::fibre::{LongitudinalLobe, PointLight, PointScatter, ScatterRow};
 
 use super::{LANES, Lane, ShadedFrom};
 use crate::MAX_LIGHTS;
 use crate::cpu::math::{log2, max};
 use crate::cpu::view::{FibreView, View};
-use crate::fibre::{FIBRES_PER_DEPTH, LEAST_TRANSMITTANCE, OWN_FIBRES};
+use crate::fibre::{FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MOST_INCLINED, OWN_FIBRES};
 
 /// The light that points scatter toward the eye.
 #[inline(always)]
 pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane; 3] {
     let uniform = view.uniform;
-    let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed } = from;
+    let ShadedFrom { here, tangent, to_eye, pigment, turn, packed, .. } = from;
+    let (mut sin_v, mut cos_v) = (from.sin_v, from.cos_v);
+    for lane in 0..LANES {
+        sin_v[lane] = sin_v[lane].clamp(-MOST_INCLINED, MOST_INCLINED);
+        cos_v[lane] = max(cos_v[lane], LEAST_COSINE);
+    }
     let absorption = uniform.absorption_variation.to_array();
     let strength = uniform.colors.w;
     let mut points = [PointScatter::default(); LANES];
@@ -44,7 +49,7 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
             fibres[lane] = max(crossed - OWN_FIBRES, 0.0);
             (sin_l[lane], cos_l[lane]) = (sin, cos);
         }
-        let lobes = fibre.lights[k];
+        let own = fibre.lights[k].variances;
         let mut rows: [[ScatterRow; 2]; LANES] = [[[0.0; 8]; 2]; LANES];
         for lane in 0..LANES {
             let eye = points[lane].eye;
@@ -59,8 +64,10 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
                 fibres: fibres[lane],
                 fibres_behind: f32::INFINITY,
             };
-            let [r, g, b] =
-                points[lane].radiance_of_rows(&rows[lane], lobes.variances, lobes.lobes, &at, strength);
+            let mut variances = own;
+            variances.iter_mut().for_each(|variance| *variance += turn[lane]);
+            let lobes = variances.map(LongitudinalLobe::quick);
+            let [r, g, b] = points[lane].radiance_of_rows(&rows[lane], variances, lobes, &at, strength);
             found[0][lane] = r;
             found[1][lane] = g;
             found[2][lane] = b;

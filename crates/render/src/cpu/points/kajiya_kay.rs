@@ -11,7 +11,7 @@ use crate::cpu::view::View;
 #[inline(always)]
 pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
     let uniform = view.uniform;
-    let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed } = from;
+    let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed, .. } = from;
     // The colours of the fibre: paths of many lengths through absorbing hair.
     let absorption = uniform.absorption_variation.to_array();
     let mut stretched = [0.0; LANES];

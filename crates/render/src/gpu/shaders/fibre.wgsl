@@ -14,6 +14,7 @@ const SMALLEST_COSINE: f32 = 0.05;
 const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
 const OWN_FIBRES: f32 = 0.5;
+const MOST_INCLINED: f32 = 0.9396926;
 const MOST_FIBRES: f32 = 40.0;
 const LARGEST_SOURCE: f32 = 0.25;
 const WIDEST: f32 = 20.0;
@@ -94,8 +95,8 @@ fn tilted(p: u32, sin_v: f32, cos_v: f32) -> vec2f {
 }
 
 fn scatter_of(t: vec3f, v: vec3f, absorption: vec3f) -> Scatter {
-    let sin_v = clamp(dot(t, v), -1.0, 1.0);
-    let cos_v = sqrt(max(1.0 - sin_v * sin_v, 0.0));
+    let sin_v = clamp(dot(t, v), -MOST_INCLINED, MOST_INCLINED);
+    let cos_v = sqrt(1.0 - sin_v * sin_v);
     let eye = cosine_step(cos_v);
     let sigma = clamp(absorption, vec3f(0.0), vec3f(1e6));
     let r = many_row(eye, sigma.r);
@@ -130,7 +131,7 @@ fn faded(first: f32, length: f32, curve: f32, sigma: vec3f) -> vec3f {
 }
 
 // Radiance toward the eye per irradiance of a light toward which `l` points. `lit` is the transmittance of the hair before it.
-fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32) -> vec3f {
+fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32, turn: f32) -> vec3f {
     let sin_l = clamp(dot(t, l), -1.0, 1.0);
     let cos_l = sqrt(max(1.0 - sin_l * sin_l, 0.0));
     let phi = acos(clamp((dot(l, v) - sin_l * s.sin_v) / max(cos_l * s.cos_v, 1e-4), -1.0, 1.0));
@@ -149,8 +150,8 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32) 
     let share = psi + 1e-6;
     let x = dot(share, added) / dot(share, vec3f(1.0));
 
-    // A large source widens the lobes.
-    let wider = LARGEST_SOURCE * (1.0 - specular);
+    // A large source widens the lobes, and so does the turn of the strand.
+    let wider = LARGEST_SOURCE * (1.0 - specular) + turn;
     let v_r = frame.lobes[0].z + wider;
     let v_tt = frame.lobes[1].z + wider;
     let v_trt = frame.lobes[2].z + wider;

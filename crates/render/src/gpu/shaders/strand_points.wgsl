@@ -53,7 +53,7 @@ const UNPIGMENTED: f32 = 0.03;
 const PAINTED_FROM: f32 = 0.2;
 
 // A point to shade: its position, the unit tangent, the unit vector toward the eye, and the colours or the scattering of the strand there.
-struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatter }
+struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatter, turn: f32 }
 
 // Factor on the absorption of a point.
 fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
@@ -90,10 +90,17 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let toward = -light.direction_specular.xyz;
     let specular = light.direction_specular.w;
     if (FIBRE) {
-        return light.radiance_blur.xyz * body * scattered(point.scatter, point.t, toward, point.v, lit, specular);
+        return light.radiance_blur.xyz * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);
     }
     return light.radiance_blur.xyz * (lit * body)
         * strand_light(point.t, toward, point.v, point.color, specular, lit);
+}
+
+// Variance that the turn of a strand adds: twin of `turn_variance` in cpu/points.
+fn turn_variance(a: vec3f, b: vec3f) -> f32 {
+    let lengths = dot(a, a) * dot(b, b);
+    let cosine = select(1.0, dot(a, b) * inverseSqrt(max(lengths, 1e-30)), lengths > 1e-30);
+    return 2.0 / 3.0 * max(1.0 - cosine, 0.0);
 }
 
 @compute @workgroup_size(64)
@@ -114,6 +121,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let after = points[i + (1u - last)].xyz;
     var t = after - before;
     t = t / max(length(t), 1e-9);
+    let turn = turn_variance(p - before, after - p);
 
     let here = project(p);
     let a = project(before);
@@ -135,7 +143,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     }
 
     let transmittance = unpack4x8unorm(light_left[i]);
-    let point = Point(p, t, v, color, scatter);
+    let point = Point(p, t, v, color, scatter, turn);
     var sum = vec3f(0.0);
     var inside = 1.0;
     if (LIGHTS > 0u) {
