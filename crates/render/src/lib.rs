@@ -21,6 +21,7 @@ mod picture;
 mod renderer;
 mod scene_light;
 mod shadow_stage;
+mod skin;
 mod strand_count;
 mod strand_details;
 mod strand_portion;

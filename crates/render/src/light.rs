@@ -71,7 +71,7 @@ impl Light {
                 color: Vec3::new(0.72, 0.82, 1.0),
                 intensity: 1.2,
                 specular: 0.4,
-                softness: 0.05,
+                softness: 0.012,
                 enabled: true,
             },
         ]

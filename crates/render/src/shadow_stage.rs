@@ -8,6 +8,7 @@ use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
+use crate::skin::Neighbours;
 use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
@@ -30,6 +31,8 @@ pub(crate) struct ShadowStage {
     vertices: [Vec<f32>; 3],
     /// The places at which strands are looked up.
     asked: [Vec<f32>; 3],
+    neighbours: Neighbours,
+    softer: Vec<u32>,
     /// Whether the last run was completed.
     is_whole: bool,
 }
@@ -188,6 +191,10 @@ impl ShadowStage {
         pack(&at_points, drawn.points(), &mut self.at_points);
         let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
         pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
+        if let (Some((body, _)), true) = (input.body, apart.is_some()) {
+            self.neighbours.follow(body);
+            self.neighbours.soften(&mut self.at_vertices, &mut self.softer);
+        }
         self.mean = at_points.first().map_or(1.0, |values| mean(values));
         self.passed("shadow/ask", &part);
     }

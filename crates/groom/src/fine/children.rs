@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_base::random::SplitMix64;
 
+use super::hairline::{Edge, edges_of, shorten};
 use super::order::evenly;
 use crate::{GuideFrame, Hairstyle, Strands, interpolate};
 
@@ -47,6 +48,7 @@ pub struct FineStrands {
     pub strands: Vec<FineStrand>,
     order: Vec<u32>,
     neighbours: Vec<[u32; NEIGHBOURS]>,
+    edges: Vec<Edge>,
     of: Topology,
     rest: Option<Arc<Hairstyle>>,
 }
@@ -86,13 +88,14 @@ impl FineStrands {
             self.strands.extend(self.order.iter().map(|&strand| stored_strand(style, strand)));
         }
         if count > stored && self.neighbours.is_empty() {
-            self.neighbours = neighbours_of(style);
+            (self.neighbours, self.edges) = neighbours_of(style);
         }
         // In steps, so that an approaching camera does not extend the list in every frame.
         let target = if count > stored { count.max(self.strands.len() * 5 / 4) } else { count };
         for i in self.strands.len()..target {
             let parent = self.order[i % stored];
-            self.strands.push(child(style, parent, &self.neighbours[parent as usize], i));
+            let (near, edge) = (&self.neighbours[parent as usize], self.edges[parent as usize]);
+            self.strands.push(child(style, parent, near, edge, i));
         }
         true
     }
@@ -125,7 +128,7 @@ fn byte(unit: f32) -> u8 {
 }
 
 /// The child with number `i` in the list.
-fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], i: usize) -> FineStrand {
+fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], edge: Edge, i: usize) -> FineStrand {
     let mut random = SplitMix64::of_stream(0xf17e, i as u64);
     let b = (random.bits() % NEIGHBOURS as u64) as usize;
     let c = (b + 1 + (random.bits() % (NEIGHBOURS as u64 - 1)) as usize) % NEIGHBOURS;
@@ -143,23 +146,29 @@ fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], i: usize) -> 
     }
     let shorter = random.unit() * random.unit() * if strays { 0.2 } else { 0.05 };
     let own = style.strands.shade.get(parent as usize).copied().unwrap_or(0.5);
-    FineStrand {
+    let mut strand = FineStrand {
         parents: [parent, near[b], near[c]],
         weights,
         length: ((1.0 - shorter) * 65_535.0) as u16,
         shade: byte(0.55 * own + 0.45 * random.unit()),
         spare: 0,
-    }
+    };
+    shorten(&mut strand, edge, &mut random);
+    strand
 }
 
 /// Root, middle and tip of a strand at rest.
-type Shape = [Vec3; 3];
+pub(super) type Shape = [Vec3; 3];
 
-/// The nearest strands of each strand: of its wisp, or of all with a similar shape where a wisp has few.
-fn neighbours_of(style: &Hairstyle) -> Vec<[u32; NEIGHBOURS]> {
+/// The nearest strands of each strand, of its wisp or of all with a similar shape where a wisp has few; and the edge of the hair.
+fn neighbours_of(style: &Hairstyle) -> (Vec<[u32; NEIGHBOURS]>, Vec<Edge>) {
     if style.check().is_err() {
         // Only strands that are given can be drawn of such a style, without knowing where they are at rest.
-        return (0..style.strands.count() as u32).map(|strand| [strand; NEIGHBOURS]).collect();
+        let count = style.strands.count();
+        return (
+            (0..count as u32).map(|strand| [strand; NEIGHBOURS]).collect(),
+            vec![Edge::default(); count],
+        );
     }
     let mut rest = Strands::default();
     interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut rest);
@@ -182,7 +191,7 @@ fn neighbours_of(style: &Hairstyle) -> Vec<[u32; NEIGHBOURS]> {
             out.push(nearest(&shapes, of, if few { &all } else { &members }, few));
         }
     }
-    out
+    (out, edges_of(&shapes))
 }
 
 /// The strands of `among` whose roots are nearest to that of strand `of`; the strand itself where there are too few.

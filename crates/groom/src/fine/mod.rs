@@ -11,6 +11,7 @@
 
 mod children;
 mod grow;
+mod hairline;
 mod order;
 mod portion;
 #[cfg(test)]

@@ -113,7 +113,7 @@ impl PlacedScene {
         let segments = &self.all_segments[..self.whole];
         let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
         rayon::join(
-            || surface.place(view.uniform.clip_from_world, grid, body, hair_on_body, seen_from_without),
+            || surface.place(view.uniform.clip_from_world, grid, input.body, hair_on_body, seen_from_without),
             || {
                 bins.fill(segments.len(), grid.columns, grid.rows, |i| {
                     let first = segments[i] as usize;

@@ -16,6 +16,7 @@ mod renderer;
 mod screen;
 mod shadow;
 mod shrink;
+mod skin_shadow;
 mod surface;
 mod targets;
 

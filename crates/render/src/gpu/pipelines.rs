@@ -36,6 +36,7 @@ const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
 const FALSE_COLORS: ShaderPart = part!("false_colors.wgsl");
 const PRESENT: ShaderPart = part!("present.wgsl");
 const SHRINK: ShaderPart = part!("shrink.wgsl");
+const SKIN_SHADOW: ShaderPart = part!("skin_shadow.wgsl");
 
 /// The shaders of these kernels and pipelines.
 fn own_shaders() -> [(&'static str, ShaderSource); 9] {
@@ -61,11 +62,16 @@ pub(super) fn shrink_source() -> ShaderSource {
     ShaderSource::new(&[SHRINK])
 }
 
+/// The shader of [`SkinShadow`](super::skin_shadow::SkinShadow).
+pub(super) fn skin_shadow_source() -> ShaderSource {
+    ShaderSource::new(&[SKIN_SHADOW])
+}
+
 /// Every composed shader with its label, so that a test can validate them without a device.
 pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
-    let shrink = std::iter::once(("shrink".to_owned(), shrink_source()));
-    own.chain(shrink).chain(eye::shaders()).chain(interpolate::shaders()).chain(fine::shaders()).collect()
+    let more = [("shrink".to_owned(), shrink_source()), ("skin shadow".to_owned(), skin_shadow_source())];
+    own.chain(more).chain(eye::shaders()).chain(interpolate::shaders()).chain(fine::shaders()).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.

@@ -23,10 +23,12 @@ use super::pipelines::Pipelines;
 use super::present::MOST_LISTS;
 use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
+use super::skin_shadow::SkinShadow;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
+use crate::shadow_stage::soft_reach;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
 use flight::Flights;
@@ -45,6 +47,7 @@ pub struct GpuRenderer {
     shadow: GpuShadowStage,
     hair: HairBuffers,
     surface: SurfaceBuffers,
+    skin: SkinShadow,
     ground: Ground,
     light: LightBuffers,
     eye: Eye,
@@ -97,6 +100,7 @@ impl GpuRenderer {
             shadow: GpuShadowStage::new(&gpu),
             hair: HairBuffers::new(&gpu)?,
             surface: SurfaceBuffers::new(&gpu, &pipelines),
+            skin: SkinShadow::new(&gpu)?,
             ground: Ground::new(&gpu),
             light: LightBuffers::new(&gpu),
             eye: Eye::new(&gpu)?,
@@ -207,6 +211,10 @@ impl GpuRenderer {
         self.light.write(gpu, &mut commands, input);
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
+        let is_soft = self.hair.portion().is_some() && soft_reach(input.lights) > 0.0;
+        if is_soft && let (Some((body, _)), Some(vertices)) = (input.body, self.surface.vertices()) {
+            self.skin.run(gpu, &mut commands, body, &vertices);
+        }
 
         let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
         let mut maps = Vec::with_capacity(MAX_LIGHTS);

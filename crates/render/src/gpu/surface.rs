@@ -13,6 +13,7 @@ use super::shadow::Vertices;
 use super::targets::DEPTH_FORMAT;
 use crate::MAX_LIGHTS;
 use crate::closed::{Closedness, encloses};
+use crate::skin::ScalpPaint;
 
 /// Vertex attributes that change every frame: position and normal. Shadow methods read them as two `vec4f`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -121,10 +122,12 @@ impl SurfaceBuffers {
         };
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
             let mesh = &body.mesh;
+            let mut paint = ScalpPaint::default();
+            paint.follow(body);
             let fixed: Vec<_> = (0..mesh.positions.len())
                 .map(|i| {
                     let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
-                    VertexColor([color.x, color.y, color.z, mesh.scalp.get(i).copied().unwrap_or(0.0)])
+                    VertexColor([color.x, color.y, color.z, paint.values.get(i).copied().unwrap_or(0.0)])
                 })
                 .collect();
             self.fixed.write(gpu, &fixed);

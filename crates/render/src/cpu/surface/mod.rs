@@ -6,6 +6,8 @@ pub(super) mod light;
 pub(super) mod raster;
 pub(super) mod shade;
 
+use std::sync::Arc;
+
 use glam::{Mat4, Vec3};
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
@@ -13,6 +15,7 @@ use rayon::prelude::*;
 use super::bins::{Bins, TileRange};
 use super::tile::{Grid, TILE};
 use crate::camera::NEAR_METRES;
+use crate::skin::ScalpPaint;
 
 /// Interpolated attributes of a vertex, contiguous in memory: position, normal, colour, 1 where hair grows, transmittance of hair
 /// toward four lights, two unused.
@@ -27,6 +30,7 @@ pub(super) struct PlacedSurface {
     pub vertices: Vec<[f32; 3]>,
     /// Triangles that touch each tile.
     pub bins: Bins,
+    paint: ScalpPaint,
 }
 
 impl PlacedSurface {
@@ -36,7 +40,7 @@ impl PlacedSurface {
         &mut self,
         clip_from_world: Mat4,
         grid: &Grid,
-        body: Option<(&Body, &Skin)>,
+        body: Option<(&Arc<Body>, &Skin)>,
         hair: &[u32],
         closed: bool,
     ) {
@@ -63,17 +67,19 @@ impl PlacedSurface {
         });
     }
 
-    fn gather(&mut self, body: Option<(&Body, &Skin)>, hair: &[u32]) {
+    fn gather(&mut self, body: Option<(&Arc<Body>, &Skin)>, hair: &[u32]) {
         self.attributes.clear();
         let Some((body, skin)) = body else { return };
         let mesh = &body.mesh;
+        self.paint.follow(body);
+        let paint = &self.paint.values;
         let positions = skin.positions.par_iter().with_min_len(4096);
         positions
             .enumerate()
             .map(|(i, p)| {
                 let n = skin.normals.get(i).copied().unwrap_or(Vec3::Y);
                 let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
-                let scalp = mesh.scalp.get(i).copied().unwrap_or(0.0);
+                let scalp = paint.get(i).copied().unwrap_or(0.0);
                 let word = hair.get(i).copied().unwrap_or(u32::MAX);
                 let [a, b, c, d] = word.to_le_bytes().map(|byte| f32::from(byte) * (1.0 / 255.0));
                 [p.x, p.y, p.z, n.x, n.y, n.z, color.x, color.y, color.z, scalp, a, b, c, d, 0.0, 0.0]
