@@ -320,7 +320,7 @@ pub(super) fn edge_length(p: Vec3) -> f32 {
         0.11,
     );
     near(round_cone(q, v(rest::ANKLE.x, 0.02, -0.07), v(0.10, 0.01, 0.14), 0.0, 0.0), 0.045, 0.0080, 0.10);
-    near(paint::seam(q).abs(), 0.0025, 0.0054, 0.40);
+    near(paint::seam(q).abs(), 0.0025, 0.0048, 0.36);
     if p.y > 1.30 {
         near(ellipsoid(q - v(0.0, 1.590, 0.0), v(0.085, 0.120, 0.110)).max(0.0), 0.0, 0.0056, 0.10);
         if p.z > 0.0 {

@@ -1,7 +1,7 @@
 //! `cargo xtask assets`: makes the dancer, `assets/dancer.glb`.
 //!
 //! The figure is one signed distance function ([`figure`], [`head`]), meshed by surface nets ([`mesh`]), remeshed with regular
-//! triangles ([`remesh`]), cut along the borders of clothes ([`seams`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and animated by a score of key
+//! triangles ([`remesh`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and animated by a score of key
 //! poses ([`score`], [`dance`]). The same source gives the same bytes.
 
 mod dance;
@@ -17,7 +17,6 @@ mod remesh;
 mod rig;
 mod score;
 mod sdf;
-mod seams;
 mod weights;
 
 #[cfg(test)]
@@ -70,13 +69,12 @@ fn make() -> glb::Dancer {
     net.positions.par_iter_mut().for_each(|p| *p = mesh::project(&distance, *p));
     remesh::remesh(&mut net, &distance, &figure::edge_length, 6);
     remesh::snap(&mut net, &distance, &paint::seam, &figure::edge_length);
-    let places = seams::cut(&mut net, &distance, &paint::BORDERS);
     let joints = rig::joints();
     let influences = weights::influences(&net, joints.len());
     let clips = [score::dance(), score::idle()].iter().map(|score| score.sample(&joints)).collect();
     glb::Dancer {
         normals: mesh::normals(&distance, &net.positions),
-        colours: places.iter().map(|p| paint::colour(*p)).collect(),
+        colours: net.positions.iter().map(|p| paint::colour(*p)).collect(),
         scalp: net.positions.iter().map(|p| scalp(*p)).collect(),
         influences,
         joints,

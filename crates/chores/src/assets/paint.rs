@@ -74,23 +74,16 @@ pub(super) fn inside_cloth(p: Vec3) -> f32 {
     inside_top(p)
 }
 
-/// Whether the top and the leggings may reach a point; hands and feet are elsewhere.
-fn is_trunk(p: Vec3) -> bool {
-    p.y <= STRAPS_Y && p.y >= 0.14 && (p.x.abs() <= 0.22 || p.y <= 0.2)
-}
-
-/// The edges between two colours of the clothes: each is where a function, a signed distance along the surface in metres, is
-/// zero. It is positive on the side of the upper cloth, or of any cloth.
-pub(super) const BORDERS: [fn(Vec3) -> f32; 4] = [
-    |p| if is_trunk(p) { inside_top(p) } else { -1.0 },
-    |p| if is_trunk(p) { (p.y - leg_line(p)) * 0.75 } else { 1.0 },
-    |p| if p.y < 0.14 { p.y - 0.118 } else { 1.0 },
-    |p| if p.y < 0.14 { inside_slipper(p) } else { -1.0 },
-];
-
-/// Signed distance along the surface to the nearest of the [`BORDERS`], in metres.
+/// Signed distance along the surface to the nearest edge between two colours of the clothes, in metres.
 pub(super) fn seam(p: Vec3) -> f32 {
-    BORDERS.iter().map(|border| border(p)).fold(1.0, |a: f32, b| if a.abs() <= b.abs() { a } else { b })
+    if p.y > STRAPS_Y || (p.x.abs() > 0.22 && p.y > 0.2) {
+        return 1.0;
+    }
+    let nearer = |a: f32, b: f32| if a.abs() < b.abs() { a } else { b };
+    if p.y < 0.14 {
+        return nearer(p.y - 0.118, inside_slipper(p));
+    }
+    nearer((p.y - leg_line(p)) * 0.75, inside_top(p))
 }
 
 /// Colour at a point of the surface, linear sRGB.

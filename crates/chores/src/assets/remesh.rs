@@ -38,7 +38,7 @@ pub(super) fn remesh(mesh: &mut TriMesh, distance: Field<f32>, edge_length: Fiel
 }
 
 /// Undirected edges with the two triangles at each, in order of their ends.
-pub(super) fn edges(mesh: &TriMesh) -> Vec<([u32; 2], [u32; 2])> {
+fn edges(mesh: &TriMesh) -> Vec<([u32; 2], [u32; 2])> {
     let mut half: Vec<(u32, u32, u32)> = Vec::with_capacity(mesh.triangles.len() * 3);
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         for i in 0..3 {
@@ -53,7 +53,7 @@ pub(super) fn edges(mesh: &TriMesh) -> Vec<([u32; 2], [u32; 2])> {
         .collect()
 }
 
-/// Splits every edge longer than 4/3 of its desired length.
+/// Splits every edge longer than 4/3 of its desired length. Triangles are divided depending on how many of their edges are split.
 fn split(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
     let mut middle_of: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for (edge, _) in edges(mesh) {
@@ -65,12 +65,6 @@ fn split(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
             mesh.positions.push(middle);
         }
     }
-    divide(mesh, &middle_of);
-    middle_of.len()
-}
-
-/// Divides triangles at the vertices of `middle_of` on their edges, depending on how many of them have one.
-pub(super) fn divide(mesh: &mut TriMesh, middle_of: &BTreeMap<[u32; 2], u32>) {
     let mut out = Vec::with_capacity(mesh.triangles.len() * 2);
     for &triangle in &mesh.triangles {
         let cut: [Option<u32>; 3] = std::array::from_fn(|i| {
@@ -105,6 +99,7 @@ pub(super) fn divide(mesh: &mut TriMesh, middle_of: &BTreeMap<[u32; 2], u32>) {
         }
     }
     mesh.triangles = out;
+    middle_of.len()
 }
 
 /// Triangles around each vertex.

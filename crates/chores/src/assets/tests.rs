@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 
 use super::rig::rest;
 use super::score::Score;
-use super::{dance, head, ik, mesh, path, remesh, rig, score, seams};
+use super::{dance, head, ik, mesh, path, remesh, rig, score};
 
 /// The contents of the file.
 struct File {
@@ -346,42 +346,4 @@ fn rest_pose_is_an_a_pose_on_the_ground() {
             assert!(rig::joints().iter().position(|j| j.name == joint.name).unwrap() > parent);
         }
     }
-}
-
-/// A ball whose upper half is cloth, with a wavy border.
-#[test]
-fn borders_of_clothes_follow_edges_and_the_surface_stays_closed() {
-    let centre = Vec3::new(0.0, 1.0, 0.02);
-    let distance = |p: Vec3| p.distance(centre) - 0.08;
-    let border: fn(Vec3) -> f32 = |p| p.y - 1.0 - 0.01 * (40.0 * p.x).sin();
-    let mut ball = mesh::surface_nets(&distance);
-    remesh::remesh(&mut ball, &distance, &|_| 0.007, 4);
-    let crossing = |ball: &mesh::TriMesh| {
-        let reaches = |t: &&[u32; 3]| {
-            let at = t.map(|v| border(ball.positions[v as usize]));
-            // The strip of the border is 0.5 mm wide; its skin's edge is on the negative side.
-            at.iter().any(|v| *v > 2e-4) && at.iter().any(|v| *v < -2e-4)
-        };
-        ball.triangles.iter().filter(reaches).count()
-    };
-    let teeth = crossing(&ball);
-    assert!(teeth > 30, "{teeth}: without a cut, triangles cross the border");
-    let vertices = ball.positions.len();
-    let places = seams::cut(&mut ball, &distance, &[border]);
-    assert_eq!(crossing(&ball), 0);
-    assert_eq!(open_edges(&ball.triangles), 0);
-    assert_eq!(ball.positions.len() as i64 - ball.triangles.len() as i64 / 2, 2, "still a sphere");
-    assert!(ball.positions.len() < vertices + 4 * teeth);
-    assert!(ball.positions.iter().all(|p| distance(*p).abs() < 1e-5));
-    // Colours change only within the strip: the places beside it are clear of the painted fade.
-    assert_eq!(places.len(), ball.positions.len());
-    for (place, at) in places.iter().zip(&ball.positions) {
-        assert!(border(*place).abs() > 1e-3, "{place} is coloured on the border");
-        assert!(place.distance(*at) < 0.0025, "{place} is far from its vertex");
-    }
-    let outward = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| ball.positions[i as usize]);
-        (b - a).cross(c - a).dot(a - centre) >= 0.0
-    };
-    assert!(ball.triangles.iter().all(outward), "a triangle is turned over");
 }

@@ -17,8 +17,8 @@ const BEYOND_MIDDLE: [f32; 2] = [0.12, 0.4];
 const SHORT_HAIRS: f32 = 0.6;
 /// Lengths of short hairs, metres.
 const LENGTHS: [f32; 2] = [0.005, 0.028];
-/// How far short hairs begin outside of their parent, as a weight on the way to its neighbours.
-const OUTSIDE: f32 = 0.75;
+/// How far short hairs begin outside of their parent at most, as a weight on the way from each of its two neighbours.
+const OUTSIDE: f32 = 0.5;
 /// Hairstyles of more strands have the hairline that they were groomed with.
 const MOST_STRANDS: usize = 20_000;
 

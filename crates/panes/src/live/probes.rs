@@ -92,11 +92,24 @@ pub(super) fn direction(light: &Light) -> Vec3 {
 /// Range from the first hair near the ray to the last one, with a margin, metres along the light.
 fn reach(strands: &Strands, at: Vec3, along: Vec3) -> [f32; 2] {
     let (mut low, mut high) = (0.0_f32, 0.0_f32);
-    for ((&x, &y), &z) in strands.x.iter().zip(&strands.y).zip(&strands.z) {
-        let from = Vec3::new(x, y, z) - at;
+    let split = |point: usize| {
+        let from = point_of(strands, point)? - at;
         let depth = from.dot(along);
-        if (from - along * depth).length_squared() < NEAR * NEAR {
-            (low, high) = (low.min(depth), high.max(depth));
+        Some((depth, from - along * depth))
+    };
+    for ends in strands.first_point.windows(2) {
+        let mut before = None;
+        for point in ends[0] as usize..ends[1] as usize {
+            let Some((depth, across)) = split(point) else { break };
+            // The place of the segment that is nearest to the ray: points may be further apart than the ray is from their segment.
+            let (start, off) = before.unwrap_or((depth, across));
+            let step: Vec3 = across - off;
+            let t = (-off.dot(step) / step.length_squared().max(1e-12)).clamp(0.0, 1.0);
+            if (off + t * step).length_squared() < NEAR * NEAR {
+                let depth = start + t * (depth - start);
+                (low, high) = (low.min(depth), high.max(depth));
+            }
+            before = Some((depth, across));
         }
     }
     [(low - MARGIN).max(-FARTHEST), (high + MARGIN).min(FARTHEST)]
@@ -128,4 +141,23 @@ pub(super) fn curve(
         weight: mark.optical_depth,
     });
     Ok(ProbeCurve { method: String::new(), curve, value, marks: marks.collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn the_plot_begins_before_a_segment_whose_points_are_far_from_the_ray() {
+        let mut strands = Strands::default();
+        (strands.x, strands.y, strands.z) = (vec![-0.05, 0.05, 0.05], vec![0.1, 0.12, 0.3], vec![0.0; 3]);
+        strands.first_point = Arc::from([0, 2, 3]);
+        let [low, high] = reach(&strands, Vec3::ZERO, Vec3::NEG_Y);
+        assert!((low + 0.11 + MARGIN).abs() < 1e-5, "{low}");
+        assert!((high - MARGIN).abs() < 1e-6, "{high}: no strand goes on from the last point of another");
+        strands.first_point = Arc::from([0, 1, 2, 3]);
+        assert_eq!(reach(&strands, Vec3::ZERO, Vec3::NEG_Y), [-MARGIN, MARGIN], "single points are far away");
+    }
 }

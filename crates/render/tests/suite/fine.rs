@@ -126,6 +126,26 @@ fn both_backends_draw_the_same_fine_strands() {
 }
 
 #[test]
+fn both_backends_soften_the_shadow_of_hair_on_a_body() {
+    let mut scene = wig();
+    scene.body = Some(common::grid(-0.16, 0.3, 60, Vec3::splat(0.6)));
+    scene.camera.eye = scene.camera.target + Vec3::new(-0.5, 0.15, 0.6);
+    scene.lights.truncate(1);
+    scene.lights[0].direction = Vec3::new(0.25, -0.1, -1.0);
+    scene.picture.strand_number = 3_000.0;
+    let (w, h) = (240, 240);
+    let Some(card) = scene.draw_by(Backend::Gpu, w, h) else { return };
+    let processor = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+    scene.lights[0].softness = 0.0;
+    let hard = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+    let difference = flip(&card.rgba, &processor.rgba, w, h);
+    let control = flip(&card.rgba, &hard.rgba, w, h);
+    println!("{difference:?}; a lamp without size {control:?}");
+    assert!(difference.mean < 0.001, "{difference:?}");
+    assert!(control.mean > 0.004, "{control:?}");
+}
+
+#[test]
 fn a_draft_is_near_the_image_that_follows_it() {
     let mut scene = wig();
     scene.picture.strands = StrandCount::BySize;
