@@ -9,6 +9,7 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Hairstyle, Strands};
 use lovelock_motion::Body;
 
+use crate::shadow_stage::soft_reach;
 use crate::{FrameInput, HairPose, Light, ShadowSettings};
 
 /// Given strands of more points are not compared: copies of them would cost too much memory beside those of other panes.
@@ -31,6 +32,8 @@ struct HairInputs {
     /// Diameter, number of real hairs and extinction.
     look: [f32; 3],
     shadow: ShadowSettings,
+    /// How far apart shadows are looked up.
+    reach: f32,
 }
 
 #[derive(Debug, Default)]
@@ -66,6 +69,7 @@ impl KeptInputs {
                 anchor: input.world_from_head,
                 look: look_of(input),
                 shadow: *input.shadow,
+                reach: soft_reach(input.lights),
             });
         }
         Unchanged { body, hair }
@@ -118,6 +122,7 @@ impl HairInputs {
             && self.anchor == input.world_from_head
             && self.look == look_of(input)
             && self.shadow == *input.shadow
+            && self.reach == soft_reach(input.lights)
     }
 }
 

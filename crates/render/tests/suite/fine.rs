@@ -137,12 +137,15 @@ fn both_backends_soften_the_shadow_of_hair_on_a_body() {
     let Some(card) = scene.draw_by(Backend::Gpu, w, h) else { return };
     let processor = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
     scene.lights[0].softness = 0.0;
-    let hard = scene.draw_by(Backend::Cpu, w, h).expect("a picture");
+    let [hard_card, hard] =
+        [Backend::Gpu, Backend::Cpu].map(|backend| scene.draw_by(backend, w, h).expect("a picture"));
     let difference = flip(&card.rgba, &processor.rgba, w, h);
+    let plain = flip(&hard_card.rgba, &hard.rgba, w, h);
     let control = flip(&card.rgba, &hard.rgba, w, h);
-    println!("{difference:?}; a lamp without size {control:?}");
-    assert!(difference.mean < 0.001, "{difference:?}");
-    assert!(control.mean > 0.004, "{control:?}");
+    println!("{difference:?}; without size {plain:?}; one of each {control:?}");
+    // The wall's edge is smoothed by the card alone.
+    assert!(difference.mean < plain.mean + 0.001, "{difference:?} {plain:?}");
+    assert!(control.mean > 0.03, "{control:?}");
 }
 
 #[test]
