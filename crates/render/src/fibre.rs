@@ -12,6 +12,10 @@ pub(crate) const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 /// that are seen.
 pub(crate) const OWN_FIBRES: f32 = 0.5;
 
+/// Fibres that are not counted besides, where the eye looks along the light: what the eye sees there, the light sees too. The full
+/// correlation of both halves the fibres in front of what is seen.
+pub(crate) const FACING_FIBRES: f32 = 0.6;
+
 /// Sine of the largest inclination at which a strand is seen, 70 degrees, and its cosine. Fibres that are seen end on reflect like mirrors,
 /// one in a hundred of a lock: at the few points of a strand, that looks like frost.
 pub(crate) const MOST_INCLINED: f32 = 0.939_692_6;

@@ -9,7 +9,9 @@ use super::{LANES, Lane, ShadedFrom};
 use crate::MAX_LIGHTS;
 use crate::cpu::math::{log2, max};
 use crate::cpu::view::{FibreView, View};
-use crate::fibre::{FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MOST_INCLINED, OWN_FIBRES};
+use crate::fibre::{
+    FACING_FIBRES, FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MOST_INCLINED, OWN_FIBRES,
+};
 
 /// The light that points scatter toward the eye.
 #[inline(always)]
@@ -46,7 +48,8 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
             phi[lane] = acos((lv - sin * sin_v[lane]) / max(cos * cos_v[lane], 1e-4));
             let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
             let crossed = -FIBRES_PER_DEPTH * std::f32::consts::LN_2 * log2(max(lit, LEAST_TRANSMITTANCE));
-            fibres[lane] = max(crossed - OWN_FIBRES, 0.0);
+            let facing = max(lv, 0.0);
+            fibres[lane] = max(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0);
             (sin_l[lane], cos_l[lane]) = (sin, cos);
         }
         let own = fibre.lights[k].variances;

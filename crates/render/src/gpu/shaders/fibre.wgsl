@@ -14,6 +14,7 @@ const SMALLEST_COSINE: f32 = 0.05;
 const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
 const OWN_FIBRES: f32 = 0.5;
+const FACING_FIBRES: f32 = 0.6;
 const MOST_INCLINED: f32 = 0.9396926;
 const MOST_FIBRES: f32 = 40.0;
 const LARGEST_SOURCE: f32 = 0.25;
@@ -141,7 +142,8 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32, 
     let after = row_at(TABLE, s.eye, azimuth, AZIMUTHS);
 
     let crossed = -FIBRES_PER_DEPTH * log(max(lit, LEAST_TRANSMITTANCE));
-    let n = clamp(crossed - OWN_FIBRES, 0.0, MOST_FIBRES);
+    let facing = max(dot(l, v), 0.0);
+    let n = clamp(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0, MOST_FIBRES);
     let unhit = exp(-n);
     let reached = exp(-n * (1.0 - s.forward));
     let psi = clamp(reached - unhit, vec3f(0.0), vec3f(1.0));
