@@ -7,6 +7,7 @@ mod ambient;
 mod backend;
 mod camera;
 mod closed;
+mod clusters;
 mod cpu;
 mod error;
 mod fibre;
@@ -31,6 +32,7 @@ mod uniform;
 pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
 pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
+pub use clusters::HairDrawing;
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
 pub use gpu::{ColorScale, Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
@@ -39,6 +41,7 @@ pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use light::{Light, MAX_LIGHTS};
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
+pub use lovelock_satf::{ClusterLighting, ClusterSettings, ClusterView, LocalShadow, RecordLookup};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,

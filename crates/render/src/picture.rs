@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 use lovelock_base::field;
-use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_base::settings::{Part, PartMut, Setting, Settings, Unit};
+use lovelock_satf::ClusterSettings;
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, RenderError, StrandCount, Transparency};
+use crate::{Backend, HairDrawing, RenderError, StrandCount, Transparency};
 
 /// The longest side of a picture, pixels.
 pub const MOST_SIDE: u32 = 8192;
@@ -48,6 +49,12 @@ pub struct PictureSettings {
     pub background_bottom: Vec3,
     /// Whether the ground is drawn, with the shadows on it.
     pub ground: bool,
+    /// What hair is drawn as.
+    pub draw: HairDrawing,
+    /// The height of a head in the image, pixels, below which clusters are drawn where strands and clusters are mixed by size.
+    pub cluster_size: f32,
+    /// Settings of hair that is drawn as clusters.
+    pub clusters: ClusterSettings,
     /// How overlapping strands are put together.
     pub transparency: Transparency,
     /// Opacity of a strand where it covers a pixel completely.
@@ -71,6 +78,9 @@ impl Default for PictureSettings {
             background_top: Vec3::new(0.135, 0.145, 0.163),
             background_bottom: Vec3::new(0.25, 0.262, 0.282),
             ground: true,
+            draw: HairDrawing::default(),
+            cluster_size: 60.0,
+            clusters: ClusterSettings::default(),
             transparency: Transparency::default(),
             strand_opacity: 0.85,
             strands: StrandCount::default(),
@@ -104,6 +114,20 @@ impl Settings for PictureSettings {
             "Turns the picture of the surroundings around the figure.",
         )
         .unit(Unit::RADIANS),
+        Setting::choice::<HairDrawing>(
+            field!(Self, draw),
+            "Draw hair as",
+            "What hair is drawn as: strand by strand, lock by lock from a database of rendered sectors, or \
+             strands where it is large in the image and locks where it is small.",
+        ),
+        Setting::number(
+            field!(Self, cluster_size),
+            [4.0, 4000.0],
+            "Clusters below",
+            "Height of a head in the image below which locks are drawn in place of strands.",
+        )
+        .unit(Unit::PIXELS)
+        .logarithmic(),
         Setting::choice::<Transparency>(
             field!(Self, transparency),
             "Transparency",
@@ -155,6 +179,14 @@ impl Settings for PictureSettings {
             "Colour of the background at the bottom, and of the ground.",
         ),
     ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![("clusters".into(), &self.clusters)]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![("clusters".into(), &mut self.clusters)]
+    }
 }
 
 /// A finished picture in memory.

@@ -172,6 +172,21 @@ impl ShadowStage {
         Ok(())
     }
 
+    /// Packed transmittances of further points in the maps of the last run.
+    pub fn look_up_more(&self, strands: &Strands, packed: &mut Vec<u32>) {
+        let answers: Vec<Vec<f32>> = self
+            .lights
+            .par_iter()
+            .map(|light| {
+                let mut answers = vec![1.0; strands.points()];
+                light.shadow.transmittance_at(&strands.x, &strands.y, &strands.z, &mut answers);
+                answers
+            })
+            .collect();
+        let answers: Vec<&[f32]> = answers.iter().map(Vec::as_slice).collect();
+        pack(&answers, strands.points(), packed);
+    }
+
     fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
         let part = Stopwatch::start();
         let reach = soft_reach(input.lights);

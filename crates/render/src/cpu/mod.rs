@@ -18,6 +18,7 @@
 mod backdrop;
 mod bins;
 mod body_depth;
+mod clusters;
 mod drawn;
 mod finish;
 mod hair;

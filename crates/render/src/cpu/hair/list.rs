@@ -29,7 +29,7 @@ pub(crate) struct Fragment {
 /// pixel and the strand; the first one depends on the strand. Strands of a pixel cover different samples, so that many thin ones
 /// add up. Twin of `covered_samples` in `eye/opaque/samples.wgsl`.
 #[inline(always)]
-fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
+pub(crate) fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
     let inner = x * 0.067_110_56 + y * 0.005_837_15;
     let inner = (inner - floor(inner)) * 52.982_918_9 + 13.7 * hash;
     let noise = inner - floor(inner);
@@ -78,7 +78,6 @@ simd_versions! {
 /// Lists the fragments of segments in the pixels of a tile.
 #[inline(always)]
 fn list_segments(input: &ListTile, out: &mut Fragments) {
-    out.found.clear();
     let mut sink = List { origin: input.origin, samples: input.samples, found: &mut out.found };
     for &segment in input.segments {
         let first = input.first_points[segment as usize] as usize;
@@ -129,6 +128,16 @@ impl SpanSink for List<'_> {
 }
 
 impl Fragments {
+    /// Begins an empty list.
+    pub fn clear(&mut self) {
+        self.found.clear();
+    }
+
+    /// Adds a fragment in the pixel at `at` of the planes.
+    pub fn push(&mut self, at: usize, fragment: Fragment) {
+        self.found.push((at as u32, fragment));
+    }
+
     /// Groups the fragments by pixel and calls `visit` for each pixel that has any, with its index in the planes and its fragments in
     /// the order of their segments.
     pub fn each_pixel(&mut self, mut visit: impl FnMut(usize, &mut [Fragment])) {

@@ -1,0 +1,110 @@
+//! Hair that is drawn as clusters: which clusters, and how much of the image they are beside strands.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use glam::Vec3A;
+use lovelock_base::settings::Choices;
+use lovelock_groom::{GuideFrame, Hairstyle};
+use lovelock_satf::{ClusterHair, ClusterSettings};
+use serde::{Deserialize, Serialize};
+
+use crate::{FrameInput, HairPose};
+
+/// What hair is drawn as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HairDrawing {
+    /// Strand by strand.
+    #[default]
+    Strands,
+    /// Lock by lock, as layered shells whose appearance comes from a database (Xu et al., "SATF").
+    Clusters,
+    /// Strands where hair is large in the image, clusters where it is small.
+    Auto,
+}
+
+impl Choices for HairDrawing {
+    const ALL: &'static [Self] = &[Self::Strands, Self::Clusters, Self::Auto];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Strands => ("strands", "Strands"),
+            Self::Clusters => ("clusters", "Clusters"),
+            Self::Auto => ("auto", "Strands near, clusters far"),
+        }
+    }
+}
+
+impl fmt::Display for HairDrawing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.names().0)
+    }
+}
+
+impl FromStr for HairDrawing {
+    type Err = String;
+
+    fn from_str(id: &str) -> Result<Self, String> {
+        Self::ALL.iter().copied().find(|drawing| drawing.names().0 == id).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|drawing| drawing.names().0).collect();
+            format!("hair cannot be drawn as `{id}`: expected one of {}", known.join(", "))
+        })
+    }
+}
+
+/// The height of a head, metres: what sizes on the screen are measured by.
+const HEAD: f32 = 0.25;
+/// Strands and clusters are mixed from the size at which hair is drawn as clusters up to this multiple of it.
+const MIXED: f32 = 1.5;
+
+/// The part of the hair's optical depth that clusters have, 0 to 1, in an image `height` pixels high. The rest is that of strands.
+pub(crate) fn cluster_share(input: &FrameInput, height: u32) -> f32 {
+    // Clusters follow guides; transmittance can be given for strands only.
+    if guides_of(input).is_none() || input.known.is_some() {
+        return 0.0;
+    }
+    match input.picture.draw {
+        HairDrawing::Strands => 0.0,
+        HairDrawing::Clusters => 1.0,
+        HairDrawing::Auto => {
+            let head = input.world_from_head.transform_point3a(Vec3A::Y * (0.4 * HEAD));
+            let distance = Vec3A::from(input.camera.eye).distance(head).max(0.1);
+            let pixels = HEAD * input.camera.pixels_per_metre_at_one_metre(height) / distance;
+            let near = pixels / input.picture.cluster_size.max(1.0);
+            // NaN gives strands.
+            if near < MIXED { 1.0 - ((near - 1.0) / (MIXED - 1.0)).clamp(0.0, 1.0) } else { 0.0 }
+        }
+    }
+}
+
+/// The guides that clusters follow.
+pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
+    match input.hair {
+        HairPose::Guides(guides) => Some(guides),
+        HairPose::Strands(_) => input.guides,
+    }
+}
+
+/// The clusters of the last hairstyle, kept until it or their division changes.
+#[derive(Debug, Default)]
+pub(crate) struct ClusterStage {
+    of: Option<(Arc<Hairstyle>, ClusterSettings)>,
+    hair: Option<Arc<ClusterHair>>,
+}
+
+impl ClusterStage {
+    /// The clusters of the hairstyle of `input`.
+    pub fn follow(&mut self, input: &FrameInput) -> Arc<ClusterHair> {
+        let settings = input.picture.clusters.of_shape();
+        let same =
+            self.of.as_ref().is_some_and(|(style, of)| Arc::ptr_eq(style, input.style) && *of == settings);
+        if !same {
+            self.hair = None;
+            self.of = Some((Arc::clone(input.style), settings));
+        }
+        let hair = self.hair.get_or_insert_with(|| Arc::new(ClusterHair::new(input.style, &settings)));
+        Arc::clone(hair)
+    }
+}

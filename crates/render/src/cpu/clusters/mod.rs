@@ -1,0 +1,123 @@
+//! Hair as clusters on the CPU: the definition of what `gpu/clusters` draws.
+
+mod columns;
+mod vertices;
+
+use std::sync::Arc;
+
+use lovelock_groom::simd::Width;
+use lovelock_groom::{HairShading, Strands, interpolate};
+use lovelock_satf::{ClusterHair, ClusterSettings, Database};
+
+use super::bins::Bins;
+use super::hair::list::Fragments;
+use super::points::{PointsIn, ShadedPoint, shade_all};
+use super::surface::raster::SurfaceSamples;
+use super::tile::Grid;
+use super::view::{FibreView, View};
+use crate::clusters::{ClusterStage, cluster_share, guides_of};
+use crate::fibre;
+use crate::scene_light::SceneLight;
+use crate::shadow_stage::ShadowStage;
+use crate::strand_details::StrandDetails;
+use crate::uniform::{FrameUniform, LightMaps};
+use crate::FrameInput;
+use columns::Columns;
+use vertices::Vertex;
+
+/// The clusters of a frame; kept from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct PlacedClusters {
+    stage: ClusterStage,
+    hair: Option<Arc<ClusterHair>>,
+    /// Points of the ribs.
+    ribs: Strands,
+    details: StrandDetails,
+    transmittance: Vec<u32>,
+    shaded: Vec<ShadedPoint>,
+    vertices: Vec<Vertex>,
+    bins: Bins,
+    settings: ClusterSettings,
+    /// The part of the optical depth that clusters have.
+    share: f32,
+    /// Optical depth of a strand times the length of the arc that it lies in, metres.
+    depth: f32,
+}
+
+/// What clusters are placed in.
+pub(super) struct ClusterScene<'a> {
+    pub light: &'a SceneLight,
+    pub maps: &'a [LightMaps],
+    pub shadow: &'a ShadowStage,
+    pub view: &'a View<'a>,
+    pub depth_texels: u32,
+    pub size: (u32, u32),
+}
+
+impl PlacedClusters {
+    /// Follows the hair of `input`. Returns the part of its optical depth that clusters have.
+    pub fn follow(&mut self, input: &FrameInput, height: u32) -> f32 {
+        self.share = cluster_share(input, height);
+        if self.share > 0.0
+            && let Some(guides) = guides_of(input)
+        {
+            let hair = self.stage.follow(input);
+            interpolate(&hair.ribs, guides, &mut self.ribs);
+            self.details.follow(&hair.ribs);
+            self.hair = Some(hair);
+            self.settings = input.picture.clusters;
+        } else {
+            self.hair = None;
+        }
+        self.share
+    }
+
+    /// Lights and projects the ribs, and sorts the columns between them into tiles.
+    pub fn place(&mut self, width: Width, input: &FrameInput, scene: &ClusterScene, grid: &Grid) {
+        let Some(hair) = &self.hair else { return };
+        scene.shadow.look_up_more(&self.ribs, &mut self.transmittance);
+        let of_ribs = FrameInput { style: &hair.ribs, ..*input };
+        let uniform = FrameUniform::new(&of_ribs, None, scene.light, scene.size, scene.maps, scene.depth_texels);
+        let fibre = (input.look.shading == HairShading::Fibre).then(|| FibreView {
+            tables: &scene.light.tables,
+            lights: fibre::lights(&scene.light.tables, input.lights),
+        });
+        let view = scene.view.of_other_strands(&uniform, fibre);
+        let from = PointsIn {
+            strands: &self.ribs,
+            details: &self.details.words,
+            transmittance: &self.transmittance,
+        };
+        shade_all(width, &view, &from, false, &mut self.shaded);
+        vertices::place(hair, &self.ribs, &self.shaded, input, &mut self.vertices);
+        let opacity = input.picture.strand_opacity;
+        self.depth = self.share * opacity * lovelock_satf::strand_width(input.look, hair.strands);
+        let columns = hair.clusters() * hair.grid.around * hair.grid.along;
+        let (vertices, of) = (&self.vertices, hair.grid);
+        self.bins.fill(columns, grid.columns, grid.rows, |column| {
+            vertices::bounds(vertices, of, column).and_then(|bounds| grid.range(bounds))
+        });
+    }
+
+    /// Whether a tile has no cluster.
+    pub fn is_empty(&self, tile: usize) -> bool {
+        self.hair.is_none() || self.bins.of(tile).is_empty()
+    }
+
+    /// Adds the fragments of a tile.
+    pub fn draw(&self, origin: [f32; 2], tile: usize, samples: &SurfaceSamples, out: &mut Fragments) {
+        let Some(hair) = &self.hair else { return };
+        let columns = Columns {
+            hair,
+            database: Database::shared(),
+            vertices: &self.vertices,
+            settings: &self.settings,
+            depth: self.depth,
+            origin,
+            samples,
+        };
+        for &column in self.bins.of(tile) {
+            columns.draw(column as usize, out);
+        }
+    }
+}

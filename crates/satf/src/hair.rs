@@ -1,0 +1,148 @@
+//! The clusters of a hairstyle.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use lovelock_groom::Hairstyle;
+use rayon::prelude::*;
+
+use crate::cells::{Cell, cells_of, strand_width};
+use crate::ribs::{RibGrid, rib_style};
+use crate::section::{Section, sections_of};
+use crate::settings::ClusterSettings;
+
+/// The most hair shell volumes of a hairstyle.
+const MOST_VOLUMES: usize = 400_000;
+
+/// Every wisp of a hairstyle as a layered generalised disk. Constant until hairstyle or settings change.
+#[derive(Clone, Debug)]
+pub struct ClusterHair {
+    /// A hairstyle of the ribs, with the guides of the original. Its strands are ordered by cluster, ring and rib.
+    pub ribs: Arc<Hairstyle>,
+    /// How each cluster is divided.
+    pub grid: RibGrid,
+    /// Radius of the empty core, as a fraction of the section.
+    pub core: f32,
+    /// The boundary sectors of each macro-cluster in the order of [`RibGrid::cells`].
+    pub cells: Vec<Cell>,
+    /// For each cluster, its macro-cluster and by how many ribs it is turned: `macro * around + turn`.
+    pub shapes: Vec<u32>,
+    /// The number of strands that the hairstyle stores, for which the clusters stand.
+    pub strands: usize,
+}
+
+impl ClusterHair {
+    /// The clusters of `style`.
+    pub fn new(style: &Hairstyle, settings: &ClusterSettings) -> Self {
+        let wisps = style.wisps.iter().filter(|w| w.strand_count > 0).count();
+        let grid = settings.grid(wisps, MOST_VOLUMES);
+        let core = settings.core.clamp(0.0, 0.9);
+        let sections: Vec<Vec<Section>> = if style.check().is_ok() {
+            style.wisps.par_iter().map(|wisp| sections_of(style, wisp, grid.along)).collect()
+        } else {
+            // Strands of such a style can only be given, not placed by guides.
+            vec![Vec::new(); style.wisps.len()]
+        };
+        let width = strand_width(&style.look, style.strands.count());
+        let each: Vec<Vec<Cell>> = sections
+            .par_iter()
+            .filter(|sections| !sections.is_empty())
+            .map(|sections| cells_of(sections, grid, core, width))
+            .collect();
+        let ribs =
+            rib_style(style, &sections, grid, core, |wisp, rib| shade_of(style, wisp, &sections[wisp], rib));
+        let (cells, shapes) = shared(&each, grid, settings.macro_tolerance);
+        Self { ribs, grid, core, cells, shapes, strands: style.strands.count() }
+    }
+
+    /// The number of clusters.
+    pub fn clusters(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The number of macro-clusters.
+    pub fn macro_clusters(&self) -> usize {
+        self.cells.len() / self.grid.cells().max(1)
+    }
+
+    /// Bytes of the boundary sectors, and what they would be if no cluster shared those of another.
+    pub fn bytes(&self) -> [u64; 2] {
+        let own = self.cells.len() * size_of::<Cell>() + self.shapes.len() * size_of::<u32>();
+        let alone = self.clusters() * self.grid.cells() * size_of::<Cell>();
+        [own as u64, alone as u64]
+    }
+
+    /// The boundary sector of a cluster at a rib and a section.
+    pub fn cell(&self, cluster: usize, layer: usize, rib: usize, section: usize) -> Cell {
+        let RibGrid { around, .. } = self.grid;
+        let shape = self.shapes[cluster] as usize;
+        let rib = (rib + shape % around) % around;
+        let first = shape / around * self.grid.cells();
+        self.cells[first + (layer * around + rib) * self.grid.points() + section]
+    }
+}
+
+/// The shade of a rib: that of one of the strands of its wisp, so that clusters vary as strands do.
+fn shade_of(style: &Hairstyle, wisp: usize, sections: &[Section], rib: usize) -> f32 {
+    let Some(first) = sections.first() else { return 0.5 };
+    let count = first.crossings.len().max(1);
+    let strand = first.crossings.get(rib.wrapping_mul(7) % count).map_or(0, |crossing| crossing.strand);
+    let at = style.wisps[wisp].first_strand as usize + strand;
+    style.strands.shade.get(at).copied().unwrap_or(0.5)
+}
+
+/// Macro-clusters (level two of the hierarchy): clusters whose strands lie alike, up to a turn about their middle, share the boundary
+/// sectors of the first of them. Returns those, and for each cluster `macro * around + turn`.
+///
+/// Two clusters are alike if their masses, added up along the ribs, differ by at most `tolerance` of the whole. With 0 only equal ones
+/// share.
+fn shared(each: &[Vec<Cell>], grid: RibGrid, tolerance: f32) -> (Vec<Cell>, Vec<u32>) {
+    let mut cells = Vec::new();
+    let mut shapes = Vec::with_capacity(each.len());
+    let mut equal: HashMap<&[Cell], u32> = HashMap::new();
+    let mut leaders: Vec<Vec<f32>> = Vec::new();
+    for own in each {
+        if let Some(&shape) = equal.get(&own[..]) {
+            shapes.push(shape);
+            continue;
+        }
+        let profile = profile(own, grid);
+        let found = leaders.iter().enumerate().find_map(|(m, leader)| {
+            let turn = (0..grid.around).find(|&turn| unlike(&profile, leader, grid, turn) <= tolerance)?;
+            Some((m * grid.around + turn) as u32)
+        });
+        let shape = found.unwrap_or_else(|| {
+            cells.extend_from_slice(own);
+            leaders.push(profile);
+            ((leaders.len() - 1) * grid.around) as u32
+        });
+        equal.insert(&own[..], shape);
+        shapes.push(shape);
+    }
+    (cells, shapes)
+}
+
+/// Strands of each rib in three parts of its length: root, middle and tip.
+fn profile(cells: &[Cell], grid: RibGrid) -> Vec<f32> {
+    let points = grid.points();
+    let third = points.div_ceil(3);
+    let ribs = cells.chunks(points).flat_map(|rib| rib.chunks(third));
+    ribs.map(|part| part.iter().map(|cell| cell.strands()).sum()).collect()
+}
+
+/// The difference of two profiles as a fraction of the first, with the second turned.
+fn unlike(a: &[f32], b: &[f32], grid: RibGrid, turn: usize) -> f32 {
+    let parts = a.len() / (grid.layers * grid.around).max(1);
+    let total: f32 = a.iter().sum();
+    let mut sum = 0.0;
+    for layer in 0..grid.layers {
+        for rib in 0..grid.around {
+            let at = (layer * grid.around + rib) * parts;
+            let other = (layer * grid.around + (rib + turn) % grid.around) * parts;
+            for part in 0..parts {
+                sum += (a[at + part] - b[other + part]).abs();
+            }
+        }
+    }
+    if total > 0.0 { sum / total } else { 0.0 }
+}

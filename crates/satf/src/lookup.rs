@@ -1,0 +1,134 @@
+//! Reading records: the semantics-aware texture function (Xu et al., "SATF", equation 4).
+//!
+//! Plain arithmetic on bytes, so that a shader can do the same.
+
+use std::f32::consts::TAU;
+
+use crate::database::Database;
+use crate::features::SectorRef;
+use crate::layout::{ANGLES, MIP_START, MIPS, opacity_start, reflectance_start, texels_of};
+
+/// Two neighbours on a circle of equally spaced samples, and where between them a position is.
+#[derive(Clone, Copy, Debug)]
+struct Between {
+    low: usize,
+    high: usize,
+    fraction: f32,
+}
+
+impl Between {
+    /// Around `position`, in samples, on a circle of `count`. A position that is no number is at 0.
+    fn new(position: f32, count: usize) -> Self {
+        let low = position.floor();
+        let fraction = if position.is_finite() { position - low } else { 0.0 };
+        let low = (low as i32).rem_euclid(count as i32) as usize;
+        Self { low, high: (low + 1) % count, fraction }
+    }
+
+    /// The sample nearest to `position`.
+    fn nearest(position: f32, count: usize) -> Self {
+        Self { fraction: 0.0, ..Self::new(position + 0.5, count) }
+    }
+
+    fn mix(self, value: impl Fn(usize) -> f32) -> f32 {
+        let low = value(self.low);
+        // Half of all samples of a literal look-up need no second value.
+        if self.fraction == 0.0 { low } else { low + (value(self.high) - low) * self.fraction }
+    }
+}
+
+/// Where the values of a look-up are.
+struct Place {
+    view: Between,
+    light: Between,
+    /// Two levels of detail, each with its texels.
+    levels: [(usize, Between); 2],
+    level_fraction: f32,
+}
+
+impl Place {
+    fn new(of: SectorRef, angles: [f32; 2], u: f32, mip: f32, nearest: bool) -> Self {
+        let side = if of.mirrored { -1.0 } else { 1.0 };
+        let u = if of.mirrored { 1.0 - u } else { u };
+        let around = if nearest { Between::nearest } else { Between::new };
+        let [view, light] = angles.map(|angle| around(side * angle * (ANGLES as f32 / TAU), ANGLES));
+        // The maximum of NaN and 0 is 0.
+        let mip = mip.max(0.0).min((MIPS - 1) as f32);
+        let mip = if nearest { mip.round() } else { mip };
+        let fine = mip as usize;
+        let levels = [fine, (fine + 1).min(MIPS - 1)].map(|level| {
+            let count = texels_of(level);
+            (MIP_START[level], around(u * count as f32 - 0.5, count))
+        });
+        Self { view, light, levels, level_fraction: mip - fine as f32 }
+    }
+
+    fn texels(&self, value: impl Fn(usize) -> f32) -> f32 {
+        let level = |(start, texels): (usize, Between)| texels.mix(|i| value(start + i));
+        let fine = level(self.levels[0]);
+        if self.level_fraction == 0.0 {
+            fine
+        } else {
+            fine + (level(self.levels[1]) - fine) * self.level_fraction
+        }
+    }
+}
+
+impl Database {
+    fn opacity_at(&self, of: SectorRef, place: &Place) -> f32 {
+        let sector = of.index as usize;
+        let stored = place.view.mix(|view| {
+            let record = &self.opacities()[opacity_start(sector, view)..];
+            place.texels(|texel| f32::from(record[texel]))
+        }) / 255.0;
+        if of.tau_ratio == 1.0 { stored } else { 1.0 - (1.0 - stored).powf(of.tau_ratio) }
+    }
+
+    fn reflectance_at(&self, of: SectorRef, place: &Place) -> f32 {
+        let sector = of.index as usize;
+        place.view.mix(|view| {
+            place.light.mix(|light| {
+                let record = &self.reflectances()[reflectance_start(sector, view, light)..];
+                place.texels(|texel| f32::from(record[texel]))
+            })
+        }) / 255.0
+    }
+
+    /// The opacity at `u` of the outer arc, 0..1 and periodic, toward the azimuth `theta_v`.
+    ///
+    /// Azimuths are in radians in the plane of the sector, from the outward normal, positive toward rising u. `mip` is the
+    /// level of detail: 0 with 32 texels to 5 with a single one. Linear between texels, azimuths and levels.
+    pub fn opacity(&self, of: SectorRef, theta_v: f32, u: f32, mip: f32) -> f32 {
+        self.opacity_at(of, &Place::new(of, [theta_v, 0.0], u, mip, false))
+    }
+
+    /// Opacity and reflectance at `u` toward the azimuth `theta_v`, lit from the azimuth `theta_l`: see
+    /// [`Database::opacity`]. The reflectance is that of the hair that is met, not multiplied by the opacity.
+    pub fn sample(&self, of: SectorRef, theta_v: f32, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
+        let place = Place::new(of, [theta_v, theta_l], u, mip, false);
+        (self.opacity_at(of, &place), self.reflectance_at(of, &place))
+    }
+
+    /// [`Database::opacity`] of the nearest record and texel, as in the paper.
+    pub fn opacity_nearest(&self, of: SectorRef, theta_v: f32, u: f32, mip: f32) -> f32 {
+        self.opacity_at(of, &Place::new(of, [theta_v, 0.0], u, mip, true))
+    }
+
+    /// [`Database::sample`] of the nearest record and texel, as in the paper.
+    pub fn sample_nearest(&self, of: SectorRef, theta_v: f32, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
+        let place = Place::new(of, [theta_v, theta_l], u, mip, true);
+        (self.opacity_at(of, &place), self.reflectance_at(of, &place))
+    }
+
+    /// The mean of [`Database::sample`] over all azimuths of view: for an eye that looks along the strands, which has no
+    /// azimuth. See [`crate::azimuth`].
+    pub fn sample_any_view(&self, of: SectorRef, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
+        let mut sum = (0.0, 0.0);
+        for view in 0..ANGLES {
+            let theta_v = view as f32 * (TAU / ANGLES as f32);
+            let (opacity, reflectance) = self.sample(of, theta_v, theta_l, u, mip);
+            sum = (sum.0 + opacity, sum.1 + reflectance);
+        }
+        (sum.0 / ANGLES as f32, sum.1 / ANGLES as f32)
+    }
+}
