@@ -51,7 +51,9 @@ impl Database {
     /// A database from the finest level of its records, `[sector][view][32]` and `[sector][view][light][32]`.
     pub(crate) fn from_finest(opacities: &[u8], reflectances: &[u8]) -> Self {
         let mut database = Self { opacities: vec![0; OPACITIES], reflectances: vec![0; REFLECTANCES] };
-        for (all, finest) in [(&mut database.opacities, opacities), (&mut database.reflectances, reflectances)] {
+        for (all, finest) in
+            [(&mut database.opacities, opacities), (&mut database.reflectances, reflectances)]
+        {
             for (record, finest) in all.chunks_exact_mut(RECORD).zip(finest.chunks_exact(layout::TEXELS)) {
                 record[..layout::TEXELS].copy_from_slice(finest);
             }

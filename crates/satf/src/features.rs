@@ -39,7 +39,8 @@ impl Curl {
     /// The class of a helix with `radius` and `pitch` (advance in a turn), for volumes of `length` whose sectors are
     /// `width` wide; all in metres.
     pub fn of_helix(radius: f32, pitch: f32, length: f32, width: f32) -> Self {
-        let half_turn = (std::f32::consts::PI * length / pitch.abs().max(1e-9)).min(std::f32::consts::FRAC_PI_2);
+        let half_turn =
+            (std::f32::consts::PI * length / pitch.abs().max(1e-9)).min(std::f32::consts::FRAC_PI_2);
         Self::of_reach(2.0 * radius.abs() * half_turn.sin() / width.abs().max(1e-9))
     }
 }
@@ -134,8 +135,7 @@ mod tests {
     fn each_bin_finds_itself_and_its_mirror_image() {
         for index in 0..PATTERNS * DEPTHS {
             let (curl, [s_centroid, t_centroid]) = pattern(index / DEPTHS);
-            let features =
-                Features { optical_depth: depth_of(index % DEPTHS), s_centroid, t_centroid, curl };
+            let features = Features { optical_depth: depth_of(index % DEPTHS), s_centroid, t_centroid, curl };
             let found = SectorRef::of(&features);
             assert_eq!((found.index, found.mirrored), (index as u32, false));
             assert!((found.tau_ratio - 1.0).abs() < 1e-5);

@@ -110,10 +110,9 @@ impl Sector {
             let (below, above) = (up.saturating_sub(1), (up + 1).min(HEIGHT - 1));
             for across in 0..ACROSS {
                 let (left, right) = ((across + ACROSS - 1) % ACROSS, (across + 1) % ACROSS);
-                let along_s =
-                    (self.at(right, up) - self.at(left, up)) * ACROSS as f32 / (2.0 * WIDTH);
-                let along_t =
-                    (self.at(across, above) - self.at(across, below)) * HEIGHT as f32 / (above - below) as f32;
+                let along_s = (self.at(right, up) - self.at(left, up)) * ACROSS as f32 / (2.0 * WIDTH);
+                let along_t = (self.at(across, above) - self.at(across, below)) * HEIGHT as f32
+                    / (above - below) as f32;
                 points[up * ACROSS + across] =
                     Local { density: self.at(across, up), gradient: Vec2::new(along_s, along_t) };
             }
@@ -150,12 +149,14 @@ fn gaussian(x: f32, sigma: f32) -> f32 {
 
 /// The azimuth number `k` of [`crate::layout::ANGLES`] as a direction `(sin, cos)`: along s and t. Exact mirror images.
 pub(crate) fn direction(k: usize) -> Vec2 {
-    let quarter = |k: usize| if k.is_multiple_of(4) { 0.0 } else { (TAU * k as f32 / 16.0).sin() };
     // The sine of the first quarter turn gives all others without rounding errors of their own.
+    let quarter = |k: usize| (TAU * k as f32 / 16.0).sin();
     let sine = |k: usize| match k % 16 {
-        k @ 0..4 => quarter(k),
-        4 | 12 => if k % 16 == 4 { 1.0 } else { -1.0 },
-        k @ 5..=8 => quarter(8 - k),
+        0 | 8 => 0.0,
+        4 => 1.0,
+        12 => -1.0,
+        k @ 1..4 => quarter(k),
+        k @ 5..8 => quarter(8 - k),
         k @ 9..12 => -quarter(k - 8),
         k => -quarter(16 - k),
     };

@@ -103,7 +103,8 @@ impl Path {
     fn new(u: f32, toward_eye: Vec2) -> Self {
         let least = 1.0 / (LONGEST_PATH * WIDTH);
         let steep = toward_eye.y.abs() >= least;
-        let cos = if steep { toward_eye.y } else { least.copysign(if toward_eye.y < -1e-6 { -1.0 } else { 1.0 }) };
+        let cos =
+            if steep { toward_eye.y } else { least.copysign(if toward_eye.y < -1e-6 { -1.0 } else { 1.0 }) };
         let sin = if steep { toward_eye.x } else { (1.0 - least * least).sqrt().copysign(toward_eye.x) };
         let length = 1.0 / cos.abs();
         let steps = (length * STEPS - 1e-3).ceil().max(1.0);
