@@ -11,6 +11,8 @@ use crate::ellipse::Ellipse;
 
 /// This part of the strands lies within the disk; the rest are strays, which belong to the outermost layer.
 const WITHIN: f32 = 0.97;
+/// Passes of a short filter over the scales of the disks.
+const SMOOTHING_PASSES: usize = 6;
 
 /// Strands of a wisp at the cross-sections of its disks and halfway between them.
 pub(super) struct Placed {
@@ -80,12 +82,29 @@ pub(super) fn place(style: &Hairstyle, wisp: &Wisp, halves: usize, least: f32) -
             }
         }
         fit.scale = holding(&mut radii);
-        for i in 0..strands.len() {
-            places[i * halves + half].0 /= fit.scale;
-        }
         fits.push(fit);
     }
+    smooth_scales(&mut fits);
+    for row in places.chunks_exact_mut(halves) {
+        for ((place, _), fit) in row.iter_mut().zip(&fits) {
+            *place /= fit.scale;
+        }
+    }
     Placed { end, fits, places, halves }
+}
+
+/// Smooths the scales along a wisp. Which strand is the outermost changes from one cross-section to the next; without this,
+/// all strands would seem to move outward and inward.
+fn smooth_scales(fits: &mut [DiskFit]) {
+    for _ in 0..SMOOTHING_PASSES {
+        let mut before = fits.first().map_or(1.0, |fit| fit.scale);
+        for i in 0..fits.len() {
+            let next = fits[(i + 1).min(fits.len() - 1)].scale;
+            let here = fits[i].scale;
+            fits[i].scale = 0.25 * before + 0.5 * here + 0.25 * next;
+            before = here;
+        }
+    }
 }
 
 /// The offsets and the width of a strand at `param`, between its points `at` and `at + 1`; a width of 0 beyond its ends.
