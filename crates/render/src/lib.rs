@@ -31,8 +31,8 @@ mod uniform;
 
 pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
-pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
 pub use clusters::HairDrawing;
+pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
 pub use gpu::{ColorScale, Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};

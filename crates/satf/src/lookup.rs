@@ -6,9 +6,9 @@ use std::f32::consts::TAU;
 
 use crate::database::Database;
 use crate::features::SectorRef;
-use crate::layout::{ANGLES, MIP_START, MIPS, opacity_start, reflectance_start, texels_of};
+use crate::layout::{ANGLES, MIP_START, MIPS, RECORD, texels_of};
 
-/// Two neighbours on a circle of equally spaced samples, and where between them a position is.
+/// Two neighbours on a circle of equally spaced samples, whose number is a power of two, and where between them a position is.
 #[derive(Clone, Copy, Debug)]
 struct Between {
     low: usize,
@@ -16,20 +16,26 @@ struct Between {
     fraction: f32,
 }
 
+/// Positions are at least minus this; a multiple of every number of samples.
+const TURNS: f32 = 1024.0;
+
 impl Between {
     /// Around `position`, in samples, on a circle of `count`. A position that is no number is at 0.
+    #[inline]
     fn new(position: f32, count: usize) -> Self {
-        let low = position.floor();
-        let fraction = if position.is_finite() { position - low } else { 0.0 };
-        let low = (low as i32).rem_euclid(count as i32) as usize;
-        Self { low, high: (low + 1) % count, fraction }
+        // The maximum of NaN and 0 is 0.
+        let position = (position + TURNS).max(0.0).min(2.0 * TURNS);
+        let low = position as usize;
+        Self { low: low & (count - 1), high: (low + 1) & (count - 1), fraction: position - low as f32 }
     }
 
     /// The sample nearest to `position`.
+    #[inline]
     fn nearest(position: f32, count: usize) -> Self {
         Self { fraction: 0.0, ..Self::new(position + 0.5, count) }
     }
 
+    #[inline]
     fn mix(self, value: impl Fn(usize) -> f32) -> f32 {
         let low = value(self.low);
         // Half of all samples of a literal look-up need no second value.
@@ -41,16 +47,19 @@ impl Between {
 struct Place {
     view: Between,
     light: Between,
-    /// Two levels of detail, each with its texels.
+    /// Two levels of detail, each with its first texel and its texels.
     levels: [(usize, Between); 2],
     level_fraction: f32,
 }
 
 impl Place {
+    #[inline]
     fn new(of: SectorRef, angles: [f32; 2], u: f32, mip: f32, nearest: bool) -> Self {
         let side = if of.mirrored { -1.0 } else { 1.0 };
         let u = if of.mirrored { 1.0 - u } else { u };
-        let around = if nearest { Between::nearest } else { Between::new };
+        let around = |position: f32, count: usize| {
+            if nearest { Between::nearest(position, count) } else { Between::new(position, count) }
+        };
         let [view, light] = angles.map(|angle| around(side * angle * (ANGLES as f32 / TAU), ANGLES));
         // The maximum of NaN and 0 is 0.
         let mip = mip.max(0.0).min((MIPS - 1) as f32);
@@ -63,8 +72,12 @@ impl Place {
         Self { view, light, levels, level_fraction: mip - fine as f32 }
     }
 
-    fn texels(&self, value: impl Fn(usize) -> f32) -> f32 {
-        let level = |(start, texels): (usize, Between)| texels.mix(|i| value(start + i));
+    /// The value of a record.
+    #[inline]
+    fn texels(&self, record: &[u8; RECORD]) -> f32 {
+        // The mask tells the compiler that no index is out of range.
+        let level =
+            |(start, texels): (usize, Between)| texels.mix(|i| f32::from(record[(start + i) & (RECORD - 1)]));
         let fine = level(self.levels[0]);
         if self.level_fraction == 0.0 {
             fine
@@ -74,23 +87,27 @@ impl Place {
     }
 }
 
+/// Record number `index` of an array of records.
+#[inline]
+fn record(records: &[u8], index: usize) -> &[u8; RECORD] {
+    let start = index * RECORD;
+    records[start..].first_chunk().unwrap_or(&[0; RECORD])
+}
+
 impl Database {
+    #[inline]
     fn opacity_at(&self, of: SectorRef, place: &Place) -> f32 {
-        let sector = of.index as usize;
-        let stored = place.view.mix(|view| {
-            let record = &self.opacities()[opacity_start(sector, view)..];
-            place.texels(|texel| f32::from(record[texel]))
-        }) / 255.0;
+        let first = of.index as usize * ANGLES;
+        let stored = place.view.mix(|view| place.texels(record(self.opacities(), first + view))) / 255.0;
         if of.tau_ratio == 1.0 { stored } else { 1.0 - (1.0 - stored).powf(of.tau_ratio) }
     }
 
+    #[inline]
     fn reflectance_at(&self, of: SectorRef, place: &Place) -> f32 {
-        let sector = of.index as usize;
+        let first = of.index as usize * ANGLES;
         place.view.mix(|view| {
-            place.light.mix(|light| {
-                let record = &self.reflectances()[reflectance_start(sector, view, light)..];
-                place.texels(|texel| f32::from(record[texel]))
-            })
+            let first = (first + view) * ANGLES;
+            place.light.mix(|light| place.texels(record(self.reflectances(), first + light)))
         }) / 255.0
     }
 
@@ -109,14 +126,27 @@ impl Database {
         (self.opacity_at(of, &place), self.reflectance_at(of, &place))
     }
 
+    /// Opacity and reflectance as they are stored, without the ratio of optical depths: see [`Database::sample`].
+    #[inline]
+    pub fn sample_stored(&self, of: SectorRef, angles: [f32; 2], u: f32, mip: f32) -> (f32, f32) {
+        let place = Place::new(of, angles, u, mip, false);
+        (self.opacity_at(SectorRef { tau_ratio: 1.0, ..of }, &place), self.reflectance_at(of, &place))
+    }
+
+    /// The mean reflectance of a record.
+    #[inline]
+    pub fn mean_reflectance(&self, of: SectorRef, angles: [f32; 2]) -> f32 {
+        self.reflectance_at(of, &Place::new(of, angles, 0.5, (MIPS - 1) as f32, false))
+    }
+
     /// [`Database::opacity`] of the nearest record and texel, as in the paper.
     pub fn opacity_nearest(&self, of: SectorRef, theta_v: f32, u: f32, mip: f32) -> f32 {
         self.opacity_at(of, &Place::new(of, [theta_v, 0.0], u, mip, true))
     }
 
     /// [`Database::sample`] of the nearest record and texel, as in the paper.
-    pub fn sample_nearest(&self, of: SectorRef, theta_v: f32, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
-        let place = Place::new(of, [theta_v, theta_l], u, mip, true);
+    pub fn sample_nearest(&self, of: SectorRef, angles: [f32; 2], u: f32, mip: f32) -> (f32, f32) {
+        let place = Place::new(of, angles, u, mip, true);
         (self.opacity_at(of, &place), self.reflectance_at(of, &place))
     }
 

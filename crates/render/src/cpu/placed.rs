@@ -9,6 +9,7 @@ use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 
 use super::bins::Bins;
+use super::clusters::PlacedClusters;
 use super::hair::blend::{BlendState, BlendTile, blend_segments_simd};
 use super::hair::list::{Fragments, ListTile, list_segments_simd};
 use super::hair::order::SegmentKeys;
@@ -38,6 +39,8 @@ pub(super) struct PlacedScene {
     pub segment_bins: Bins,
     keys: SegmentKeys,
     closed: Closedness,
+    /// Hair that is drawn as clusters, beside strands or in their place.
+    pub clusters: PlacedClusters,
 }
 
 /// Scratch memory of a thread for one tile.
@@ -66,6 +69,7 @@ impl PlacedScene {
             segment_bins: Bins::default(),
             keys: SegmentKeys::default(),
             closed: Closedness::default(),
+            clusters: PlacedClusters::default(),
         }
     }
 
@@ -86,6 +90,12 @@ impl PlacedScene {
         shade_all(self.width, view, &from, is_draft, &mut self.points);
         self.all_segments = Arc::clone(&details.segments);
         self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
+    }
+
+    /// Draws no strand.
+    pub fn clear_strands(&mut self) {
+        self.points.clear();
+        self.whole = 0;
     }
 
     /// First points of the segments whose points both exist, in the order of points.
@@ -130,7 +140,9 @@ impl PlacedScene {
 
     /// Whether a tile is empty.
     pub fn is_empty(&self, tile: usize) -> bool {
-        self.surface.bins.of(tile).is_empty() && self.segment_bins.of(tile).is_empty()
+        self.surface.bins.of(tile).is_empty()
+            && self.segment_bins.of(tile).is_empty()
+            && self.clusters.is_empty(tile)
     }
 
     /// Rasterises the body in a tile, and the hair in front of it.
@@ -145,8 +157,11 @@ impl PlacedScene {
         self.draw_body(grid, posed_body(input), tile, scratch);
         scratch.hair.clear();
         let segments = self.segment_bins.of(tile);
-        if !segments.is_empty() {
-            self.draw_hair(view, input.picture.transparency, grid.origin(tile), segments, scratch);
+        let transparency = input.picture.transparency;
+        if !self.clusters.is_empty(tile) {
+            self.draw_mixed(view, transparency, grid.origin(tile), (tile, segments), scratch);
+        } else if !segments.is_empty() {
+            self.draw_hair(view, transparency, grid.origin(tile), segments, scratch);
         }
     }
 
@@ -194,17 +209,40 @@ impl PlacedScene {
             scratch.order = order;
             scratch.blend.write(&mut scratch.hair);
         } else {
-            let input = ListTile {
-                origin,
-                points: &self.points,
-                segments,
-                first_points: self.segments(),
-                samples: &scratch.samples,
-                opacity,
-            };
-            list_segments_simd(self.width, &input, &mut scratch.fragments);
+            scratch.fragments.clear();
+            self.list_strands(view, origin, segments, scratch);
             resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
         }
+    }
+
+    /// Adds the fragments of strands to the list.
+    fn list_strands(&self, view: &View, origin: [f32; 2], segments: &[u32], scratch: &mut TileScratch) {
+        let input = ListTile {
+            origin,
+            points: &self.points,
+            segments,
+            first_points: self.segments(),
+            samples: &scratch.samples,
+            opacity: view.uniform.width_opacity_tip_scalp.y,
+        };
+        list_segments_simd(self.width, &input, &mut scratch.fragments);
+    }
+
+    /// Draws clusters, and strands among them.
+    fn draw_mixed(
+        &self,
+        view: &View,
+        transparency: Transparency,
+        origin: [f32; 2],
+        (tile, segments): (usize, &[u32]),
+        scratch: &mut TileScratch,
+    ) {
+        scratch.fragments.clear();
+        if !segments.is_empty() {
+            self.list_strands(view, origin, segments, scratch);
+        }
+        self.clusters.draw(origin, tile, &scratch.samples, &mut scratch.fragments);
+        resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
     }
 }
 

@@ -57,6 +57,8 @@ struct Hair<'a> {
     drawn: &'a DrawnStrands,
     /// Whether the points that are drawn are those of the last picture.
     same_points: bool,
+    /// The part of the optical depth that strands have; the rest is that of clusters.
+    share: f32,
 }
 
 /// The output.
@@ -170,6 +172,7 @@ impl CpuRenderer {
             HairPose::Guides(_) if unchanged.hair => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
+        let share = self.placed.clusters.follow(input, height);
         let mut drawn = std::mem::take(&mut self.drawn);
         let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
         let interpolate_ms = watch.ms();
@@ -177,7 +180,7 @@ impl CpuRenderer {
         let watch = Stopwatch::start();
         light.follow(input);
         let ambient_ms = watch.ms();
-        let hair = Hair { stored: strands, drawn: &drawn, same_points };
+        let hair = Hair { stored: strands, drawn: &drawn, same_points, share: 1.0 - share };
         let mut stats = self.draw(input, (&hair, &light), unchanged, width, height, target);
         (self.strands, self.drawn, self.light) = (made, drawn, Some(light));
         if let Ok(stats) = &mut stats {
@@ -223,20 +226,36 @@ impl CpuRenderer {
         let drawn = hair.drawn.portion();
         let uniform = FrameUniform::new(input, drawn, light, (width, height), &self.maps, DEPTH_TEXELS);
         let tables = &light.tables;
-        let fibre = (input.look.shading == HairShading::Fibre)
-            .then(|| FibreView { tables, lights: fibre::lights(tables, input.lights) });
-        let view = View::new(&uniform, (&light.grid, fibre), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+        let fibre_view = || {
+            (input.look.shading == HairShading::Fibre)
+                .then(|| FibreView { tables, lights: fibre::lights(tables, input.lights) })
+        };
+        let view =
+            View::new(&uniform, (&light.grid, fibre_view()), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
         if !unchanged.body {
             passed("draw/body-depth", &part);
         }
 
         let part = Stopwatch::start();
         let details = &hair.drawn.details;
-        self.placed.shade(&view, (strands, details), &self.shadow.at_points, input.is_draft);
+        if hair.share > 0.0 {
+            self.placed.shade(&view, (strands, details), &self.shadow.at_points, input.is_draft);
+        } else {
+            self.placed.clear_strands();
+        }
         passed("draw/points", &part);
 
-        let part = Stopwatch::start();
         let grid = Grid::new(width, height);
+        if let Some(ribs) = self.placed.clusters.ribs().cloned() {
+            let part = Stopwatch::start();
+            let of_ribs = FrameInput { style: &ribs, ..*input };
+            let uniform = FrameUniform::new(&of_ribs, None, light, (width, height), &self.maps, DEPTH_TEXELS);
+            let lit = (&light.grid, fibre_view());
+            let view = View::new(&uniform, lit, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+            self.placed.clusters.place(self.placed.width, input, &view, &self.shadow, &grid);
+            passed("draw/clusters", &part);
+        }
+        let part = Stopwatch::start();
         self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
         passed("draw/sort", &part);
 

@@ -1,10 +1,12 @@
 //! Rasterises the layers of a column of hair shell volumes, and looks up what they let through and reflect.
 
-use lovelock_satf::{Cell, ClusterHair, ClusterLighting, ClusterSettings, ClusterView, Database, LocalShadow, RecordLookup};
+use lovelock_satf::{
+    Cell, ClusterHair, ClusterLighting, ClusterSettings, ClusterView, Database, LocalShadow, RecordLookup,
+};
 
 use super::vertices::{Vertex, corners};
 use crate::cpu::hair::list::{Fragment, Fragments, covered_samples};
-use crate::cpu::math::{exp, log2, max, min, mix, saturate, three};
+use crate::cpu::math::{exp, exp2, log2, max, min, mix, pow, saturate, three};
 use crate::cpu::surface::raster::{SAMPLES, SurfaceSamples};
 use crate::cpu::tile::{STRIDE, TILE};
 
@@ -36,6 +38,8 @@ struct Layer {
     depths: [f32; 2],
     /// Thickness of the layer as a fraction of its radius.
     thickness: f32,
+    /// One over the mean reflectance in the middle; 1 where light is as published.
+    inverse_mean: f32,
 }
 
 /// A place on the outer surface of a layer.
@@ -44,8 +48,8 @@ struct Place {
     /// From rib to rib and from section to section, 0 to 1.
     u: f32,
     t: f32,
-    view: f32,
-    light: f32,
+    angles: [f32; 2],
+    cos_view: f32,
     sin_view: f32,
     mip: f32,
 }
@@ -58,8 +62,10 @@ impl Columns<'_> {
         let [a, b, c, d] = corners;
         let angles = [0, 1].map(|k| unwrapped(corners.map(|v| v.angles[k])));
         for index in 0..grid.layers {
-            let layer = self.layer(column, index, corners);
-            let width = 0.5 * (distance(layer.corners[0], layer.corners[1]) + distance(layer.corners[2], layer.corners[3]));
+            let layer = self.layer(column, index, corners, angles);
+            let width = 0.5
+                * (distance(layer.corners[0], layer.corners[1])
+                    + distance(layer.corners[2], layer.corners[3]));
             // Texels in a pixel.
             let mip = log2(max(32.0 / max(width, 1e-3), 1.0));
             for (triangle, parameters) in TRIANGLES {
@@ -72,8 +78,8 @@ impl Columns<'_> {
                     let place = Place {
                         u,
                         t,
-                        view: bilinear(angles[0]),
-                        light: bilinear(angles[1]),
+                        angles: angles.map(bilinear),
+                        cos_view: bilinear([a.cos_view, b.cos_view, c.cos_view, d.cos_view]),
                         sin_view: bilinear([a.sin_view, b.sin_view, c.sin_view, d.sin_view]),
                         mip,
                     };
@@ -82,23 +88,31 @@ impl Columns<'_> {
                         return;
                     }
                     let gain = match self.settings.lighting {
-                        ClusterLighting::AsStrands => 1.0 + self.settings.detail * (reflected - 1.0),
+                        ClusterLighting::AsStrands => {
+                            1.0 + self.settings.detail * (reflected * layer.inverse_mean - 1.0)
+                        }
                         ClusterLighting::Paper => reflected,
                     };
-                    let gain = max(gain, 0.0) * self.own_shadow(column, index, corners, place);
+                    let gain = max(gain, 0.0) * self.own_shadow(column, index, (corners, angles), place);
                     let color = match self.settings.view {
-                        ClusterView::Hair => three(|k| bilinear([0, 1, 2, 3].map(|q| layer.colors[q][k])) * gain),
+                        ClusterView::Hair => {
+                            three(|k| bilinear([0, 1, 2, 3].map(|q| layer.colors[q][k])) * gain)
+                        }
                         ClusterView::Records => record_color(layer.cells[1][usize::from(t > 0.5)]),
                     };
                     let depth = mixed(points.map(|p| p[2]));
-                    out.push(at, Fragment { depth, alpha, color, seen: covered, covered: 0 });
+                    let pixel =
+                        [(at % STRIDE) as f32 + self.origin[0], (at / STRIDE) as f32 + self.origin[1]];
+                    let hash = (column * grid.layers + index) as f32 * 0.618_034;
+                    let opaque = covered_samples(alpha, pixel, hash - hash.floor());
+                    out.push(at, Fragment { depth, alpha, color, seen: covered, covered: opaque });
                 });
             }
         }
     }
 
     /// The layer `index` of a column.
-    fn layer(&self, column: usize, index: usize, corners: [&Vertex; 4]) -> Layer {
+    fn layer(&self, column: usize, index: usize, corners: [&Vertex; 4], angles: [[f32; 4]; 2]) -> Layer {
         let grid = self.hair.grid;
         let (rib, i) = (column / grid.along, column % grid.along);
         let (cluster, rib) = (rib / grid.around, rib % grid.around);
@@ -106,16 +120,27 @@ impl Columns<'_> {
         let radius = grid.radius(index, self.hair.core);
         let [a, b, c, d] = corners;
         let arc = [a, c].map(|v| self.depth * v.inverse_arc / radius);
-        let cell = |side: usize, section: usize| self.hair.cell(cluster, index, (rib + side + grid.around - 1) % grid.around, i + section);
+        let cell = |side: usize, section: usize| {
+            self.hair.cell(cluster, index, (rib + side + grid.around - 1) % grid.around, i + section)
+        };
+        let cells = [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]);
+        let inverse_mean = match self.settings.lighting {
+            ClusterLighting::AsStrands => {
+                let middle = angles.map(|of| 0.25 * (of[0] + of[1] + of[2] + of[3]));
+                1.0 / max(self.database.mean_reflectance(cells[1][0].sector(1.0), middle), 0.02)
+            }
+            ClusterLighting::Paper => 1.0,
+        };
         Layer {
             corners: [a, b, c, d].map(|v| {
                 let [x, y, z] = three(|k| mix(v.at[0][k], v.at[1][k], outward));
                 [x - self.origin[0], y - self.origin[1], z]
             }),
             colors: [a, b, c, d].map(|v| three(|k| mix(v.color[0][k], v.color[1][k], outward))),
-            cells: [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]),
+            cells,
             depths: arc,
             thickness: (1.0 - self.hair.core) / (grid.layers as f32 * radius),
+            inverse_mean,
         }
     }
 
@@ -123,7 +148,7 @@ impl Columns<'_> {
     fn look_up(&self, layer: &Layer, place: Place) -> (f32, f32) {
         let own = self.between_sections(layer, 1, place);
         // Sectors with different records are blended over two texels.
-        let blended = min(0.5, exp_2(place.mip) / 32.0);
+        let blended = min(0.5, exp2(place.mip) / 32.0);
         let (side, distance) = if place.u < 0.5 { (0, place.u) } else { (2, 1.0 - place.u) };
         if distance >= blended || self.settings.lookup == RecordLookup::Nearest {
             return own;
@@ -136,7 +161,7 @@ impl Columns<'_> {
     /// Opacity and reflectance between the two boundary sectors (Xu et al., equation 7).
     fn between_sections(&self, layer: &Layer, side: usize, place: Place) -> (f32, f32) {
         let [low, high] = layer.cells[side];
-        let curved = curved(place.view, layer.thickness);
+        let curved = curved(place.cos_view, layer.thickness);
         let depths = [low.strands() * layer.depths[0] * curved, high.strands() * layer.depths[1] * curved];
         if low.0 & 0xffff == high.0 & 0xffff {
             return self.record(low, mix(depths[0], depths[1], place.t), place);
@@ -145,35 +170,40 @@ impl Columns<'_> {
         (mix(a.0, b.0, place.t), mix(a.1, b.1, place.t))
     }
 
-    /// Opacity and reflectance of a record; the latter relative to the mean of the record where light is that of strands.
+    /// Opacity and reflectance of a record.
     fn record(&self, cell: Cell, depth: f32, place: Place) -> (f32, f32) {
         let of = cell.sector(depth);
         if of.tau_ratio <= 0.0 {
             return (0.0, 1.0);
         }
-        let Place { view, light, u, mip, .. } = place;
-        let (mut alpha, mut reflected) = match self.settings.lookup {
-            RecordLookup::Interpolated => self.database.sample(of, view, light, u, mip),
-            RecordLookup::Nearest => self.database.sample_nearest(of, view, light, u, mip),
+        let Place { angles, u, mip, .. } = place;
+        let (stored, mut reflected) = match self.settings.lookup {
+            RecordLookup::Interpolated => self.database.sample_stored(of, angles, u, mip),
+            RecordLookup::Nearest => {
+                self.database.sample_nearest(SectorRef { tau_ratio: 1.0, ..of }, angles, u, mip)
+            }
         };
+        let mut alpha = 1.0 - pow(1.0 - stored, of.tau_ratio);
         if place.sin_view < ALONG_HAIR {
-            let any = self.database.sample_any_view(of, light, u, mip);
+            let any = self.database.sample_any_view(of, angles[1], u, mip);
             let share = place.sin_view / ALONG_HAIR;
             (alpha, reflected) = (mix(any.0, alpha, share), mix(any.1, reflected, share));
-        }
-        if self.settings.lighting == ClusterLighting::AsStrands {
-            let (_, mean) = self.database.sample(of, view, light, 0.5, 5.0);
-            reflected /= max(mean, 0.02);
         }
         (alpha, reflected)
     }
 
     /// The light that outer layers let through to a place on layer `index` (Xu et al., equation 12).
-    fn own_shadow(&self, column: usize, index: usize, corners: [&Vertex; 4], place: Place) -> f32 {
+    fn own_shadow(
+        &self,
+        column: usize,
+        index: usize,
+        (corners, angles): ([&Vertex; 4], [[f32; 4]; 2]),
+        place: Place,
+    ) -> f32 {
         let strength = self.settings.shadow_strength;
         let outer = |f: &dyn Fn(f32) -> f32, place: Place| -> f32 {
             (index + 1..self.hair.grid.layers)
-                .map(|outer| f(self.look_up(&self.layer(column, outer, corners), place).0))
+                .map(|outer| f(self.look_up(&self.layer(column, outer, corners, angles), place).0))
                 .sum()
         };
         let depth_of = |alpha: f32| -log2(max(1.0 - alpha, 1e-4)) * std::f32::consts::LN_2;
@@ -182,7 +212,7 @@ impl Columns<'_> {
             LocalShadow::Layers => exp(-strength * outer(&depth_of, place)),
             LocalShadow::Linear => max(1.0 - strength * outer(&|alpha| alpha, place), 0.0),
             LocalShadow::Directional => {
-                let toward = Place { view: place.light, sin_view: 1.0, ..place };
+                let toward = Place { angles: [place.angles[1]; 2], cos_view: 1.0, sin_view: 1.0, ..place };
                 exp(-strength * outer(&depth_of, toward))
             }
         }
@@ -201,7 +231,7 @@ impl Columns<'_> {
             return;
         }
         let tile = TILE as f32;
-        let low = |k: usize| max(min(min(a[k], b[k]), c[k]) - 1.0, 0.0);
+        let low = |k: usize| max(min(min(a[k], b[k]), c[k]), 0.0);
         let high = |k: usize| min(max(max(a[k], b[k]), c[k]), tile - 1.0);
         let (left, top, right, bottom) = (low(0), low(1), high(0), high(1));
         if !(left <= right && top <= bottom) {
@@ -250,23 +280,18 @@ fn unwrapped(angles: [f32; 4]) -> [f32; 4] {
     angles.map(|angle| angle - turn * ((angle - angles[0]) / turn).round())
 }
 
-/// The way of a ray through a layer as a fraction of that through a flat one of the same thickness, `thickness` being relative to the
+/// The way of a ray, whose azimuth has the cosine `cos`, through a layer as a fraction of that through a flat one of the same thickness, `thickness` being relative to the
 /// radius. Near the silhouette a ray leaves the layer through the surface by which it came in; half of that way belongs to each of the
 /// two faces.
-fn curved(azimuth: f32, thickness: f32) -> f32 {
-    let (sin, cos) = azimuth.sin_cos();
-    let cos = cos.abs();
-    let inner = (1.0 - thickness) * (1.0 - thickness) - sin * sin;
+fn curved(cos: f32, thickness: f32) -> f32 {
+    let cos = min(cos.abs(), 1.0);
+    let inner = (1.0 - thickness) * (1.0 - thickness) - (1.0 - cos * cos);
     let way = if inner > 0.0 { cos - inner.sqrt() } else { cos };
     way * max(cos, 1.0 / 6.0) / max(thickness, 1e-3)
 }
 
 fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     ((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])).sqrt()
-}
-
-fn exp_2(x: f32) -> f32 {
-    crate::cpu::math::exp2(x)
 }
 
 /// A colour for a record: hues for patterns, brighter for denser ones.

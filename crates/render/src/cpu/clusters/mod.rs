@@ -6,22 +6,20 @@ mod vertices;
 use std::sync::Arc;
 
 use lovelock_groom::simd::Width;
-use lovelock_groom::{HairShading, Strands, interpolate};
-use lovelock_satf::{ClusterHair, ClusterSettings, Database};
+use lovelock_groom::{Hairstyle, Strands, interpolate};
+use lovelock_satf::cache::shared;
+use lovelock_satf::{ClusterHair, ClusterSettings};
 
 use super::bins::Bins;
 use super::hair::list::Fragments;
 use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::raster::SurfaceSamples;
 use super::tile::Grid;
-use super::view::{FibreView, View};
+use super::view::View;
+use crate::FrameInput;
 use crate::clusters::{ClusterStage, cluster_share, guides_of};
-use crate::fibre;
-use crate::scene_light::SceneLight;
 use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
-use crate::uniform::{FrameUniform, LightMaps};
-use crate::FrameInput;
 use columns::Columns;
 use vertices::Vertex;
 
@@ -44,16 +42,6 @@ pub(super) struct PlacedClusters {
     depth: f32,
 }
 
-/// What clusters are placed in.
-pub(super) struct ClusterScene<'a> {
-    pub light: &'a SceneLight,
-    pub maps: &'a [LightMaps],
-    pub shadow: &'a ShadowStage,
-    pub view: &'a View<'a>,
-    pub depth_texels: u32,
-    pub size: (u32, u32),
-}
-
 impl PlacedClusters {
     /// Follows the hair of `input`. Returns the part of its optical depth that clusters have.
     pub fn follow(&mut self, input: &FrameInput, height: u32) -> f32 {
@@ -72,23 +60,28 @@ impl PlacedClusters {
         self.share
     }
 
-    /// Lights and projects the ribs, and sorts the columns between them into tiles.
-    pub fn place(&mut self, width: Width, input: &FrameInput, scene: &ClusterScene, grid: &Grid) {
+    /// The hairstyle of the ribs, if there are any.
+    pub fn ribs(&self) -> Option<&Arc<Hairstyle>> {
+        self.hair.as_ref().map(|hair| &hair.ribs)
+    }
+
+    /// Lights and projects the ribs, and sorts the columns between them into tiles. `view` is that of the ribs.
+    pub fn place(
+        &mut self,
+        width: Width,
+        input: &FrameInput,
+        view: &View,
+        shadow: &ShadowStage,
+        grid: &Grid,
+    ) {
         let Some(hair) = &self.hair else { return };
-        scene.shadow.look_up_more(&self.ribs, &mut self.transmittance);
-        let of_ribs = FrameInput { style: &hair.ribs, ..*input };
-        let uniform = FrameUniform::new(&of_ribs, None, scene.light, scene.size, scene.maps, scene.depth_texels);
-        let fibre = (input.look.shading == HairShading::Fibre).then(|| FibreView {
-            tables: &scene.light.tables,
-            lights: fibre::lights(&scene.light.tables, input.lights),
-        });
-        let view = scene.view.of_other_strands(&uniform, fibre);
+        shadow.look_up_more(&self.ribs, &mut self.transmittance);
         let from = PointsIn {
             strands: &self.ribs,
             details: &self.details.words,
             transmittance: &self.transmittance,
         };
-        shade_all(width, &view, &from, false, &mut self.shaded);
+        shade_all(width, view, &from, false, &mut self.shaded);
         vertices::place(hair, &self.ribs, &self.shaded, input, &mut self.vertices);
         let opacity = input.picture.strand_opacity;
         self.depth = self.share * opacity * lovelock_satf::strand_width(input.look, hair.strands);
@@ -109,7 +102,7 @@ impl PlacedClusters {
         let Some(hair) = &self.hair else { return };
         let columns = Columns {
             hair,
-            database: Database::shared(),
+            database: &shared().0,
             vertices: &self.vertices,
             settings: &self.settings,
             depth: self.depth,

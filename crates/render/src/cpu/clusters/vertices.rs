@@ -15,6 +15,8 @@ pub(super) struct Vertex {
     pub at: [[f32; 3]; 2],
     /// Light there.
     pub color: [[f32; 3]; 2],
+    /// Cosine of the azimuth of the eye.
+    pub cos_view: f32,
     /// Azimuths of the eye and of the strongest light, from the outward normal.
     pub angles: [f32; 2],
     /// One over the length of the outer arc to the next rib, 1/metres.
@@ -60,6 +62,7 @@ pub(super) fn place(
                     at: rings.map(|point| [point.x, point.y, point.depth]),
                     color: rings.map(|point| point.color),
                     angles: [azimuth(to_eye), azimuth(to_light)],
+                    cos_view: azimuth(to_eye).cos(),
                     inverse_arc: 1.0 / here.distance(next).max(1e-6),
                     sin_view: if drawn { to_eye.cross(tangent).length() } else { -1.0 },
                 };
@@ -85,7 +88,7 @@ pub(super) fn bounds(vertices: &[Vertex], grid: RibGrid, column: usize) -> Optio
         return None;
     }
     let points = corners.iter().flat_map(|v| v.at).map(|[x, y, _]| Vec2::new(x, y));
-    let (low, high) = points
-        .fold((Vec2::MAX, Vec2::MIN), |(low, high), point| (low.min(point), high.max(point)));
+    let (low, high) =
+        points.fold((Vec2::MAX, Vec2::MIN), |(low, high), point| (low.min(point), high.max(point)));
     Some([low.x, low.y, high.x, high.y])
 }
