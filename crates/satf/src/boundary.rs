@@ -126,7 +126,7 @@ impl VolumeRecords {
     pub fn sample(&self, database: &Database, gamma: f32, u: f32, mip: f32) -> (f32, f32) {
         let read = |of: &RecordRef| {
             if self.literal {
-                database.sample_nearest(of.sector, of.theta_v, of.theta_l, u, mip)
+                database.sample_nearest(of.sector, [of.theta_v, of.theta_l], u, mip)
             } else {
                 database.sample(of.sector, of.theta_v, of.theta_l, u, mip)
             }

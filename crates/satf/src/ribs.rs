@@ -97,7 +97,8 @@ pub(crate) fn rib_style(
             for rib in 0..grid.around {
                 let at = direction(rib, grid.around) * radius;
                 let mean = sections.iter().map(|s| s.in_guides(at)).sum::<Vec2>() / sections.len() as f32;
-                let weights = weights_of(mean);
+                // Beyond the guides, offsets hold the rest: extrapolated weights would exaggerate how the wisp opens and closes.
+                let weights = weights_of(mean.clamp_length_max(1.2));
                 for section in sections {
                     let offset = curve.offset_to(weights, section.u, section.place(at));
                     set.guide_param.push(section.u);

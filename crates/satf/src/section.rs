@@ -3,10 +3,10 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use lovelock_groom::{Hairstyle, Wisp, WispCurve};
 
+use crate::ellipse::Ellipse;
+
 /// A section of a cluster is at least this wide from its middle, metres.
 const LEAST_RADIUS: f32 = 0.0005;
-/// The guides of a wisp span its sections only if their triangle is at least this round: its area over that of an equal-sided one.
-const ROUND: f32 = 0.02;
 
 /// The places of the guides in the unit disk: an equal-sided triangle (`r_g` of the exact construction).
 pub(crate) fn reference(guide: usize) -> Vec2 {
@@ -35,11 +35,14 @@ pub(crate) struct Crossing {
 pub(crate) struct Section {
     /// Parameter along the guides, links.
     pub u: f32,
-    /// The mean of the guides, and their frame (normal, binormal, tangent), head space.
+    /// The mean of the guides and their frame (normal, binormal, tangent), head space.
     pub middle: Vec3,
     pub frame: Mat3,
-    /// From the disk of the guides to the plane of the section, metres.
+    /// From the disk of the guides to the plane of the section, metres: `M(t)` with the reference triangle on the guides.
     pub guides: Mat2,
+    /// How far along the hair a place of the disk of the guides lies, metres: at the scalp, where hair lies flat, strands of a wisp begin
+    /// before and behind each other.
+    pub slope: Vec2,
     /// From the disk of the strands to the disk of the guides: they fill an ellipse of their own within the triangle or beyond it.
     pub fill: Mat2,
     pub offset: Vec2,
@@ -54,8 +57,8 @@ impl Section {
 
     /// A place of the strands' disk in head space.
     pub fn place(&self, disk: Vec2) -> Vec3 {
-        let q = self.guides * self.in_guides(disk);
-        self.middle + self.frame * Vec3::new(q.x, q.y, 0.0)
+        let d = self.in_guides(disk);
+        self.middle + self.frame * (self.guides * d).extend(self.slope.dot(d.clamp_length_max(1.0)))
     }
 }
 
@@ -75,12 +78,8 @@ pub(crate) fn sections_of(style: &Hairstyle, wisp: &Wisp, steps: usize) -> Vec<S
         .map(|i| {
             let u = end * i as f32 / steps as f32;
             let (middle, frame) = (curve.blend([1.0 / 3.0; 3], u), curve.frame(u));
-            let planar = |p: Vec3| (frame.transpose() * (p - middle)).truncate();
-            let guides = spanned([0, 1, 2].map(|g| {
-                let mut only = [0.0; 3];
-                only[g] = 1.0;
-                planar(curve.blend(only, u))
-            }));
+            let (guides, slope) =
+                spanned(GUIDES.map(|only| frame.transpose() * (curve.blend(only, u) - middle)));
             let back = guides.inverse();
             let mut crossings = Vec::with_capacity(strands.len());
             for (k, (strand, points)) in strands.iter().enumerate() {
@@ -94,34 +93,37 @@ pub(crate) fn sections_of(style: &Hairstyle, wisp: &Wisp, steps: usize) -> Vec<S
                 let t = ((u - low) / (high - low).max(1e-6)).clamp(0.0, 1.0);
                 let i = points.start + after - 1;
                 let mix = |of: &[f32]| of[i] + (of[i + 1] - of[i]) * t;
-                let offset =
-                    Vec3::new(mix(&set.offset_normal), mix(&set.offset_binormal), mix(&set.offset_tangent));
-                let at = back * planar(curve.point(set.weights[*strand], u, offset));
+                let aside = Vec2::new(mix(&set.offset_normal), mix(&set.offset_binormal));
+                let weights = set.weights[*strand];
+                let at = (0..3).map(|g| reference(g) * weights[g]).sum::<Vec2>() + back * aside;
                 if at.is_finite() {
                     crossings.push(Crossing { strand: k, at, taper: mix(&set.taper).max(0.0) });
                 }
             }
-            Section { u, middle, frame, guides, fill: Mat2::IDENTITY, offset: Vec2::ZERO, crossings }
+            let (fill, offset) = (Mat2::IDENTITY, Vec2::ZERO);
+            Section { u, middle, frame, guides, slope, fill, offset, crossings }
         })
         .collect();
-    if !sections.iter().all(|s| s.middle.is_finite() && s.guides.is_finite()) {
+    if !sections.iter().all(|s| s.middle.is_finite() && s.guides.is_finite() && s.slope.is_finite()) {
         return Vec::new();
     }
     fill(&mut sections);
     sections
 }
 
-/// The map from the unit disk that takes the reference triangle to the guides at `q`. Guides on a line or in a point span no section:
-/// theirs is a circle.
-fn spanned(q: [Vec2; 3]) -> Mat2 {
-    let mut m = Mat2::ZERO;
+/// The weights of each guide alone.
+const GUIDES: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// The map from the unit disk that takes the reference triangle to the guides at `q`: its part in the plane of the section, and that
+/// along the hair. Guides on a line or in a point would span no section: theirs keeps some thickness.
+fn spanned(q: [Vec3; 3]) -> (Mat2, Vec2) {
+    let (mut m, mut slope) = (Mat2::ZERO, Vec2::ZERO);
     for (g, q) in q.into_iter().enumerate() {
-        let r = reference(g);
-        m += Mat2::from_cols(q * r.x, q * r.y) * (2.0 / 3.0);
+        let r = reference(g) * (2.0 / 3.0);
+        m += Mat2::from_cols(q.truncate() * r.x, q.truncate() * r.y);
+        slope += r * q.z;
     }
-    let size = (m.x_axis.length_squared() + m.y_axis.length_squared()).sqrt();
-    let round = 2.0 * m.determinant().abs() >= ROUND * size * size;
-    if round && size > 2.0 * LEAST_RADIUS { m } else { Mat2::IDENTITY * size.max(4.0 * LEAST_RADIUS) }
+    (Ellipse::of(m).widened(2.0 * LEAST_RADIUS).matrix(), slope)
 }
 
 /// Mean and covariance of the places of strands in a section.
@@ -210,11 +212,12 @@ mod tests {
     }
 
     #[test]
-    fn guides_on_a_line_span_a_circle() {
-        let line = spanned([Vec2::ZERO, Vec2::new(0.01, 0.0), Vec2::new(0.03, 0.0)]);
+    fn guides_on_a_line_span_a_thin_section() {
+        let (line, _) = spanned([Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0), Vec3::new(0.03, 0.0, 0.0)]);
         assert!(line.determinant() > 1e-6, "{line}");
-        let round = spanned([0, 1, 2].map(|g| reference(g) * 0.01));
+        let (round, slope) = spanned([0, 1, 2].map(|g| (reference(g) * 0.01).extend(0.2 * reference(g).x)));
+        assert!((slope - Vec2::new(0.2, 0.0)).length() < 1e-6, "{slope}");
         assert!((round - Mat2::IDENTITY * 0.01).to_cols_array().iter().all(|x| x.abs() < 1e-7), "{round}");
-        assert!(spanned([Vec2::ZERO; 3]).determinant() > 0.0);
+        assert!(spanned([Vec3::ZERO; 3]).0.determinant().abs() > 0.0);
     }
 }

@@ -137,10 +137,10 @@ pub struct ClusterSettings {
 impl Default for ClusterSettings {
     fn default() -> Self {
         Self {
-            layers: 5,
+            layers: 4,
             core: 0.35,
-            around: 16,
-            along: 20,
+            around: 12,
+            along: 16,
             macro_tolerance: 0.0,
             lookup: RecordLookup::default(),
             lighting: ClusterLighting::default(),
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn few_clusters_are_divided_as_asked_and_many_stay_within_the_limit() {
         let settings = ClusterSettings { around: 32, along: 32, ..ClusterSettings::default() };
-        assert_eq!(settings.grid(40, 400_000), RibGrid { layers: 5, around: 32, along: 32 });
+        assert_eq!(settings.grid(40, 400_000), RibGrid { layers: 4, around: 32, along: 32 });
         let many = settings.grid(1000, 400_000);
         assert!(many.volumes() * 1000 <= 400_000 && many.around >= 6 && many.layers >= 2, "{many:?}");
         // Nothing becomes too coarse to be a lock.

@@ -237,11 +237,16 @@ impl PlacedScene {
         (tile, segments): (usize, &[u32]),
         scratch: &mut TileScratch,
     ) {
+        let TileScratch { samples, hair, order, .. } = scratch;
+        if segments.is_empty() && transparency == Transparency::Sorted {
+            self.clusters.blend(origin, tile, samples, order, hair);
+            return;
+        }
         scratch.fragments.clear();
         if !segments.is_empty() {
             self.list_strands(view, origin, segments, scratch);
         }
-        self.clusters.draw(origin, tile, &scratch.samples, &mut scratch.fragments);
+        self.clusters.list(origin, tile, &scratch.samples, &mut scratch.fragments);
         resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
     }
 }

@@ -50,7 +50,7 @@ fn a_look_up_at_a_record_is_that_record() {
         let (theta_v, theta_l) = (azimuth(view), azimuth(light) - TAU);
         let read = database.sample(of, theta_v, theta_l, middle(texel) + 1.0, 0.0);
         assert!((read.0 - stored.0).abs() < 1e-3 && (read.1 - stored.1).abs() < 1e-3, "{read:?} {stored:?}");
-        let nearest = database.sample_nearest(of, theta_v + 0.1, theta_l - 0.1, middle(texel) + 0.01, 0.2);
+        let nearest = database.sample_nearest(of, [theta_v + 0.1, theta_l - 0.1], middle(texel) + 0.01, 0.2);
         assert_eq!(nearest, stored);
         assert!((database.opacity(of, theta_v, middle(texel), 0.0) - stored.0).abs() < 1e-3);
         assert_eq!(database.opacity_nearest(of, theta_v, middle(texel), 0.0), stored.0);
@@ -167,7 +167,7 @@ fn look_ups_with_what_is_no_number_are_finite() {
         for mirrored in [false, true] {
             let of = SectorRef { index: 3, mirrored, tau_ratio: 1.0 };
             for (alpha, re) in
-                [database().sample(of, odd, odd, odd, odd), database().sample_nearest(of, odd, odd, odd, odd)]
+                [database().sample(of, odd, odd, odd, odd), database().sample_nearest(of, [odd; 2], odd, odd)]
             {
                 assert!((0.0..=1.0).contains(&alpha) && (0.0..=1.0).contains(&re), "{odd}");
             }

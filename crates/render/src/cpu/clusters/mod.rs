@@ -1,6 +1,9 @@
 //! Hair as clusters on the CPU: the definition of what `gpu/clusters` draws.
 
 mod columns;
+mod pixels;
+mod records;
+mod sink;
 mod vertices;
 
 use std::sync::Arc;
@@ -14,13 +17,14 @@ use super::bins::Bins;
 use super::hair::list::Fragments;
 use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::raster::SurfaceSamples;
-use super::tile::Grid;
+use super::tile::{Grid, HairPlanes};
 use super::view::View;
 use crate::FrameInput;
 use crate::clusters::{ClusterStage, cluster_share, guides_of};
 use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
 use columns::Columns;
+use sink::Blend;
 use vertices::Vertex;
 
 /// The clusters of a frame; kept from frame to frame.
@@ -97,20 +101,44 @@ impl PlacedClusters {
         self.hair.is_none() || self.bins.of(tile).is_empty()
     }
 
-    /// Adds the fragments of a tile.
-    pub fn draw(&self, origin: [f32; 2], tile: usize, samples: &SurfaceSamples, out: &mut Fragments) {
-        let Some(hair) = &self.hair else { return };
-        let columns = Columns {
-            hair,
+    /// Blends the clusters of a tile from near to far, layer by layer.
+    pub fn blend(
+        &self,
+        origin: [f32; 2],
+        tile: usize,
+        samples: &SurfaceSamples,
+        order: &mut Vec<u64>,
+        out: &mut HairPlanes,
+    ) {
+        let Some(columns) = self.columns(origin, samples) else { return };
+        columns.sort(self.bins.of(tile), order);
+        let mut sink = Blend(out);
+        let layers = columns.hair.grid.layers;
+        for &entry in order.iter() {
+            let quad = entry as u32 as usize;
+            columns.draw(quad / layers, quad % layers, &mut sink);
+        }
+    }
+
+    /// Adds the fragments of a tile to the list.
+    pub fn list(&self, origin: [f32; 2], tile: usize, samples: &SurfaceSamples, out: &mut Fragments) {
+        let Some(columns) = self.columns(origin, samples) else { return };
+        for &column in self.bins.of(tile) {
+            for layer in 0..columns.hair.grid.layers {
+                columns.draw(column as usize, layer, out);
+            }
+        }
+    }
+
+    fn columns<'a>(&'a self, origin: [f32; 2], samples: &'a SurfaceSamples) -> Option<Columns<'a>> {
+        Some(Columns {
+            hair: self.hair.as_ref()?,
             database: &shared().0,
             vertices: &self.vertices,
             settings: &self.settings,
             depth: self.depth,
             origin,
             samples,
-        };
-        for &column in self.bins.of(tile) {
-            columns.draw(column as usize, out);
-        }
+        })
     }
 }

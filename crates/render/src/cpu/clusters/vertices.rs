@@ -51,11 +51,13 @@ pub(super) fn place(
                 let across = next - p(rib + around - 1, i);
                 let along = p(rib, (i + 1).min(points - 1)) - p(rib, i.saturating_sub(1));
                 let tangent = along.normalize_or_zero();
-                let normal = across.cross(tangent).normalize_or_zero();
-                let side = tangent.cross(normal);
+                let side = (across - tangent * across.dot(tangent)).normalize_or_zero();
+                let at = rib * points + i;
+                // Outward, also where the guides have turned the wisp inside out.
+                let normal = side.cross(tangent);
+                let normal = normal * normal.dot(here - ribs.point(first + at)).signum();
                 let to_eye = (input.camera.eye - here).normalize_or_zero();
                 let azimuth = |v: Vec3| v.dot(side).atan2(v.dot(normal));
-                let at = rib * points + i;
                 let rings = [&shaded[first + at], &shaded[outer + at]];
                 let drawn = rings.iter().all(|point| point.half_width >= 0.0) && normal != Vec3::ZERO;
                 out[at] = Vertex {
@@ -63,7 +65,7 @@ pub(super) fn place(
                     color: rings.map(|point| point.color),
                     angles: [azimuth(to_eye), azimuth(to_light)],
                     cos_view: azimuth(to_eye).cos(),
-                    inverse_arc: 1.0 / here.distance(next).max(1e-6),
+                    inverse_arc: 1.0 / (next - here).cross(tangent).length().max(1e-6),
                     sin_view: if drawn { to_eye.cross(tangent).length() } else { -1.0 },
                 };
             }
