@@ -10,7 +10,7 @@ use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_satf::{ClusterHair, ClusterSettings};
 use serde::{Deserialize, Serialize};
 
-use crate::{FrameInput, HairPose};
+use crate::{FrameInput, HairPose, PictureSettings, StrandCount};
 
 /// What hair is drawn as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -85,6 +85,21 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
         HairPose::Guides(guides) => Some(guides),
         HairPose::Strands(_) => input.guides,
     }
+}
+
+/// The picture's settings where only clusters are drawn: strands, which cast shadows only, are as they are stored.
+pub(crate) fn without_strands(picture: &PictureSettings) -> PictureSettings {
+    PictureSettings { strands: StrandCount::Stored, ..*picture }
+}
+
+/// `input` where only the clusters of `hair` are drawn: its casters in place of the hairstyle.
+pub(crate) fn of_casters<'a>(
+    input: &FrameInput<'a>,
+    hair: &'a ClusterHair,
+    picture: &'a PictureSettings,
+) -> FrameInput<'a> {
+    let hair_pose = guides_of(input).map_or(input.hair, HairPose::Guides);
+    FrameInput { style: &hair.casters, hair: hair_pose, picture, ..*input }
 }
 
 /// The clusters of the last hairstyle, kept until it or their division changes.

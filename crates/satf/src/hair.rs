@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use lovelock_groom::Hairstyle;
+use lovelock_groom::{Hairstyle, StrandSet, Wisp};
 use rayon::prelude::*;
 
 use crate::cells::{Cell, cells_of, strand_width};
@@ -19,6 +19,9 @@ const MOST_VOLUMES: usize = 400_000;
 pub struct ClusterHair {
     /// A hairstyle of the ribs, with the guides of the original. Its strands are ordered by cluster, ring and rib.
     pub ribs: Arc<Hairstyle>,
+    /// The hairstyle that casts shadows in place of the original: some strands of each wisp, which are as much wider. The original
+    /// itself if its wisps have few strands.
+    pub casters: Arc<Hairstyle>,
     /// How each cluster is divided.
     pub grid: RibGrid,
     /// Radius of the empty core, as a fraction of the section.
@@ -33,7 +36,7 @@ pub struct ClusterHair {
 
 impl ClusterHair {
     /// The clusters of `style`.
-    pub fn new(style: &Hairstyle, settings: &ClusterSettings) -> Self {
+    pub fn new(style: &Arc<Hairstyle>, settings: &ClusterSettings) -> Self {
         let wisps = style.wisps.iter().filter(|w| w.strand_count > 0).count();
         let grid = settings.grid(wisps, MOST_VOLUMES);
         let core = settings.core.clamp(0.0, 0.9);
@@ -52,7 +55,7 @@ impl ClusterHair {
         let ribs =
             rib_style(style, &sections, grid, core, |wisp, rib| shade_of(style, wisp, &sections[wisp], rib));
         let (cells, shapes) = shared(&each, grid, settings.macro_tolerance);
-        Self { ribs, grid, core, cells, shapes, strands: style.strands.count() }
+        Self { ribs, casters: casters_of(style), grid, core, cells, shapes, strands: style.strands.count() }
     }
 
     /// The number of clusters.
@@ -80,6 +83,45 @@ impl ClusterHair {
         let first = shape / around * self.grid.cells();
         self.cells[first + (layer * around + rib) * self.grid.points() + section]
     }
+}
+
+/// Of hairstyles of more strands, only so many cast shadows where clusters are drawn.
+const CASTERS: usize = 3500;
+/// The fewest strands of a wisp that cast shadows.
+const FEWEST_CASTERS: usize = 12;
+
+/// A part of the strands of each wisp, evenly.
+fn casters_of(style: &Arc<Hairstyle>) -> Arc<Hairstyle> {
+    let set = &style.strands;
+    let step = (set.count() / CASTERS).max(1);
+    if step == 1 || style.check().is_err() {
+        return Arc::clone(style);
+    }
+    let mut kept = StrandSet { first_point: vec![0], ..StrandSet::default() };
+    let mut wisps = Vec::with_capacity(style.wisps.len());
+    for wisp in &style.wisps {
+        let count = wisp.strand_count as usize;
+        let keep = (count / step).max(FEWEST_CASTERS).min(count);
+        wisps.push(Wisp { first_strand: kept.wisp.len() as u32, strand_count: keep as u32, ..*wisp });
+        for k in 0..keep {
+            let s = wisp.first_strand as usize + k * count / keep;
+            let points = set.first_point[s] as usize..set.first_point[s + 1] as usize;
+            kept.wisp.push(set.wisp[s]);
+            kept.weights.push(set.weights[s]);
+            kept.shade.push(set.shade[s]);
+            for (to, from) in [
+                (&mut kept.guide_param, &set.guide_param),
+                (&mut kept.offset_normal, &set.offset_normal),
+                (&mut kept.offset_binormal, &set.offset_binormal),
+                (&mut kept.offset_tangent, &set.offset_tangent),
+                (&mut kept.taper, &set.taper),
+            ] {
+                to.extend_from_slice(&from[points.clone()]);
+            }
+            kept.first_point.push(kept.guide_param.len() as u32);
+        }
+    }
+    Arc::new(Hairstyle { wisps, strands: kept, ..(**style).clone() })
 }
 
 /// The shade of a rib: that of one of the strands of its wisp, so that clusters vary as strands do.

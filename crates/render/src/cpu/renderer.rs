@@ -20,6 +20,7 @@ use super::pool::Pool;
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
 use super::view::{FibreView, View};
+use crate::clusters::{of_casters, without_strands};
 use crate::fibre;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
@@ -163,6 +164,12 @@ impl CpuRenderer {
     ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
         let watch = Stopwatch::start();
+        let share = self.placed.clusters.follow(input, height);
+        let clusters = self.placed.clusters.hair();
+        let picture = without_strands(input.picture);
+        let casters =
+            clusters.as_ref().filter(|_| share >= 1.0).map(|hair| of_casters(input, hair, &picture));
+        let input = casters.as_ref().unwrap_or(input);
         let mut unchanged = self.kept.follow(input);
         if !self.keeps {
             unchanged = Unchanged { body: false, hair: false };
@@ -172,7 +179,6 @@ impl CpuRenderer {
             HairPose::Guides(_) if unchanged.hair => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
-        let share = self.placed.clusters.follow(input, height);
         let mut drawn = std::mem::take(&mut self.drawn);
         let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
         let interpolate_ms = watch.ms();

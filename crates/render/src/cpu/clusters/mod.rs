@@ -64,6 +64,11 @@ impl PlacedClusters {
         self.share
     }
 
+    /// The clusters of the frame, if there are any.
+    pub fn hair(&self) -> Option<Arc<ClusterHair>> {
+        self.hair.clone()
+    }
+
     /// The hairstyle of the ribs, if there are any.
     pub fn ribs(&self) -> Option<&Arc<Hairstyle>> {
         self.hair.as_ref().map(|hair| &hair.ribs)

@@ -25,28 +25,31 @@ pub(super) fn each_pixel<S: Sink>(
     if !(left <= right && top <= bottom) {
         return;
     }
-    // Edges in one direction, so that the neighbour on the other side of an edge finds the opposite sign.
-    let edge = |p: [f32; 3], q: [f32; 3]| {
-        let (dx, dy) = ((q[0] - p[0]) / area, (q[1] - p[1]) / area);
-        move |x: f32, y: f32| dx * (y - p[1]) - dy * (x - p[0])
-    };
-    let edges = (edge(b, c), edge(c, a), edge(a, b));
+    let edges = [Edge::new(b, c, area), Edge::new(c, a, area), Edge::new(a, b, area)];
     for y in top as usize..=bottom as usize {
-        for x in left as usize..=right as usize {
-            let weights = |x: f32, y: f32| [edges.0(x, y), edges.1(x, y), edges.2(x, y)];
+        let (mut from, mut to) = (left, right);
+        for edge in &edges {
+            edge.narrow(y as f32, &mut from, &mut to);
+        }
+        // False for NaN.
+        if !(from <= to) {
+            continue;
+        }
+        for x in from as usize..=to as usize {
             let at = y * STRIDE + x;
             if !sink.is_open(at) {
                 continue;
             }
+            let weights = edges.map(|edge| edge.at(x as f32, y as f32));
             let mut covered = 0;
             for (s, [sx, sy]) in SAMPLES.into_iter().enumerate() {
-                let inside = weights(x as f32 + sx, y as f32 + sy).iter().all(|&w| w >= 0.0);
-                covered |= u32::from(inside) << s;
+                let inside = |k: usize| weights[k] + edges[k].x * sx + edges[k].y * sy >= 0.0;
+                covered |= u32::from(inside(0) & inside(1) & inside(2)) << s;
             }
             if covered == 0 {
                 continue;
             }
-            let middle = weights(x as f32 + 0.5, y as f32 + 0.5).map(|w| max(w, 0.0));
+            let middle = [0, 1, 2].map(|k| max(weights[k] + 0.5 * (edges[k].x + edges[k].y), 0.0));
             let inverse = 1.0 / (middle[0] + middle[1] + middle[2]);
             let middle = middle.map(|w| w * inverse);
             let depth = middle[0] * a[2] + middle[1] * b[2] + middle[2] * c[2];
@@ -56,6 +59,37 @@ pub(super) fn each_pixel<S: Sink>(
             if covered != 0 {
                 visit(middle, covered, at, sink);
             }
+        }
+    }
+}
+
+/// An edge of a triangle: the barycentric coordinate of the corner beside it is `x * px + y * py + c`.
+#[derive(Clone, Copy)]
+struct Edge {
+    x: f32,
+    y: f32,
+    c: f32,
+}
+
+impl Edge {
+    fn new(p: [f32; 3], q: [f32; 3], area: f32) -> Self {
+        let (x, y) = ((p[1] - q[1]) / area, (q[0] - p[0]) / area);
+        Self { x, y, c: -(x * p[0] + y * p[1]) }
+    }
+
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.x * x + self.y * y + self.c
+    }
+
+    /// Narrows the columns of row `y` to those of which the edge leaves a part inside.
+    fn narrow(&self, y: f32, from: &mut f32, to: &mut f32) {
+        let inside = max(self.at(0.0, y), self.at(0.0, y + 1.0));
+        if self.x > 0.0 {
+            *from = max(*from, -inside / self.x - 1.0);
+        } else if self.x < 0.0 {
+            *to = min(*to, -inside / self.x);
+        } else if inside < 0.0 {
+            *to = -1.0;
         }
     }
 }
