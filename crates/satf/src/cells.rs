@@ -31,6 +31,11 @@ impl Cell {
         f16::from_bits((self.0 >> 16) as u16).to_f32()
     }
 
+    /// Whether both refer to the same sector of the database.
+    pub fn has_sector_of(self, other: Self) -> bool {
+        self.0 & 0xffff == other.0 & 0xffff
+    }
+
     /// The sector of the database for an optical depth.
     pub fn sector(self, optical_depth: f32) -> SectorRef {
         let index = self.0 & 0x7fff;

@@ -41,4 +41,5 @@ pub use disk::{DiskFrames, DiskPlan};
 pub use features::{Curl, Features, SectorRef};
 pub use hair::ClusterHair;
 pub use ribs::RibGrid;
-pub use settings::{ClusterLighting, ClusterSettings, ClusterView, LocalShadow, RecordLookup};
+pub use settings::{ClusterLighting, ClusterSettings, ClusterView, RecordLookup};
+pub use shadow::LocalShadow;

@@ -133,12 +133,6 @@ impl Database {
         (self.opacity_at(SectorRef { tau_ratio: 1.0, ..of }, &place), self.reflectance_at(of, &place))
     }
 
-    /// The mean reflectance of a record.
-    #[inline]
-    pub fn mean_reflectance(&self, of: SectorRef, angles: [f32; 2]) -> f32 {
-        self.reflectance_at(of, &Place::new(of, angles, 0.5, (MIPS - 1) as f32, false))
-    }
-
     /// [`Database::opacity`] of the nearest record and texel, as in the paper.
     pub fn opacity_nearest(&self, of: SectorRef, theta_v: f32, u: f32, mip: f32) -> f32 {
         self.opacity_at(of, &Place::new(of, [theta_v, 0.0], u, mip, true))
@@ -150,13 +144,13 @@ impl Database {
         (self.opacity_at(of, &place), self.reflectance_at(of, &place))
     }
 
-    /// The mean of [`Database::sample`] over all azimuths of view: for an eye that looks along the strands, which has no
+    /// The mean of [`Database::sample_stored`] over all azimuths of view: for an eye that looks along the strands, which has no
     /// azimuth. See [`crate::azimuth`].
-    pub fn sample_any_view(&self, of: SectorRef, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
+    pub fn stored_any_view(&self, of: SectorRef, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
         let mut sum = (0.0, 0.0);
         for view in 0..ANGLES {
             let theta_v = view as f32 * (TAU / ANGLES as f32);
-            let (opacity, reflectance) = self.sample(of, theta_v, theta_l, u, mip);
+            let (opacity, reflectance) = self.sample_stored(of, [theta_v, theta_l], u, mip);
             sum = (sum.0 + opacity, sum.1 + reflectance);
         }
         (sum.0 / ANGLES as f32, sum.1 / ANGLES as f32)

@@ -5,6 +5,7 @@ use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
 use crate::ribs::RibGrid;
+use crate::shadow::LocalShadow;
 
 /// How the light on a layer is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -24,34 +25,6 @@ impl Choices for ClusterLighting {
         match self {
             Self::AsStrands => ("as-strands", "As strands"),
             Self::Paper => ("paper", "As published"),
-        }
-    }
-}
-
-/// How a cluster shadows itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LocalShadow {
-    /// By the shadow map, at each layer, as strands are.
-    #[default]
-    Map,
-    /// By its outer layers, exponentially (Xu et al., equation 12); the map is looked up where light enters the cluster.
-    Layers,
-    /// The same with the linear form that is printed.
-    Linear,
-    /// By the layers that the light crosses.
-    Directional,
-}
-
-impl Choices for LocalShadow {
-    const ALL: &'static [Self] = &[Self::Map, Self::Layers, Self::Linear, Self::Directional];
-
-    fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Map => ("map", "Shadow map"),
-            Self::Layers => ("layers", "Outer layers"),
-            Self::Linear => ("linear", "Outer layers, linear"),
-            Self::Directional => ("directional", "Layers toward the light"),
         }
     }
 }

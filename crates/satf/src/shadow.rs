@@ -3,20 +3,37 @@
 use std::f32::consts::TAU;
 
 use glam::Vec2;
+use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
 
-/// How the layers of a cluster shadow each other.
+/// How a cluster shadows itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LocalShadow {
-    /// The layers outside a point dim it as layers do that light passes through: the product of `1 − α`.
+    /// By the shadow map that strands use, looked up at each layer.
     #[default]
-    Exponential,
+    Map,
+    /// The layers outside a point dim it as layers do that light passes through: the product of `1 − α`. The map is looked up where light
+    /// enters the cluster.
+    Layers,
     /// As printed: 1 minus the sum of the opacities, never below 0.
     Linear,
     /// Exponential, by the layers that the light meets on its way to the point: at the angle around the cluster where it
     /// meets them, and those beyond the core for the side away from the light.
     Directional,
+}
+
+impl Choices for LocalShadow {
+    const ALL: &'static [Self] = &[Self::Map, Self::Layers, Self::Linear, Self::Directional];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Map => ("map", "Shadow map"),
+            Self::Layers => ("layers", "Outer layers"),
+            Self::Linear => ("linear", "Outer layers, linear"),
+            Self::Directional => ("directional", "Layers toward the light"),
+        }
+    }
 }
 
 /// Transmittance through the `outside` layers, given by their opacities at the same place of the layers. Symbol: `τ_k`.
@@ -26,7 +43,7 @@ pub fn transmittance(mode: LocalShadow, strength: f32, outside: impl IntoIterato
     let outside = outside.into_iter();
     match mode {
         LocalShadow::Linear => (1.0 - strength * outside.sum::<f32>()).max(0.0),
-        LocalShadow::Exponential | LocalShadow::Directional => {
+        LocalShadow::Map | LocalShadow::Layers | LocalShadow::Directional => {
             let depth: f32 = outside.map(optical_depth).sum();
             (-strength * depth).exp()
         }

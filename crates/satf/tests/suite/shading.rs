@@ -75,15 +75,15 @@ fn layers_let_light_through_one_after_the_other() {
     let layers = [0.3, 0.5, 0.2];
     let exact: f32 = layers.iter().map(|a| 1.0 - a).product();
     let through = |mode, strength| transmittance(mode, strength, layers);
-    assert!((through(LocalShadow::Exponential, 1.0) - exact).abs() < 1e-6);
-    assert!((through(LocalShadow::Exponential, 2.0) - exact * exact).abs() < 1e-6);
+    assert!((through(LocalShadow::Layers, 1.0) - exact).abs() < 1e-6);
+    assert!((through(LocalShadow::Layers, 2.0) - exact * exact).abs() < 1e-6);
     // The opacities in place of their optical depths let more through.
     assert!(((-1.0_f32).exp() - exact).abs() > 0.05, "the control");
     assert_eq!(through(LocalShadow::Linear, 1.0), 0.0);
     assert!((through(LocalShadow::Linear, 0.5) - 0.5).abs() < 1e-6);
     assert_eq!(through(LocalShadow::Linear, 3.0), 0.0, "never negative");
-    assert_eq!(transmittance(LocalShadow::Exponential, 1.0, []), 1.0);
-    assert!(transmittance(LocalShadow::Exponential, 1.0, [1.0]) < 2e-6);
+    assert_eq!(transmittance(LocalShadow::Layers, 1.0, []), 1.0);
+    assert!(transmittance(LocalShadow::Layers, 1.0, [1.0]) < 2e-6);
     assert!(optical_depth(1.0).is_finite() && optical_depth(7.0).is_finite());
 }
 

@@ -1,9 +1,14 @@
 //! Draws columns of hair shell volumes, layer by layer.
 
-use lovelock_satf::{Cell, ClusterHair, ClusterLighting, ClusterSettings, ClusterView, Database};
+use std::f32::consts::TAU;
+
+use glam::Vec2;
+use lovelock_satf::{
+    Cell, ClusterHair, ClusterLighting, ClusterSettings, ClusterView, Database, LocalShadow, shadow,
+};
 
 use super::pixels::each_pixel;
-use super::records::{Layer, Place};
+use super::records::{Angles, Layer, Map, bilinear};
 use super::sink::Sink;
 use super::vertices::{Vertex, corners};
 use crate::cpu::hair::list::{Fragment, covered_samples};
@@ -48,66 +53,102 @@ impl Columns<'_> {
     pub fn draw<S: Sink>(&self, column: usize, index: usize, sink: &mut S) {
         let grid = self.hair.grid;
         let corners = corners(grid, column).map(|v| &self.vertices[v]);
-        let [a, b, c, d] = corners;
-        let angles = [0, 1].map(|k| unwrapped(corners.map(|v| v.angles[k])));
-        {
-            let layer = self.layer(column, index, corners, angles);
-            let width = 0.5
-                * (distance(layer.corners[0], layer.corners[1])
-                    + distance(layer.corners[2], layer.corners[3]));
-            // Texels in a pixel.
+        let angles = angles_of(corners);
+        let layer = self.layer(column, index, corners);
+        let map = |layer: &Layer, angles: &Angles| {
+            let [a, b, c, d] = layer.corners;
+            let width = 0.5 * (distance(a, b) + distance(c, d));
+            // As many texels as pixels.
             let mip = log2(max(32.0 / max(width, 1e-3), 1.0));
-            for (triangle, parameters) in TRIANGLES {
-                let points = triangle.map(|k| layer.corners[k]);
-                each_pixel(points, self.samples, sink, |weights, covered, at, sink| {
-                    let mixed = |of: [f32; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
-                    let (u, t) = (mixed(parameters.map(|p| p[0])), mixed(parameters.map(|p| p[1])));
-                    let (u, t) = (saturate(u), saturate(t));
-                    let bilinear = |of: [f32; 4]| mix(mix(of[0], of[1], u), mix(of[2], of[3], u), t);
-                    let place = Place {
-                        u,
-                        t,
-                        angles: angles.map(bilinear),
-                        cos_view: bilinear([a.cos_view, b.cos_view, c.cos_view, d.cos_view]),
-                        sin_view: bilinear([a.sin_view, b.sin_view, c.sin_view, d.sin_view]),
-                        mip,
-                    };
-                    let (alpha, reflected) = self.look_up(&layer, place);
-                    if alpha < FAINTEST {
-                        return;
+            Map::new(self.database, self.settings, layer, angles, mip)
+        };
+        let between = self.toward_light(column, index, &angles);
+        let outer: Vec<_> = between
+            .into_iter()
+            .map(|(column, index, u)| {
+                let corners = self::corners(grid, column).map(|v| &self.vertices[v]);
+                let layer = self.layer(column, index, corners);
+                let angles = angles_of(corners);
+                let angles = if u.is_some() { angles.of_light() } else { angles };
+                let map = map(&layer, &angles);
+                (layer, map, angles, u)
+            })
+            .collect();
+        // Made for the first pixel that is seen: most layers are behind others.
+        let mut own = None;
+        for (triangle, parameters) in TRIANGLES {
+            let points = triangle.map(|k| layer.corners[k]);
+            each_pixel(points, self.samples, sink, |weights, covered, at, sink| {
+                let mixed = |of: [f32; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
+                let [u, t] = [0, 1].map(|k| saturate(mixed(parameters.map(|p| p[k]))));
+                let map = own.get_or_insert_with(|| map(&layer, &angles));
+                let (alpha, reflected) = map.at(&layer, [u, t], bilinear(angles.cos_view, u, t));
+                if alpha < FAINTEST {
+                    return;
+                }
+                let gain = match self.settings.lighting {
+                    ClusterLighting::AsStrands => {
+                        max(1.0 + self.settings.detail * (reflected * map.inverse_mean - 1.0), 0.0)
                     }
-                    let gain = match self.settings.lighting {
-                        ClusterLighting::AsStrands => {
-                            1.0 + self.settings.detail * (reflected * layer.inverse_mean - 1.0)
-                        }
-                        ClusterLighting::Paper => reflected,
-                    };
-                    let gain = max(gain, 0.0) * self.own_shadow(column, index, (corners, angles), place);
-                    let color = match self.settings.view {
-                        ClusterView::Hair => {
-                            three(|k| bilinear([0, 1, 2, 3].map(|q| layer.colors[q][k])) * gain)
-                        }
-                        ClusterView::Records => record_color(layer.cells[1][usize::from(t > 0.5)]),
-                    };
-                    let depth = mixed(points.map(|p| p[2]));
-                    let pixel =
-                        [(at % STRIDE) as f32 + self.origin[0], (at / STRIDE) as f32 + self.origin[1]];
-                    let hash = (column * grid.layers + index) as f32 * 0.618_034;
-                    let opaque = covered_samples(alpha, pixel, hash - hash.floor());
-                    sink.take(at, Fragment { depth, alpha, color, seen: covered, covered: opaque });
+                    ClusterLighting::Paper => reflected,
+                };
+                let gain = gain * self.own_shadow(&outer, [u, t]);
+                let color = match self.settings.view {
+                    ClusterView::Hair => {
+                        three(|k| bilinear([0, 1, 2, 3].map(|q| layer.colors[q][k]), u, t) * gain)
+                    }
+                    ClusterView::Records => record_color(layer.cells[1][usize::from(t > 0.5)]),
+                };
+                let depth = mixed(points.map(|p| p[2]));
+                let pixel = [(at % STRIDE) as f32 + self.origin[0], (at / STRIDE) as f32 + self.origin[1]];
+                let hash = (column * grid.layers + index) as f32 * 0.618_034;
+                let opaque = covered_samples(alpha, pixel, hash - hash.floor());
+                sink.take(at, Fragment { depth, alpha, color, seen: covered, covered: opaque });
+            });
+        }
+    }
+
+    /// The layers that shadow a layer: their columns, their numbers, and where across them light passes if that is not where the eye sees
+    /// the shadowed place.
+    fn toward_light(&self, column: usize, index: usize, angles: &Angles) -> Vec<(usize, usize, Option<f32>)> {
+        let grid = self.hair.grid;
+        let outer = (index + 1..grid.layers).map(|outer| (column, outer, None));
+        match self.settings.local_shadow {
+            LocalShadow::Map => Vec::new(),
+            LocalShadow::Layers | LocalShadow::Linear => outer.collect(),
+            LocalShadow::Directional => {
+                let (rib, section) = (column / grid.along, column % grid.along);
+                let first = rib / grid.around * grid.around;
+                let sector = TAU / grid.around as f32;
+                let here = (rib - first) as f32 * sector + 0.5 * sector;
+                let radii: Vec<f32> =
+                    (0..grid.layers).map(|layer| grid.radius(layer, self.hair.core)).collect();
+                let toward = Vec2::from_angle(here + angles.light_in_middle());
+                let mut met = Vec::new();
+                shadow::crossings(&radii, index, here, toward, |crossing| {
+                    let at = crossing.u / sector;
+                    let rib = first + at as usize % grid.around;
+                    met.push((rib * grid.along + section, crossing.layer, Some(at.fract())));
                 });
+                met
             }
         }
     }
 
+    /// The light that other layers let through to a place on a layer (Xu et al., equation 12).
+    fn own_shadow(&self, between: &[(Layer, Map, Angles, Option<f32>)], [u, t]: [f32; 2]) -> f32 {
+        if between.is_empty() {
+            return 1.0;
+        }
+        let opacities = between.iter().map(|(layer, map, angles, passed)| {
+            let u = passed.unwrap_or(u);
+            map.at(layer, [u, t], bilinear(angles.cos_view, u, t)).0
+        });
+        shadow::transmittance(self.settings.local_shadow, self.settings.shadow_strength, opacities)
+    }
+
     /// The layer `index` of a column.
-    pub(super) fn layer(
-        &self,
-        column: usize,
-        index: usize,
-        corners: [&Vertex; 4],
-        angles: [[f32; 4]; 2],
-    ) -> Layer {
+    fn layer(&self, column: usize, index: usize, corners: [&Vertex; 4]) -> Layer {
         let grid = self.hair.grid;
         let (rib, i) = (column / grid.along, column % grid.along);
         let (cluster, rib) = (rib / grid.around, rib % grid.around);
@@ -118,24 +159,15 @@ impl Columns<'_> {
         let cell = |side: usize, section: usize| {
             self.hair.cell(cluster, index, (rib + side + grid.around - 1) % grid.around, i + section)
         };
-        let cells = [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]);
-        let inverse_mean = match self.settings.lighting {
-            ClusterLighting::AsStrands => {
-                let middle = angles.map(|of| 0.25 * (of[0] + of[1] + of[2] + of[3]));
-                1.0 / max(self.database.mean_reflectance(cells[1][0].sector(1.0), middle), 0.02)
-            }
-            ClusterLighting::Paper => 1.0,
-        };
         Layer {
             corners: [a, b, c, d].map(|v| {
                 let [x, y, z] = three(|k| mix(v.at[0][k], v.at[1][k], outward));
                 [x - self.origin[0], y - self.origin[1], z]
             }),
             colors: [a, b, c, d].map(|v| three(|k| mix(v.color[0][k], v.color[1][k], outward))),
-            cells,
+            cells: [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]),
             depths: arc,
             thickness: (1.0 - self.hair.core) / (grid.layers as f32 * radius),
-            inverse_mean,
         }
     }
 }
@@ -143,6 +175,15 @@ impl Columns<'_> {
 /// The two triangles of a quadrilateral: its corners, and where they lie between ribs and sections.
 const TRIANGLES: [([usize; 3], [[f32; 2]; 3]); 2] =
     [([0, 1, 3], [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), ([0, 3, 2], [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]])];
+
+/// The angles at the corners of the layers of a column.
+fn angles_of(corners: [&Vertex; 4]) -> Angles {
+    Angles {
+        azimuths: [0, 1].map(|k| unwrapped(corners.map(|v| v.angles[k]))),
+        cos_view: corners.map(|v| v.cos_view),
+        sin_view: 0.25 * corners.iter().map(|v| v.sin_view).sum::<f32>(),
+    }
+}
 
 /// Angles that are less than half a turn from the first one.
 fn unwrapped(angles: [f32; 4]) -> [f32; 4] {

@@ -1,13 +1,14 @@
-//! What the layers of a column let through and reflect, from the records of the database.
+//! What the layers of a column let through and reflect: the maps of reflectance and opacity, from the records of the database.
 
-use lovelock_satf::{Cell, LocalShadow, RecordLookup, SectorRef};
+use lovelock_satf::boundary::{Params, Sweep, VolumeRecords};
+use lovelock_satf::{Cell, ClusterSettings, Database, Features, RecordLookup};
 
-use super::columns::Columns;
-use super::vertices::Vertex;
-use crate::cpu::math::{exp, exp2, log2, max, min, mix, pow};
+use crate::cpu::math::{exp, log2, max, min, mix};
 
 /// Sine of the angle between eye and hair below which the azimuth of the eye is not defined well: five degrees.
 const ALONG_HAIR: f32 = 0.087;
+/// The most texels of a map, with one of both neighbours.
+const TEXELS: usize = 32 + 2;
 
 /// One layer of a column: a quadrilateral between two ribs and two sections.
 pub(super) struct Layer {
@@ -20,96 +21,154 @@ pub(super) struct Layer {
     pub depths: [f32; 2],
     /// Thickness of the layer as a fraction of its radius.
     pub thickness: f32,
-    /// One over the mean reflectance in the middle; 1 where light is as published.
-    pub inverse_mean: f32,
 }
 
-/// A place on the outer surface of a layer.
+/// The angles at the corners of a layer.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
-    /// From rib to rib and from section to section, 0 to 1.
-    pub u: f32,
-    pub t: f32,
-    pub angles: [f32; 2],
-    pub cos_view: f32,
+pub(super) struct Angles {
+    /// Azimuths of the eye and of the strongest light, without jumps from corner to corner.
+    pub azimuths: [[f32; 4]; 2],
+    pub cos_view: [f32; 4],
     pub sin_view: f32,
-    pub mip: f32,
 }
 
-impl Columns<'_> {
-    /// Opacity and reflectance of a layer, between both of its boundary sectors and, near their ribs, the neighbouring ones.
-    pub(super) fn look_up(&self, layer: &Layer, place: Place) -> (f32, f32) {
-        let own = self.between_sections(layer, 1, place);
-        // Sectors with different records are blended over two texels.
-        let blended = min(0.5, exp2(place.mip) / 32.0);
-        let (side, distance) = if place.u < 0.5 { (0, place.u) } else { (2, 1.0 - place.u) };
-        if distance >= blended || self.settings.lookup == RecordLookup::Nearest {
-            return own;
-        }
-        let other = self.between_sections(layer, side, place);
-        let share = 0.5 * (1.0 - distance / blended);
-        (mix(own.0, other.0, share), mix(own.1, other.1, share))
+impl Angles {
+    /// The same for rays along the light.
+    pub fn of_light(self) -> Self {
+        let [_, light] = self.azimuths;
+        Self { azimuths: [light; 2], cos_view: light.map(f32::cos), sin_view: 1.0 }
     }
 
-    /// Opacity and reflectance between the two boundary sectors (Xu et al., equation 7).
-    fn between_sections(&self, layer: &Layer, side: usize, place: Place) -> (f32, f32) {
-        let [low, high] = layer.cells[side];
-        let curved = curved(place.cos_view, layer.thickness);
-        let depths = [low.strands() * layer.depths[0] * curved, high.strands() * layer.depths[1] * curved];
-        if low.0 & 0xffff == high.0 & 0xffff {
-            return self.record(low, mix(depths[0], depths[1], place.t), place);
-        }
-        let (a, b) = (self.record(low, depths[0], place), self.record(high, depths[1], place));
-        (mix(a.0, b.0, place.t), mix(a.1, b.1, place.t))
+    /// The azimuth of the light in the middle.
+    pub fn light_in_middle(&self) -> f32 {
+        0.25 * self.azimuths[1].iter().sum::<f32>()
     }
 
-    /// Opacity and reflectance of a record.
-    fn record(&self, cell: Cell, depth: f32, place: Place) -> (f32, f32) {
-        let of = cell.sector(depth);
-        if of.tau_ratio <= 0.0 {
-            return (0.0, 1.0);
-        }
-        let Place { angles, u, mip, .. } = place;
-        let (stored, mut reflected) = match self.settings.lookup {
-            RecordLookup::Interpolated => self.database.sample_stored(of, angles, u, mip),
-            RecordLookup::Nearest => {
-                self.database.sample_nearest(SectorRef { tau_ratio: 1.0, ..of }, angles, u, mip)
-            }
+    fn at(&self, u: f32, t: f32) -> [f32; 2] {
+        self.azimuths.map(|of| bilinear(of, u, t))
+    }
+}
+
+/// Between four corners: both ribs at the lower section, then at the upper one.
+#[inline]
+pub(super) fn bilinear(of: [f32; 4], u: f32, t: f32) -> f32 {
+    mix(mix(of[0], of[1], u), mix(of[2], of[3], u), t)
+}
+
+/// The maps of a layer: texels across a sector, at both of its boundary sectors, with a texel of the neighbouring sectors at both ends,
+/// so that nothing jumps where records change.
+pub(super) struct Map {
+    texels: usize,
+    /// Optical depth of the texel along the radius, for one strand whose arc is as long as its width.
+    depth: [[f32; 2]; TEXELS],
+    reflected: [[f32; 2]; TEXELS],
+    /// One over the mean reflectance.
+    pub inverse_mean: f32,
+    is_nearest: bool,
+}
+
+impl Map {
+    /// The maps of `layer` with texels of the level of detail `mip`.
+    pub fn new(
+        database: &Database,
+        settings: &ClusterSettings,
+        layer: &Layer,
+        angles: &Angles,
+        mip: f32,
+    ) -> Self {
+        let is_nearest = settings.lookup == RecordLookup::Nearest;
+        // The maximum of NaN and 0 is 0.
+        let mip = if is_nearest { 0.0 } else { min(max(mip, 0.0), 5.0) };
+        let texels = 32 >> mip as usize;
+        let mut map = Self {
+            texels,
+            depth: [[0.0; 2]; TEXELS],
+            reflected: [[0.0; 2]; TEXELS],
+            inverse_mean: 1.0,
+            is_nearest,
         };
-        let mut alpha = 1.0 - pow(1.0 - stored, of.tau_ratio);
-        if place.sin_view < ALONG_HAIR {
-            let any = self.database.sample_any_view(of, angles[1], u, mip);
-            let share = place.sin_view / ALONG_HAIR;
-            (alpha, reflected) = (mix(any.0, alpha, share), mix(any.1, reflected, share));
+        if is_nearest {
+            map.fill_nearest(database, layer, angles);
+        } else {
+            map.fill(database, layer, angles, mip);
         }
-        (alpha, reflected)
+        let own = &map.reflected[1..=texels];
+        let mean = own.iter().map(|[low, high]| low + high).sum::<f32>() / (2 * texels) as f32;
+        map.inverse_mean = 1.0 / max(mean, 0.02);
+        map
     }
 
-    /// The light that outer layers let through to a place on layer `index` (Xu et al., equation 12).
-    pub(super) fn own_shadow(
-        &self,
-        column: usize,
-        index: usize,
-        (corners, angles): ([&Vertex; 4], [[f32; 4]; 2]),
-        place: Place,
-    ) -> f32 {
-        let strength = self.settings.shadow_strength;
-        let outer = |f: &dyn Fn(f32) -> f32, place: Place| -> f32 {
-            (index + 1..self.hair.grid.layers)
-                .map(|outer| f(self.look_up(&self.layer(column, outer, corners, angles), place).0))
-                .sum()
-        };
-        let depth_of = |alpha: f32| -log2(max(1.0 - alpha, 1e-4)) * std::f32::consts::LN_2;
-        match self.settings.local_shadow {
-            LocalShadow::Map => 1.0,
-            LocalShadow::Layers => exp(-strength * outer(&depth_of, place)),
-            LocalShadow::Linear => max(1.0 - strength * outer(&|alpha| alpha, place), 0.0),
-            LocalShadow::Directional => {
-                let toward = Place { angles: [place.angles[1]; 2], cos_view: 1.0, sin_view: 1.0, ..place };
-                exp(-strength * outer(&depth_of, toward))
+    fn fill(&mut self, database: &Database, layer: &Layer, angles: &Angles, mip: f32) {
+        let step = 1.0 / self.texels as f32;
+        let share = min(angles.sin_view / ALONG_HAIR, 1.0);
+        for k in 0..self.texels + 2 {
+            let u = (k as f32 - 0.5) * step;
+            let (side, inside) = match k {
+                0 => (0, u + 1.0),
+                k if k > self.texels => (2, u - 1.0),
+                _ => (1, u),
+            };
+            let cells = layer.cells[side];
+            let read = |cell: Cell, t: f32| {
+                let of = cell.sector(1.0);
+                let azimuths = angles.at(u, t);
+                let (mut opacity, mut reflected) = database.sample_stored(of, azimuths, inside, mip);
+                if share < 1.0 {
+                    let any = database.stored_any_view(of, azimuths[1], inside, mip);
+                    (opacity, reflected) = (mix(any.0, opacity, share), mix(any.1, reflected, share));
+                }
+                (depth_of(opacity) * of.tau_ratio, reflected)
+            };
+            let [low, high] = cells;
+            if low.has_sector_of(high) {
+                // One record, swept from section to section.
+                let (depth, reflected) = read(low, 0.5);
+                (self.depth[k], self.reflected[k]) =
+                    (cells.map(|cell| cell.strands() * depth), [reflected; 2]);
+            } else {
+                let both = [read(low, 0.0), read(high, 1.0)];
+                self.depth[k] = [0, 1].map(|s| cells[s].strands() * both[s].0);
+                self.reflected[k] = both.map(|of| of.1);
             }
         }
     }
+
+    /// As published: the nearest record of the average density, one for both sections where they are alike.
+    fn fill_nearest(&mut self, database: &Database, layer: &Layer, angles: &Angles) {
+        let params = [0, 1].map(|section| {
+            let [theta_v, theta_l] = angles.at(0.5, section as f32);
+            let optical_depth = layer.cells[1][section].strands() * layer.depths[section];
+            Params { features: Features { optical_depth, ..Features::default() }, theta_v, theta_l }
+        });
+        let records = VolumeRecords::new(&params[0], &params[1], Sweep::PAPER, true);
+        for k in 0..self.texels + 2 {
+            let u = (k as f32 - 0.5) / self.texels as f32;
+            for section in 0..2 {
+                let (opacity, reflected) = records.sample(database, section as f32, u, 0.0);
+                self.depth[k][section] = depth_of(opacity) / max(layer.depths[section], 1e-9);
+                self.reflected[k][section] = reflected;
+            }
+        }
+    }
+
+    /// Opacity and reflectance at a place of the layer, both coordinates from 0 to 1, for a ray whose azimuth has the cosine `cos_view`.
+    #[inline]
+    pub fn at(&self, layer: &Layer, [u, t]: [f32; 2], cos_view: f32) -> (f32, f32) {
+        let x = u * self.texels as f32 + 0.5;
+        let x = if self.is_nearest { (x + 0.5).floor() } else { x };
+        let i = (x as usize).min(TEXELS - 2);
+        let f = x - i as f32;
+        let between = |of: &[[f32; 2]; TEXELS], section: usize| mix(of[i][section], of[i + 1][section], f);
+        let depth =
+            mix(between(&self.depth, 0) * layer.depths[0], between(&self.depth, 1) * layer.depths[1], t);
+        let opacity = 1.0 - exp(-depth * curved(cos_view, layer.thickness));
+        (opacity, mix(between(&self.reflected, 0), between(&self.reflected, 1), t))
+    }
+}
+
+/// The optical depth of an opacity that is stored in eight bits.
+fn depth_of(opacity: f32) -> f32 {
+    -std::f32::consts::LN_2 * log2(max(1.0 - opacity, 0.5 / 255.0))
 }
 
 /// The way of a ray, whose azimuth has the cosine `cos`, through a layer as a fraction of that through a flat one of the same thickness, `thickness` being relative to the
