@@ -4,13 +4,13 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 use lovelock_base::settings::Choices;
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_satf::{ClusterHair, ClusterSettings};
 use serde::{Deserialize, Serialize};
 
-use crate::{FrameInput, HairPose, PictureSettings, StrandCount};
+use crate::{FrameInput, HairPose, Light, PictureSettings, StrandCount};
 
 /// What hair is drawn as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -85,6 +85,12 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
         HairPose::Guides(guides) => Some(guides),
         HairPose::Strands(_) => input.guides,
     }
+}
+
+/// The unit vector toward the strongest light: the azimuth by which records are found is that of one light.
+pub(crate) fn brightest(lights: &[Light]) -> Vec3 {
+    let lights = lights.iter().filter(|light| light.enabled).map(Light::normalized);
+    lights.max_by(|a, b| a.intensity.total_cmp(&b.intensity)).map_or(Vec3::Y, |light| -light.direction)
 }
 
 /// The picture's settings where only clusters are drawn: strands, which cast shadows only, are as they are stored.

@@ -221,16 +221,17 @@ impl HairBuffers {
         self.run_over_points(gpu, kernel, "draw/values", commands, frame, []);
     }
 
-    /// Projects and shades every point.
+    /// Projects and shades every point, in the pass `name`.
     pub fn shade(
         &self,
         gpu: &Gpu,
+        name: &'static str,
         (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
         commands: &mut Commands,
         frame: &FrameResources,
     ) {
         let kernel = &kernels.shade_points[usize::from(shading == HairShading::Fibre)];
-        self.run_over_points(gpu, kernel, "draw/points", commands, frame, [(8, tables.as_entire_binding())]);
+        self.run_over_points(gpu, kernel, name, commands, frame, [(8, tables.as_entire_binding())]);
     }
 
     fn run_over_points<const N: usize>(

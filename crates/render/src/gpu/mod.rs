@@ -1,5 +1,6 @@
 //! The GPU backend: wgpu compute and raster passes.
 
+mod clusters;
 mod eye;
 mod false_colors;
 mod fine;

@@ -8,7 +8,7 @@ use super::light_kernels::{LightShaders, LightVariants};
 use super::present::Present;
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
-use super::{eye, fine, interpolate};
+use super::{clusters, eye, fine, interpolate};
 
 macro_rules! part {
     ($name:literal) => {
@@ -71,7 +71,8 @@ pub(super) fn skin_shadow_source() -> ShaderSource {
 pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
     let more = [("shrink".to_owned(), shrink_source()), ("skin shadow".to_owned(), skin_shadow_source())];
-    own.chain(more).chain(eye::shaders()).chain(interpolate::shaders()).chain(fine::shaders()).collect()
+    let hair = interpolate::shaders().into_iter().chain(fine::shaders()).chain(clusters::shaders());
+    own.chain(more).chain(eye::shaders()).chain(hair).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.

@@ -12,6 +12,7 @@ use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
+use super::clusters::{Clusters, DrawnClusters};
 use super::eye::{Area, Eye, EyeInput, HairOutput, Lists, WIDEST_PLAIN, too_large};
 use super::false_colors::FalseColors;
 use super::frame_resources::FrameResources;
@@ -26,11 +27,12 @@ use super::shadow::GpuShadowStage;
 use super::skin_shadow::SkinShadow;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
+use crate::clusters::{of_casters, without_strands};
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::shadow_stage::soft_reach;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
+use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError, Transparency};
 use flight::Flights;
 pub use flight::{Finished, MOST_IN_FLIGHT};
 pub use picture::PendingPicture;
@@ -46,6 +48,8 @@ pub struct GpuRenderer {
     timer: PassTimer,
     shadow: GpuShadowStage,
     hair: HairBuffers,
+    /// Hair that is drawn as clusters, beside strands or in their place.
+    clusters: Clusters,
     surface: SurfaceBuffers,
     skin: SkinShadow,
     ground: Ground,
@@ -99,6 +103,7 @@ impl GpuRenderer {
             timer: PassTimer::new(&gpu)?,
             shadow: GpuShadowStage::new(&gpu),
             hair: HairBuffers::new(&gpu)?,
+            clusters: Clusters::default(),
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             skin: SkinShadow::new(&gpu)?,
             ground: Ground::new(&gpu),
@@ -174,10 +179,11 @@ impl GpuRenderer {
         FrameStats {
             interpolate_ms: of("interpolate"),
             shadow_ms: of("shadow/"),
-            segments: u64::from(self.hair.drawn().segment_count),
+            segments: if self.seen.has_strands { u64::from(self.hair.drawn().segment_count) } else { 0 },
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
+                + self.clusters.memory_bytes()
                 + self.screen.memory_bytes()
                 + self.targets.as_ref().map_or(0, Targets::memory_bytes),
             mean_transmittance: 1.0,
@@ -207,10 +213,17 @@ impl GpuRenderer {
         }
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
+        let clusters = self.clusters.follow(input, height);
+        let picture = without_strands(input.picture);
+        let casters = clusters.as_ref().filter(|(_, share)| *share >= 1.0);
+        let casters = casters.map(|(hair, _)| of_casters(input, hair, &picture));
+        let input = casters.as_ref().unwrap_or(input);
         self.hair.write(gpu, &mut commands, input, height)?;
+        self.clusters.write(gpu, &mut commands, input, height)?;
         self.light.write(gpu, &mut commands, input);
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
+        self.clusters.look_up(gpu, &mut commands, &mut self.shadow);
         let is_soft = self.hair.portion().is_some() && soft_reach(input.lights) > 0.0;
         if is_soft && let (Some((body, _)), Some(vertices)) = (input.body, self.surface.vertices()) {
             self.skin.run(gpu, &mut commands, body, &vertices);
@@ -232,6 +245,8 @@ impl GpuRenderer {
             self.surface.texels,
         );
         gpu.upload(&self.uniform, 0, &[uniform]);
+        let (scene_light, texels) = (self.light.light(), self.surface.texels);
+        self.clusters.write_uniform(gpu, input, scene_light, (width, height), &maps, texels);
         self.last = uniform;
         let seen = self.seen_hair(input, &uniform, [width, height]);
         self.seen = seen;
@@ -250,12 +265,18 @@ impl GpuRenderer {
         self.draw_body(gpu, &mut commands, targets);
         let lit = self.pipelines.lit.of(gpu, maps.len())?;
         let shading = (lit, input.look.shading, self.light.tables());
-        self.hair.shade(gpu, shading, &mut commands, &frame);
+        if seen.has_strands {
+            self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame);
+        }
+        let scale = uniform.size_scale_exposure.z;
+        let of_ribs = (seen.area.edges(), scale, seen.nearest_rib);
+        self.clusters.place(gpu, shading, &mut commands, &frame, input, of_ribs)?;
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }
+        let blended = HairOutput::Blended(seen.transparency);
         let eye =
-            eye_input(&seen, &self.hair, targets, &uniform, HairOutput::Blended(input.picture.transparency));
+            eye_input(&seen, &self.hair, self.clusters.drawn(&mut commands), targets, &uniform, blended);
         self.eye.draw(gpu, &mut commands, &eye)?;
         let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
@@ -306,11 +327,24 @@ impl GpuRenderer {
         let strand_width = uniform.width_opacity_tip_scalp.x;
         let reach_at =
             |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
+        let area = Area::of(input.camera, size, (bounds.min, bounds.max), strand_width);
+        let share = self.clusters.share();
+        let transparency = input.picture.transparency;
+        let ribs = self.clusters.bounds(input, Area::axes(input.camera), input.camera.eye);
+        let area_of_ribs =
+            ribs.map_or(Area::default(), |ribs| Area::of(input.camera, size, (ribs.min, ribs.max), 0.0));
         SeenHair {
-            area: Area::of(input.camera, size, (bounds.min, bounds.max), strand_width),
+            area: area.with(area_of_ribs),
             reach: reach_at(0.05),
             // Nothing nearer than this is drawn.
             streaked: reach_at(0.02) > WIDEST_PLAIN,
+            has_strands: share < 1.0,
+            nearest_rib: ribs.map_or(0.0, |ribs| ribs.min.x),
+            // Segments and layers have no order of their own.
+            transparency: match transparency {
+                Transparency::Sorted if share > 0.0 && share < 1.0 => Transparency::Exact,
+                _ => transparency,
+            },
         }
     }
 
@@ -380,11 +414,17 @@ struct SeenHair {
     area: Area,
     reach: f32,
     streaked: bool,
+    /// Whether strands are drawn, beside clusters or alone.
+    has_strands: bool,
+    /// The least distance of the ribs of clusters along the view, metres.
+    nearest_rib: f32,
+    transparency: Transparency,
 }
 
 fn eye_input<'a>(
     seen: &SeenHair,
     hair: &'a HairBuffers,
+    clusters: Option<DrawnClusters<'a>>,
     targets: &'a Targets,
     uniform: &FrameUniform,
     drawn: HairOutput,
@@ -396,9 +436,10 @@ fn eye_input<'a>(
         streaked: seen.streaked,
         shaded: hair.shaded(),
         segments: strands.segments,
-        segment_count: strands.segment_count,
+        segment_count: if seen.has_strands { strands.segment_count } else { 0 },
         depth: &targets.depth,
         opacity: uniform.width_opacity_tip_scalp.y,
         drawn,
+        clusters,
     }
 }

@@ -4,10 +4,10 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{HairLook, HairShading, Hairstyle, StrandSet, Strands};
+use lovelock_groom::{GuideFrame, HairLook, HairShading, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Light, Picture, PictureSettings,
+    Backend, Camera, DeviceImages, FrameInput, FrameStats, GpuRenderer, HairPose, Layers, Light, Picture, PictureSettings,
     RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
 };
 
@@ -41,6 +41,8 @@ pub fn on_device() -> Option<(GpuRenderer, DeviceImages)> {
 pub struct Scene {
     pub style: Arc<Hairstyle>,
     pub strands: Strands,
+    /// The guides that place the hair, in place of `strands`.
+    pub guides: Option<GuideFrame>,
     pub look: HairLook,
     pub body: Option<(Arc<Body>, Skin)>,
     pub lights: Vec<Light>,
@@ -67,11 +69,27 @@ impl Scene {
         Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
     }
 
+    /// Renders its layers with `backend`, without the background.
+    pub fn layers_by(&self, backend: Backend, width: u32, height: u32) -> Option<Layers> {
+        let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut layers = Layers::default();
+        renderer.layers(&self.input(), width, height, false, &mut layers).expect("layers");
+        Some(layers)
+    }
+
+    /// The times of the passes of its second picture by `backend`.
+    pub fn passes_by(&self, backend: Backend, width: u32, height: u32) -> Option<FrameStats> {
+        let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut picture = Picture::default();
+        renderer.picture(&self.input(), width, height, &mut picture).expect("a picture");
+        Some(renderer.picture(&self.input(), width, height, &mut picture).expect("a picture"))
+    }
+
     /// The input of the renderer.
     pub fn input(&self) -> FrameInput<'_> {
         FrameInput {
             style: &self.style,
-            hair: HairPose::Strands(&self.strands),
+            hair: self.guides.as_ref().map_or(HairPose::Strands(&self.strands), HairPose::Guides),
             guides: None,
             look: &self.look,
             body: self.body.as_ref().map(|(body, skin)| (body, skin)),
@@ -115,6 +133,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
     Scene {
         style: Arc::new(Hairstyle { strands: set, ..Hairstyle::default() }),
         strands,
+        guides: None,
         look: HairLook {
             real_hairs: lines.len() as f32,
             variation: 0.0,

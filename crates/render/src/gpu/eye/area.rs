@@ -19,6 +19,11 @@ impl Area {
         u64::from(self.columns) * u64::from(self.rows)
     }
 
+    /// Left, top, right and bottom.
+    pub fn edges(self) -> [f32; 4] {
+        [self.left, self.top, self.left + self.columns, self.top + self.rows].map(|edge| edge as f32)
+    }
+
     /// The bounding rectangle of both.
     pub fn with(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {

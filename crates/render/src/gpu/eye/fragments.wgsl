@@ -7,26 +7,6 @@
 // Whether a strand may be wide enough on the screen to be streaked.
 override STREAKED: bool = true;
 
-struct Fragment {
-    // 1 at the near plane, falling to 0 at infinity.
-    depth: f32,
-    // Opacity times coverage of the pixel, before the body hides it.
-    alpha: f32,
-    // Samples of the pixel in which it is in front of the body.
-    seen: vec4<bool>,
-    // Light, linear.
-    color: vec3f,
-    // A hash of the strand in 0..1, the distance of the middle of the segment up to a factor, and the pixel in the picture.
-    hash: f32,
-    middle: f32,
-    at: vec2u,
-}
-
-// Opacity in the samples that the body does not hide.
-fn opacity_of(fragment: Fragment) -> f32 {
-    return fragment.alpha * dot(select(vec4f(0.0), vec4f(0.25), fragment.seen), vec4f(1.0));
-}
-
 @compute @workgroup_size(64)
 fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;

@@ -10,6 +10,7 @@ mod modes;
 use bytemuck::{Pod, Zeroable};
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
 
+use super::clusters::{ClusterVariant, DrawnClusters, FRAGMENT_PARTS};
 use crate::Transparency;
 pub(super) use area::Area;
 pub(super) use modes::HairOutput;
@@ -26,6 +27,7 @@ macro_rules! part {
 use part;
 
 const FRAME: ShaderPart = part!("frame.wgsl");
+const FRAGMENT: ShaderPart = part!("fragment.wgsl");
 const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
 const EACH_PIXEL: ShaderPart = part!("each_pixel.wgsl");
 const BEHIND: ShaderPart = part!("behind.wgsl");
@@ -67,6 +69,8 @@ pub(super) struct EyeInput<'a> {
     /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
     pub drawn: HairOutput,
+    /// Hair that is drawn as clusters, beside the segments or in their place.
+    pub clusters: Option<DrawnClusters<'a>>,
 }
 
 /// The most pixels per thread: half of what software adapters allow.
@@ -90,6 +94,8 @@ pub(super) struct Eye {
     behind_kernel: Kernel,
     /// By whether strands are streaked.
     modes: Vec<((HairOutput, bool), Vec<Kernel>)>,
+    /// The passes over the fragments of clusters, in order.
+    cluster_modes: Vec<((HairOutput, ClusterVariant), Vec<Kernel>)>,
     depths: Option<AreaDepths>,
     map: GrowBuffer<u32>,
     list: GrowBuffer<u32>,
@@ -123,11 +129,17 @@ pub(super) struct Lists {
 impl Pass {
     fn source(&self) -> ShaderSource {
         let last: &[ShaderPart] = match self.over {
-            Over::Fragments => &[FRAGMENTS],
+            Over::Fragments => &[FRAGMENT, FRAGMENTS],
             Over::Pixels => &[EACH_PIXEL],
             Over::Groups(_) => &[],
         };
         let parts: Vec<_> = [FRAME].iter().chain(self.parts).chain(last).copied().collect();
+        ShaderSource::new(&parts)
+    }
+
+    /// The same pass over the fragments of clusters.
+    fn cluster_source(&self) -> ShaderSource {
+        let parts: Vec<_> = [FRAME, FRAGMENT].iter().chain(self.parts).chain(&FRAGMENT_PARTS).copied().collect();
         ShaderSource::new(&parts)
     }
 
@@ -153,7 +165,11 @@ pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
     let all = blended.chain([("nearest".to_owned(), HairOutput::NearestDepth)]);
     let modes = all.flat_map(|(name, drawn)| {
         let passes = Mode::of(drawn).passes.iter();
-        passes.map(move |pass| (format!("{name}: {}", pass.name), pass.source()))
+        passes.flat_map(move |pass| {
+            let clusters = (pass.over == Over::Fragments)
+                .then(|| (format!("{name}: {} of clusters", pass.name), pass.cluster_source()));
+            std::iter::once((format!("{name}: {}", pass.name), pass.source())).chain(clusters)
+        }).collect::<Vec<_>>()
     });
     std::iter::once(behind).chain(modes).collect()
 }
@@ -164,6 +180,7 @@ impl Eye {
         Ok(Self {
             behind_kernel: Kernel::new(gpu, "behind", &behind_source(), "each_pixel")?,
             modes: Vec::new(),
+            cluster_modes: Vec::new(),
             depths: None,
             map: GrowBuffer::new(gpu, "eye maps", storage),
             list: GrowBuffer::new(gpu, "fragments", storage),
@@ -204,6 +221,17 @@ impl Eye {
         if !self.modes.iter().any(|(known, _)| *known == variant) {
             let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu, input.streaked));
             self.modes.push((variant, kernels.collect::<Result<_, _>>()?));
+        }
+        if let Some(clusters) = &input.clusters {
+            let variant = (input.drawn, clusters.variant);
+            if !self.cluster_modes.iter().any(|(known, _)| *known == variant) {
+                let constants = clusters.variant.constants();
+                let passes = mode.passes.iter().filter(|pass| pass.over == Over::Fragments);
+                let kernels = passes.map(|pass| {
+                    Kernel::specialised(gpu, pass.name, &pass.cluster_source(), "each_fragment", &constants)
+                });
+                self.cluster_modes.push((variant, kernels.collect::<Result<_, _>>()?));
+            }
         }
         self.lists = None;
         if input.area.is_empty() {
@@ -260,7 +288,7 @@ impl Eye {
         };
         let Some(depths) = &self.depths else { return };
         let buffer = commands.constants("eye", &uniform);
-        let resources = [
+        let mut resources = vec![
             (0, buffer.as_entire_binding()),
             (1, input.shaded.as_entire_binding()),
             (2, input.segments.as_entire_binding()),
@@ -272,6 +300,7 @@ impl Eye {
             (8, wgpu::BindingResource::TextureView(input.depth)),
             (9, wgpu::BindingResource::TextureView(&depths.view)),
         ];
+        resources.extend(input.clusters.iter().flat_map(DrawnClusters::bindings));
         let encoder = commands.encoder();
         encoder.clear_buffer(self.map.raw(), 0, Some((pixels * u64::from(mode.words) * 4).max(4)));
         if mode.lists {
@@ -283,13 +312,24 @@ impl Eye {
         let variant = (input.drawn, input.streaked);
         let kernels = self.modes.iter().find(|(known, _)| *known == variant);
         let Some((_, kernels)) = kernels else { return };
+        let of_clusters = input.clusters.as_ref().and_then(|clusters| {
+            let variant = (input.drawn, clusters.variant);
+            let (_, kernels) = self.cluster_modes.iter().find(|(known, _)| *known == variant)?;
+            Some((kernels.iter(), clusters.threads))
+        });
+        let (mut of_clusters, cluster_threads) = of_clusters.unwrap_or_default();
+        let segment_threads = u64::from(input.segment_count) * u64::from(input.lanes());
         for (pass, kernel) in mode.passes.iter().zip(kernels) {
-            let threads = match pass.over {
-                Over::Fragments => u64::from(input.segment_count) * u64::from(input.lanes()),
-                Over::Pixels | Over::Groups(_) => pixels,
-            };
-            let group = kernel.bind(gpu, &resources);
-            commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
+            let over_fragments = pass.over == Over::Fragments;
+            let threads = if over_fragments { segment_threads } else { pixels };
+            if threads > 0 {
+                let group = kernel.bind(gpu, &resources);
+                commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
+            }
+            if over_fragments && let Some(kernel) = of_clusters.next() {
+                let group = kernel.bind(gpu, &resources);
+                commands.compute(pass.name, |pass| kernel.run(pass, &group, cluster_threads));
+            }
         }
     }
 

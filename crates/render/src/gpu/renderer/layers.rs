@@ -37,7 +37,7 @@ impl GpuRenderer {
 
         let uniform = self.last;
         let kind = (uniform.eye_lights.w as usize, over_background);
-        let seen = self.seen_hair(input, &uniform, [width, height]);
+        let seen = self.seen;
         self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;
         let (Some(kernels), Some(targets)) = (self.layers.kernels(kind), &self.targets) else {
             return Err(RenderError::NoPicture);
@@ -75,12 +75,14 @@ impl GpuRenderer {
         });
 
         self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
-        let blended = HairOutput::Blended(input.picture.transparency);
+        self.clusters.place_values(&gpu, &kernels.values, &mut commands, &frame);
+        let blended = HairOutput::Blended(seen.transparency);
         for (drawn, kernel, threads) in [
             (blended, &kernels.transmittance, seen.area.pixels()),
             (HairOutput::NearestDepth, &kernels.depth, pixels),
         ] {
-            let eye = eye_input(&seen, &self.hair, targets, &uniform, drawn);
+            let clusters = self.clusters.drawn(&mut commands);
+            let eye = eye_input(&seen, &self.hair, clusters, targets, &uniform, drawn);
             self.eye.draw(&gpu, &mut commands, &eye)?;
             let group = kernel.bind(&gpu, &bound!());
             commands.compute("draw/layers", |pass| kernel.run(pass, &group, threads));

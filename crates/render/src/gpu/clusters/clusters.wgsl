@@ -1,0 +1,87 @@
+// The clusters of a frame, for all kernels that draw them. A column is the stack of hair shell volumes between two ribs and two
+// sections; its layers are quadrilaterals. Twin of cpu/clusters.
+
+// Twin of `ClusterUniform` in mod.rs.
+struct ClusterUniform {
+    // The eye, and the optical depth of a strand times the length of the arc that it lies in, metres.
+    eye_depth: vec4f,
+    // Unit vector toward the strongest light, and how strongly records vary the light of strands.
+    light_detail: vec4f,
+    // The pixels that may show hair: left, top, right and bottom.
+    area: vec4f,
+    // Hair shell volumes around, along, layers, and clusters.
+    grid: vec4u,
+    // Radius of the core, strength of the own shadow, the finest level of detail, and 1 for the published lighting.
+    core_strength_finest_paper: vec4f,
+    // Entries of a map, the pattern of the literal look-up, and threads per triangle.
+    entries: u32,
+    pattern: u32,
+    lanes: u32,
+}
+
+// Where an outer and an inner rib cross a section. Twin of `Vertex` in cpu/clusters/vertices.rs.
+struct ClusterVertex {
+    // Pixels from the left and top, and depth, on the inner ring.
+    inner: vec3f,
+    // Sine of the angle between the eye and the hair; negative if the point must not be drawn.
+    sin_view: f32,
+    outer: vec3f,
+    // One over the length of the outer arc to the next rib, 1/metres.
+    inverse_arc: f32,
+    // Azimuths of the eye and of the strongest light, from the outward normal.
+    angles: vec2f,
+    cos_view: f32,
+    // Colours as half floats: red and green, blue.
+    inner_color: vec2u,
+    outer_color: vec2u,
+}
+
+@group(0) @binding(10) var<uniform> clusters: ClusterUniform;
+
+const TAU: f32 = 6.2831853;
+
+fn columns() -> u32 {
+    return clusters.grid.w * clusters.grid.x * clusters.grid.y;
+}
+
+fn quads() -> u32 {
+    return columns() * clusters.grid.z;
+}
+
+// The four vertices of a column: both ribs at its lower section, then at its upper one.
+fn corners(column: u32) -> vec4u {
+    let around = clusters.grid.x;
+    let along = clusters.grid.y;
+    let all = column / along;
+    let rib = all % around;
+    let cluster_first = (all - rib) * (along + 1u);
+    let here = cluster_first + rib * (along + 1u) + column % along;
+    let next = cluster_first + (rib + 1u) % around * (along + 1u) + column % along;
+    return vec4u(here, next, here + 1u, next + 1u);
+}
+
+// Where the outer surface of a layer lies between the rings: 1 on the outer one.
+fn outward(layer: u32) -> f32 {
+    return f32(layer + 1u) / f32(max(clusters.grid.z, 1u));
+}
+
+// The radius of that surface in the unit disk.
+fn radius_of(layer: u32) -> f32 {
+    let core = clusters.core_strength_finest_paper.x;
+    return core + (1.0 - core) * outward(layer);
+}
+
+// The thickness of a layer as a fraction of its radius.
+fn thickness_of(layer: u32) -> f32 {
+    return (1.0 - clusters.core_strength_finest_paper.x) / (f32(clusters.grid.z) * radius_of(layer));
+}
+
+// Between four corners.
+fn bilinear(values: vec4f, u: f32, t: f32) -> f32 {
+    let ribs = values.xz + (values.yw - values.xz) * u;
+    return ribs.x + (ribs.y - ribs.x) * t;
+}
+
+fn between(a: f32, b: f32, t: f32) -> f32 {
+    return a + (b - a) * t;
+}

@@ -1,0 +1,217 @@
+// Rasterises the layers of clusters as triangles, and shades their pixels. Twin of cpu/clusters/columns.rs and pixels.rs. A pass defines
+// `take(pixel, fragment)`.
+//
+// Several threads share a triangle that may cover very many pixels, because software adapters end loops after 65,535 iterations.
+
+@group(0) @binding(12) var<storage, read> maps: array<vec2u>;
+@group(0) @binding(14) var<storage, read> crossings: array<vec2u>;
+
+// Whether each map is read at its nearest texel.
+override NEAREST: bool = false;
+// Whether hair shell volumes are coloured by their records.
+override SHOWS_RECORDS: bool = false;
+
+// Fragments of a smaller opacity are left out.
+const FAINTEST: f32 = 1.0 / 1024.0;
+// The optical depth of an opaque layer.
+const OPAQUE_DEPTH: f32 = 13.8155106;
+const SAMPLES_X: vec4f = vec4f(0.375, 0.875, 0.125, 0.625);
+const SAMPLES_Y: vec4f = vec4f(0.125, 0.375, 0.625, 0.875);
+
+// The barycentric coordinate of the corner beside an edge: `x * px + y * py + c`.
+fn edge_of(p: vec2f, q: vec2f, area: f32) -> vec3f {
+    let slope = vec2f(p.y - q.y, q.x - p.x) / area;
+    return vec3f(slope, -dot(slope, p));
+}
+
+// The range of columns of row `y` of which an edge leaves a part inside.
+fn narrowed(edge: vec3f, y: f32, range: vec2f) -> vec2f {
+    let inside = max(edge.y * y, edge.y * (y + 1.0)) + edge.z;
+    if (edge.x > 0.0) {
+        return vec2f(max(range.x, -inside / edge.x - 1.0), range.y);
+    }
+    if (edge.x < 0.0) {
+        return vec2f(range.x, min(range.y, -inside / edge.x));
+    }
+    return select(range, vec2f(range.x, -1.0), inside < 0.0);
+}
+
+// Optical depth before the curve of the layer, and reflectance, of a map at a place of its layer.
+fn map_at(quad: u32, u: f32, t: f32) -> vec2f {
+    let first = quad * clusters.entries;
+    let texels = maps[first].y;
+    let x = u * f32(texels) + 0.5;
+    let i = min(u32(select(x, floor(x + 0.5), NEAREST)), texels);
+    let f = select(x - f32(i), 0.0, NEAREST);
+    let low = maps[first + 1u + i];
+    let high = maps[first + 2u + i];
+    let low_depths = unpack2x16float(low.x);
+    let low_reflected = unpack2x16float(low.y);
+    let depths = low_depths + (unpack2x16float(high.x) - low_depths) * f;
+    let reflected = low_reflected + (unpack2x16float(high.y) - low_reflected) * f;
+    return vec2f(between(depths.x, depths.y, t), between(reflected.x, reflected.y, t));
+}
+
+// The light that other layers let through to a place on a layer (Xu et al., equation 12).
+fn own_shadow(quad: u32, layer: u32, cos_view: f32, u: f32, t: f32) -> f32 {
+    let layers = clusters.grid.z;
+    let strength = clusters.core_strength_finest_paper.y;
+    var sum = 0.0;
+    if (LOCAL_SHADOW == SHADOW_OF_LAYERS || LOCAL_SHADOW == SHADOW_LINEAR) {
+        for (var outer = layer + 1u; outer < layers; outer++) {
+            let depth = map_at(quad + outer - layer, u, t).x * curved(cos_view, thickness_of(outer));
+            sum += select(min(depth, OPAQUE_DEPTH), 1.0 - exp(-depth), LOCAL_SHADOW == SHADOW_LINEAR);
+        }
+    }
+    if (LOCAL_SHADOW == SHADOW_DIRECTIONAL) {
+        for (var k = 0u; k < 2u * layers; k++) {
+            let crossing = crossings[quad * 2u * layers + k];
+            let depths = unpack2x16float(crossing.x);
+            let cosines = unpack2x16snorm(crossing.y);
+            let depth = between(depths.x, depths.y, t) * curved(between(cosines.x, cosines.y, t), thickness_of(k / 2u));
+            sum += min(depth, OPAQUE_DEPTH);
+        }
+    }
+    if (LOCAL_SHADOW == SHADOW_LINEAR) {
+        return max(1.0 - strength * sum, 0.0);
+    }
+    return exp(-strength * sum);
+}
+
+fn color_on(vertex: u32, share: f32) -> vec3f {
+    let inner = vertices[vertex].inner_color;
+    let outer = vertices[vertex].outer_color;
+    let a = vec3f(unpack2x16float(inner.x), unpack2x16float(inner.y).x);
+    let b = vec3f(unpack2x16float(outer.x), unpack2x16float(outer.y).x);
+    return a + (b - a) * share;
+}
+
+// A colour for a record: hues for patterns, brighter for denser ones.
+fn record_color(cell: u32) -> vec3f {
+    let index = cell & 0x7fffu;
+    let hue = f32(index / 16u) * 0.618034;
+    let bright = 0.15 + 0.85 * f32(index % 16u) / 15.0;
+    return bright * (0.5 + 0.5 * cos(fract(hue + vec3f(0.0, 1.0, 2.0) / 3.0) * TAU));
+}
+
+@compute @workgroup_size(64)
+fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let thread = id.x + id.y * groups.x * 64u;
+    let triangle = thread / clusters.lanes;
+    let quad = triangle / 2u;
+    if (quad >= quads()) {
+        return;
+    }
+    let layers = clusters.grid.z;
+    let column = quad / layers;
+    let layer = quad % layers;
+    let at = corners(column);
+    if (!all(sines_of(at) >= vec4f(0.0))) {
+        return;
+    }
+    let share = outward(layer);
+    let corner_a = place_on(at.x, share);
+    let corner_b = place_on(at.y, share);
+    let corner_c = place_on(at.z, share);
+    let corner_d = place_on(at.w, share);
+    // Two triangles share the diagonal from the first corner to the last one.
+    let is_second = (triangle & 1u) == 1u;
+    let p = corner_a;
+    let q = select(corner_b, corner_d, is_second);
+    let r = select(corner_d, corner_c, is_second);
+    // Relative to the pixel of a corner, so that products of coordinates are exact enough.
+    let origin = floor(min(p.xy, min(q.xy, r.xy)));
+    let a = p.xy - origin;
+    let b = q.xy - origin;
+    let c = r.xy - origin;
+    let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+    if (!(abs(area) > 0.0 && abs(area) < 1e30)) {
+        return;
+    }
+    let first_pixel = vec2f(eye.area.xy) - origin;
+    let low = max(min(a, min(b, c)), first_pixel);
+    let high = min(max(a, max(b, c)), first_pixel + vec2f(eye.area.zw) - 1.0);
+    if (!(low.x <= high.x && low.y <= high.y)) {
+        return;
+    }
+    let edge_a = edge_of(b, c, area);
+    let edge_b = edge_of(c, a, area);
+    let edge_c = edge_of(a, b, area);
+    let u_of = select(vec3f(0.0, 1.0, 1.0), vec3f(0.0, 1.0, 0.0), is_second);
+    let t_of = select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 1.0), is_second);
+    let depth_of = vec3f(p.z, q.z, r.z);
+    let cosines = cosines_of(at);
+    let thickness = thickness_of(layer);
+    let color_a = color_on(at.x, share);
+    let color_b = color_on(at.y, share);
+    let color_c = color_on(at.z, share);
+    let color_d = color_on(at.w, share);
+    let detail = clusters.light_detail.w;
+    let as_published = clusters.core_strength_finest_paper.w > 0.5;
+    let slope = select(detail * bitcast<f32>(maps[quad * clusters.entries].x), 1.0, as_published);
+    let even = select(1.0 - detail, 0.0, as_published);
+    let hash = fract(f32(quad) * 0.618034);
+    let middle_distance = 4.0 / max(corner_a.z + corner_b.z + corner_c.z + corner_d.z, 1e-9);
+
+    // One loop over rows and columns: on software adapters each inner loop would cost an empty iteration.
+    let bottom = i32(high.y);
+    let lanes = i32(clusters.lanes);
+    var row = i32(low.y) + i32(thread % clusters.lanes) - lanes;
+    var x = 0;
+    var last = -1;
+    loop {
+        x++;
+        if (x > last) {
+            row += lanes;
+            if (row > bottom) {
+                break;
+            }
+            let y = f32(row);
+            let range = narrowed(edge_c, y, narrowed(edge_b, y, narrowed(edge_a, y, vec2f(low.x, high.x))));
+            x = i32(range.x);
+            last = select(-1, i32(range.y), range.x <= range.y);
+        }
+        if (x <= last) {
+            let corner = vec2f(f32(x), f32(row));
+            let weights = vec3f(
+                dot(edge_a.xy, corner) + edge_a.z,
+                dot(edge_b.xy, corner) + edge_b.z,
+                dot(edge_c.xy, corner) + edge_c.z,
+            );
+            let inside = (weights.x + edge_a.x * SAMPLES_X + edge_a.y * SAMPLES_Y >= vec4f(0.0))
+                & (weights.y + edge_b.x * SAMPLES_X + edge_b.y * SAMPLES_Y >= vec4f(0.0))
+                & (weights.z + edge_c.x * SAMPLES_X + edge_c.y * SAMPLES_Y >= vec4f(0.0));
+            if (!any(inside)) {
+                continue;
+            }
+            let half_steps = 0.5 * vec3f(edge_a.x + edge_a.y, edge_b.x + edge_b.y, edge_c.x + edge_c.y);
+            var middle = max(weights + half_steps, vec3f(0.0));
+            middle /= middle.x + middle.y + middle.z;
+            let depth = dot(middle, depth_of);
+            let pixel = vec2u(vec2i(i32(origin.x) + x, i32(origin.y) + row));
+            let place = pixel - eye.area.xy;
+            let seen = inside & (vec4f(depth) >= textureLoad(depths, place, 0));
+            if (!any(seen)) {
+                continue;
+            }
+            let u = clamp(dot(middle, u_of), 0.0, 1.0);
+            let t = clamp(dot(middle, t_of), 0.0, 1.0);
+            let cos_view = bilinear(cosines, u, t);
+            let found = map_at(quad, u, t);
+            let alpha = 1.0 - exp(-found.x * curved(cos_view, thickness));
+            if (!(alpha >= FAINTEST)) {
+                continue;
+            }
+            var color: vec3f;
+            if (SHOWS_RECORDS) {
+                color = record_color(cell_of(column, layer, 1u, select(0u, 1u, t > 0.5)));
+            } else {
+                let lower = color_a + (color_b - color_a) * u;
+                let upper = color_c + (color_d - color_c) * u;
+                let gain = max(even + slope * found.y, 0.0) * own_shadow(quad, layer, cos_view, u, t);
+                color = (lower + (upper - lower) * t) * gain;
+            }
+            take(place.y * eye.area.z + place.x, Fragment(depth, alpha, seen, color, hash, middle_distance, pixel));
+        }
+    }
+}
