@@ -10,6 +10,7 @@
 //!
 //! This crate draws nothing: it is the definition by which drawing is tested.
 
+/// The azimuth of a direction in the plane of a sector.
 pub mod azimuth;
 pub mod boundary;
 pub mod cache;
@@ -41,5 +42,5 @@ pub use disk::{DiskFrames, DiskPlan};
 pub use features::{Curl, Features, SectorRef};
 pub use hair::ClusterHair;
 pub use ribs::RibGrid;
-pub use settings::{ClusterLighting, ClusterSettings, ClusterView, RecordLookup};
+pub use settings::{ClusterSettings, ClusterShading, ClusterView, RecordLookup};
 pub use shadow::LocalShadow;

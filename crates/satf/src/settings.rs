@@ -4,13 +4,14 @@ use lovelock_base::field;
 use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
+use crate::lighting::ClusterLighting;
 use crate::ribs::RibGrid;
 use crate::shadow::LocalShadow;
 
 /// How the light on a layer is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ClusterLighting {
+pub enum ClusterShading {
     /// As that of strands, so that clusters and strands can be mixed; records add what varies across a lock.
     #[default]
     AsStrands,
@@ -18,7 +19,7 @@ pub enum ClusterLighting {
     Paper,
 }
 
-impl Choices for ClusterLighting {
+impl Choices for ClusterShading {
     const ALL: &'static [Self] = &[Self::AsStrands, Self::Paper];
 
     fn names(self) -> (&'static str, &'static str) {
@@ -90,7 +91,7 @@ pub struct ClusterSettings {
     /// How records are read.
     pub lookup: RecordLookup,
     /// How the light on a layer is computed.
-    pub lighting: ClusterLighting,
+    pub shading: ClusterShading,
     /// How a cluster shadows itself.
     pub local_shadow: LocalShadow,
     /// Strength of the shadow of layers on each other; 1 is that of their opacity.
@@ -116,7 +117,7 @@ impl Default for ClusterSettings {
             along: 16,
             macro_tolerance: 0.0,
             lookup: RecordLookup::default(),
-            lighting: ClusterLighting::default(),
+            shading: ClusterShading::default(),
             local_shadow: LocalShadow::default(),
             shadow_strength: 1.0,
             detail: 1.0,
@@ -166,9 +167,9 @@ impl Settings for ClusterSettings {
             "Look-up",
             "How records of the database are read: between neighbouring ones, or the nearest as published.",
         ),
-        Setting::choice::<ClusterLighting>(
-            field!(Self, lighting),
-            "Lighting",
+        Setting::choice::<ClusterShading>(
+            field!(Self, shading),
+            "Shading",
             "How light on a layer is computed: as on strands, or by the published diffuse light and two shifted highlights.",
         ),
         Setting::choice::<LocalShadow>(
@@ -215,6 +216,12 @@ impl Settings for ClusterSettings {
 }
 
 impl ClusterSettings {
+    /// The published light with these strengths.
+    pub fn lighting(&self) -> ClusterLighting {
+        let Self { diffuse, primary, secondary, .. } = *self;
+        ClusterLighting { diffuse, primary, secondary, ..ClusterLighting::default() }
+    }
+
     /// The settings on which the clusters of a hairstyle depend; the others as by default.
     #[must_use]
     pub fn of_shape(&self) -> Self {
