@@ -8,6 +8,9 @@ use crate::lighting::ClusterLighting;
 use crate::ribs::RibGrid;
 use crate::shadow::LocalShadow;
 
+/// Length of hair shell volumes that follows waves and curls, metres.
+const VOLUME_LENGTH: f32 = 0.014;
+
 /// How the light on a layer is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -114,7 +117,7 @@ impl Default for ClusterSettings {
             layers: 4,
             core: 0.35,
             around: 12,
-            along: 16,
+            along: 32,
             macro_tolerance: 0.0,
             lookup: RecordLookup::default(),
             shading: ClusterShading::default(),
@@ -154,7 +157,7 @@ impl Settings for ClusterSettings {
             field!(Self, along),
             [2, 64],
             "Volumes along",
-            "Hair shell volumes from root to tip. Hairstyles of many locks have fewer.",
+            "Hair shell volumes from root to tip, at most. Short hair and hairstyles of many locks have fewer.",
         ),
         Setting::number(
             field!(Self, macro_tolerance),
@@ -229,12 +232,13 @@ impl ClusterSettings {
         Self { layers, core, around, along, macro_tolerance, ..Self::default() }
     }
 
-    /// How each of `clusters` clusters is divided so that there are at most `most` hair shell volumes.
-    pub fn grid(&self, clusters: usize, most: usize) -> RibGrid {
+    /// How each of `clusters` clusters is divided so that there are at most `most` hair shell volumes. Hair of this mean `length`, metres,
+    /// has no shorter ones than it needs.
+    pub fn grid(&self, clusters: usize, length: f32, most: usize) -> RibGrid {
         let mut grid = RibGrid {
             layers: self.layers.clamp(1, 15) as usize,
             around: self.around.clamp(4, 32) as usize,
-            along: self.along.clamp(2, 64) as usize,
+            along: (self.along.clamp(2, 64) as usize).min((length / VOLUME_LENGTH).max(8.0) as usize).max(2),
         };
         let fits = |grid: RibGrid| grid.volumes().saturating_mul(clusters) <= most;
         while !fits(grid) {
@@ -264,10 +268,10 @@ mod tests {
     #[test]
     fn few_clusters_are_divided_as_asked_and_many_stay_within_the_limit() {
         let settings = ClusterSettings { around: 32, along: 32, ..ClusterSettings::default() };
-        assert_eq!(settings.grid(40, 400_000), RibGrid { layers: 4, around: 32, along: 32 });
-        let many = settings.grid(1000, 400_000);
+        assert_eq!(settings.grid(40, 0.5, 400_000), RibGrid { layers: 4, around: 32, along: 32 });
+        let many = settings.grid(1000, 0.5, 400_000);
         assert!(many.volumes() * 1000 <= 400_000 && many.around >= 6 && many.layers >= 2, "{many:?}");
         // Nothing becomes too coarse to be a lock.
-        assert_eq!(settings.grid(10_000_000, 400_000), RibGrid { layers: 2, around: 6, along: 6 });
+        assert_eq!(settings.grid(10_000_000, 0.5, 400_000), RibGrid { layers: 2, around: 6, along: 6 });
     }
 }
