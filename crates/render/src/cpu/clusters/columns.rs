@@ -155,7 +155,8 @@ impl Columns<'_> {
         let outward = grid.outward(index);
         let radius = grid.radius(index, self.hair.core);
         let [a, b, c, d] = corners;
-        let arc = [a, c].map(|v| self.depth * v.inverse_arc / radius);
+        let middle = grid.middle_radius(index, self.hair.core);
+        let arc = [a, c].map(|v| self.depth * v.inverse_arc / middle);
         let cell = |side: usize, section: usize| {
             self.hair.cell(cluster, index, (rib + side + grid.around - 1) % grid.around, i + section)
         };
