@@ -41,7 +41,7 @@ pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use light::{Light, MAX_LIGHTS};
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
-pub use lovelock_satf::{ClusterLighting, ClusterSettings, ClusterView, LocalShadow, RecordLookup};
+pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,

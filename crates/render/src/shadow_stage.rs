@@ -9,7 +9,7 @@ use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput
 use rayon::prelude::*;
 
 use crate::skin::Neighbours;
-use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, HairDrawing, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -206,7 +206,7 @@ impl ShadowStage {
         pack(&at_points, drawn.points(), &mut self.at_points);
         let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
         pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
-        if let (Some((body, _)), true) = (input.body, apart.is_some()) {
+        if let (Some((body, _)), true) = (input.body, has_soft_skin(input, apart.is_some())) {
             self.neighbours.follow(body);
             self.neighbours.soften(&mut self.at_vertices, &mut self.softer);
         }
@@ -268,6 +268,13 @@ impl ShadowStage {
 pub(crate) fn soft_reach(lights: &[Light]) -> f32 {
     let key = lights.iter().find(|light| light.enabled);
     key.map_or(0.0, |light| 0.5 * light.normalized().softness)
+}
+
+/// Whether the hair's shadow on skin is softened: where hair is as fine as it is in images for the eye, not in comparisons of maps.
+/// `has_fine_strands` tells whether strands are drawn by their size.
+pub(crate) fn has_soft_skin(input: &FrameInput, has_fine_strands: bool) -> bool {
+    let has_clusters = input.picture.draw == HairDrawing::Clusters && input.known.is_none();
+    (has_fine_strands || has_clusters) && soft_reach(input.lights) > 0.0
 }
 
 /// Points that are looked up together at places of their own.

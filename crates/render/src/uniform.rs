@@ -6,6 +6,7 @@ use lovelock_appearance::fibre::LOBES;
 use lovelock_base::settings::Settings;
 use lovelock_groom::fine::Portion;
 
+use crate::clusters::cluster_share;
 use crate::scene_light::SceneLight;
 use crate::{FrameInput, MAX_LIGHTS};
 
@@ -78,7 +79,8 @@ impl FrameUniform {
         }
         let scale = input.camera.pixels_per_metre_at_one_metre(height);
         let exponents = highlight_exponents(look.roughness);
-        let opacity = picture.strand_opacity;
+        // The rest of the optical depth is that of clusters.
+        let opacity = picture.strand_opacity * (1.0 - cluster_share(input, height)).max(1e-3);
         let count =
             drawn.map_or(input.style.strands.count().max(1) as f32, |(portion, _)| portion.sum().max(1.0));
         let strand_width = look.diameter * (look.real_hairs / count) * look.width_scale.clamp(0.01, 4.0);

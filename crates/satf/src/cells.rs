@@ -77,8 +77,8 @@ pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f3
         let reach = sideways(section, sections.get(i + 1).or(sections.get(i.wrapping_sub(1))), &mut own);
         let radius = (section.guides * section.fill).determinant().abs().sqrt();
         for (rib, sum) in sums.iter().enumerate() {
-            let arc =
-                std::f32::consts::TAU * grid.radius(rib / grid.around, core) * radius / grid.around as f32;
+            let arc = std::f32::consts::TAU * grid.middle_radius(rib / grid.around, core) * radius
+                / grid.around as f32;
             let [s, t] = sum.places.map(|place| if sum.weight > 0.0 { place / sum.weight } else { 0.5 });
             let features = Features {
                 optical_depth: sum.strands * width / arc.max(1e-6),

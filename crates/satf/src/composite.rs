@@ -22,9 +22,3 @@ pub fn composite(background: Vec3, layers: impl IntoIterator<Item = LayerSample>
         behind * (1.0 - opacity) + layer.color * opacity
     })
 }
-
-/// The faces that a ray through the axis meets among `layers`, from the farthest to the nearest: the layer, and whether it
-/// is seen from its back.
-pub fn draw_order(layers: usize) -> impl Iterator<Item = (usize, bool)> {
-    (0..layers).rev().map(|layer| (layer, true)).chain((0..layers).map(|layer| (layer, false)))
-}

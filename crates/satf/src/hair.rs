@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use lovelock_groom::{Hairstyle, StrandSet, Wisp};
+use glam::Affine3A;
+use lovelock_groom::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use rayon::prelude::*;
 
 use crate::cells::{Cell, cells_of, strand_width};
@@ -38,7 +39,7 @@ impl ClusterHair {
     /// The clusters of `style`.
     pub fn new(style: &Arc<Hairstyle>, settings: &ClusterSettings) -> Self {
         let wisps = style.wisps.iter().filter(|w| w.strand_count > 0).count();
-        let grid = settings.grid(wisps, MOST_VOLUMES);
+        let grid = settings.grid(wisps, mean_length(style), MOST_VOLUMES);
         let core = settings.core.clamp(0.0, 0.9);
         let sections: Vec<Vec<Section>> = if style.check().is_ok() {
             style.wisps.par_iter().map(|wisp| sections_of(style, wisp, grid.along)).collect()
@@ -83,6 +84,23 @@ impl ClusterHair {
         let first = shape / around * self.grid.cells();
         self.cells[first + (layer * around + rib) * self.grid.points() + section]
     }
+}
+
+/// The mean length of strands at rest, metres, from some of them.
+fn mean_length(style: &Arc<Hairstyle>) -> f32 {
+    if style.check().is_err() {
+        return 0.0;
+    }
+    let mut strands = Strands::default();
+    interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+    let step = (strands.count() / 500).max(1);
+    let ends = strands.first_point.windows(2).step_by(step);
+    let lengths = ends.map(|ends| {
+        let points = ends[0] as usize..ends[1] as usize;
+        points.clone().skip(1).map(|i| strands.point(i).distance(strands.point(i - 1))).sum::<f32>()
+    });
+    let (sum, count) = lengths.filter(|l| l.is_finite()).fold((0.0, 0), |(s, n), l| (s + l, n + 1));
+    sum / count.max(1) as f32
 }
 
 /// Of hairstyles of more strands, only so many cast shadows where clusters are drawn.

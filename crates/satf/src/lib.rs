@@ -4,20 +4,18 @@
 //! from each side and in each light stands in a [`Database`], which is made once.
 //!
 //! - Off-line: [`sector`], [`trace`] and [`database`] make the records; [`file`](mod@file) and [`cache`] keep them.
-//! - Once per hairstyle: [`cluster`] sorts the strands of each wisp into the sectors of its layers.
-//! - Once per frame: [`disk`] follows the guides.
-//! - Per pixel: [`boundary`] reads records, [`lighting`] and [`shadow`] shade them, [`composite`] blends them.
+//! - Once per hairstyle: [`ClusterHair`] fits a generalised disk to the strands of each wisp, sorts them into the sectors of its
+//!   layers, and makes the ribs on which the layers are drawn.
+//! - Per frame the ribs follow the guides as strands do, and the `render` crate draws the layers between them: it reads records
+//!   ([`boundary`], [`Database::sample_stored`]), and [`lighting`] and [`shadow`] shade them. [`composite`] says how layers are blended.
 //!
-//! This crate draws nothing: it is the definition by which drawing is tested.
+//! This crate draws nothing and needs no graphics device.
 
-pub mod azimuth;
 pub mod boundary;
 pub mod cache;
 mod cells;
-pub mod cluster;
 pub mod composite;
 pub mod database;
-pub mod disk;
 pub mod ellipse;
 pub mod features;
 pub mod file;
@@ -35,11 +33,9 @@ pub mod shadow;
 pub mod trace;
 
 pub use cells::{Cell, strand_width};
-pub use cluster::Clusters;
 pub use database::Database;
-pub use disk::{DiskFrames, DiskPlan};
 pub use features::{Curl, Features, SectorRef};
 pub use hair::ClusterHair;
 pub use ribs::RibGrid;
-pub use settings::{ClusterLighting, ClusterSettings, ClusterView, RecordLookup};
+pub use settings::{ClusterSettings, ClusterShading, ClusterView, RecordLookup};
 pub use shadow::LocalShadow;

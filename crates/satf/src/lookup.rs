@@ -145,7 +145,7 @@ impl Database {
     }
 
     /// The mean of [`Database::sample_stored`] over all azimuths of view: for an eye that looks along the strands, which has no
-    /// azimuth. See [`crate::azimuth`].
+    /// azimuth.
     pub fn stored_any_view(&self, of: SectorRef, theta_l: f32, u: f32, mip: f32) -> (f32, f32) {
         let mut sum = (0.0, 0.0);
         for view in 0..ANGLES {

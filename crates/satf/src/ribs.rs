@@ -52,6 +52,12 @@ impl RibGrid {
         core + (1.0 - core) * self.outward(layer)
     }
 
+    /// The radius in the middle of a layer, by which its density is measured: then the layers together block as much light as their
+    /// strands do, whatever their number.
+    pub fn middle_radius(&self, layer: usize, core: f32) -> f32 {
+        core + (1.0 - core) * (layer as f32 + 0.5) / self.layers.max(1) as f32
+    }
+
     /// Where the outer surface of a layer lies between the rings: 1 on the outer one.
     pub fn outward(&self, layer: usize) -> f32 {
         (layer + 1) as f32 / self.layers.max(1) as f32

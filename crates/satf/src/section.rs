@@ -220,4 +220,21 @@ mod tests {
         assert!((round - Mat2::IDENTITY * 0.01).to_cols_array().iter().all(|x| x.abs() < 1e-7), "{round}");
         assert!(spanned([Vec3::ZERO; 3]).0.determinant().abs() > 0.0);
     }
+
+    #[test]
+    fn constant_weights_are_the_published_ellipse_with_the_angle_of_its_axes() {
+        let q = [Vec2::new(0.011, 0.002), Vec2::new(-0.004, 0.009), Vec2::new(-0.006, -0.008)];
+        let middle = (q[0] + q[1] + q[2]) / 3.0;
+        let (m, _) = spanned(q.map(|q| (q - middle).extend(0.0)));
+        let Ellipse { a, b, phi, theta } = Ellipse::of(m);
+        for (v, u) in [(0.0, 0.0), (1.0, 0.3), (0.6, 2.0), (0.9, -1.7)] {
+            let weights = weights_of(Vec2::from_angle(u) * v);
+            let by_weights: Vec2 = (0..3).map(|g| q[g] * weights[g]).sum();
+            let published = Vec2::new(a * v * (theta + u).cos(), b * v * (theta + u).sin());
+            let by_axes = middle + Vec2::from_angle(phi).rotate(published);
+            assert!((by_weights - by_axes).length() < 1e-7, "{by_weights} {by_axes}");
+            // Without the angle of the axes, as printed, the ellipse cannot turn.
+            assert!(v == 0.0 || (by_weights - middle - published).length() > 1e-3, "the control");
+        }
+    }
 }

@@ -4,13 +4,17 @@ use lovelock_base::field;
 use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
 
+use crate::lighting::ClusterLighting;
 use crate::ribs::RibGrid;
 use crate::shadow::LocalShadow;
+
+/// Length of hair shell volumes that follows waves and curls, metres.
+const VOLUME_LENGTH: f32 = 0.014;
 
 /// How the light on a layer is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ClusterLighting {
+pub enum ClusterShading {
     /// As that of strands, so that clusters and strands can be mixed; records add what varies across a lock.
     #[default]
     AsStrands,
@@ -18,7 +22,7 @@ pub enum ClusterLighting {
     Paper,
 }
 
-impl Choices for ClusterLighting {
+impl Choices for ClusterShading {
     const ALL: &'static [Self] = &[Self::AsStrands, Self::Paper];
 
     fn names(self) -> (&'static str, &'static str) {
@@ -90,7 +94,7 @@ pub struct ClusterSettings {
     /// How records are read.
     pub lookup: RecordLookup,
     /// How the light on a layer is computed.
-    pub lighting: ClusterLighting,
+    pub shading: ClusterShading,
     /// How a cluster shadows itself.
     pub local_shadow: LocalShadow,
     /// Strength of the shadow of layers on each other; 1 is that of their opacity.
@@ -113,10 +117,10 @@ impl Default for ClusterSettings {
             layers: 4,
             core: 0.35,
             around: 12,
-            along: 16,
+            along: 32,
             macro_tolerance: 0.0,
             lookup: RecordLookup::default(),
-            lighting: ClusterLighting::default(),
+            shading: ClusterShading::default(),
             local_shadow: LocalShadow::default(),
             shadow_strength: 1.0,
             detail: 1.0,
@@ -153,7 +157,7 @@ impl Settings for ClusterSettings {
             field!(Self, along),
             [2, 64],
             "Volumes along",
-            "Hair shell volumes from root to tip. Hairstyles of many locks have fewer.",
+            "Hair shell volumes from root to tip, at most. Short hair and hairstyles of many locks have fewer.",
         ),
         Setting::number(
             field!(Self, macro_tolerance),
@@ -166,9 +170,9 @@ impl Settings for ClusterSettings {
             "Look-up",
             "How records of the database are read: between neighbouring ones, or the nearest as published.",
         ),
-        Setting::choice::<ClusterLighting>(
-            field!(Self, lighting),
-            "Lighting",
+        Setting::choice::<ClusterShading>(
+            field!(Self, shading),
+            "Shading",
             "How light on a layer is computed: as on strands, or by the published diffuse light and two shifted highlights.",
         ),
         Setting::choice::<LocalShadow>(
@@ -215,6 +219,12 @@ impl Settings for ClusterSettings {
 }
 
 impl ClusterSettings {
+    /// The published light with these strengths.
+    pub fn lighting(&self) -> ClusterLighting {
+        let Self { diffuse, primary, secondary, .. } = *self;
+        ClusterLighting { diffuse, primary, secondary, ..ClusterLighting::default() }
+    }
+
     /// The settings on which the clusters of a hairstyle depend; the others as by default.
     #[must_use]
     pub fn of_shape(&self) -> Self {
@@ -222,12 +232,13 @@ impl ClusterSettings {
         Self { layers, core, around, along, macro_tolerance, ..Self::default() }
     }
 
-    /// How each of `clusters` clusters is divided so that there are at most `most` hair shell volumes.
-    pub fn grid(&self, clusters: usize, most: usize) -> RibGrid {
+    /// How each of `clusters` clusters is divided so that there are at most `most` hair shell volumes. Hair of this mean `length`, metres,
+    /// has no shorter ones than it needs.
+    pub fn grid(&self, clusters: usize, length: f32, most: usize) -> RibGrid {
         let mut grid = RibGrid {
             layers: self.layers.clamp(1, 15) as usize,
             around: self.around.clamp(4, 32) as usize,
-            along: self.along.clamp(2, 64) as usize,
+            along: (self.along.clamp(2, 64) as usize).min((length / VOLUME_LENGTH).max(8.0) as usize).max(2),
         };
         let fits = |grid: RibGrid| grid.volumes().saturating_mul(clusters) <= most;
         while !fits(grid) {
@@ -257,10 +268,10 @@ mod tests {
     #[test]
     fn few_clusters_are_divided_as_asked_and_many_stay_within_the_limit() {
         let settings = ClusterSettings { around: 32, along: 32, ..ClusterSettings::default() };
-        assert_eq!(settings.grid(40, 400_000), RibGrid { layers: 4, around: 32, along: 32 });
-        let many = settings.grid(1000, 400_000);
+        assert_eq!(settings.grid(40, 0.5, 400_000), RibGrid { layers: 4, around: 32, along: 32 });
+        let many = settings.grid(1000, 0.5, 400_000);
         assert!(many.volumes() * 1000 <= 400_000 && many.around >= 6 && many.layers >= 2, "{many:?}");
         // Nothing becomes too coarse to be a lock.
-        assert_eq!(settings.grid(10_000_000, 400_000), RibGrid { layers: 2, around: 6, along: 6 });
+        assert_eq!(settings.grid(10_000_000, 0.5, 400_000), RibGrid { layers: 2, around: 6, along: 6 });
     }
 }

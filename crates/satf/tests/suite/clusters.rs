@@ -1,221 +1,237 @@
-//! Clusters of hairstyles.
+//! Clusters of hairstyles that are made by hand.
 
-use std::f32::consts::TAU;
+use std::sync::Arc;
 
-use glam::{Affine3A, Vec2};
-use lovelock_groom::{GroomSettings, Hairstyle, NoObstacle, PlainHead, Preset, grow};
-use lovelock_satf::cluster::{ClusterSettings, Clusters};
-use lovelock_satf::{Curl, DiskFrames};
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{GuideFrame, Hairstyle, Strands, interpolate};
+use lovelock_satf::{ClusterHair, ClusterSettings};
 
-use crate::hair::{LINKS, Made, at_rest, corners, guides, lively, random_weights, style};
+use super::hair::{LINKS, Made, at_rest, corners, guides, lively, random_weights, style};
 
-fn wisp_of(seed: u64, count: usize) -> ([Vec<glam::Vec3>; 3], Vec<Made>) {
-    (guides(|_| corners(0.01)), random_weights(seed, count).into_iter().map(Made::plain).collect())
+/// Strands whose places fill the disk of the guides evenly.
+fn disk(seed: u64, count: usize) -> Vec<[f32; 3]> {
+    let angles = [0, 1, 2].map(|g| std::f32::consts::FRAC_PI_2 + std::f32::consts::TAU / 3.0 * g as f32);
+    let mut random = lovelock_base::random::SplitMix64::new(seed);
+    (0..count)
+        .map(|_| {
+            let (radius, angle) = (random.unit().sqrt(), random.angle());
+            angles.map(|of| 1.0 / 3.0 + 2.0 / 3.0 * radius * (angle - of).cos())
+        })
+        .collect()
 }
 
-fn placed(style: &Hairstyle, clusters: &Clusters) -> DiskFrames {
-    let mut frames = DiskFrames::default();
-    frames.place(style, &at_rest(style), &clusters.plan);
-    frames
+fn plain(weights: Vec<[f32; 3]>) -> Vec<Made> {
+    weights.into_iter().map(Made::plain).collect()
 }
 
-/// All hair of a cross-section, in strands.
-fn strands_in(clusters: &Clusters, cluster: usize, sample: usize) -> f32 {
-    let grid = clusters.grid;
-    let sectors = |layer| (0..grid.sectors).map(move |sector| (layer, sector));
-    (0..grid.layers)
-        .flat_map(sectors)
-        .map(|(layer, sector)| clusters.amount(cluster, sample, layer, sector))
-        .sum()
+fn clusters(style: Hairstyle, settings: &ClusterSettings) -> (Arc<Hairstyle>, ClusterHair) {
+    let style = Arc::new(style);
+    let hair = ClusterHair::new(&style, settings);
+    (style, hair)
+}
+
+fn ribs_at(hair: &ClusterHair, frame: &GuideFrame) -> Strands {
+    let mut ribs = Strands::default();
+    interpolate(&hair.ribs, frame, &mut ribs);
+    ribs
+}
+
+/// The strands of all cells at a section.
+fn strands_at(hair: &ClusterHair, cluster: usize, section: usize) -> f32 {
+    let grid = hair.grid;
+    let cell = |layer: usize, rib: usize| hair.cell(cluster, layer, rib, section).strands();
+    (0..grid.layers).map(|layer| (0..grid.around).map(|rib| cell(layer, rib)).sum::<f32>()).sum()
 }
 
 #[test]
-fn every_strand_is_in_a_sector_up_to_its_end() {
-    let mut strands: Vec<Made> = random_weights(5, 60).into_iter().map(Made::plain).collect();
-    for strand in &mut strands[..20] {
+fn ribs_surround_the_strands_in_every_pose() {
+    let (style, hair) = clusters(style(&[(lively(), plain(disk(1, 400)))]), &ClusterSettings::default());
+    let (around, points) = (hair.grid.around, hair.grid.points());
+    // Another pose: guides that have moved apart from each other.
+    let mut moved = at_rest(&style);
+    for g in 0..3 {
+        for p in 0..=LINKS {
+            let i = g * (LINKS + 1) + p;
+            moved.guides.x[i] += 0.0006 * (p * (g + 1)) as f32;
+            moved.guides.z[i] -= 0.0008 * (p * p) as f32 / LINKS as f32;
+        }
+    }
+    let mut strands = Strands::default();
+    interpolate(&style, &moved, &mut strands);
+    let ribs = ribs_at(&hair, &moved);
+    let mut outside = 0;
+    for i in 0..points {
+        let rim: Vec<Vec3> = (0..around).map(|rib| ribs.point((around + rib) * points + i)).collect();
+        let core: Vec<Vec3> = (0..around).map(|rib| ribs.point(rib * points + i)).collect();
+        let middle = rim.iter().sum::<Vec3>() / around as f32;
+        for (rim, core) in rim.iter().zip(&core) {
+            // The inner ring is the outer one, smaller.
+            let off = (*core - middle - hair.core * (*rim - middle)).length();
+            // Measured 7e-5 of 1 cm, where the guides run apart along the hair.
+            assert!(off < 1.5e-4, "{i}: {off}");
+        }
+        // Strands at this section lie inside the outer ring: no further from its middle than it is that way.
+        let radius = |toward: Vec3| {
+            let along = |p: &&Vec3| (**p - middle).normalize().dot(toward);
+            rim.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map_or(0.0, |p| p.distance(middle))
+        };
+        for ends in strands.first_point.windows(2) {
+            let at = i as f32 / (points - 1) as f32 * (ends[1] - ends[0] - 1) as f32;
+            let first = ends[0] as usize + at as usize;
+            let p =
+                strands.point(first).lerp(strands.point((first + 1).min(ends[1] as usize - 1)), at.fract());
+            let off = p - middle;
+            outside += usize::from(off.length() > 1.08 * radius(off.normalize_or_zero()));
+        }
+    }
+    // Measured: none of 400 strands at any section; with ribs half as far out most of them.
+    assert!(outside <= points * 400 / 100, "{outside}");
+}
+
+#[test]
+fn every_strand_is_in_one_place_of_the_layers_until_it_ends() {
+    let mut strands = plain(disk(2, 300));
+    for strand in strands.iter_mut().take(100) {
         strand.end = 0.5 * LINKS as f32;
     }
-    let style = style(&[(lively(), strands)]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    let along = clusters.grid.along;
-    for sample in 0..=along {
-        let found = strands_in(&clusters, 0, sample);
-        let wanted = if 2 * sample < along { 60.0 } else { 40.0 };
-        // The cross-section at the shorter strands' end has a part of them.
-        let near = (2 * sample).abs_diff(along) <= 2;
-        assert!(near || (found - wanted).abs() < 0.01, "{sample}: {found}");
+    let (_, hair) = clusters(style(&[(lively(), strands)]), &ClusterSettings::default());
+    let last = hair.grid.along;
+    for (section, count) in [(0, 300.0), (last / 4, 300.0), (last * 3 / 4, 200.0), (last, 200.0)] {
+        let found = strands_at(&hair, 0, section);
+        // Half floats round each cell to 1/2048 of it.
+        assert!((found - count).abs() < 0.002 * count, "section {section}: {found}");
     }
 }
 
 #[test]
-fn a_cut_wisp_ends_where_its_hair_ends() {
-    let mut strands: Vec<Made> = random_weights(5, 30).into_iter().map(Made::plain).collect();
-    for strand in &mut strands {
-        strand.end = 5.0;
-    }
-    let style = style(&[(lively(), strands)]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    assert_eq!(clusters.plan.ends, [5.0]);
-    assert_eq!(clusters.plan.param(0, clusters.grid.along), 5.0);
-    assert!((strands_in(&clusters, 0, clusters.grid.along) - 30.0).abs() < 0.01);
-}
-
-#[test]
-fn the_optical_depth_of_a_cross_section_is_that_of_its_strands() {
-    // A ray along the radius of a round disk meets all strands' widths over the circumference of their layer.
-    let style = style(&[wisp_of(2, 400)]);
-    let settings = ClusterSettings { layers: 1, core: 0.5, sectors: 8, ..ClusterSettings::default() };
-    let clusters = Clusters::of(&style, &settings).unwrap();
-    let frames = placed(&style, &clusters);
-    let width = 1e-4;
-    let sample = 6;
-    let depths = (0..8).map(|sector| clusters.features(&frames, 0, sample, 0, sector, width).optical_depth);
-    let mean = depths.sum::<f32>() / 8.0;
-    let e = frames.ellipse[sample];
-    assert!((e.a - e.b).abs() < 0.15 * e.a, "{e:?}");
-    let exact = 400.0 * width / (TAU * 0.75 * 0.5 * (e.a + e.b));
-    assert!((mean - exact).abs() < 0.02 * exact, "{mean} for {exact}");
-    // Twice as wide a disk has half the optical depth.
-    let mut wide = frames.clone();
-    for axis in wide.x.iter_mut().chain(&mut wide.y) {
-        *axis *= 2.0;
-    }
-    let (near, far) = (
-        clusters.features(&frames, 0, sample, 0, 3, width).optical_depth,
-        clusters.features(&wide, 0, sample, 0, 3, width).optical_depth,
-    );
-    assert!((near / far - 2.0).abs() < 1e-3);
-}
-
-#[test]
-fn disks_hold_their_strands() {
-    let style = style(&[wisp_of(7, 300)]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    let frames = placed(&style, &clusters);
-    let set = &style.strands;
-    let mut outside = 0;
-    for weights in &set.weights {
-        let point = lovelock_groom::WispCurve::at_rest(&style.guides, &style.wisps[0]).blend(*weights, 6.0);
-        let i = 16 * clusters.grid.along / 32;
-        let i = if clusters.plan.param(0, i) == 6.0 { i } else { clusters.grid.along / 2 };
-        let from = point - frames.centre[i];
-        let axes = glam::Mat3::from_cols(frames.x[i], frames.y[i], frames.tangent[i]);
-        outside += usize::from((axes.inverse() * from).truncate().length() > 1.001);
-    }
-    assert!(outside > 0 && outside <= 300 / 20, "a few strays are outside: {outside}");
-}
-
-#[test]
-fn curled_strands_have_another_class_than_straight_ones() {
-    let curled = |offset: fn(f32) -> Vec2| {
-        let strands =
-            random_weights(4, 50).into_iter().map(|weights| Made { offset, ..Made::plain(weights) });
-        // Strands that do not move together, so that the disk does not follow them.
-        let mut strands: Vec<Made> = strands.collect();
-        for strand in strands.iter_mut().skip(1).step_by(2) {
-            strand.offset = |_| Vec2::ZERO;
+fn the_layers_are_as_dense_as_the_disk_that_they_divide() {
+    let radius = 0.01;
+    let round = [0, 1, 2].map(|g| {
+        let angle = std::f32::consts::TAU / 3.0 * g as f32;
+        glam::Vec2::from_angle(angle) * radius
+    });
+    let count = 2000;
+    let straight = guides(|_| round);
+    let (style, hair) = clusters(style(&[(straight, plain(disk(3, count)))]), &ClusterSettings::default());
+    let ribs = ribs_at(&hair, &at_rest(&style));
+    let grid = hair.grid;
+    let (section, width) = (grid.along / 2, 80e-6);
+    let rim = |rib: usize| ribs.point((grid.around + rib % grid.around) * grid.points() + section);
+    let mut depth = 0.0;
+    for layer in 0..grid.layers {
+        for rib in 0..grid.around {
+            let arc = rim(rib).distance(rim(rib + 1)) * grid.middle_radius(layer, hair.core);
+            // Through both sides; the mean over directions through the axis.
+            let strands = hair.cell(0, layer, rib, section).strands();
+            depth += 2.0 * strands * width / arc / grid.around as f32;
         }
-        let style = style(&[(guides(|_| corners(0.01)), strands)]);
-        let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-        let bent =
-            clusters.faces.iter().filter(|face| face.part() > 0.0 && face.curl() != Curl::Straight).count();
-        bent as f32 / clusters.faces.iter().filter(|face| face.part() > 0.0).count() as f32
+    }
+    // N strands of the width w fill the area πR². A part f of them between the radii a and b, seen along the diameter through both sides,
+    // has the depth 2 f N w (b - a) R / (π (b² - a²) R²). The innermost layer has the strands of the core too.
+    let paper = (0..grid.layers).map(|layer| {
+        let (outer, thickness) = (grid.radius(layer, hair.core), (1.0 - hair.core) / grid.layers as f32);
+        let inner = outer - thickness;
+        let held = if layer == 0 { outer * outer } else { outer * outer - inner * inner };
+        2.0 * held * count as f32 * width * thickness
+            / (std::f32::consts::PI * radius * (outer * outer - inner * inner))
+    });
+    let ratio = depth / paper.sum::<f32>();
+    // Measured 1.004: 12 chords in place of arcs add 1.2 %, the ellipse is 0.5 % larger.
+    assert!((0.98..1.03).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn guides_on_a_line_in_a_point_and_of_no_length_give_finite_ribs() {
+    let line = guides(|_| [-0.01, 0.0, 0.02].map(|x| glam::Vec2::new(x, 0.0)));
+    let point = guides(|_| [glam::Vec2::ZERO; 3]);
+    let mut none = guides(|_| corners(0.005));
+    none.iter_mut().flatten().for_each(|p| p.y = 0.0);
+    for of_wisp in [line, point, none] {
+        for count in [1, 2, 50] {
+            let strands = plain(random_weights(4, count));
+            let settings = ClusterSettings { layers: 2, ..ClusterSettings::default() };
+            let (style, hair) = clusters(style(&[(of_wisp.clone(), strands)]), &settings);
+            let ribs = ribs_at(&hair, &at_rest(&style));
+            assert!(ribs.points() > 0 && (0..ribs.points()).all(|i| ribs.point(i).is_finite()), "{count}");
+            assert!((strands_at(&hair, 0, 0) - count as f32).abs() < 0.01 * count as f32);
+        }
+    }
+}
+
+#[test]
+fn a_hairstyle_without_strands_or_with_numbers_that_are_none_has_no_clusters() {
+    let (_, empty) = clusters(style(&[(lively(), Vec::new())]), &ClusterSettings::default());
+    assert_eq!((empty.clusters(), empty.ribs.strands.count()), (0, 0));
+    let mut odd = lively();
+    odd[1][3] = Vec3::NAN;
+    let (_, odd) = clusters(style(&[(odd, plain(disk(5, 10)))]), &ClusterSettings::default());
+    assert_eq!(odd.clusters(), 0);
+}
+
+#[test]
+fn clusters_that_are_alike_up_to_a_turn_share_their_cells() {
+    let turned = |weights: Vec<[f32; 3]>| weights.into_iter().map(|[a, b, c]| [c, a, b]).collect::<Vec<_>>();
+    let round = || guides(|_| [0, 1, 2].map(|g| glam::Vec2::from_angle(2.0944 * g as f32) * 0.01));
+    let alike = |tolerance: f32, around: u32| {
+        let wisps = [
+            (round(), plain(disk(6, 200))),
+            (round(), plain(disk(6, 200))),
+            (round(), plain(turned(disk(6, 200)))),
+            (round(), plain(disk(7, 12))),
+        ];
+        let settings = ClusterSettings { macro_tolerance: tolerance, around, ..ClusterSettings::default() };
+        clusters(style(&wisps), &settings).1
     };
-    let straight = curled(|_| Vec2::ZERO);
-    let tight = curled(|param| 0.004 * Vec2::from_angle(2.5 * param));
-    assert!(straight < 0.02 && tight > 0.3, "{straight} {tight}");
-}
-
-#[test]
-fn equal_wisps_share_their_features_and_unequal_ones_do_not() {
-    let style = style(&[wisp_of(1, 50), wisp_of(1, 50), wisp_of(2, 50), wisp_of(1, 50)]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    assert_eq!(clusters.set_of, [0, 0, 1, 0]);
-    assert_eq!(clusters.sets(), 2);
-    let bytes = clusters.bytes();
-    assert_eq!(bytes.unshared, 2 * (bytes.shared - 16));
-    for cluster in 0..4 {
-        assert!((strands_in(&clusters, cluster, 5) - 50.0).abs() < 0.05);
-    }
-    let all = ClusterSettings { macro_tolerance: 1.0, ..ClusterSettings::default() };
-    assert_eq!(Clusters::of(&style, &all).unwrap().sets(), 1);
-}
-
-#[test]
-fn a_shared_set_keeps_the_amount_of_each_clusters_hair() {
-    let (guides, strands) = wisp_of(1, 50);
-    let twice = random_weights(1, 50).into_iter().flat_map(|w| [w, w]).map(Made::plain).collect();
-    let style = style(&[(guides.clone(), strands), (guides, twice)]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    assert_eq!(clusters.sets(), 1);
-    assert!((strands_in(&clusters, 0, 5) - 50.0).abs() < 0.05);
-    assert!((strands_in(&clusters, 1, 5) - 100.0).abs() < 0.1);
-}
-
-#[test]
-fn many_clusters_stay_within_the_limit_of_volumes() {
-    let settings = ClusterSettings::default();
-    let volumes = |clusters: usize| {
-        let grid = settings.grid(clusters, 30);
-        (grid, clusters * grid.layers * grid.sectors * grid.along)
-    };
-    assert_eq!((volumes(40).0.sectors, volumes(40).0.along), (32, 32));
-    assert_eq!(volumes(4096).0.sectors, 8);
-    for clusters in [1, 64, 500, 5000] {
-        assert!(volumes(clusters).1 <= 2_000_000, "{clusters}");
-    }
-    // Odd settings are clamped.
-    let odd =
-        ClusterSettings { layers: 0, core: f32::NAN, sectors: 0, along: 0, most_volumes: 0, ..settings };
-    let grid = odd.grid(0, 0);
-    assert_eq!((grid.layers, grid.sectors, grid.along, grid.core), (1, 4, 2, 0.35));
-}
-
-#[test]
-fn odd_hair_makes_clusters_too() {
-    let collapsed = [(); 3].map(|()| vec![glam::Vec3::ZERO; LINKS + 1]);
-    let no_length = Made { end: 0.0, ..Made::plain([0.3, 0.3, 0.4]) };
-    let far = Made { offset: |_| Vec2::new(f32::NAN, 1.0), ..Made::plain([0.3, 0.3, 0.4]) };
-    let one = vec![Made::plain([0.3, 0.3, 0.4])];
-    let style =
-        style(&[(collapsed, one), (lively(), vec![no_length]), (lively(), vec![far]), (lively(), vec![])]);
-    let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-    // The wisp without strands is no cluster.
-    assert_eq!((clusters.count(), &clusters.plan.wisps[..]), (3, &[0, 1, 2][..]));
-    let frames = placed(&style, &clusters);
-    for cluster in 0..3 {
-        for sample in 0..clusters.grid.samples() {
-            for sector in 0..clusters.grid.sectors {
-                let features = clusters.features(&frames, cluster, sample, 2, sector, 1e-4);
-                assert!(features.optical_depth.is_finite() && features.optical_depth >= 0.0);
-            }
+    let equal = alike(0.0, 12);
+    assert_eq!((equal.clusters(), equal.macro_clusters()), (4, 3), "only equal ones");
+    assert_eq!(equal.shapes[0], equal.shapes[1]);
+    // A third of a turn is four of twelve ribs. The cells of the turned one are those of the first.
+    let shared = alike(0.02, 12);
+    assert_eq!(shared.macro_clusters(), 2);
+    let section = shared.grid.along / 2;
+    let (mut off, mut total, mut unturned) = (0.0, 0.0, 0.0);
+    for layer in 0..shared.grid.layers {
+        for rib in 0..12 {
+            let own = equal.cell(2, layer, rib, section).strands();
+            off += (shared.cell(2, layer, rib, section).strands() - own).abs();
+            unturned += (equal.cell(0, layer, rib, section).strands() - own).abs();
+            total += own;
         }
     }
-    assert_eq!(Clusters::of(&crate::hair::style(&[]), &ClusterSettings::default()).unwrap().count(), 0);
-    let mut broken = style.clone();
-    broken.strands.taper.pop();
-    assert!(Clusters::of(&broken, &ClusterSettings::default()).is_err());
+    // Measured 0.006: a strand near the axis has no certain direction. The control: without the turn, 0.3.
+    assert!(off < 0.02 * total && unturned > 0.1 * total, "{off} and {unturned} of {total}");
+    let [own, alone] = shared.bytes();
+    assert!(own < alone * 6 / 10, "{own} of {alone} bytes");
+    assert_eq!(alike(1.0, 12).macro_clusters(), 1, "the control: a limit that everything meets");
 }
 
 #[test]
-fn grown_hair_makes_clusters_that_hold_all_of_it() {
-    for preset in [Preset::Smooth, Preset::Curly] {
-        let mut settings = GroomSettings::preset(preset);
-        settings.wisps = 40;
-        let style = grow(&settings, &PlainHead.scalp(24), &NoObstacle).unwrap();
-        let clusters = Clusters::of(&style, &ClusterSettings::default()).unwrap();
-        let mut frames = DiskFrames::default();
-        let moved = lovelock_groom::GuideFrame::at_rest(
-            &style.guides,
-            Affine3A::from_rotation_y(1.0) * Affine3A::from_translation(glam::Vec3::Y),
-            0.0,
-        );
-        frames.place(&style, &moved, &clusters.plan);
-        assert!(frames.centre.iter().chain(&frames.x).all(|v| v.is_finite()));
-        for (cluster, wisp) in clusters.plan.wisps.iter().enumerate() {
-            let strands = style.wisps[*wisp as usize].strand_count as f32;
-            let found = strands_in(&clusters, cluster, 1);
-            assert!((found - strands).abs() < 0.2 * strands, "{preset:?} {cluster}: {found} of {strands}");
-        }
-    }
+fn a_part_of_many_strands_casts_their_shadow() {
+    let wisps: Vec<_> = (0..8).map(|w| (lively(), plain(disk(w, 1000)))).collect();
+    let (style, hair) = clusters(style(&wisps), &ClusterSettings::default());
+    let casters = &hair.casters;
+    assert!(casters.check().is_ok());
+    assert_eq!(casters.strands.count(), 4000, "every second one of 8,000");
+    assert_eq!(casters.wisps.len(), style.wisps.len());
+    let few = style_of_few();
+    let hair = ClusterHair::new(&few, &ClusterSettings::default());
+    assert!(Arc::ptr_eq(&hair.casters, &few), "all of few strands");
+}
+
+fn style_of_few() -> Arc<Hairstyle> {
+    Arc::new(style(&[(lively(), plain(disk(9, 100)))]))
+}
+
+#[test]
+fn grown_hair_becomes_clusters_of_all_its_wisps() {
+    let groom = lovelock_groom::GroomSettings::default();
+    let head = lovelock_groom::PlainHead;
+    let style = Arc::new(lovelock_groom::grow(&groom, &head.scalp(48), &head).expect("a hairstyle"));
+    let hair = ClusterHair::new(&style, &ClusterSettings::default());
+    assert_eq!(hair.clusters(), style.wisps.len());
+    let frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
+    assert!(ribs_at(&hair, &frame).x.iter().all(|x| x.is_finite()));
+    let total: f32 = (0..hair.clusters()).map(|c| strands_at(&hair, c, 1)).sum();
+    let count = style.strands.count() as f32;
+    assert!((total - count).abs() < 0.02 * count, "{total} of {count}");
 }

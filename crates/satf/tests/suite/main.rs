@@ -2,7 +2,6 @@
 
 mod boundaries;
 mod clusters;
-mod disks;
 mod files;
 mod hair;
 mod records;

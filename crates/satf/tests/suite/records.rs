@@ -154,7 +154,8 @@ fn levels_of_detail_are_means_and_reflectance_is_weighted_by_opacity() {
 
 #[test]
 fn an_eye_along_the_strands_sees_the_mean_of_all_views() {
-    let of = database().find(&features(0.5, 0.44));
+    // What is stored, without the ratio of optical depths.
+    let of = SectorRef { tau_ratio: 1.0, ..database().find(&features(0.5, 0.44)) };
     let (opacity, reflectance) = database().stored_any_view(of, 0.8, 0.2, 1.0);
     let all = (0..ANGLES).map(|k| database().sample(of, azimuth(k), 0.8, 0.2, 1.0));
     let sum = all.fold((0.0, 0.0), |sum, (a, r)| (sum.0 + a, sum.1 + r));

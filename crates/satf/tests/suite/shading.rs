@@ -1,10 +1,9 @@
-//! Light, shadow and blending of layers, and azimuths.
+//! Light, shadow and blending of layers.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use glam::{Vec2, Vec3};
-use lovelock_satf::azimuth::Azimuth;
-use lovelock_satf::composite::{LayerSample, composite, draw_order};
+use lovelock_satf::composite::{LayerSample, composite};
 use lovelock_satf::lighting::ClusterLighting;
 use lovelock_satf::shadow::{LocalShadow, crossings, optical_depth, transmittance};
 
@@ -140,28 +139,4 @@ fn layers_are_blended_as_in_equation_14() {
     assert!(composite(behind, layers.iter().copied()).abs_diff_eq(exact, 1e-6));
     let reversed = composite(behind, layers.iter().rev().copied());
     assert!((reversed - exact).length() > 0.05, "the control: the order matters");
-}
-
-#[test]
-fn faces_are_met_from_the_far_side_to_the_near_one() {
-    let order: Vec<_> = draw_order(3).collect();
-    assert_eq!(order, [(2, true), (1, true), (0, true), (0, false), (1, false), (2, false)]);
-}
-
-#[test]
-fn azimuths_count_from_the_normal_and_are_uncertain_along_the_strand() {
-    let (outward, along) = (Vec3::Y, Vec3::X);
-    let of = |v: Vec3| Azimuth::of(v.normalize_or_zero(), outward, along);
-    assert!(of(Vec3::Y).theta.abs() < 1e-6 && of(Vec3::Y).certainty == 1.0);
-    assert!((of(Vec3::X).theta - FRAC_PI_2).abs() < 1e-6);
-    assert!((of(-Vec3::X).theta + FRAC_PI_2).abs() < 1e-6);
-    // An inclination toward the tip changes nothing.
-    assert!((of(Vec3::new(1.0, 1.0, 3.0)).theta - 0.25 * std::f32::consts::PI).abs() < 1e-5);
-    let certain = |degrees: f32| {
-        let a = degrees.to_radians();
-        of(Vec3::new(a.sin(), 0.0, a.cos())).certainty
-    };
-    assert!(certain(6.0) == 1.0 && certain(2.0) == 0.0 && (0.1..0.9).contains(&certain(3.75)));
-    assert_eq!(of(Vec3::Z), Azimuth { theta: 0.0, certainty: 0.0 });
-    assert_eq!(Azimuth::of(Vec3::NAN, outward, along).certainty, 0.0);
 }

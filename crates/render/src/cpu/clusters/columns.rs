@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec2;
 use lovelock_satf::{
-    Cell, ClusterHair, ClusterLighting, ClusterSettings, ClusterView, Database, LocalShadow, shadow,
+    Cell, ClusterHair, ClusterSettings, ClusterShading, ClusterView, Database, LocalShadow, shadow,
 };
 
 use super::pixels::each_pixel;
@@ -86,11 +86,11 @@ impl Columns<'_> {
                 if alpha < FAINTEST {
                     return;
                 }
-                let gain = match self.settings.lighting {
-                    ClusterLighting::AsStrands => {
+                let gain = match self.settings.shading {
+                    ClusterShading::AsStrands => {
                         max(1.0 + self.settings.detail * (reflected * map.inverse_mean - 1.0), 0.0)
                     }
-                    ClusterLighting::Paper => reflected,
+                    ClusterShading::Paper => reflected,
                 };
                 let gain = gain * self.own_shadow(&outer, [u, t]);
                 let color = match self.settings.view {
@@ -155,7 +155,8 @@ impl Columns<'_> {
         let outward = grid.outward(index);
         let radius = grid.radius(index, self.hair.core);
         let [a, b, c, d] = corners;
-        let arc = [a, c].map(|v| self.depth * v.inverse_arc / radius);
+        let middle = grid.middle_radius(index, self.hair.core);
+        let arc = [a, c].map(|v| self.depth * v.inverse_arc / middle);
         let cell = |side: usize, section: usize| {
             self.hair.cell(cluster, index, (rib + side + grid.around - 1) % grid.around, i + section)
         };

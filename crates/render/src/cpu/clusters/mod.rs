@@ -1,7 +1,9 @@
 //! Hair as clusters on the CPU: the definition of what `gpu/clusters` draws.
 
 mod columns;
+mod entries;
 mod pixels;
+mod published;
 mod records;
 mod sink;
 mod vertices;
@@ -11,7 +13,7 @@ use std::sync::Arc;
 use lovelock_groom::simd::Width;
 use lovelock_groom::{Hairstyle, Strands, interpolate};
 use lovelock_satf::cache::shared;
-use lovelock_satf::{ClusterHair, ClusterSettings};
+use lovelock_satf::{ClusterHair, ClusterSettings, ClusterShading, LocalShadow};
 
 use super::bins::Bins;
 use super::hair::list::Fragments;
@@ -34,6 +36,8 @@ pub(super) struct PlacedClusters {
     hair: Option<Arc<ClusterHair>>,
     /// Points of the ribs.
     ribs: Strands,
+    /// Where the light of those points enters their cluster, if layers shadow each other.
+    entries: Strands,
     details: StrandDetails,
     transmittance: Vec<u32>,
     shaded: Vec<ShadedPoint>,
@@ -84,7 +88,13 @@ impl PlacedClusters {
         grid: &Grid,
     ) {
         let Some(hair) = &self.hair else { return };
-        shadow.look_up_more(&self.ribs, &mut self.transmittance);
+        let asked = if input.picture.clusters.local_shadow == LocalShadow::Map {
+            &self.ribs
+        } else {
+            entries::place(hair, &self.ribs, input, &mut self.entries);
+            &self.entries
+        };
+        shadow.look_up_more(asked, &mut self.transmittance);
         let from = PointsIn {
             strands: &self.ribs,
             details: &self.details.words,
@@ -92,6 +102,9 @@ impl PlacedClusters {
         };
         shade_all(width, view, &from, false, &mut self.shaded);
         vertices::place(hair, &self.ribs, &self.shaded, input, &mut self.vertices);
+        if input.picture.clusters.shading == ClusterShading::Paper {
+            published::light(hair, view, (&self.ribs, &self.transmittance), input, &mut self.vertices);
+        }
         let opacity = input.picture.strand_opacity;
         self.depth = self.share * opacity * lovelock_satf::strand_width(input.look, hair.strands);
         let columns = hair.clusters() * hair.grid.around * hair.grid.along;
@@ -117,7 +130,7 @@ impl PlacedClusters {
     ) {
         let Some(columns) = self.columns(origin, samples) else { return };
         columns.sort(self.bins.of(tile), order);
-        let mut sink = Blend(out);
+        let mut sink = Blend::new(out);
         let layers = columns.hair.grid.layers;
         for &entry in order.iter() {
             let quad = entry as u32 as usize;

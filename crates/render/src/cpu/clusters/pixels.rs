@@ -25,6 +25,9 @@ pub(super) fn each_pixel<S: Sink>(
     if !(left <= right && top <= bottom) {
         return;
     }
+    if !sink.is_open_in([left as usize, right as usize], [top as usize, bottom as usize]) {
+        return;
+    }
     let edges = [Edge::new(b, c, area), Edge::new(c, a, area), Edge::new(a, b, area)];
     for y in top as usize..=bottom as usize {
         let (mut from, mut to) = (left, right);

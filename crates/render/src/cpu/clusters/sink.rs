@@ -1,10 +1,12 @@
 //! Where the fragments of clusters go: into the list of a tile, or blended at once.
 
 use crate::cpu::hair::list::{Fragment, Fragments};
-use crate::cpu::tile::{HairPlanes, UNSEEN};
+use crate::cpu::tile::{HairPlanes, STRIDE, TILE, UNSEEN};
 
 /// Receives fragments.
 pub(super) trait Sink {
+    /// Whether a fragment in the columns and rows of the tile, both ends included, could be seen.
+    fn is_open_in(&self, columns: [usize; 2], rows: [usize; 2]) -> bool;
     /// Whether a fragment in the pixel at `at` could be seen.
     fn is_open(&self, at: usize) -> bool;
     /// Receives a fragment.
@@ -12,6 +14,10 @@ pub(super) trait Sink {
 }
 
 impl Sink for Fragments {
+    fn is_open_in(&self, _columns: [usize; 2], _rows: [usize; 2]) -> bool {
+        true
+    }
+
     fn is_open(&self, _at: usize) -> bool {
         true
     }
@@ -21,21 +27,49 @@ impl Sink for Fragments {
     }
 }
 
+/// Pixels along the edges of a square that is closed as a whole.
+const SQUARE: usize = 8;
+/// Squares along the edges of a tile.
+const SQUARES: usize = TILE / SQUARE;
+
 /// Blends fragments that come from near to far.
-pub(super) struct Blend<'a>(pub &'a mut HairPlanes);
+pub(super) struct Blend<'a> {
+    planes: &'a mut HairPlanes,
+    /// The number of pixels of each square in which something behind could be seen.
+    open: [[u32; SQUARES]; SQUARES],
+}
+
+impl<'a> Blend<'a> {
+    /// Blends into empty planes.
+    pub fn new(planes: &'a mut HairPlanes) -> Self {
+        Self { planes, open: [[(SQUARE * SQUARE) as u32; SQUARES]; SQUARES] }
+    }
+}
 
 impl Sink for Blend<'_> {
     #[inline]
+    fn is_open_in(&self, [left, right]: [usize; 2], [top, bottom]: [usize; 2]) -> bool {
+        let squares = left / SQUARE..=right / SQUARE;
+        self.open[top / SQUARE..=bottom / SQUARE]
+            .iter()
+            .any(|row| row[squares.clone()].iter().any(|&n| n > 0))
+    }
+
+    #[inline]
     fn is_open(&self, at: usize) -> bool {
-        self.0.through[at] > UNSEEN
+        self.planes.through[at] > UNSEEN
     }
 
     #[inline]
     fn take(&mut self, at: usize, fragment: Fragment) {
-        let share = fragment.opacity() * self.0.through[at];
-        for (plane, color) in self.0.color.iter_mut().zip(fragment.color) {
+        let before = self.planes.through[at];
+        let share = fragment.opacity() * before;
+        for (plane, color) in self.planes.color.iter_mut().zip(fragment.color) {
             plane[at] += share * color;
         }
-        self.0.through[at] -= share;
+        self.planes.through[at] = before - share;
+        if before > UNSEEN && before - share <= UNSEEN {
+            self.open[at / STRIDE / SQUARE][at % STRIDE / SQUARE] -= 1;
+        }
     }
 }

@@ -5,8 +5,8 @@ use lovelock_groom::Strands;
 use lovelock_satf::{ClusterHair, RibGrid};
 use rayon::prelude::*;
 
-use crate::FrameInput;
 use crate::cpu::points::ShadedPoint;
+use crate::{FrameInput, Light, MAX_LIGHTS};
 
 /// Where an outer and an inner rib cross a section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,6 +15,8 @@ pub(super) struct Vertex {
     pub at: [[f32; 3]; 2],
     /// Light there.
     pub color: [[f32; 3]; 2],
+    /// The outward normal of the cluster, world space.
+    pub normal: Vec3,
     /// Cosine of the azimuth of the eye.
     pub cos_view: f32,
     /// Azimuths of the eye and of the strongest light, from the outward normal.
@@ -23,6 +25,14 @@ pub(super) struct Vertex {
     pub inverse_arc: f32,
     /// Sine of the angle between the eye and the hair; negative if the point must not be drawn.
     pub sin_view: f32,
+}
+
+/// The direction toward the strongest light; upward without any.
+pub(super) fn to_strongest_light(input: &FrameInput) -> Vec3 {
+    let lights = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized);
+    // The first of equally strong ones.
+    let strongest = lights.reduce(|a, b| if b.intensity > a.intensity { b } else { a });
+    strongest.map_or(Vec3::Y, |light| -light.direction)
 }
 
 /// Computes the vertices of all clusters, in the order of cluster, rib and section.
@@ -37,9 +47,7 @@ pub(super) fn place(
     let points = hair.grid.points();
     let of_cluster = around * points;
     out.resize(hair.clusters() * of_cluster, Vertex::default());
-    let brightest = input.lights.iter().filter(|light| light.enabled).map(crate::Light::normalized);
-    let brightest = brightest.max_by(|a, b| a.intensity.total_cmp(&b.intensity));
-    let to_light = brightest.map_or(Vec3::Y, |light| -light.direction);
+    let to_light = to_strongest_light(input);
     out.par_chunks_mut(of_cluster).enumerate().for_each(|(cluster, out)| {
         let first = cluster * hair.grid.rib_points();
         let outer = first + of_cluster;
@@ -64,6 +72,7 @@ pub(super) fn place(
                     at: rings.map(|point| [point.x, point.y, point.depth]),
                     color: rings.map(|point| point.color),
                     angles: [azimuth(to_eye), azimuth(to_light)],
+                    normal,
                     cos_view: azimuth(to_eye).cos(),
                     inverse_arc: 1.0 / (next - here).cross(tangent).length().max(1e-6),
                     sin_view: if drawn { to_eye.cross(tangent).length() } else { -1.0 },
