@@ -10,7 +10,7 @@ use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_satf::{ClusterHair, ClusterSettings};
 use serde::{Deserialize, Serialize};
 
-use crate::{FrameInput, HairPose, Light, PictureSettings, StrandCount};
+use crate::{FrameInput, HairPose, Light, MAX_LIGHTS, PictureSettings, StrandCount};
 
 /// What hair is drawn as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -87,10 +87,12 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
     }
 }
 
-/// The unit vector toward the strongest light: the azimuth by which records are found is that of one light.
-pub(crate) fn brightest(lights: &[Light]) -> Vec3 {
-    let lights = lights.iter().filter(|light| light.enabled).map(Light::normalized);
-    lights.max_by(|a, b| a.intensity.total_cmp(&b.intensity)).map_or(Vec3::Y, |light| -light.direction)
+/// The direction toward the strongest light; upward without any.
+pub(crate) fn to_strongest_light(lights: &[Light]) -> Vec3 {
+    let lights = lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized);
+    // The first of equally strong ones.
+    let strongest = lights.reduce(|a, b| if b.intensity > a.intensity { b } else { a });
+    strongest.map_or(Vec3::Y, |light| -light.direction)
 }
 
 /// The picture's settings where only clusters are drawn: strands, which cast shadows only, are as they are stored.

@@ -234,7 +234,8 @@ impl HairBuffers {
         self.run_over_points(gpu, kernel, name, commands, frame, [(8, tables.as_entire_binding())]);
     }
 
-    fn run_over_points<const N: usize>(
+    /// Runs a kernel of strand points over every point, with `more` bindings.
+    pub fn run_over_points<const N: usize>(
         &self,
         gpu: &Gpu,
         kernel: &Kernel,

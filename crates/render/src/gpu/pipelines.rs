@@ -39,7 +39,8 @@ const SHRINK: ShaderPart = part!("shrink.wgsl");
 const SKIN_SHADOW: ShaderPart = part!("skin_shadow.wgsl");
 
 /// The shaders of these kernels and pipelines.
-fn own_shaders() -> [(&'static str, ShaderSource); 9] {
+fn own_shaders() -> [(&'static str, ShaderSource); 10] {
+    let [clusters, surface, published] = clusters::PUBLISHED_PARTS;
     [
         ("strand points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
@@ -53,6 +54,10 @@ fn own_shaders() -> [(&'static str, ShaderSource); 9] {
         ),
         ("values of points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
+        (
+            "published light",
+            &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, clusters, surface, published],
+        ),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
 }
@@ -86,6 +91,8 @@ pub(super) struct Pipelines {
     pub layers: LayerShaders,
     /// Those for false colours, likewise.
     pub false_colors: FalseColorShaders,
+    /// The shader of the published light on clusters, likewise.
+    pub published: ShaderSource,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body seen from the camera: all faces, and front faces only if it is closed.
@@ -105,7 +112,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, colors, values, present] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, colors, values, present, published] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -131,6 +138,7 @@ impl Pipelines {
             layers: LayerShaders { layers: layers.1, values: values.1.clone() },
             false_colors: FalseColorShaders { colors: colors.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
+            published: published.1,
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
             uniform_layout,

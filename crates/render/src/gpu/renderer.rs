@@ -12,7 +12,7 @@ use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
-use super::clusters::{Clusters, DrawnClusters};
+use super::clusters::{Clusters, DrawnClusters, RibLighting};
 use super::eye::{Area, Eye, EyeInput, HairOutput, Lists, WIDEST_PLAIN, too_large};
 use super::false_colors::FalseColors;
 use super::frame_resources::FrameResources;
@@ -30,7 +30,7 @@ use super::targets::Targets;
 use crate::clusters::{of_casters, without_strands};
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
-use crate::shadow_stage::soft_reach;
+use crate::shadow_stage::has_soft_skin;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError, Transparency};
 use flight::Flights;
@@ -224,7 +224,7 @@ impl GpuRenderer {
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
         self.clusters.look_up(gpu, &mut commands, &mut self.shadow);
-        let is_soft = self.hair.portion().is_some() && soft_reach(input.lights) > 0.0;
+        let is_soft = has_soft_skin(input, self.hair.portion().is_some());
         if is_soft && let (Some((body, _)), Some(vertices)) = (input.body, self.surface.vertices()) {
             self.skin.run(gpu, &mut commands, body, &vertices);
         }
@@ -268,9 +268,15 @@ impl GpuRenderer {
         if seen.has_strands {
             self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame);
         }
-        let scale = uniform.size_scale_exposure.z;
-        let of_ribs = (seen.area.edges(), scale, seen.nearest_rib);
-        self.clusters.place(gpu, shading, &mut commands, &frame, input, of_ribs)?;
+        let lighting = RibLighting {
+            shading,
+            published: &self.pipelines.published,
+            lights: maps.len(),
+            area: seen.area.edges(),
+            scale: uniform.size_scale_exposure.z,
+            nearest: seen.nearest_rib,
+        };
+        self.clusters.place(gpu, &mut commands, &frame, &lighting)?;
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }

@@ -8,7 +8,7 @@ use common::{Scene, scene};
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GroomSettings, GuideFrame, PlainHead, grow};
 use lovelock_render::{Backend, HairDrawing, Light, ShadowMethod, Transparency};
-use lovelock_satf::{ClusterLighting, ClusterView, LocalShadow, RecordLookup};
+use lovelock_satf::{ClusterShading, ClusterView, LocalShadow, RecordLookup};
 use lovelock_testkit::{Flip, flip};
 
 const MEAN: f32 = 0.005;
@@ -67,7 +67,7 @@ fn every_setting_looks_the_same_on_both() {
         ("linear", |s| s.picture.clusters.local_shadow = LocalShadow::Linear),
         ("toward the light", |s| s.picture.clusters.local_shadow = LocalShadow::Directional),
         ("nearest", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
-        ("published light", |s| s.picture.clusters.lighting = ClusterLighting::Paper),
+        ("published light", |s| s.picture.clusters.shading = ClusterShading::Paper),
         ("records", |s| s.picture.clusters.view = ClusterView::Records),
         ("shared", |s| s.picture.clusters.macro_tolerance = 0.3),
         ("mixed", |s| {

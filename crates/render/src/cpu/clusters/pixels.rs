@@ -19,7 +19,8 @@ pub(super) fn each_pixel<S: Sink>(
         return;
     }
     let tile = TILE as f32;
-    let low = |k: usize| max(min(min(a[k], b[k]), c[k]), 0.0);
+    // Whole pixels: the last one of a tile begins at `tile - 1`.
+    let low = |k: usize| max(min(min(a[k], b[k]), c[k]), 0.0).floor();
     let high = |k: usize| min(max(max(a[k], b[k]), c[k]), tile - 1.0);
     let (left, top, right, bottom) = (low(0), low(1), high(0), high(1));
     if !(left <= right && top <= bottom) {

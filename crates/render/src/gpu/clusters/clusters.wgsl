@@ -13,6 +13,8 @@ struct ClusterUniform {
     grid: vec4u,
     // Radius of the core, strength of the own shadow, the finest level of detail, and 1 for the published lighting.
     core_strength_finest_paper: vec4f,
+    // Strengths of the matt part and of both highlights of the published light.
+    published: vec4f,
     // Entries of a map, the pattern of the literal look-up, and threads per triangle.
     entries: u32,
     pattern: u32,
@@ -69,6 +71,12 @@ fn outward(layer: u32) -> f32 {
 fn radius_of(layer: u32) -> f32 {
     let core = clusters.core_strength_finest_paper.x;
     return core + (1.0 - core) * outward(layer);
+}
+
+// The radius in the middle of a layer, by which its density is measured.
+fn middle_radius_of(layer: u32) -> f32 {
+    let core = clusters.core_strength_finest_paper.x;
+    return core + (1.0 - core) * (f32(layer) + 0.5) / f32(max(clusters.grid.z, 1u));
 }
 
 // The thickness of a layer as a fraction of its radius.

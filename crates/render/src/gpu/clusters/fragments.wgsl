@@ -129,7 +129,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
         return;
     }
     let first_pixel = vec2f(eye.area.xy) - origin;
-    let low = max(min(a, min(b, c)), first_pixel);
+    // Whole pixels: the last one of the area begins at its edge less one.
+    let low = max(floor(min(a, min(b, c))), first_pixel);
     let high = min(max(a, max(b, c)), first_pixel + vec2f(eye.area.zw) - 1.0);
     if (!(low.x <= high.x && low.y <= high.y)) {
         return;

@@ -16,12 +16,18 @@ const CLUSTERS: ShaderPart = part!("clusters.wgsl");
 const LAYER: ShaderPart = part!("layer.wgsl");
 const CELLS: ShaderPart = part!("cells.wgsl");
 const RECORDS: ShaderPart = part!("records.wgsl");
+const ENTRIES: ShaderPart = part!("entries.wgsl");
 const MAPS: ShaderPart = part!("maps.wgsl");
 const VERTICES: ShaderPart = part!("vertices.wgsl");
+const SURFACE: ShaderPart = part!("surface.wgsl");
+const PUBLISHED: ShaderPart = part!("published.wgsl");
 const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
 
 /// The parts that call `take` for each fragment of clusters.
 pub(in crate::gpu) const FRAGMENT_PARTS: [ShaderPart; 4] = [CLUSTERS, LAYER, CELLS, FRAGMENTS];
+
+/// The parts that, after those of strand points, light ribs as published.
+pub(in crate::gpu) const PUBLISHED_PARTS: [ShaderPart; 3] = [CLUSTERS, SURFACE, PUBLISHED];
 
 /// The most steps of loops per thread: half of what software adapters allow.
 pub(super) const MOST_PIXELS_A_THREAD: f32 = 32_768.0;
@@ -57,6 +63,11 @@ impl ClusterVariant {
         ]
     }
 
+    /// Whether layers shadow each other, so that the map of the hair is looked up where light enters clusters.
+    pub(super) fn has_entries(self) -> bool {
+        self.shadow != LocalShadow::Map
+    }
+
     pub(super) fn is_directional(self) -> bool {
         self.shadow == LocalShadow::Directional
     }
@@ -71,17 +82,42 @@ impl ClusterVariant {
     }
 }
 
-/// The kernels, of which those for maps are compiled for each variant that is used.
+/// The kernels. Those that depend on settings are compiled when they are used for the first time.
 #[derive(Debug)]
 pub(super) struct ClusterKernels {
     pub vertices: Kernel,
+    entries: Option<Kernel>,
     maps: Vec<(ClusterVariant, Kernel)>,
+    /// By the number of lights.
+    published: Vec<(usize, Kernel)>,
 }
 
 impl ClusterKernels {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let vertices = Kernel::new(gpu, "cluster vertices", &vertices_source(), "place_vertices")?;
-        Ok(Self { vertices, maps: Vec::new() })
+        Ok(Self { vertices, entries: None, maps: Vec::new(), published: Vec::new() })
+    }
+
+    /// The kernel that finds where light enters clusters.
+    pub fn entries(&mut self, gpu: &Gpu) -> Result<&Kernel, GpuError> {
+        let kernel = match self.entries.take() {
+            Some(kernel) => kernel,
+            None => Kernel::new(gpu, "cluster entries", &entries_source(), "place_entries")?,
+        };
+        Ok(self.entries.insert(kernel))
+    }
+
+    /// The kernel of the published light, whose shader is `source`, for a number of lights.
+    pub fn published(
+        &mut self,
+        gpu: &Gpu,
+        source: &ShaderSource,
+        lights: usize,
+    ) -> Result<&Kernel, GpuError> {
+        find_or_make(&mut self.published, lights, || {
+            let constants = [("LIGHTS", lights as f64)];
+            Kernel::specialised(gpu, "published light", source, "published_points", &constants)
+        })
     }
 
     /// The kernel that fills maps.
@@ -89,21 +125,34 @@ impl ClusterKernels {
         // Maps depend on how records are read, and on whether light passes layers in its direction.
         let shadow = if variant.is_directional() { LocalShadow::Directional } else { LocalShadow::Map };
         let wanted = ClusterVariant { shadow, view: ClusterView::Hair, ..variant };
-        let at = match self.maps.iter().position(|(known, _)| *known == wanted) {
-            Some(at) => at,
-            None => {
-                let kernel =
-                    Kernel::specialised(gpu, "cluster maps", &maps_source(), "fill_maps", &wanted.constants())?;
-                self.maps.push((wanted, kernel));
-                self.maps.len() - 1
-            }
-        };
-        Ok(&self.maps[at].1)
+        find_or_make(&mut self.maps, wanted, || {
+            Kernel::specialised(gpu, "cluster maps", &maps_source(), "fill_maps", &wanted.constants())
+        })
     }
 }
 
+/// The kernel of `wanted`, made if it is not among those known.
+fn find_or_make<K: PartialEq>(
+    known: &mut Vec<(K, Kernel)>,
+    wanted: K,
+    make: impl FnOnce() -> Result<Kernel, GpuError>,
+) -> Result<&Kernel, GpuError> {
+    let at = match known.iter().position(|(key, _)| *key == wanted) {
+        Some(at) => at,
+        None => {
+            known.push((wanted, make()?));
+            known.len() - 1
+        }
+    };
+    Ok(&known[at].1)
+}
+
 fn vertices_source() -> ShaderSource {
-    ShaderSource::new(&[CLUSTERS, VERTICES])
+    ShaderSource::new(&[CLUSTERS, SURFACE, VERTICES])
+}
+
+fn entries_source() -> ShaderSource {
+    ShaderSource::new(&[CLUSTERS, ENTRIES])
 }
 
 fn maps_source() -> ShaderSource {
@@ -112,5 +161,10 @@ fn maps_source() -> ShaderSource {
 
 /// The composed shaders with their labels, without those of the passes over fragments.
 pub(in crate::gpu) fn shaders() -> Vec<(String, ShaderSource)> {
-    vec![("cluster vertices".to_owned(), vertices_source()), ("cluster maps".to_owned(), maps_source())]
+    let all = [
+        ("cluster vertices", vertices_source()),
+        ("cluster entries", entries_source()),
+        ("cluster maps", maps_source()),
+    ];
+    all.map(|(label, source)| (label.to_owned(), source)).to_vec()
 }

@@ -39,7 +39,7 @@ fn mip_of(at: vec4u, layer: u32) -> f32 {
 }
 
 fn depths_of(at: vec4u, layer: u32) -> vec2f {
-    return clusters.eye_depth.w * vec2f(vertices[at.x].inverse_arc, vertices[at.z].inverse_arc) / radius_of(layer);
+    return clusters.eye_depth.w * vec2f(vertices[at.x].inverse_arc, vertices[at.z].inverse_arc) / middle_radius_of(layer);
 }
 
 // Optical depth of a texel with the strands of a cell, and reflectance.

@@ -11,21 +11,21 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, wgpu};
 use lovelock_groom::HairShading;
-use lovelock_satf::{ClusterHair, ClusterLighting, RibGrid, SectorRef, layout};
+use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 use lovelock_shadow::{Bounds, GpuTargets, LightFrame};
 
 use super::frame_resources::FrameResources;
 use super::hair::HairBuffers;
 use super::light_kernels::LightKernels;
 use super::shadow::GpuShadowStage;
-use crate::clusters::{ClusterStage, brightest, cluster_share, guides_of, without_strands};
+use crate::clusters::{ClusterStage, cluster_share, guides_of, to_strongest_light, without_strands};
 use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, HairPose, PictureSettings};
 use constant::{ConstantBuffers, Largest};
-pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, shaders};
+pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, PUBLISHED_PARTS, shaders};
 use kernels::{ClusterKernels, MOST_PIXELS_A_THREAD};
 
 /// Twin of `ClusterUniform` in clusters.wgsl.
@@ -37,6 +37,7 @@ pub(in crate::gpu) struct ClusterUniform {
     area: [f32; 4],
     grid: [u32; 4],
     core_strength_finest_paper: [f32; 4],
+    published: [f32; 4],
     entries: u32,
     pattern: u32,
     lanes: u32,
@@ -74,6 +75,22 @@ impl DrawnClusters<'_> {
     }
 }
 
+/// What lights and places ribs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RibLighting<'a> {
+    /// The kernels of strand points with the tables of fibres.
+    pub shading: (&'a LightKernels, HairShading, &'a wgpu::Buffer),
+    /// The shader of the published light.
+    pub published: &'a ShaderSource,
+    pub lights: usize,
+    /// The area of the hair: left, top, right and bottom.
+    pub area: [f32; 4],
+    /// Pixels that a metre covers at one metre.
+    pub scale: f32,
+    /// The least distance of the ribs from the eye, metres.
+    pub nearest: f32,
+}
+
 /// Follows the clusters of a hairstyle. Kernels are compiled and buffers are made when clusters are drawn for the first time.
 #[derive(Debug, Default)]
 pub(super) struct Clusters {
@@ -90,6 +107,8 @@ struct Parts {
     /// The uniform of strands, for ribs.
     frame_uniform: wgpu::Buffer,
     constant: ConstantBuffers,
+    /// Where the light of the ribs' points enters their cluster, if layers shadow each other.
+    entries: GrowBuffer<[f32; 4]>,
     vertices: GrowBuffer<Vertex>,
     maps: GrowBuffer<[u32; 2]>,
     crossings: GrowBuffer<[u32; 2]>,
@@ -170,8 +189,10 @@ impl Clusters {
         }
         let Some((parts, frame)) = self.placed() else { return Ok(()) };
         parts.constant.follow(gpu, &frame.hair);
+        parts.fit(gpu, frame)?;
         parts.ribs.write(gpu, commands, &frame.of_ribs(input), height)?;
-        parts.fit(gpu, frame)
+        frame.uniform = uniform_of(input, frame, parts.finest(gpu, frame));
+        if frame.variant.has_entries() { parts.place_entries(gpu, commands, frame) } else { Ok(()) }
     }
 
     /// Bounds of the ribs: see [`HairBuffers::bounds`].
@@ -182,9 +203,10 @@ impl Clusters {
 
     /// Encodes looking up the ribs in the maps of all lights.
     pub fn look_up(&mut self, gpu: &Gpu, commands: &mut Commands, shadow: &mut GpuShadowStage) {
-        let Some((parts, _)) = self.placed() else { return };
+        let Some((parts, frame)) = self.placed() else { return };
+        let entries = frame.variant.has_entries().then(|| parts.entries.raw());
         let targets = GpuTargets {
-            points: parts.ribs.asked(),
+            points: entries.unwrap_or(parts.ribs.asked()),
             stride: 1,
             count: parts.ribs.drawn().point_count,
             out: parts.ribs.transmittance(),
@@ -210,26 +232,30 @@ impl Clusters {
         gpu.upload(&parts.frame_uniform, 0, &[uniform]);
     }
 
-    /// Encodes lighting the ribs and making vertices and maps. `area` is that of the hair (left, top, right, bottom), in an image in
-    /// which a metre at one metre covers `scale` pixels, and `nearest` the least distance of the ribs from the eye.
+    /// Encodes lighting the ribs and making vertices and maps.
     ///
     /// # Errors
     /// A kernel does not compile.
     pub fn place(
         &mut self,
         gpu: &Gpu,
-        shading: (&LightKernels, HairShading, &wgpu::Buffer),
         commands: &mut Commands,
         resources: &FrameResources,
-        input: &FrameInput,
-        (area, scale, nearest): ([f32; 4], f32, f32),
+        lighting: &RibLighting,
     ) -> Result<(), GpuError> {
         let Some((parts, frame)) = self.placed() else { return Ok(()) };
         let of_ribs = FrameResources { uniform: &parts.frame_uniform, ..*resources };
-        parts.ribs.shade(gpu, "draw/ribs", shading, commands, &of_ribs);
-        let lanes = lanes(&parts.constant.largest, frame, area, scale / nearest.max(0.05));
-        frame.uniform = uniform_of(input, frame, parts.finest(gpu, frame), lanes);
-        frame.uniform.area = area;
+        parts.ribs.shade(gpu, "draw/ribs", lighting.shading, commands, &of_ribs);
+        frame.uniform.lanes = lanes(&parts.constant.largest, frame, lighting);
+        frame.uniform.area = lighting.area;
+        if frame.picture.clusters.shading == ClusterShading::Paper {
+            let kernel = parts.kernels.published(gpu, lighting.published, lighting.lights)?;
+            let uniform = commands.constants("clusters", &frame.uniform);
+            parts.ribs.run_over_points(gpu, kernel, "draw/published-light", commands, &of_ribs, [(
+                10,
+                uniform.as_entire_binding(),
+            )]);
+        }
         parts.place_vertices(gpu, commands, frame);
         parts.fill_maps(gpu, commands, frame)
     }
@@ -266,7 +292,7 @@ impl Clusters {
     /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.parts.as_ref().map_or(0, |parts| {
-            let own = [parts.vertices.raw(), parts.maps.raw(), parts.crossings.raw()];
+            let own = [parts.entries.raw(), parts.vertices.raw(), parts.maps.raw(), parts.crossings.raw()];
             own.iter().map(|buffer| buffer.size()).sum::<u64>()
                 + parts.ribs.memory_bytes()
                 + parts.constant.bytes()
@@ -287,6 +313,7 @@ impl Parts {
                 mapped_at_creation: false,
             }),
             constant: ConstantBuffers::new(gpu),
+            entries: GrowBuffer::new(gpu, "entries of light", storage),
             vertices: GrowBuffer::new(gpu, "vertices of clusters", storage),
             maps: GrowBuffer::new(gpu, "maps of layers", storage),
             crossings: GrowBuffer::new(gpu, "light through layers", storage),
@@ -313,9 +340,27 @@ impl Parts {
                 gpu.most_storage_bytes()
             )));
         }
+        let entries = if frame.variant.has_entries() { 2 * frame.vertices() } else { 0 };
+        self.entries.reserve(gpu, entries);
         self.vertices.reserve(gpu, frame.vertices());
         self.maps.reserve(gpu, maps as usize);
         self.crossings.reserve(gpu, crossings as usize);
+        Ok(())
+    }
+
+    fn place_entries(&mut self, gpu: &Gpu, commands: &mut Commands, frame: &Frame) -> Result<(), GpuError> {
+        let uniform = commands.constants("clusters", &frame.uniform);
+        let kernel = self.kernels.entries(gpu)?;
+        let group = kernel.bind(
+            gpu,
+            &[
+                (1, self.ribs.drawn().points.as_entire_binding()),
+                (3, self.entries.raw().as_entire_binding()),
+                (10, uniform.as_entire_binding()),
+            ],
+        );
+        let points = 2 * frame.vertices() as u64;
+        commands.compute("shadow/entries", |pass| kernel.run(pass, &group, points));
         Ok(())
     }
 
@@ -361,14 +406,15 @@ fn entries_of(finest: u32) -> u32 {
     (layout::TEXELS as u32 >> finest) + 3
 }
 
-fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32, lanes: u32) -> ClusterUniform {
+/// The uniform without what depends on the image.
+fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> ClusterUniform {
     let settings = &input.picture.clusters;
     let RibGrid { layers, around, along } = frame.grid();
     let opacity = input.picture.strand_opacity;
     let depth = frame.share * opacity * lovelock_satf::strand_width(input.look, frame.hair.strands);
     ClusterUniform {
         eye_depth: input.camera.eye.extend(depth).to_array(),
-        light_detail: brightest(input.lights).extend(settings.detail).to_array(),
+        light_detail: to_strongest_light(input.lights).extend(settings.detail).to_array(),
         area: [0.0; 4],
         // Each fits, because the vertices fit a buffer.
         grid: [around, along, layers, frame.hair.clusters()].map(|n| n as u32),
@@ -376,11 +422,12 @@ fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32, lanes: u32) -> Clu
             frame.hair.core,
             settings.shadow_strength,
             finest as f32,
-            f32::from(u8::from(settings.lighting == ClusterLighting::Paper)),
+            f32::from(u8::from(settings.shading == ClusterShading::Paper)),
         ],
+        published: [settings.diffuse, settings.primary, settings.secondary, 0.0],
         entries: entries_of(finest),
         pattern: SectorRef::literal(1.0).index / layout::DEPTHS as u32,
-        lanes,
+        lanes: 1,
         pad: 0,
     }
 }
@@ -390,8 +437,10 @@ const MOST_LANES: u32 = 64;
 /// How much larger than at rest volumes may become in each direction.
 const GROWN: f32 = 2.0;
 
-/// Threads per triangle, so that none has too many pixels: `scale` is the most pixels of a metre.
-fn lanes(largest: &Largest, frame: &Frame, [left, top, right, bottom]: [f32; 4], scale: f32) -> u32 {
+/// Threads per triangle, so that none has too many pixels.
+fn lanes(largest: &Largest, frame: &Frame, lighting: &RibLighting) -> u32 {
+    let [left, top, right, bottom] = lighting.area;
+    let scale = lighting.scale / lighting.nearest.max(0.05);
     let [along, across] = [largest.along, largest.across].map(|metres| GROWN * metres * scale + 2.0);
     let most = (along * across).min((right - left) * (bottom - top));
     // Each pixel of a shadowed layer has a loop of its own.
@@ -431,6 +480,7 @@ mod tests {
                 offset_of!(ClusterUniform, area),
                 offset_of!(ClusterUniform, grid),
                 offset_of!(ClusterUniform, core_strength_finest_paper),
+                offset_of!(ClusterUniform, published),
                 offset_of!(ClusterUniform, entries),
                 offset_of!(ClusterUniform, pattern),
                 offset_of!(ClusterUniform, lanes),
