@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, HairLook, HairShading, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, FrameStats, GpuRenderer, HairPose, Layers, Light, Picture, PictureSettings,
+    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Layers, Light, Picture, PictureSettings,
     RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
 };
 
@@ -75,14 +75,6 @@ impl Scene {
         let mut layers = Layers::default();
         renderer.layers(&self.input(), width, height, false, &mut layers).expect("layers");
         Some(layers)
-    }
-
-    /// The times of the passes of its second picture by `backend`.
-    pub fn passes_by(&self, backend: Backend, width: u32, height: u32) -> Option<FrameStats> {
-        let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mut picture = Picture::default();
-        renderer.picture(&self.input(), width, height, &mut picture).expect("a picture");
-        Some(renderer.picture(&self.input(), width, height, &mut picture).expect("a picture"))
     }
 
     /// The input of the renderer.
