@@ -4,6 +4,7 @@
 mod common;
 
 mod agreement;
+mod clusters;
 mod false_colors;
 mod fibre;
 mod fine;

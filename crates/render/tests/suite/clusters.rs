@@ -1,0 +1,163 @@
+//! Hair as clusters, beside the strands for which they stand.
+
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec2, Vec3};
+use lovelock_base::random::SplitMix64;
+use lovelock_groom::{GuideFrame, Guides, HairShading, Hairstyle, StrandSet, Strands, Wisp, interpolate};
+use lovelock_render::{
+    ClusterSettings, ClusterShading, CpuRenderer, FrameInput, HairDrawing, Layers, Light, LocalShadow,
+    RecordLookup, ShadowMethod, Transparency,
+};
+
+use crate::common::{Scene, scene};
+
+/// Points of a guide.
+const POINTS: usize = 13;
+
+/// A lock of hair that hangs and bends: 18 cm long, of `count` strands in a disk of 12 mm.
+fn lock(count: usize) -> Scene {
+    let mut guides = Guides { points_per_guide: POINTS, ..Guides::default() };
+    let reference = |g: usize| Vec2::from_angle(TAU / 4.0 + TAU / 3.0 * g as f32);
+    for g in 0..3 {
+        let points: Vec<Vec3> = (0..POINTS)
+            .map(|p| {
+                let t = p as f32 / (POINTS - 1) as f32;
+                let at = reference(g) * 0.012 * (1.0 - 0.4 * t);
+                Vec3::new(at.x + 0.02 * t * t, 0.09 - 0.18 * t, at.y)
+            })
+            .collect();
+        guides.push(&points);
+    }
+    let mut set = StrandSet { first_point: vec![0], ..StrandSet::default() };
+    let mut random = SplitMix64::new(7);
+    for _ in 0..count {
+        let d = Vec2::from_angle(random.angle()) * random.unit().sqrt();
+        set.wisp.push(0);
+        set.weights.push([0, 1, 2].map(|g| 1.0 / 3.0 + 2.0 / 3.0 * d.dot(reference(g))));
+        set.shade.push(random.unit());
+        for k in 0..=24 {
+            set.guide_param.push(k as f32 * 0.5);
+            set.offset_normal.push(0.0);
+            set.offset_binormal.push(0.0);
+            set.offset_tangent.push(0.0);
+            set.taper.push(1.0);
+        }
+        set.first_point.push(set.guide_param.len() as u32);
+    }
+    let wisp = Wisp { guides: [0, 1, 2], first_strand: 0, strand_count: count as u32 };
+    let style = Hairstyle { wisps: vec![wisp], guides, strands: set, ..Hairstyle::default() };
+    style.check().expect("a hairstyle");
+    let mut scene = scene(&[]);
+    scene.look.shading = HairShading::Fibre;
+    // A lock of 3,000 hairs of 80 um, which hides about what is behind it.
+    (scene.look.real_hairs, scene.look.width_scale) = (3000.0, 0.3);
+    scene.look.extinction_scale = 0.15;
+    scene.picture.strand_opacity = 0.85;
+    scene.picture.transparency = Transparency::Exact;
+    scene.shadow.method = ShadowMethod::Exact;
+    scene.camera.fov_y = 0.3;
+    let mut strands = Strands::default();
+    interpolate(&style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+    (scene.style, scene.strands) = (Arc::new(style), strands);
+    scene
+}
+
+/// The scene seen and lit from around the lock, angles in turns.
+fn seen_from(scene: &mut Scene, view: f32, light: f32) {
+    let around = |turn: f32, height: f32| {
+        let at = Vec2::from_angle(TAU * turn);
+        Vec3::new(at.x, height, at.y)
+    };
+    scene.camera.eye = around(view, 0.1);
+    scene.lights = vec![Light { direction: -around(light, 0.7), ..Light::default() }];
+}
+
+fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> Layers {
+    let guides = GuideFrame::at_rest(&scene.style.guides, Affine3A::IDENTITY, 0.0);
+    let input = FrameInput { guides: Some(&guides), ..scene.input() };
+    let mut layers = Layers::default();
+    renderer.layers(&input, side, side, false, &mut layers).expect("layers");
+    layers
+}
+
+/// Errors of clusters against strands.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    /// Mean difference of opacity, where either shows hair.
+    opacity: f64,
+    /// Difference of the mean light of the lock, as a fraction of it.
+    light: f64,
+    /// Mean difference of the light of a square of 8 by 8 pixels, as a fraction of the mean light of the lock.
+    local_light: f64,
+}
+
+fn errors(clusters: &Layers, strands: &Layers) -> Errors {
+    let grey = |l: &[f32; 4]| f64::from(0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2]);
+    let pairs = || clusters.light.iter().zip(&strands.light).filter(|(a, b)| a[3].max(b[3]) > 0.02);
+    let count = pairs().count().max(1) as f64;
+    let opacity = pairs().map(|(a, b)| f64::from((a[3] - b[3]).abs())).sum::<f64>() / count;
+    let total = |layers: &Layers| layers.light.iter().map(grey).sum::<f64>();
+    let of = total(strands);
+    let side = clusters.width as usize;
+    let mut local = 0.0;
+    for y in (0..side).step_by(8) {
+        for x in (0..side).step_by(8) {
+            let sum = |layers: &Layers| -> f64 {
+                (0..64).map(|k| grey(&layers.light[(y + k / 8) * side + x + k % 8])).sum()
+            };
+            local += (sum(clusters) - sum(strands)).abs();
+        }
+    }
+    Errors { opacity, light: total(clusters) / of - 1.0, local_light: local / of }
+}
+
+/// The mean of errors over directions of view and light.
+fn mean_errors(renderers: &mut [CpuRenderer; 2], scene: &mut Scene, views: u32, lights: u32) -> Errors {
+    let mut mean = Errors::default();
+    for view in 0..views {
+        for light in 0..lights {
+            seen_from(scene, view as f32 / views as f32, (light as f32 + 0.3) / lights as f32);
+            scene.picture.draw = HairDrawing::Strands;
+            let strands = drawn(&mut renderers[0], scene, 160);
+            scene.picture.draw = HairDrawing::Clusters;
+            let clusters = drawn(&mut renderers[1], scene, 160);
+            let of = errors(&clusters, &strands);
+            mean.opacity += of.opacity;
+            mean.light += of.light.abs();
+            mean.local_light += of.local_light;
+        }
+    }
+    let count = f64::from(views * lights);
+    Errors { opacity: mean.opacity / count, light: mean.light / count, local_light: mean.local_light / count }
+}
+
+#[test]
+fn clusters_are_near_the_strands_for_which_they_stand() {
+    let mut renderers = [CpuRenderer::default(), CpuRenderer::default()];
+    let mut scene = lock(600);
+    println!("layers  opacity  light  local light");
+    let mut found = Vec::new();
+    for layers in [1, 2, 4, 8, 15] {
+        scene.picture.clusters = ClusterSettings { layers, around: 32, ..ClusterSettings::default() };
+        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
+        println!("{layers:>6}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
+        found.push(of);
+    }
+    for (name, settings) in [
+        ("nearest", ClusterSettings { lookup: RecordLookup::Nearest, ..ClusterSettings::default() }),
+        ("layers", ClusterSettings { local_shadow: LocalShadow::Layers, ..ClusterSettings::default() }),
+        ("linear", ClusterSettings { local_shadow: LocalShadow::Linear, ..ClusterSettings::default() }),
+        (
+            "directional",
+            ClusterSettings { local_shadow: LocalShadow::Directional, ..ClusterSettings::default() },
+        ),
+        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..ClusterSettings::default() }),
+        ("no detail", ClusterSettings { detail: 0.0, ..ClusterSettings::default() }),
+    ] {
+        scene.picture.clusters = settings;
+        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
+        println!("{name:>12}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
+    }
+}
