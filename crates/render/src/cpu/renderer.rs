@@ -285,6 +285,13 @@ impl CpuRenderer {
                         );
                     },
                 );
+                if hair.share <= 0.0 {
+                    // Depth and transmittance of clusters are those of the strands that cast their shadow.
+                    let points = (strands, details);
+                    self.placed.shade(&view, points, &self.shadow.at_points, input.is_draft);
+                    self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
+                }
+                self.placed.clusters.hide();
                 held.draw_values(&view, &grid, input, &mut self.placed, &self.shadow.at_points);
                 held.write(&grid, layers);
                 self.layers = held;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
+use lovelock_groom::HairShading;
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
 use super::clusters::{Clusters, DrawnClusters, RibLighting};
@@ -354,6 +355,26 @@ impl GpuRenderer {
         }
     }
 
+    /// Encodes projecting the strands of the last frame if only clusters were drawn: then they have only cast shadows.
+    fn shade_hidden_strands(&mut self, gpu: &Gpu, commands: &mut Commands) -> Result<(), RenderError> {
+        if self.seen.has_strands {
+            return Ok(());
+        }
+        let frame = FrameResources {
+            uniform: &self.uniform,
+            body_depth: &self.surface.depth,
+            columns: self.shadow.columns_view(),
+            linear: &self.linear,
+            compare: &self.compare,
+            ambient: self.light.cells(),
+        };
+        let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
+        // Values replace their light.
+        let shading = (lit, HairShading::KajiyaKay, self.light.tables());
+        self.hair.shade(gpu, "draw/points", shading, commands, &frame);
+        Ok(())
+    }
+
     /// Draws the attributes of the body per sample, for shading later.
     fn draw_body(&self, gpu: &Gpu, commands: &mut Commands, targets: &Targets) {
         // Samples without depth are never read. Clearing them is slow on software adapters, but on a GPU it is faster than loading.
@@ -425,6 +446,13 @@ struct SeenHair {
     /// The least distance of the ribs of clusters along the view, metres.
     nearest_rib: f32,
     transparency: Transparency,
+}
+
+impl SeenHair {
+    /// The strands alone, also where only clusters are drawn: see [`GpuRenderer::shade_hidden_strands`].
+    fn of_strands(self) -> Self {
+        Self { has_strands: true, ..self }
+    }
 }
 
 fn eye_input<'a>(

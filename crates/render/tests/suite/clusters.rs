@@ -1,162 +1,44 @@
-//! Hair as clusters: one backend against the other.
+//! Hair as clusters, beside the strands for which they stand.
 
-use crate::common;
-
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use common::{Scene, scene};
-use glam::{Affine3A, Vec3};
-use lovelock_groom::{
-    GroomSettings, GuideFrame, Guides, HairShading, Hairstyle, PlainHead, StrandSet, Wisp, grow,
-};
+use glam::{Affine3A, Vec2, Vec3};
+use lovelock_base::random::SplitMix64;
+use lovelock_groom::{GuideFrame, Guides, HairShading, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use lovelock_render::{
-    Backend, ClusterShading, ClusterView, HairDrawing, Layers, Light, LocalShadow, MapExtent, RecordLookup,
-    ShadowMethod, Transparency,
+    ClusterSettings, ClusterShading, CpuRenderer, FrameInput, HairDrawing, Layers, Light, LocalShadow,
+    RecordLookup, ShadowMethod, Transparency,
 };
-use lovelock_testkit::{Flip, flip};
 
-/// FLIP between the pictures of the two backends. Measured on a software adapter: mean 0.00014 to 0.0012 and 99th percentile 0.010 to
-/// 0.021; where single samples of pixels are covered or strands are beside clusters, up to 0.077. The smallest of the differences below,
-/// another number of layers, has 0.008 and 0.21.
-const LIMIT: [f32; 2] = [0.0014, 0.042];
-/// See [`LIMIT`].
-const P99_OF_SAMPLES: f32 = 0.155;
-/// See [`LIMIT`]: occupancy maps are integers.
-const MEAN_OF_OCCUPANCY: f32 = 0.0024;
+use crate::common::{Scene, scene};
 
-/// Lights the hair, and casts shadows on a lattice that does not depend on the bounds of the hair: those of strands are exact on the CPU,
-/// and estimated from guides on the GPU.
-fn lit(style: Hairstyle) -> Scene {
-    let mut scene = scene(&[]);
-    scene.guides = Some(GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0));
-    scene.style = Arc::new(style);
-    scene.shadow.method = ShadowMethod::VoxelMap;
-    scene.shadow.voxel_map.extent = MapExtent::Paper;
-    scene.lights = Light::default_rig();
-    scene.picture.draw = HairDrawing::Clusters;
-    scene.picture.strand_opacity = 0.85;
-    scene
-}
+/// Points of a guide.
+const POINTS: usize = 13;
 
-/// A head of 24 clusters.
-fn wig() -> Scene {
-    let settings = GroomSettings { wisps: 24, strands_per_wisp: 40, ..GroomSettings::default() };
-    let mut scene = lit(grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair"));
-    scene.look = settings.look;
-    scene.camera.target = Vec3::new(0.0, 0.04, 0.0);
-    scene.camera.eye = Vec3::new(-0.3, 0.2, 0.75);
-    scene
-}
-
-fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
-    let (w, h) = (240, 200);
-    let gpu = scene.draw_by(Backend::Gpu, w, h)?;
-    let cpu = other.draw_by(Backend::Cpu, w, h)?;
-    Some(flip(&gpu.rgba, &cpu.rgba, w, h))
-}
-
-fn assert_same(name: &str, scene: &Scene, [mean, p99]: [f32; 2]) {
-    let Some(difference) = compared(scene, scene) else { return };
-    println!("{name}: {difference:?}");
-    assert!(difference.mean < mean && difference.p99 < p99, "{name}: {difference:?}");
-}
-
-#[test]
-fn clusters_look_the_same_on_both_in_every_mode() {
-    let mut s = wig();
-    for mode in Transparency::ALL {
-        s.picture.transparency = mode;
-        let mean = if mode == Transparency::OccupancyOrder { MEAN_OF_OCCUPANCY } else { LIMIT[0] };
-        let p99 = if mode == Transparency::Opaque { P99_OF_SAMPLES } else { LIMIT[1] };
-        assert_same(&mode.to_string(), &s, [mean, p99]);
-    }
-}
-
-/// A change of a scene.
-type Change = fn(&mut Scene);
-
-#[test]
-fn clusters_look_the_same_on_both_with_every_setting() {
-    let settings: [(&str, Change); 9] = [
-        ("outer layers", |s| s.picture.clusters.local_shadow = LocalShadow::Layers),
-        ("outer layers, linear", |s| s.picture.clusters.local_shadow = LocalShadow::Linear),
-        ("layers toward the light", |s| s.picture.clusters.local_shadow = LocalShadow::Directional),
-        ("nearest records", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
-        ("published light", |s| s.picture.clusters.shading = ClusterShading::Paper),
-        ("Kajiya-Kay", |s| s.look.shading = HairShading::KajiyaKay),
-        ("colours of records", |s| s.picture.clusters.view = ClusterView::Records),
-        ("shared sectors", |s| s.picture.clusters.macro_tolerance = 0.3),
-        ("half behind a wall", |s| {
-            // In the colours of records: the wall's own shadow on hair differs a little.
-            s.picture.clusters.view = ClusterView::Records;
-            s.body = Some(common::grid(-0.02, 0.3, 48, Vec3::ZERO));
-        }),
-    ];
-    for (name, change) in settings {
-        let mut s = wig();
-        change(&mut s);
-        assert_same(name, &s, LIMIT);
-    }
-}
-
-#[test]
-fn strands_among_clusters_look_the_same_on_both() {
-    let mut s = wig();
-    s.picture.draw = HairDrawing::Auto;
-    // A head is 115 pixels high.
-    s.picture.cluster_size = 95.0;
-    assert_same("mixed", &s, [LIMIT[0], P99_OF_SAMPLES]);
-    // Control: neither of both alone.
-    for draw in [HairDrawing::Strands, HairDrawing::Clusters] {
-        let mut alone = wig();
-        alone.picture.draw = draw;
-        let Some(difference) = compared(&s, &alone) else { return };
-        println!("{draw}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > P99_OF_SAMPLES, "{draw}: {difference:?}");
-    }
-}
-
-/// Negative controls: the comparison must detect each of these small differences.
-#[test]
-fn small_differences_of_clusters_are_found() {
-    let controls: [(&str, Change); 3] = [
-        ("a layer less", |s| s.picture.clusters.layers = 3),
-        ("a light turned by 12 degrees", |s| s.lights[0].direction = Vec3::new(-0.62, -0.45, -0.6)),
-        ("strands", |s| s.picture.draw = HairDrawing::Strands),
-    ];
-    for (name, change) in controls {
-        let mut s = wig();
-        change(&mut s);
-        let Some(difference) = compared(&wig(), &s) else { return };
-        println!("{name}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > 5.0 * LIMIT[1], "{name}: {difference:?}");
-    }
-}
-
-/// Links of guides, and strands, of [`one_cluster`].
-const LINKS: usize = 10;
-const STRANDS: usize = 40;
-
-/// One hanging, bent wisp in front of the origin.
-fn one_cluster() -> Scene {
-    let mut guides = Guides { points_per_guide: LINKS + 1, ..Guides::default() };
-    for angle in [0.3_f32, 2.4, 4.5] {
-        let line = (0..=LINKS).map(|i| {
-            let t = i as f32 / LINKS as f32;
-            let out = 0.03 * (1.0 + 0.5 * t);
-            Vec3::new(out * angle.cos() + 0.04 * t * t, 0.1 - 0.2 * t, out * angle.sin())
-        });
-        guides.push(&line.collect::<Vec<_>>());
+/// A lock of hair that hangs and bends: 18 cm long, of `count` strands in a disk of 12 mm.
+fn lock(count: usize) -> Scene {
+    let mut guides = Guides { points_per_guide: POINTS, ..Guides::default() };
+    let reference = |g: usize| Vec2::from_angle(TAU / 4.0 + TAU / 3.0 * g as f32);
+    for g in 0..3 {
+        let points: Vec<Vec3> = (0..POINTS)
+            .map(|p| {
+                let t = p as f32 / (POINTS - 1) as f32;
+                let at = reference(g) * 0.012 * (1.0 - 0.4 * t);
+                Vec3::new(at.x + 0.02 * t * t, 0.09 - 0.18 * t, at.y)
+            })
+            .collect();
+        guides.push(&points);
     }
     let mut set = StrandSet { first_point: vec![0], ..StrandSet::default() };
-    for k in 0..STRANDS {
-        let (a, b) = ((0.618_034 * k as f32).fract(), (0.754_878 * k as f32).fract());
-        let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+    let mut random = SplitMix64::new(7);
+    for _ in 0..count {
+        let d = Vec2::from_angle(random.angle()) * random.unit().sqrt();
         set.wisp.push(0);
-        set.weights.push([a, b, 1.0 - a - b]);
-        set.shade.push(0.5);
-        for i in 0..=LINKS {
-            set.guide_param.push(i as f32);
+        set.weights.push([0, 1, 2].map(|g| 1.0 / 3.0 + 2.0 / 3.0 * d.dot(reference(g))));
+        set.shade.push(random.unit());
+        for k in 0..=24 {
+            set.guide_param.push(k as f32 * 0.5);
             set.offset_normal.push(0.0);
             set.offset_binormal.push(0.0);
             set.offset_tangent.push(0.0);
@@ -164,71 +46,118 @@ fn one_cluster() -> Scene {
         }
         set.first_point.push(set.guide_param.len() as u32);
     }
-    let wisps = vec![Wisp { guides: [0, 1, 2], first_strand: 0, strand_count: STRANDS as u32 }];
-    let mut scene = lit(Hairstyle { wisps, guides, strands: set, ..Hairstyle::default() });
-    (scene.look.real_hairs, scene.look.diameter) = (STRANDS as f32, 0.0015);
-    scene.look.width_scale = 1.0;
-    scene.camera.eye = Vec3::new(0.0, 0.0, 0.6);
+    let wisp = Wisp { guides: [0, 1, 2], first_strand: 0, strand_count: count as u32 };
+    let style = Hairstyle { wisps: vec![wisp], guides, strands: set, ..Hairstyle::default() };
+    style.check().expect("a hairstyle");
+    let mut scene = scene(&[]);
+    scene.look.shading = HairShading::Fibre;
+    // A lock of 3,000 hairs of 80 um, which hides about what is behind it.
+    (scene.look.real_hairs, scene.look.width_scale) = (3000.0, 0.3);
+    scene.look.extinction_scale = 0.15;
+    scene.picture.strand_opacity = 0.85;
+    scene.picture.transparency = Transparency::Exact;
+    scene.shadow.method = ShadowMethod::Exact;
+    scene.camera.fov_y = 0.3;
+    let mut strands = Strands::default();
+    interpolate(&style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+    (scene.style, scene.strands) = (Arc::new(style), strands);
     scene
 }
 
-/// A difference of one step of eight bits.
-const STEP: f32 = 1.0 / 255.0;
-
-/// The largest difference between values of the pixels of two images, and how many pixels exceed a step. `value` returns `None` for pixels
-/// that are not compared.
-fn worst(a: &Layers, b: &Layers, value: impl Fn(&Layers, usize) -> Option<f32>) -> (f32, usize, usize) {
-    let pairs = (0..a.light.len()).filter_map(|i| Some((value(a, i)?, value(b, i)?)));
-    pairs.fold((0.0, 0, 0), |(worst, over, all), (a, b)| {
-        let difference = (a - b).abs();
-        (difference.max(worst), over + usize::from(difference > STEP), all + 1)
-    })
+/// The scene seen and lit from around the lock, angles in turns.
+fn seen_from(scene: &mut Scene, view: f32, light: f32) {
+    let around = |turn: f32, height: f32| {
+        let at = Vec2::from_angle(TAU * turn);
+        Vec3::new(at.x, height, at.y)
+    };
+    scene.camera.eye = around(view, 0.1);
+    scene.lights = vec![Light { direction: -around(light, 0.7), ..Light::default() }];
 }
 
-fn both(scene: &Scene) -> Option<[Layers; 2]> {
-    let gpu = scene.layers_by(Backend::Gpu, 160, 160)?;
-    Some([gpu, scene.layers_by(Backend::Cpu, 160, 160)?])
+fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> Layers {
+    let guides = GuideFrame::at_rest(&scene.style.guides, Affine3A::IDENTITY, 0.0);
+    let input = FrameInput { guides: Some(&guides), ..scene.input() };
+    let mut layers = Layers::default();
+    renderer.layers(&input, side, side, false, &mut layers).expect("layers");
+    layers
 }
 
-#[test]
-fn the_opacity_of_single_layers_agrees_within_a_step() {
-    let mut s = one_cluster();
-    for (layers, lookup) in
-        [(1, RecordLookup::Interpolated), (4, RecordLookup::Interpolated), (1, RecordLookup::Nearest)]
-    {
-        (s.picture.clusters.layers, s.picture.clusters.lookup) = (layers, lookup);
-        let Some([gpu, cpu]) = both(&s) else { return };
-        let seen = |of: &Layers, i: usize| (of.light[i][3] > 0.0).then_some(of.light[i][3]);
-        let (worst, over, all) = worst(&gpu, &cpu, seen);
-        println!("{layers} layers, {lookup:?}: {worst} in the worst of {all} pixels, {over} beyond a step");
-        // Where a pixel is between two texels, the nearest one may be either: measured 2.5 % of the pixels, and 0.0004 elsewhere.
-        let beyond = if lookup == RecordLookup::Nearest { all / 20 } else { 0 };
-        assert!(worst < 5.0 * STEP && over <= beyond && all > 2000, "{layers} layers, {lookup:?}");
-    }
+/// Errors of clusters against strands.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    /// Mean difference of opacity, where either shows hair.
+    opacity: f64,
+    /// Difference of the mean light of the lock, as a fraction of it.
+    light: f64,
+    /// Mean difference of the light of a square of 8 by 8 pixels, as a fraction of the mean light of the lock.
+    local_light: f64,
 }
 
-#[test]
-fn own_shadows_agree_within_a_step() {
-    let mut s = one_cluster();
-    s.shadow.method = ShadowMethod::None;
-    s.picture.clusters.layers = 4;
-    s.look.diameter *= 2.0;
-    s.picture.transparency = Transparency::Exact;
-    let Some(lit) = both(&s) else { return };
-    for shadow in [LocalShadow::Layers, LocalShadow::Linear, LocalShadow::Directional] {
-        s.picture.clusters.local_shadow = shadow;
-        let [gpu, cpu] = both(&s).expect("an adapter");
-        // The mean shadow of the layers of a pixel: they have the same opacities with and without it.
-        let ratio = |of: &Layers, without: &Layers, i: usize| {
-            (without.light[i][3] > 0.2).then(|| of.light[i][1] / without.light[i][1])
-        };
-        let pairs = (0..gpu.light.len())
-            .filter_map(|i| Some((ratio(&gpu, &lit[0], i)?, ratio(&cpu, &lit[1], i)?)));
-        let (mut worst, mut least, mut all) = (0.0_f32, 1.0_f32, 0);
-        for (a, b) in pairs {
-            (worst, least, all) = (worst.max((a - b).abs()), least.min(b), all + 1);
+fn errors(clusters: &Layers, strands: &Layers) -> Errors {
+    let grey = |l: &[f32; 4]| f64::from(0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2]);
+    let pairs = || clusters.light.iter().zip(&strands.light).filter(|(a, b)| a[3].max(b[3]) > 0.02);
+    let count = pairs().count().max(1) as f64;
+    let opacity = pairs().map(|(a, b)| f64::from((a[3] - b[3]).abs())).sum::<f64>() / count;
+    let total = |layers: &Layers| layers.light.iter().map(grey).sum::<f64>();
+    let of = total(strands);
+    let side = clusters.width as usize;
+    let mut local = 0.0;
+    for y in (0..side).step_by(8) {
+        for x in (0..side).step_by(8) {
+            let sum = |layers: &Layers| -> f64 {
+                (0..64).map(|k| grey(&layers.light[(y + k / 8) * side + x + k % 8])).sum()
+            };
+            local += (sum(clusters) - sum(strands)).abs();
         }
-        println!("{shadow:?}: {worst} in the worst of {all} pixels, shadows from {least}");
-        assert!(worst < STEP && all > 2000 && least < 1.0 - 30.0 * STEP, "{shadow:?}");
+    }
+    Errors { opacity, light: total(clusters) / of - 1.0, local_light: local / of }
+}
+
+/// The mean of errors over directions of view and light.
+fn mean_errors(renderers: &mut [CpuRenderer; 2], scene: &mut Scene, views: u32, lights: u32) -> Errors {
+    let mut mean = Errors::default();
+    for view in 0..views {
+        for light in 0..lights {
+            seen_from(scene, view as f32 / views as f32, (light as f32 + 0.3) / lights as f32);
+            scene.picture.draw = HairDrawing::Strands;
+            let strands = drawn(&mut renderers[0], scene, 160);
+            scene.picture.draw = HairDrawing::Clusters;
+            let clusters = drawn(&mut renderers[1], scene, 160);
+            let of = errors(&clusters, &strands);
+            mean.opacity += of.opacity;
+            mean.light += of.light.abs();
+            mean.local_light += of.local_light;
+        }
+    }
+    let count = f64::from(views * lights);
+    Errors { opacity: mean.opacity / count, light: mean.light / count, local_light: mean.local_light / count }
+}
+
+#[test]
+fn clusters_are_near_the_strands_for_which_they_stand() {
+    let mut renderers = [CpuRenderer::default(), CpuRenderer::default()];
+    let mut scene = lock(600);
+    println!("layers  opacity  light  local light");
+    let mut found = Vec::new();
+    for layers in [1, 2, 4, 8, 15] {
+        scene.picture.clusters = ClusterSettings { layers, around: 32, ..ClusterSettings::default() };
+        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
+        println!("{layers:>6}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
+        found.push(of);
+    }
+    for (name, settings) in [
+        ("nearest", ClusterSettings { lookup: RecordLookup::Nearest, ..ClusterSettings::default() }),
+        ("layers", ClusterSettings { local_shadow: LocalShadow::Layers, ..ClusterSettings::default() }),
+        ("linear", ClusterSettings { local_shadow: LocalShadow::Linear, ..ClusterSettings::default() }),
+        (
+            "directional",
+            ClusterSettings { local_shadow: LocalShadow::Directional, ..ClusterSettings::default() },
+        ),
+        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..ClusterSettings::default() }),
+        ("no detail", ClusterSettings { detail: 0.0, ..ClusterSettings::default() }),
+    ] {
+        scene.picture.clusters = settings;
+        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
+        println!("{name:>12}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
     }
 }

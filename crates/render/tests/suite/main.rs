@@ -4,6 +4,7 @@
 mod common;
 
 mod agreement;
+mod cluster_agreement;
 mod clusters;
 mod false_colors;
 mod fibre;

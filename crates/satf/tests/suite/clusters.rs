@@ -177,7 +177,7 @@ fn clusters_that_are_alike_up_to_a_turn_share_their_cells() {
             (round(), plain(disk(6, 200))),
             (round(), plain(disk(6, 200))),
             (round(), plain(turned(disk(6, 200)))),
-            (round(), plain(disk(7, 12))),
+            (round(), plain(disk(7, 200))),
         ];
         let settings = ClusterSettings { macro_tolerance: tolerance, around, ..ClusterSettings::default() };
         clusters(style(&wisps), &settings).1

@@ -44,6 +44,7 @@ pub(super) struct PlacedClusters {
     vertices: Vec<Vertex>,
     bins: Bins,
     settings: ClusterSettings,
+    is_hidden: bool,
     /// The part of the optical depth that clusters have.
     share: f32,
     /// Optical depth of a strand times the length of the arc that it lies in, metres.
@@ -53,6 +54,7 @@ pub(super) struct PlacedClusters {
 impl PlacedClusters {
     /// Follows the hair of `input`. Returns the part of its optical depth that clusters have.
     pub fn follow(&mut self, input: &FrameInput, height: u32) -> f32 {
+        self.is_hidden = false;
         self.share = cluster_share(input, height);
         if self.share > 0.0
             && let Some(guides) = guides_of(input)
@@ -114,9 +116,14 @@ impl PlacedClusters {
         });
     }
 
+    /// Draws none for the rest of the frame: values other than light are those of strands.
+    pub fn hide(&mut self) {
+        self.is_hidden = true;
+    }
+
     /// Whether a tile has no cluster.
     pub fn is_empty(&self, tile: usize) -> bool {
-        self.hair.is_none() || self.bins.of(tile).is_empty()
+        self.hair.is_none() || self.is_hidden || self.bins.of(tile).is_empty()
     }
 
     /// Blends the clusters of a tile from near to far, layer by layer.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, ShaderSource, wgpu};
 use lovelock_groom::HairShading;
 use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 use lovelock_shadow::{Bounds, GpuTargets, LightFrame};
@@ -258,20 +258,6 @@ impl Clusters {
         }
         parts.place_vertices(gpu, commands, frame);
         parts.fill_maps(gpu, commands, frame)
-    }
-
-    /// Encodes replacing the colours of the last frame by the transmittance of the first light.
-    pub fn place_values(
-        &mut self,
-        gpu: &Gpu,
-        kernel: &Kernel,
-        commands: &mut Commands,
-        resources: &FrameResources,
-    ) {
-        let Some((parts, frame)) = self.placed() else { return };
-        let of_ribs = FrameResources { uniform: &parts.frame_uniform, ..*resources };
-        parts.ribs.shade_values(gpu, kernel, commands, &of_ribs);
-        parts.place_vertices(gpu, commands, frame);
     }
 
     /// What the passes over fragments need, after [`Clusters::place`].

@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use lovelock_gpu::PassTimer;
-use lovelock_groom::HairShading;
 
 use super::picture::unsettled;
-use super::{GpuRenderer, MOST_ATTEMPTS, SeenHair, eye_input};
+use super::{GpuRenderer, MOST_ATTEMPTS, eye_input};
 use crate::gpu::eye::HairOutput;
-use crate::gpu::frame_resources::FrameResources;
 use crate::gpu::false_colors::{ColorScale, PaintInput};
 use crate::image::{DeviceImage, DeviceImages};
 use crate::{FrameInput, FrameStats, Picture, RenderError, Transparency};
@@ -65,28 +63,14 @@ impl GpuRenderer {
     /// Draws them once. Returns whether the list of fragments was long enough.
     fn draw_false_colors(&mut self, scale: &ColorScale, shown: &DeviceImage) -> Result<bool, RenderError> {
         let gpu = Arc::clone(&self.gpu);
-        let Some(targets) = &self.targets else { return Err(RenderError::NoPicture) };
         let mut timer = PassTimer::off();
         let mut commands = timer.resume(&gpu, "false colours");
-        if !self.seen.has_strands {
-            // Only clusters were drawn, so the strands have not been projected.
-            let frame = FrameResources {
-                uniform: &self.uniform,
-                body_depth: &self.surface.depth,
-                columns: self.shadow.columns_view(),
-                linear: &self.linear,
-                compare: &self.compare,
-                ambient: self.light.cells(),
-            };
-            let lit = self.pipelines.lit.of(&gpu, self.shadow.lights())?;
-            let shading = (lit, HairShading::KajiyaKay, self.light.tables());
-            self.hair.shade(&gpu, "draw/points", shading, &mut commands, &frame);
-        }
+        self.shade_hidden_strands(&gpu, &mut commands)?;
+        let Some(targets) = &self.targets else { return Err(RenderError::NoPicture) };
         self.false_colors.shade(&gpu, &mut commands, scale, self.hair.shaded());
         let front = HairOutput::Blended(Transparency::Sorted);
         // The strands, whatever hair was drawn as: values are given for their points.
-        let seen = SeenHair { has_strands: true, ..self.seen };
-        let eye = eye_input(&seen, &self.hair, None, targets, &self.last, front);
+        let eye = eye_input(&self.seen.of_strands(), &self.hair, None, targets, &self.last, front);
         self.eye.draw(&gpu, &mut commands, &eye)?;
         let area = self.seen.area;
         let input = PaintInput {

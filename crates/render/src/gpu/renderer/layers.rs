@@ -37,8 +37,12 @@ impl GpuRenderer {
 
         let uniform = self.last;
         let kind = (uniform.eye_lights.w as usize, over_background);
-        let seen = self.seen;
+        // Depth and transmittance of clusters are those of the strands that cast their shadow.
+        let seen = self.seen.of_strands();
         self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;
+        let mut timer = PassTimer::new(&gpu)?;
+        let mut commands = timer.begin(&gpu, "layers");
+        self.shade_hidden_strands(&gpu, &mut commands)?;
         let (Some(kernels), Some(targets)) = (self.layers.kernels(kind), &self.targets) else {
             return Err(RenderError::NoPicture);
         };
@@ -51,8 +55,6 @@ impl GpuRenderer {
             ambient: self.light.cells(),
         };
         let area = [seen.area.left, seen.area.top, seen.area.columns, seen.area.rows];
-        let mut timer = PassTimer::new(&gpu)?;
-        let mut commands = timer.begin(&gpu, "layers");
         let hair_area = commands.constants("hair area", &area);
         // The bind group is created each time, because the buffers may have been replaced.
         macro_rules! bound {
@@ -75,14 +77,12 @@ impl GpuRenderer {
         });
 
         self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
-        self.clusters.place_values(&gpu, &kernels.values, &mut commands, &frame);
-        let blended = HairOutput::Blended(seen.transparency);
+        let blended = HairOutput::Blended(input.picture.transparency);
         for (drawn, kernel, threads) in [
             (blended, &kernels.transmittance, seen.area.pixels()),
             (HairOutput::NearestDepth, &kernels.depth, pixels),
         ] {
-            let clusters = self.clusters.drawn(&mut commands);
-            let eye = eye_input(&seen, &self.hair, clusters, targets, &uniform, drawn);
+            let eye = eye_input(&seen, &self.hair, None, targets, &uniform, drawn);
             self.eye.draw(&gpu, &mut commands, &eye)?;
             let group = kernel.bind(&gpu, &bound!());
             commands.compute("draw/layers", |pass| kernel.run(pass, &group, threads));
