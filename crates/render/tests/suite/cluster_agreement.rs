@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use common::{Scene, scene};
 use glam::{Affine3A, Vec3};
@@ -10,8 +10,8 @@ use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, HairShading, Hairstyle, PlainHead, StrandSet, Wisp, grow,
 };
 use lovelock_render::{
-    Backend, ClusterShading, ClusterView, HairDrawing, Layers, Light, LocalShadow, MapExtent, RecordLookup,
-    ShadowMethod, Transparency,
+    Backend, ClusterShading, ClusterView, HairDrawing, Layers, Light, LocalShadow, MapExtent, Picture,
+    RecordLookup, Renderer, ShadowMethod, Transparency,
 };
 use lovelock_testkit::{Flip, flip};
 
@@ -48,10 +48,26 @@ fn wig() -> Scene {
     scene
 }
 
+/// The renderers of these tests, the GPU's first. Maps of light roll with the lights of earlier pictures, so both draw the same scenes.
+fn renderers() -> Option<MutexGuard<'static, [Renderer; 2]>> {
+    static RENDERERS: OnceLock<Option<Mutex<[Renderer; 2]>>> = OnceLock::new();
+    let opened = RENDERERS.get_or_init(|| match Renderer::open(Backend::Gpu) {
+        Ok(gpu) => Some(Mutex::new([gpu, Renderer::open(Backend::Cpu).expect("a processor")])),
+        Err(error) => {
+            lovelock_testkit::skip_without_adapter(&error);
+            None
+        }
+    });
+    opened.as_ref().map(|both| both.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// The difference of `scene` by the GPU from `other` by the CPU.
 fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
     let (w, h) = (240, 200);
-    let gpu = scene.draw_by(Backend::Gpu, w, h)?;
-    let cpu = other.draw_by(Backend::Cpu, w, h)?;
+    let mut renderers = renderers()?;
+    let [mut gpu, mut cpu] = [Picture::default(), Picture::default()];
+    renderers[0].picture(&scene.input(), w, h, &mut gpu).expect("a picture");
+    renderers[1].picture(&other.input(), w, h, &mut cpu).expect("a picture");
     Some(flip(&gpu.rgba, &cpu.rgba, w, h))
 }
 
@@ -186,8 +202,12 @@ fn worst(a: &Layers, b: &Layers, value: impl Fn(&Layers, usize) -> Option<f32>) 
 }
 
 fn both(scene: &Scene) -> Option<[Layers; 2]> {
-    let gpu = scene.layers_by(Backend::Gpu, 160, 160)?;
-    Some([gpu, scene.layers_by(Backend::Cpu, 160, 160)?])
+    let mut renderers = renderers()?;
+    let mut both = [Layers::default(), Layers::default()];
+    for (renderer, layers) in renderers.iter_mut().zip(&mut both) {
+        renderer.layers(&scene.input(), 160, 160, false, layers).expect("layers");
+    }
+    Some(both)
 }
 
 #[test]
