@@ -39,7 +39,7 @@ fn lit(style: Hairstyle) -> Scene {
 }
 
 /// A head of 24 clusters.
-fn wig() -> Scene {
+pub fn wig() -> Scene {
     let settings = GroomSettings { wisps: 24, strands_per_wisp: 40, ..GroomSettings::default() };
     let mut scene = lit(grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair"));
     scene.look = settings.look;
@@ -49,10 +49,10 @@ fn wig() -> Scene {
 }
 
 /// The renderers of these tests, the GPU's first. Maps of light roll with the lights of earlier pictures, so both draw the same scenes.
-fn renderers() -> Option<MutexGuard<'static, [Renderer; 2]>> {
-    static RENDERERS: OnceLock<Option<Mutex<[Renderer; 2]>>> = OnceLock::new();
+fn renderers() -> Option<MutexGuard<'static, Vec<Renderer>>> {
+    static RENDERERS: OnceLock<Option<Mutex<Vec<Renderer>>>> = OnceLock::new();
     let opened = RENDERERS.get_or_init(|| match Renderer::open(Backend::Gpu) {
-        Ok(gpu) => Some(Mutex::new([gpu, Renderer::open(Backend::Cpu).expect("a processor")])),
+        Ok(gpu) => Some(Mutex::new(vec![gpu, Renderer::open(Backend::Cpu).expect("a processor")])),
         Err(error) => {
             lovelock_testkit::skip_without_adapter(&error);
             None
@@ -128,7 +128,10 @@ fn strands_among_clusters_look_the_same_on_both() {
         alone.picture.draw = draw;
         let Some(difference) = compared(&s, &alone) else { return };
         println!("{draw}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > P99_OF_SAMPLES, "{draw}: {difference:?}");
+        assert!(
+            difference.mean > 5.0 * LIMIT[0] && difference.p99 > P99_OF_SAMPLES,
+            "{draw}: {difference:?}"
+        );
     }
 }
 
@@ -145,7 +148,10 @@ fn small_differences_of_clusters_are_found() {
         change(&mut s);
         let Some(difference) = compared(&wig(), &s) else { return };
         println!("{name}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > 5.0 * LIMIT[1], "{name}: {difference:?}");
+        assert!(
+            difference.mean > 5.0 * LIMIT[0] && difference.p99 > 5.0 * LIMIT[1],
+            "{name}: {difference:?}"
+        );
     }
 }
 
@@ -242,8 +248,8 @@ fn own_shadows_agree_within_a_step() {
         let ratio = |of: &Layers, without: &Layers, i: usize| {
             (without.light[i][3] > 0.2).then(|| of.light[i][1] / without.light[i][1])
         };
-        let pairs = (0..gpu.light.len())
-            .filter_map(|i| Some((ratio(&gpu, &lit[0], i)?, ratio(&cpu, &lit[1], i)?)));
+        let pairs =
+            (0..gpu.light.len()).filter_map(|i| Some((ratio(&gpu, &lit[0], i)?, ratio(&cpu, &lit[1], i)?)));
         let (mut worst, mut least, mut all) = (0.0_f32, 1.0_f32, 0);
         for (a, b) in pairs {
             (worst, least, all) = (worst.max((a - b).abs()), least.min(b), all + 1);
