@@ -63,7 +63,10 @@ fn renderers() -> Option<MutexGuard<'static, Vec<Renderer>>> {
 
 /// The difference of `scene` by the GPU from `other` by the CPU.
 fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
-    let (w, h) = (240, 200);
+    compared_at([240, 200], scene, other)
+}
+
+fn compared_at([w, h]: [u32; 2], scene: &Scene, other: &Scene) -> Option<Flip> {
     let mut renderers = renderers()?;
     let [mut gpu, mut cpu] = [Picture::default(), Picture::default()];
     renderers[0].picture(&scene.input(), w, h, &mut gpu).expect("a picture");
@@ -256,5 +259,21 @@ fn own_shadows_agree_within_a_step() {
         }
         println!("{shadow:?}: {worst} in the worst of {all} pixels, shadows from {least}");
         assert!(worst < STEP && all > 2000 && least < 1.0 - 30.0 * STEP, "{shadow:?}");
+    }
+}
+
+#[test]
+fn layers_that_fill_the_picture_are_drawn_whole() {
+    let mut s = one_cluster();
+    // Few and large volumes close to the eye: one thread would iterate over more than 65,535 pixels.
+    let clusters = &mut s.picture.clusters;
+    (clusters.layers, clusters.around, clusters.along) = (2, 4, 2);
+    s.camera.eye = Vec3::new(0.0, 0.0, 0.16);
+    s.camera.fov_y = 0.4;
+    for shadow in [LocalShadow::Map, LocalShadow::Layers, LocalShadow::Directional] {
+        s.picture.clusters.local_shadow = shadow;
+        let Some(difference) = compared_at([800, 600], &s, &s) else { return };
+        println!("{shadow:?}: {difference:?}");
+        assert!(difference.mean < LIMIT[0] && difference.p99 < LIMIT[1], "{shadow:?}: {difference:?}");
     }
 }
