@@ -54,10 +54,7 @@ fn own_shaders() -> [(&'static str, ShaderSource); 10] {
         ),
         ("values of points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
-        (
-            "published light",
-            &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, clusters, surface, published],
-        ),
+        ("published light", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, clusters, surface, published]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
 }
@@ -112,7 +109,8 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, colors, values, present, published] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, colors, values, present, published] =
+            own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {

@@ -7,8 +7,8 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, HairLook, HairShading, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Layers, Light, Picture, PictureSettings,
-    RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
+    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Layers, Light, Picture,
+    PictureSettings, RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
 };
 
 /// The renderer that all tests of a binary share: creating one takes seconds with a software adapter.

@@ -112,7 +112,10 @@ fn strands_among_clusters_look_the_same_on_both() {
         alone.picture.draw = draw;
         let Some(difference) = compared(&s, &alone) else { return };
         println!("{draw}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > P99_OF_SAMPLES, "{draw}: {difference:?}");
+        assert!(
+            difference.mean > 5.0 * LIMIT[0] && difference.p99 > P99_OF_SAMPLES,
+            "{draw}: {difference:?}"
+        );
     }
 }
 
@@ -129,7 +132,10 @@ fn small_differences_of_clusters_are_found() {
         change(&mut s);
         let Some(difference) = compared(&wig(), &s) else { return };
         println!("{name}: {difference:?}");
-        assert!(difference.mean > 5.0 * LIMIT[0] && difference.p99 > 5.0 * LIMIT[1], "{name}: {difference:?}");
+        assert!(
+            difference.mean > 5.0 * LIMIT[0] && difference.p99 > 5.0 * LIMIT[1],
+            "{name}: {difference:?}"
+        );
     }
 }
 
@@ -222,8 +228,8 @@ fn own_shadows_agree_within_a_step() {
         let ratio = |of: &Layers, without: &Layers, i: usize| {
             (without.light[i][3] > 0.2).then(|| of.light[i][1] / without.light[i][1])
         };
-        let pairs = (0..gpu.light.len())
-            .filter_map(|i| Some((ratio(&gpu, &lit[0], i)?, ratio(&cpu, &lit[1], i)?)));
+        let pairs =
+            (0..gpu.light.len()).filter_map(|i| Some((ratio(&gpu, &lit[0], i)?, ratio(&cpu, &lit[1], i)?)));
         let (mut worst, mut least, mut all) = (0.0_f32, 1.0_f32, 0);
         for (a, b) in pairs {
             (worst, least, all) = (worst.max((a - b).abs()), least.min(b), all + 1);

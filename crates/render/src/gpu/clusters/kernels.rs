@@ -5,10 +5,7 @@ use lovelock_satf::{ClusterSettings, ClusterView, LocalShadow, RecordLookup};
 
 macro_rules! part {
     ($name:literal) => {
-        ShaderPart {
-            name: concat!("crates/render/src/gpu/clusters/", $name),
-            text: include_str!($name),
-        }
+        ShaderPart { name: concat!("crates/render/src/gpu/clusters/", $name), text: include_str!($name) }
     };
 }
 

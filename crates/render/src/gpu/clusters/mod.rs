@@ -25,8 +25,8 @@ use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, HairPose, PictureSettings};
 use constant::{ConstantBuffers, Largest};
-pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, PUBLISHED_PARTS, shaders};
 use kernels::{ClusterKernels, MOST_PIXELS_A_THREAD};
+pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, PUBLISHED_PARTS, shaders};
 
 /// Twin of `ClusterUniform` in clusters.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -251,10 +251,14 @@ impl Clusters {
         if frame.picture.clusters.shading == ClusterShading::Paper {
             let kernel = parts.kernels.published(gpu, lighting.published, lighting.lights)?;
             let uniform = commands.constants("clusters", &frame.uniform);
-            parts.ribs.run_over_points(gpu, kernel, "draw/published-light", commands, &of_ribs, [(
-                10,
-                uniform.as_entire_binding(),
-            )]);
+            parts.ribs.run_over_points(
+                gpu,
+                kernel,
+                "draw/published-light",
+                commands,
+                &of_ribs,
+                [(10, uniform.as_entire_binding())],
+            );
         }
         parts.place_vertices(gpu, commands, frame);
         parts.fill_maps(gpu, commands, frame)
@@ -362,8 +366,7 @@ impl Parts {
                 (11, self.vertices.raw().as_entire_binding()),
             ],
         );
-        commands
-            .compute("draw/cluster-vertices", |pass| kernel.run(pass, &group, frame.vertices() as u64));
+        commands.compute("draw/cluster-vertices", |pass| kernel.run(pass, &group, frame.vertices() as u64));
     }
 
     fn fill_maps(&mut self, gpu: &Gpu, commands: &mut Commands, frame: &Frame) -> Result<(), GpuError> {

@@ -139,7 +139,8 @@ impl Pass {
 
     /// The same pass over the fragments of clusters.
     fn cluster_source(&self) -> ShaderSource {
-        let parts: Vec<_> = [FRAME, FRAGMENT].iter().chain(self.parts).chain(&FRAGMENT_PARTS).copied().collect();
+        let parts: Vec<_> =
+            [FRAME, FRAGMENT].iter().chain(self.parts).chain(&FRAGMENT_PARTS).copied().collect();
         ShaderSource::new(&parts)
     }
 
@@ -165,11 +166,13 @@ pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
     let all = blended.chain([("nearest".to_owned(), HairOutput::NearestDepth)]);
     let modes = all.flat_map(|(name, drawn)| {
         let passes = Mode::of(drawn).passes.iter();
-        passes.flat_map(move |pass| {
-            let clusters = (pass.over == Over::Fragments)
-                .then(|| (format!("{name}: {} of clusters", pass.name), pass.cluster_source()));
-            std::iter::once((format!("{name}: {}", pass.name), pass.source())).chain(clusters)
-        }).collect::<Vec<_>>()
+        passes
+            .flat_map(move |pass| {
+                let clusters = (pass.over == Over::Fragments)
+                    .then(|| (format!("{name}: {} of clusters", pass.name), pass.cluster_source()));
+                std::iter::once((format!("{name}: {}", pass.name), pass.source())).chain(clusters)
+            })
+            .collect::<Vec<_>>()
     });
     std::iter::once(behind).chain(modes).collect()
 }
