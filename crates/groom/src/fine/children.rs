@@ -7,6 +7,7 @@ use lovelock_base::random::SplitMix64;
 
 use super::hairline::{Edge, edges_of, shorten};
 use super::order::evenly;
+use super::strand::{FineStrand, Shape};
 use crate::{GuideFrame, Hairstyle, Strands, interpolate};
 
 /// The most points of a fine strand.
@@ -19,25 +20,6 @@ const SPARSE: usize = 6000;
 const NEIGHBOURS: usize = 7;
 /// Share of children that leave their lock.
 const STRAYS: f32 = 0.06;
-
-/// One strand of the list, 24 bytes.
-///
-/// Its points are those of a polyline `q` cut at `length`, where `q_j = a_j + b(t) (b_j - a_j) + c(t) (c_j - a_j)` at the fraction `t` of
-/// its parents' polylines `a`, `b` and `c`. The weights `b(t)` and `c(t)` are cubic Bézier curves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
-pub struct FineStrand {
-    /// Stored strands between which it lies. It is close to the first one; all three are the same for a stored strand itself.
-    pub parents: [u32; 3],
-    /// Control points of the weights of the second and the third parent, as signed bytes in 127ths.
-    pub weights: [[i8; 4]; 2],
-    /// Its length as a fraction of its parents' length, in 65,535ths.
-    pub length: u16,
-    /// Its shade, 0 to 255; see [`StrandSet::shade`](crate::StrandSet).
-    pub shade: u8,
-    /// Unused; 0.
-    pub spare: u8,
-}
 
 /// The strands of a hairstyle in the order in which they are drawn; see the [module](crate::fine).
 #[derive(Clone, Debug, Default)]
@@ -156,9 +138,6 @@ fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], edge: Edge, i
     shorten(&mut strand, edge, &mut random);
     strand
 }
-
-/// Root, middle and tip of a strand at rest.
-pub(super) type Shape = [Vec3; 3];
 
 /// The nearest strands of each strand, of its wisp or of all with a similar shape where a wisp has few; and the edge of the hair.
 fn neighbours_of(style: &Hairstyle) -> (Vec<[u32; NEIGHBOURS]>, Vec<Edge>) {

@@ -4,8 +4,9 @@
 
 use rayon::prelude::*;
 
-use super::children::{FineStrand, FineStrands, MOST_POINTS};
+use super::children::{FineStrands, MOST_POINTS};
 use super::order::place;
+use super::strand::FineStrand;
 use crate::simd::Width;
 use crate::{Strands, simd_versions};
 

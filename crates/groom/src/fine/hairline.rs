@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 use lovelock_base::random::SplitMix64;
 
-use super::children::{FineStrand, Shape};
+use super::strand::{FineStrand, Shape};
 
 /// Roots within this distance tell whether a root is at the edge, metres.
 const AROUND: f32 = 0.014;

@@ -14,9 +14,11 @@ mod grow;
 mod hairline;
 mod order;
 mod portion;
+mod strand;
 #[cfg(test)]
 mod tests;
 
-pub use children::{FineStrand, FineStrands};
+pub use children::FineStrands;
 pub use grow::{ParentPoints, grow_fine, moved_apart};
 pub use portion::Portion;
+pub use strand::FineStrand;
