@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::Affine3A;
 use lovelock_base::random::SplitMix64;
 
 use super::hairline::{Edge, edges_of, shorten};
