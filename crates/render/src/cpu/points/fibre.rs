@@ -65,7 +65,6 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
                 cos_theta: cos_l[lane],
                 phi: phi[lane],
                 fibres: fibres[lane],
-                fibres_behind: f32::INFINITY,
             };
             let mut variances = own;
             variances.iter_mut().for_each(|variance| *variance += turn[lane]);
