@@ -183,7 +183,7 @@ fn balanced(exact: &[[[f64; 3]; 3]; AZIMUTHS], i: usize, of: impl Fn(&[[f64; 3];
     let (before, after) = (&exact[i.abs_diff(1)], exact.get(i + 1).unwrap_or(&exact[AZIMUTHS - 2]));
     let here = of(&exact[i]);
     let moved = here - (of(before) - 2.0 * here + of(after)) / 16.0;
-    // Never beside 0 of a value that is none.
+    // Values stay positive beside a steep edge.
     moved.max(0.5 * here)
 }
 

@@ -50,7 +50,7 @@ struct Source {
     roots: Vec<Vec3>,
     /// Middles and tips, if neighbours may be of other wisps.
     ends: Vec<[Vec3; 2]>,
-    /// Wisps with too few strands, by their first strand.
+    /// Whether the neighbours of each strand may be of other wisps; empty if those of none may.
     few: Vec<bool>,
 }
 

@@ -44,7 +44,9 @@ impl<'a> Nearest<'a> {
             }
         };
         if part.len() <= LEAF {
-            part.iter().for_each(|&(i, _)| compare(i, found));
+            for &(i, _) in part {
+                compare(i, found);
+            }
             return;
         }
         let middle = part.len() / 2;

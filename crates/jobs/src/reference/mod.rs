@@ -175,7 +175,7 @@ pub fn write_reference(
         }
         let hair = match settled.take() {
             Some((preset, hair)) if preset == scene.hair => hair,
-            _ => Hair::settle(scene.hair, &project, request)?,
+            _ => Hair::settle(scene.hair, &project)?,
         };
         entries.push(hair.write(scene, &mut project, &mut renderer, request)?);
         settled = Some((scene.hair, hair));
@@ -197,8 +197,8 @@ struct Hair {
 }
 
 impl Hair {
-    /// Settles the hair and writes its strands.
-    fn settle(preset: Preset, project: &Project, request: &ReferenceRequest) -> Result<Self, ProjectError> {
+    /// Settles the hair.
+    fn settle(preset: Preset, project: &Project) -> Result<Self, ProjectError> {
         let mut engine = Engine::at_rest(load(project)?, project.simulation, STEP_SECS);
         engine.follow(project);
         engine.settle();
