@@ -1,6 +1,6 @@
 //! The light that stands out.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 
 use super::picture::{Reduced, luminance};
 
@@ -27,6 +27,12 @@ impl Strongest {
     /// The colour of the light, with its largest component 1.
     pub fn colour(&self) -> Vec3 {
         self.irradiance / self.irradiance.max_element()
+    }
+
+    /// The light turned by `radians` about +Y.
+    pub fn turned(&self, radians: f32) -> Self {
+        let turn = Quat::from_rotation_y(radians);
+        Self { direction: (turn * self.direction).normalize_or(self.direction), ..*self }
     }
 
     /// The centroid of the brightest hundredth of the sphere, within a cone around the brightest texel.
