@@ -187,7 +187,7 @@ pub(super) mod tests {
         let trail: Vec<u32> =
             costs.trail(mine).map(|way| way.contender.shadow.voxel_map.resolution).collect();
         assert_eq!(trail, [128, 64], "the newest at the end");
-        let other = (ShadowMethod::Exact, mine.1, mine.2);
+        let other = (ShadowMethod::Exact, mine.1, mine.2, mine.3);
         assert_eq!(costs.trail(other).count(), 0);
     }
 

@@ -109,8 +109,9 @@ fn settings(ui: &mut Ui, index: usize, pane: &mut Contender) {
         ui.set_width(300.0);
         all_settings(ui, pane);
     });
-    let response =
-        response.on_hover_text("What hair is drawn as, transparency, backend, resolution and all settings of the method.");
+    let response = response.on_hover_text(
+        "What hair is drawn as, transparency, backend, resolution and all settings of the method.",
+    );
     let name = format!("Settings of pane {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
 }

@@ -2,7 +2,9 @@
 
 use std::thread;
 
-use egui::{Color32, ColorImage, DragValue, Image, Rect, Slider, TextureHandle, TextureOptions, Ui, pos2, vec2};
+use egui::{
+    Color32, ColorImage, DragValue, Image, Rect, Slider, TextureHandle, TextureOptions, Ui, pos2, vec2,
+};
 use lovelock_satf::cache::{ready, shared};
 use lovelock_satf::features::features_of;
 use lovelock_satf::layout::{ANGLES, SECTORS, TEXELS};
@@ -55,7 +57,8 @@ pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
         let slider = Slider::new(light, 0..=ANGLES - 1).update_while_editing(false);
         let slider = slider.custom_formatter(|light, _| format!("{}°", light * STEP));
         ui.add(
-            slider.custom_parser(move |text| typed(text, "°").filter(|_| !canceled).map(|angle| angle / STEP)),
+            slider
+                .custom_parser(move |text| typed(text, "°").filter(|_| !canceled).map(|angle| angle / STEP)),
         )
     });
     let Some((database, _)) = ready() else {
@@ -75,7 +78,11 @@ pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
     };
     let size = vec2(ui.available_width().min(8.0 * TEXELS as f32), ROW * ANGLES as f32);
     for (name, from, tip) in [
-        ("Opacity", 0.0, "Opacity along the outer arc of the sector; each row is an azimuth of view, the outward normal on top."),
+        (
+            "Opacity",
+            0.0,
+            "Opacity along the outer arc of the sector; each row is an azimuth of view, the outward normal on top.",
+        ),
         ("Reflectance", 0.5, "Light that hair reflects, along the same arc and from the same azimuths."),
     ] {
         note(ui, name);

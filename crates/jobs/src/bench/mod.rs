@@ -30,9 +30,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_render::{
-    Backend, HairDrawing, Picture, RenderError, Renderer, ShadowMethod, Transparency,
-};
+use lovelock_render::{Backend, HairDrawing, Picture, RenderError, Renderer, ShadowMethod, Transparency};
 use lovelock_session::clock::FrameClock;
 use lovelock_session::engine::Engine;
 use lovelock_session::health::health;

@@ -114,10 +114,7 @@ impl BenchScene {
 
     /// Whether it compares clusters with the strands for which they stand.
     const fn is_of_clusters(self) -> bool {
-        matches!(
-            self,
-            Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands
-        )
+        matches!(self, Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands)
     }
 
     /// The measured project: three lights with `voxel-map`, blended; or, as in the paper, one light with `occupancy-maps` of

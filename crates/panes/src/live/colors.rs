@@ -164,7 +164,8 @@ impl Rounds {
 }
 
 /// Why a pane that draws clusters has no errors of transmittance.
-const NO_POINTS: &str = "Errors of transmittance are measured at the points of strands, and this pane draws clusters.";
+const NO_POINTS: &str =
+    "Errors of transmittance are measured at the points of strands, and this pane draws clusters.";
 
 /// The value of the last colour.
 fn largest(request: &LiveRequest) -> f32 {

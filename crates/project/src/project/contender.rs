@@ -1,7 +1,7 @@
 //! One way to render hair among those that are compared.
 
-use lovelock_render::{Backend, HairDrawing, PictureSettings, ShadowSettings, Transparency};
 use lovelock_base::settings::Choices;
+use lovelock_render::{Backend, HairDrawing, PictureSettings, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
 use super::super::Project;

@@ -33,8 +33,10 @@ pub(super) fn entrants(
     let methods = without_repetition(methods, ShadowMethod::ALL);
     let draws = without_repetition(draws, &[project.picture.draw]);
     let transparencies = without_repetition(transparencies, &[project.picture.transparency]);
-    let looks: Vec<_> =
-        draws.iter().flat_map(|&draw| transparencies.iter().map(move |&transparency| (draw, transparency))).collect();
+    let looks: Vec<_> = draws
+        .iter()
+        .flat_map(|&draw| transparencies.iter().map(move |&transparency| (draw, transparency)))
+        .collect();
     for sweep in sweeps {
         let has = |method: &ShadowMethod| sweep::has_setting(*method, &sweep.setting);
         if !methods.iter().any(has) {
@@ -176,12 +178,14 @@ mod tests {
         let draws = [HairDrawing::Strands, HairDrawing::Clusters, HairDrawing::Strands];
         let project = Project::default();
         let all = entrants(&project, (&methods, &draws, &[]), &[Backend::Cpu], &[]).expect("entrants");
-        let expected =
-            ["none strands", "none clusters", "occupancy-maps strands", "occupancy-maps clusters"];
+        let expected = ["none strands", "none clusters", "occupancy-maps strands", "occupancy-maps clusters"];
         assert_eq!(names(&all), expected);
         assert_eq!((all[1].contender.draw, all[1].report.draw.as_str()), (HairDrawing::Clusters, "clusters"));
         let one = entrants(&project, (&methods, &draws[1..2], &[]), &[Backend::Cpu], &[]).expect("entrants");
-        assert_eq!((names(&one), one[0].contender.draw), (vec!["none", "occupancy-maps"], HairDrawing::Clusters));
+        assert_eq!(
+            (names(&one), one[0].contender.draw),
+            (vec!["none", "occupancy-maps"], HairDrawing::Clusters)
+        );
     }
 
     #[test]

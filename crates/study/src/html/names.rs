@@ -86,7 +86,8 @@ pub(super) struct Group<'a> {
 
 /// The groups of a report, in order of appearance.
 pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<'a>> {
-    let key = |method: &'a MethodReport| (&method.backend, &method.adapter, &method.draw, &method.transparency);
+    let key =
+        |method: &'a MethodReport| (&method.backend, &method.adapter, &method.draw, &method.transparency);
     let mut groups: Vec<Group<'a>> = Vec::new();
     for (index, method) in report.methods.iter().enumerate() {
         if let Some(group) = groups.iter_mut().find(|group| key(group.methods[0].1) == key(method)) {
