@@ -11,7 +11,7 @@ use lovelock_jobs::convert::written_extensions;
 use lovelock_jobs::reference::ReferenceScene;
 use lovelock_project::project::RecordingSection;
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, ShadowMethod, Transparency};
+use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
 
 /// Styles, simulates, shadows and compares hair interactively. Opens the window if no command is given.
 #[derive(Debug, Parser)]
@@ -56,6 +56,8 @@ pub(crate) enum Task {
     Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
     Assemble(Assemble),
+    /// Makes the database from which hair is drawn as clusters.
+    Satf(Satf),
 }
 
 /// The project, with changes.
@@ -128,6 +130,10 @@ pub(crate) struct Record {
     /// Shadow method.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
+    /// What hair is drawn as: strands, clusters (lock by lock, from a database of rendered sectors) or auto (clusters where hair is small
+    /// in the image); the project's choice if none is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) draw: Option<HairDrawing>,
     /// How overlapping strands are blended.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
@@ -195,6 +201,10 @@ pub(crate) struct Compare {
     /// Shadow methods, separated by commas, or `all`.
     #[arg(long, value_name = "ID,ID|all", default_value = "all", value_parser = methods)]
     pub(crate) methods: Methods,
+    /// What hair is drawn as: strands, clusters or auto, separated by commas; the project's choice if none is given. Only strands have
+    /// errors of transmittance.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
+    pub(crate) draw: Vec<HairDrawing>,
     /// How overlapping strands are blended, separated by commas; the project's choice if none is given.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     pub(crate) transparency: Vec<Transparency>,
@@ -224,8 +234,9 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
     /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, far, middle, near and still (fine strands that scatter,
-    /// from a whole figure to a head of 100,000 strands), and simulate-402 and simulate-20k, which are
-    /// simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
+    /// from a whole figure to a head of 100,000 strands), clusters and clusters-far (40 locks drawn as clusters, near and with a head of 24
+    /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), and simulate-402 and simulate-20k, which
+    /// are simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
     /// sorting exactly. `reference` writes scenes for a path tracer and our images of them; `reference-curly` and
@@ -254,6 +265,9 @@ pub(crate) struct Bench {
     /// Shadow method; that of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
+    /// What hair is drawn as: strands, clusters or auto; the choice of the scene if none is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) draw: Option<HairDrawing>,
     /// How overlapping strands are blended; the choice of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
@@ -331,6 +345,26 @@ pub(crate) struct Farm {
     /// Frames per task; 10, or more if that would make more than 1024 tasks.
     #[arg(long, value_name = "N")]
     pub(crate) chunk: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Satf {
+    #[command(subcommand)]
+    pub(crate) task: SatfTask,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum SatfTask {
+    /// Writes the database to a file, the same bytes on every run. The program makes its own at first use and keeps it in the user's
+    /// cache folder.
+    Build(SatfBuild),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SatfBuild {
+    /// The file.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

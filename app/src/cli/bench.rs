@@ -23,6 +23,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
         frames: task.frames,
         size: task.size,
         shadow: task.shadow,
+        draw: task.draw,
         transparency: task.transparency,
         ..BenchRequest::default()
     };
@@ -125,6 +126,7 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
     };
     let change = |project: &mut Project| {
         project.shadow.method = task.shadow.unwrap_or(project.shadow.method);
+        project.picture.draw = task.draw.unwrap_or(project.picture.draw);
         project.picture.transparency = task.transparency.unwrap_or(project.picture.transparency);
         apply(&task.set, project)
     };

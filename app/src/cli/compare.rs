@@ -22,6 +22,7 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
         fps: task.picture.fps,
         size: task.picture.size,
         methods: task.methods.0.clone(),
+        draws_as: task.draw.clone(),
         transparencies: task.transparency.clone(),
         backends: task.backend.clone().map(|backends| backends.0).unwrap_or_default(),
         sweeps: task.sweep.clone(),

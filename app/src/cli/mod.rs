@@ -9,6 +9,7 @@ mod farm;
 mod info;
 mod output;
 mod record;
+mod satf;
 mod settings;
 mod source;
 
@@ -41,6 +42,7 @@ pub(crate) fn run() -> ExitCode {
     if let (Some(first), Some(_)) = (arguments.set.first(), &arguments.task) {
         return output.refuse(&format!("--set {}: found before the command; must be after it", first.name));
     }
+    let opens_window = arguments.task.is_none();
     let result = match arguments.task {
         None => {
             let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
@@ -54,7 +56,12 @@ pub(crate) fn run() -> ExitCode {
         Some(Task::Convert(task)) => convert::run(&task, output),
         Some(Task::Farm(task)) => farm::run(&task, output),
         Some(Task::Assemble(task)) => farm::run_assemble(&task, output),
+        Some(Task::Satf(task)) => satf::run(&task, output),
     };
+    // The window has shown it.
+    if let Some(note) = lovelock_satf::cache::note().filter(|_| !opens_window) {
+        eprintln!("lovelock: {note}");
+    }
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => output.fail(&error),

@@ -22,6 +22,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
         fps: task.film.picture.fps,
         size: task.film.picture.size,
         shadow: task.shadow,
+        draw: task.draw,
         transparency: task.transparency,
         quality: task.quality,
         label: task.label,

@@ -28,6 +28,13 @@ impl Window {
         let said = self.compare.update(self.session.live());
         self.warn(said);
         self.report_saved();
+        // The database is read or made when clusters are first drawn.
+        if !self.database_noted
+            && let Some((_, note)) = lovelock_satf::cache::ready()
+        {
+            self.database_noted = true;
+            self.warn(note.as_ref().map(ToString::to_string));
+        }
         if let Some(end) = self.recorder.update() {
             match end {
                 panels::recording::State::Done(what) => {

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use lovelock_project::Project;
-use lovelock_render::{Backend, Traffic};
+use lovelock_render::{Backend, ClusterStats, Traffic};
 use lovelock_session::clock::STEP_SECS;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::RenderedImage;
@@ -83,6 +83,24 @@ impl Window {
             let size = format!("{width} × {height}");
             fact("Picture", "Size of the rendered image in pixels.", size);
             fact("Segments drawn", "Segments of all strands in the image.", stats.segments.to_string());
+            if let Some(clusters) = stats.clusters {
+                let ClusterStats { clusters, macro_clusters, volumes, bytes, bytes_unshared } = clusters;
+                fact(
+                    "Clusters, macro",
+                    "Locks drawn as clusters, and macro-clusters: sets of parameters, each of which several clusters may share.",
+                    format!("{clusters}, {macro_clusters}"),
+                );
+                fact(
+                    "Hair shell volumes",
+                    "Parts of all clusters between two sections, two ribs and two layers, each with two records of the database.",
+                    volumes.to_string(),
+                );
+                fact(
+                    "Cluster memory",
+                    "Memory of the parameters of clusters, and what it would be if no clusters shared them.",
+                    format!("{} of {}", mib(bytes), mib(bytes_unshared)),
+                );
+            }
             fact("Shadow maps", "Memory of the shadow maps of all lights.", mib(stats.shadow_bytes));
             fact(
                 "Strands and pixels",

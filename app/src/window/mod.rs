@@ -129,6 +129,10 @@ pub(crate) struct Window {
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
+    /// The shown record of the database of clusters.
+    record: panels::records::RecordView,
+    /// Whether the note on the database of clusters was shown, if there is one.
+    database_noted: bool,
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
@@ -201,6 +205,8 @@ impl Window {
             selected_tie: 0,
             ties_shown: false,
             scissors: Scissors::default(),
+            record: panels::records::RecordView::default(),
+            database_noted: false,
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,

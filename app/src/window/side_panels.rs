@@ -3,6 +3,7 @@
 use egui::{Panel, ScrollArea, Ui};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
+use lovelock_render::HairDrawing;
 
 use super::control::section;
 use super::path_dialog::Purpose;
@@ -81,7 +82,14 @@ impl Window {
                     let default = project.hair.groom.look;
                     panels::look::hair(ui, &mut project.look, &default, &mut project.picture);
                 });
-                section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
+                section(ui, "Picture", false, |ui| {
+                    panels::look::picture(ui, &mut project.picture);
+                    if project.picture.draw != HairDrawing::Strands {
+                        section(ui, "Record of the database", false, |ui| {
+                            panels::records::ui(ui, &mut self.record);
+                        });
+                    }
+                });
                 section(ui, "Recording", false, |ui| {
                     let frames = self.session.frames(project.recording.fps);
                     recording =

@@ -122,7 +122,7 @@ fn a_published_scene_uses_its_own_settings_and_has_published_figures() {
 #[test]
 fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
-    let wrong: [(&[&str], &str); 9] = [
+    let wrong: [(&[&str], &str); 10] = [
         (&["bench", "wig"], "smooth-2m"),
         (&["bench", "wig"], "voxel-map, occupancy-order or reference"),
         (&["bench", "--baseline", "none.json"], "none.json"),
@@ -130,6 +130,7 @@ fn wrong_requests_are_rejected_before_any_work() {
         (&["bench", "--backend", "magic"], "expected auto, gpu or cpu"),
         (&["bench", "--shadow", "magic"], "occupancy-maps"),
         (&["bench", "--transparency", "magic"], "occupancy-order"),
+        (&["bench", "--draw", "magic"], "clusters"),
         (&["bench", "smooth", "-o", "no folder/x.csv"], "no folder"),
         (&["bench", "smooth", "--size", "8192x8192", "--backend", "cpu"], "at most 35 million"),
     ];

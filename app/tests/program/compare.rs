@@ -40,7 +40,7 @@ fn a_report_has_the_documented_keys_and_files() {
     let ids: Vec<_> = methods.iter().map(|method| method["id"].as_str().unwrap_or_default()).collect();
     assert_eq!(ids, ["none", "voxel-map", "exact"]);
     for method in methods {
-        for key in ["transparency", "backend", "adapter", "memory_bytes", "ssim"] {
+        for key in ["draw", "transparency", "backend", "adapter", "memory_bytes", "ssim"] {
             assert!(!method[key].is_null(), "no `{key}` in {method}");
         }
         for key in ["rmse", "bias", "p99", "first10_rmse"] {
@@ -74,10 +74,11 @@ fn wrong_requests_are_rejected_in_one_line_without_output() {
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::write(dir.path().join("file"), b"x").expect("a file");
     let before = names(dir.path());
-    let wrong: [(&[&str], &str, i32); 20] = [
+    let wrong: [(&[&str], &str, i32); 21] = [
         (&["--methods", "magic"], "magic", 2),
         (&["--methods", "voxel-map,"], "density-clustering", 2),
         (&["--transparency", "magic"], "weighted-average", 2),
+        (&["--draw", "strands,magic"], "auto", 2),
         (&["--backend", "magic"], "both", 2),
         (&["--frame", "1000000"], "1000000", 2),
         (&["--frame", "18446744073709551614"], "18446744073709551614 is outside the clip", 2),

@@ -1,6 +1,7 @@
 //! Tests of the whole program, run from the command line as a user runs it.
 
 mod bench;
+mod clusters;
 mod compare;
 mod films;
 mod info;

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use crate::tool::{Outcome, lovelock, names, run, run_command, saved, small_project};
 
 /// The keys of the JSON output that scripts may rely on.
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "out",
     "frames",
     "fps",
@@ -20,6 +20,7 @@ const KEYS: [&str; 17] = [
     "backend",
     "adapter",
     "shadow",
+    "draw",
     "transparency",
     "strands",
     "segments",

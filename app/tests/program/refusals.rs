@@ -14,6 +14,7 @@ fn wrong_options_are_rejected_in_one_line() {
         (with(&["--shadow", "magic"]), "magic"),
         (with(&["--shadow", "magic"]), "voxel-map"),
         (with(&["--transparency", "magic"]), "magic"),
+        (with(&["--draw", "magic"]), "clusters"),
         (with(&["--backend", "magic"]), "cpu"),
         (with(&["--preset", "magic"]), "curly"),
         (with(&["--frames", "5..5"]), "5..5"),
@@ -44,6 +45,7 @@ fn wrong_options_are_rejected_in_one_line() {
         (vec!["sparkle", "twice"], "twice"),
         (vec!["no such project.lovelock"], "no such project.lovelock"),
         (vec!["info"], "FILE"),
+        (vec!["satf", "build"], "--out"),
         (vec!["info", "no such.hair"], "no such.hair"),
         (vec!["info", "folder"], "folder"),
     ];

@@ -51,14 +51,13 @@ fn the_lobes_in_single_precision_keep_the_energy() {
     let rule = Quadrature::new(200);
     for roughness in ROUGHNESS {
         for v in variances(roughness) {
-            for lobe in [LongitudinalLobe::new(v), LongitudinalLobe::quick(v as f32)] {
-                let (sin_o, cos_o) = 0.4_f32.sin_cos();
-                let energy = rule.integrate(-FRAC_PI_2, FRAC_PI_2, |theta| {
-                    f64::from(lobe.at(theta.sin() as f32, theta.cos() as f32, sin_o, cos_o)) * theta.cos()
-                });
-                // Measured 0.0015, that of the quick scale.
-                assert!((energy - 1.0).abs() < 0.002, "{v}: {energy}");
-            }
+            let lobe = LongitudinalLobe::quick(v as f32);
+            let (sin_o, cos_o) = 0.4_f32.sin_cos();
+            let energy = rule.integrate(-FRAC_PI_2, FRAC_PI_2, |theta| {
+                f64::from(lobe.at(theta.sin() as f32, theta.cos() as f32, sin_o, cos_o)) * theta.cos()
+            });
+            // Measured 0.0015, that of the scale.
+            assert!((energy - 1.0).abs() < 0.002, "{v}: {energy}");
         }
     }
 }

@@ -36,8 +36,11 @@ fn table_errors(roughness_around: f64, damage: f64) -> (f64, f64) {
 
 #[test]
 fn table_of_the_distribution_against_direct_evaluation() {
+    // Measured: mean 0.0014, 0.0021 and 0.0008, largest 0.023, 0.107 and 0.004. The smoothest fibre has the peak of TRT at a few azimuths,
+    // three steps of the table wide, and it moves by more than a step between two cosines. Between four entries around it, the table is too
+    // low at the peak and too high beside it.
     for (roughness, mean_bound, largest_bound) in
-        [(0.3, 0.003, 0.03), (0.15, 0.003, 0.12), (0.7, 0.003, 0.03)]
+        [(0.3, 0.003, 0.03), (0.15, 0.003, 0.11), (0.7, 0.003, 0.03)]
     {
         let (mean, largest) = table_errors(roughness, 1.0);
         println!("roughness {roughness}: mean {mean:.5}, largest {largest:.5}");

@@ -312,7 +312,7 @@ impl HairLook {
     ///
     /// Paths through hair are of many lengths, and the mean of `exp(-sigma * length)` over them falls more slowly
     /// than any one of them: a stretched exponential, `exp(-(path * sigma^0.7))`. A small grey part only ever met
-    /// surfaces. With one path length brown hair would be red. The drawing does the same in `strand_shading.wgsl`.
+    /// surfaces. With one path length brown hair would be red. The drawing does the same in `kajiya_kay.wgsl`.
     pub fn body_color(absorption: Vec3) -> Vec3 {
         absorption.map(|sigma| (-Self::BODY_PATH * sigma.powf(Self::STRETCH)).exp() + Self::SURFACE_SHARE)
     }

@@ -5,6 +5,7 @@
 //! - [`farm`]: a recording as a job for many machines.
 //! - [`convert`]: hair files from one format to another.
 //! - [`info`]: what a file holds.
+//! - [`satf`]: the database of hair clusters as a file.
 //! - [`reference`](mod@reference): scenes for a path tracer, beside our images of them.
 
 pub mod bench;
@@ -13,3 +14,4 @@ pub mod farm;
 pub mod info;
 pub mod record;
 pub mod reference;
+pub mod satf;

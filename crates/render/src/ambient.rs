@@ -22,7 +22,7 @@ const ALL: usize = CELLS * CELLS * CELLS;
 const SMALLEST_CELL: f32 = 0.012;
 /// Cells beside the hair on each side.
 const MARGIN: f32 = 1.5;
-/// The head as an ellipsoid in head space, metres: centre and radii, a little inside of the skin.
+/// The head as an ellipsoid in head space, metres: centre and radii, a little inside of the skin of an adult. It is the same for all bodies.
 const HEAD: (Vec3, Vec3) = (Vec3::new(0.0, 0.09, 0.012), Vec3::new(0.062, 0.10, 0.08));
 /// Optical depth of a metre of head.
 const HEAD_DEPTH: f32 = 200.0;
@@ -36,7 +36,7 @@ const USUAL_COSINE: f32 = 0.9;
 /// Sky and ground of the default surroundings, before their brightness.
 const SKY: Vec3 = Vec3::new(0.62, 0.68, 0.78);
 const EARTH: Vec3 = Vec3::new(0.36, 0.33, 0.31);
-/// Brightness of a picture of the surroundings at the default ambient light of 0.5.
+/// Brightness of a picture of the surroundings at an ambient light of 0.5.
 const PICTURE_BRIGHTNESS: f32 = 2.0;
 
 /// The light from all directions of a picture: for surfaces, and from the six axes.
@@ -212,7 +212,7 @@ impl AmbientGrid {
                         // Light from the positive end comes in there.
                         let k = if side == 0 { CELLS - 1 - step } else { step };
                         let at = first + k * stride;
-                        // Without its own hair: what is seen of a cell is the outermost of it.
+                        // The hair of the cell itself does not count: most of what the eye sees of it lies at its surface.
                         let (n, head) = (crossed, blocked);
                         for c in 0..3 {
                             out[k][c] += radiance[c] * (1.0 / 6.0) * arithmetic::exp(-n * rates[c] - head);

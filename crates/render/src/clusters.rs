@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{Vec3, Vec3A};
 use lovelock_base::settings::Choices;
 use lovelock_groom::{GuideFrame, Hairstyle};
-use lovelock_satf::{ClusterHair, ClusterSettings};
+use lovelock_satf::{ClusterHair, ClusterSettings, nominal_width};
 use serde::{Deserialize, Serialize};
 
 use crate::{FrameInput, HairPose, Light, MAX_LIGHTS, PictureSettings, StrandCount};
@@ -113,7 +113,7 @@ pub(crate) fn of_casters<'a>(
 /// The clusters of the last hairstyle, kept until it or their division changes.
 #[derive(Debug, Default)]
 pub(crate) struct ClusterStage {
-    of: Option<(Arc<Hairstyle>, ClusterSettings)>,
+    of: Option<(Arc<Hairstyle>, ClusterSettings, f32)>,
     hair: Option<Arc<ClusterHair>>,
 }
 
@@ -121,13 +121,15 @@ impl ClusterStage {
     /// The clusters of the hairstyle of `input`.
     pub fn follow(&mut self, input: &FrameInput) -> Arc<ClusterHair> {
         let settings = input.picture.clusters.of_shape();
-        let same =
-            self.of.as_ref().is_some_and(|(style, of)| Arc::ptr_eq(style, input.style) && *of == settings);
+        let width = nominal_width(input.look, input.style.strands.count());
+        let same = self.of.as_ref().is_some_and(|(style, of, wide)| {
+            Arc::ptr_eq(style, input.style) && *of == settings && *wide == width
+        });
         if !same {
             self.hair = None;
-            self.of = Some((Arc::clone(input.style), settings));
+            self.of = Some((Arc::clone(input.style), settings, width));
         }
-        let hair = self.hair.get_or_insert_with(|| Arc::new(ClusterHair::new(input.style, &settings)));
+        let hair = self.hair.get_or_insert_with(|| Arc::new(ClusterHair::new(input.style, &settings, width)));
         Arc::clone(hair)
     }
 }

@@ -8,12 +8,12 @@ use crate::Light;
 /// *Extinction* becomes a factor on the density of hair.
 pub(crate) const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 
-/// Fibres of the point's own strand in the maps: a stored strand stands for many hairs, and on the mean half of them lie before the ones
-/// that are seen.
+/// Fibres that are subtracted from those that light crosses according to the maps. A stored strand stands for many hairs, and half of the
+/// hairs that it puts into the map at a point lie behind that point on average.
 pub(crate) const OWN_FIBRES: f32 = 0.5;
 
-/// Fibres that are not counted besides, where the eye looks along the light: what the eye sees there, the light sees too. The full
-/// correlation of both halves the fibres in front of what is seen.
+/// Further fibres that are subtracted where the eye looks along the light. A fibre that is visible to the eye has fewer fibres than average
+/// before it, and these are also the fibres between it and the light.
 pub(crate) const FACING_FIBRES: f32 = 0.6;
 
 /// Sine of the largest inclination at which a strand is seen, 70 degrees, and its cosine. Fibres that are seen end on reflect like mirrors,
@@ -26,7 +26,7 @@ pub(crate) const LEAST_COSINE: f32 = 0.342_020_15;
 pub(crate) const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
 
 /// Variance of the directions from which the largest source sends light.
-const LARGEST_SOURCE: f32 = 0.25;
+pub(crate) const LARGEST_SOURCE: f32 = 0.25;
 
 /// Variances of the longitudinal lobes of one light: a large source widens them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

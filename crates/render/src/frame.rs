@@ -7,6 +7,7 @@ use lovelock_appearance::environment::Panorama;
 use lovelock_gpu::{PassTime, Traffic};
 use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
+use lovelock_satf::ClusterHair;
 
 use crate::{Camera, KnownTransmittance, Light, PictureSettings, ShadowSettings};
 
@@ -65,6 +66,35 @@ impl HairPose<'_> {
     }
 }
 
+/// Hair that was drawn as clusters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClusterStats {
+    /// Number of clusters, one per wisp.
+    pub clusters: u64,
+    /// Number of macro-clusters, whose clusters share parameters.
+    pub macro_clusters: u64,
+    /// Hair shell volumes of all clusters.
+    pub volumes: u64,
+    /// Bytes of the parameters of all macro-clusters.
+    pub bytes: u64,
+    /// Bytes that the parameters would need if no clusters shared them.
+    pub bytes_unshared: u64,
+}
+
+impl ClusterStats {
+    /// The numbers of `hair`.
+    pub(crate) fn of(hair: &ClusterHair) -> Self {
+        let [bytes, bytes_unshared] = hair.bytes();
+        Self {
+            clusters: hair.clusters() as u64,
+            macro_clusters: hair.macro_clusters() as u64,
+            volumes: (hair.clusters() * hair.grid.volumes()) as u64,
+            bytes,
+            bytes_unshared,
+        }
+    }
+}
+
 /// Statistics of one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameStats {
@@ -84,6 +114,8 @@ pub struct FrameStats {
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
+    /// The clusters that were drawn; `None` if there are only strands.
+    pub clusters: Option<ClusterStats>,
     /// What the frame moved between memory and the graphics device; nothing on the CPU.
     pub traffic: Traffic,
 }

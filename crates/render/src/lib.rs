@@ -34,7 +34,7 @@ pub use camera::Camera;
 pub use clusters::HairDrawing;
 pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
-pub use frame::{FrameInput, FrameStats, HairPose};
+pub use frame::{ClusterStats, FrameInput, FrameStats, HairPose};
 pub use gpu::{ColorScale, Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;

@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 /// The most lights of a picture: transmittance is stored per light and strand point.
 pub const MAX_LIGHTS: usize = 4;
 
+/// The brightest colour of a strand point, the largest half float: the GPU keeps no brighter one. Twin of `MOST_LIGHT` in
+/// `strand_points.wgsl`.
+pub(crate) const MOST_LIGHT: f32 = 65_504.0;
+
 /// A directional light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -24,7 +28,8 @@ pub struct Light {
     pub intensity: f32,
     /// Fraction of it that makes highlights: 1 for a lamp, 0 for a large soft source.
     pub specular: f32,
-    /// Blur of the edges of the body's shadow in this light, metres.
+    /// Blur of the edges of the body's shadow in this light, metres. That of the first light that is on also softens the shadows of hair on
+    /// hair and on skin.
     pub softness: f32,
 }
 
@@ -106,7 +111,8 @@ impl Settings for Light {
             field!(Self, softness),
             [0.0, 0.1],
             "Softness",
-            "Blur of the edges of the body's shadow in this light.",
+            "Blur of the edges of the body's shadow in this light. Shadows of hair, on hair and on skin, \
+             are as soft in every light as in the first one that is on.",
         )
         .unit(Unit::METRES_AS_MM),
     ];

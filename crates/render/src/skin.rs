@@ -97,11 +97,13 @@ fn scalp_paint(mesh: &Mesh) -> Vec<f32> {
         };
         mask = (0..mask.len()).map(mean).collect();
     }
-    mask.iter_mut().for_each(|mask| *mask = (2.0 * *mask - 1.0).clamp(0.0, 1.0));
+    for mask in &mut mask {
+        *mask = (2.0 * *mask - 1.0).clamp(0.0, 1.0);
+    }
     mask
 }
 
-/// Half a word and half the mean of those around it, for each byte, rounded: twin of `soften` in skin_shadow.wgsl.
+/// Half a word and half the mean of those around it, for each byte, rounded: twin of `soften` in `skin_shadow.wgsl`.
 fn average(own: u32, around: impl ExactSizeIterator<Item = u32>) -> u32 {
     const EVEN: u32 = 0x00ff_00ff;
     let n = around.len() as u32;

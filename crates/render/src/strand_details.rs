@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_groom::Hairstyle;
-use lovelock_groom::fine::FineStrands;
+use lovelock_groom::fine::{FineStrands, lock_numbers};
 
 /// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ impl StrandDetails {
         let mut segments = Vec::with_capacity(style.strands.segments());
         self.words.clear();
         self.words.resize(style.strands.points(), 0);
-        let locks = Locks::new(style);
+        let locks = lock_numbers(&style.strands);
         for (s, ends) in style.strands.first_point.windows(2).enumerate() {
             let (first, end) = (ends[0], ends[1]);
             segments.extend(first..end.saturating_sub(1).max(first));
@@ -37,7 +37,7 @@ impl StrandDetails {
                     (i - first) as f32 / (end - first - 1).max(1) as f32,
                     style.strands.shade.get(s).copied().unwrap_or(0.5),
                     (i == first, i + 1 == end),
-                    locks.of(s),
+                    locks.get(s).copied().unwrap_or(0),
                 );
             }
         }
@@ -61,7 +61,7 @@ impl StrandDetails {
         self.segments = Arc::new(segments);
         self.words.clear();
         self.words.reserve(count * points);
-        let locks = Locks::new(style);
+        let locks = lock_numbers(&style.strands);
         for strand in &fine.strands {
             let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
             let own = match ends {
@@ -73,7 +73,7 @@ impl StrandDetails {
                 let at = (along * own.len().saturating_sub(1) as f32).round() as usize;
                 let taper = own.get(at).copied().unwrap_or(1.0);
                 let shade = f32::from(strand.shade) / 255.0;
-                let lock = locks.of(strand.parents[0] as usize);
+                let lock = locks.get(strand.parents[0] as usize).copied().unwrap_or(0);
                 self.words.push(pack_detail(taper, along, shade, (k == 0, k == last), lock));
             }
         }
@@ -82,37 +82,14 @@ impl StrandDetails {
     }
 }
 
-/// The locks of a hairstyle, each a part of a wisp: colours vary from lock to lock.
-struct Locks<'a>(&'a Hairstyle);
-
-/// Locks of a wisp.
-const LOCKS_OF_WISP: u32 = 8;
-
-impl<'a> Locks<'a> {
-    fn new(style: &'a Hairstyle) -> Self {
-        Self(style)
-    }
-
-    /// A random number of the lock of a stored strand, 0 to 63.
-    fn of(&self, strand: usize) -> u32 {
-        let wisp = self.0.strands.wisp.get(strand).copied().unwrap_or(0);
-        let part = self.0.wisps.get(wisp as usize).map_or(0, |of| {
-            (strand as u32).saturating_sub(of.first_strand).saturating_mul(LOCKS_OF_WISP)
-                / of.strand_count.max(1)
-        });
-        let x = (wisp.wrapping_mul(LOCKS_OF_WISP).wrapping_add(part)).wrapping_mul(0x9e37_79b9);
-        (x ^ (x >> 15)).wrapping_mul(0x85eb_ca6b) >> 26
-    }
-}
-
 /// Taper, position along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first and whether it
 /// is the last of its strand, and a random number of the lock in 6 bits.
-fn pack_detail(taper: f32, along: f32, shade: f32, (first, last): (bool, bool), lock: u32) -> u32 {
+fn pack_detail(taper: f32, along: f32, shade: f32, (first, last): (bool, bool), lock: u8) -> u32 {
     let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
     byte(taper)
         | byte(along) << 8
         | byte(shade) << 16
         | u32::from(first) << 24
         | u32::from(last) << 25
-        | lock << 26
+        | u32::from(lock) << 26
 }

@@ -15,7 +15,7 @@ const NEAREST: f32 = 0.1;
 
 /// The strands of an image `height` pixels high: `None` for those that are stored.
 ///
-/// A strand is about `target` pixels wide if the head fills a part of the image that shows it whole. At most `most` points are drawn.
+/// As many strands are drawn as make each about `target` pixels wide at the distance of the head, and at most `most` points.
 pub(crate) fn portion_of(
     input: &FrameInput,
     height: u32,
@@ -36,13 +36,17 @@ pub(crate) fn portion_of(
             return None;
         }
     }
+    // Fine strands lie between segments of the stored ones.
+    if set.first_point.windows(2).any(|ends| ends[1] < ends[0].saturating_add(2)) {
+        return None;
+    }
     let look = input.look;
     let most = ((most / points_per_strand.max(2) as u64) as f32).min(MOST);
     if picture.strands == StrandCount::Fixed {
         return Some(Portion::of_all(picture.strand_number.clamp(1.0, most.max(1.0)) as usize));
     }
-    let head = input.world_from_head.translation + glam::Vec3A::Y * HEAD_HEIGHT;
-    let distance = glam::Vec3A::from(input.camera.eye).distance(head).max(NEAREST);
+    let head = input.world_from_head.transform_point3(glam::Vec3::Y * HEAD_HEIGHT);
+    let distance = input.camera.eye.distance(head).max(NEAREST);
     let scale = input.camera.pixels_per_metre_at_one_metre(height) / distance;
     let covered = look.diameter * look.real_hairs;
     let wanted = covered * scale / target * picture.strand_detail.clamp(0.1, 10.0);

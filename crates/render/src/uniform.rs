@@ -32,7 +32,7 @@ pub(crate) struct FrameUniform {
     pub background_top: Vec4,
     pub background_bottom: Vec4,
     pub absorption_variation: Vec4,
-    pub width_opacity_tip_scalp: Vec4,
+    pub width_opacity_tip: Vec4,
     pub highlights: Vec4,
     pub fading: Vec4,
     pub colors: Vec4,
@@ -100,12 +100,7 @@ impl FrameUniform {
             background_top: picture.background_top.extend(1.0),
             background_bottom: picture.background_bottom.extend(1.0),
             absorption_variation: look.absorption().extend(look.variation.clamp(0.0, 1.0)),
-            width_opacity_tip_scalp: Vec4::new(
-                strand_width,
-                opacity,
-                look.tip_lightening.clamp(0.0, 1.0),
-                1.0,
-            ),
+            width_opacity_tip: Vec4::new(strand_width, opacity, look.tip_lightening.clamp(0.0, 1.0), 0.0),
             highlights: Vec4::new(
                 look.primary_strength.clamp(0.0, 4.0),
                 look.secondary_strength.clamp(0.0, 4.0),
@@ -141,10 +136,12 @@ mod tests {
     use std::mem::offset_of;
 
     use lovelock_gpu::check_shader;
+    use lovelock_groom::HairLook;
+    use lovelock_groom::fine::FineStrand;
     use naga::TypeInner;
 
     use super::*;
-    use crate::all_shaders;
+    use crate::{all_shaders, fibre};
 
     /// Offsets of the members of a structure of the composed shaders, with its size at the end.
     fn layout_in_shader(name: &str) -> Vec<usize> {
@@ -182,7 +179,7 @@ mod tests {
                 offset_of!(FrameUniform, background_top),
                 offset_of!(FrameUniform, background_bottom),
                 offset_of!(FrameUniform, absorption_variation),
-                offset_of!(FrameUniform, width_opacity_tip_scalp),
+                offset_of!(FrameUniform, width_opacity_tip),
                 offset_of!(FrameUniform, highlights),
                 offset_of!(FrameUniform, fading),
                 offset_of!(FrameUniform, colors),
@@ -195,5 +192,37 @@ mod tests {
         );
         // Only shaders access it, but Rust allocates it.
         assert_eq!(layout_in_shader("ShadedPoint").last(), Some(&32));
+    }
+
+    #[test]
+    fn constants_in_shaders_are_those_of_the_cpu() {
+        let texts = [
+            include_str!("gpu/shaders/frame.wgsl"),
+            include_str!("gpu/shaders/fibre.wgsl"),
+            include_str!("gpu/shaders/strand_points.wgsl"),
+            include_str!("gpu/fine/grow.wgsl"),
+        ];
+        for (name, value) in [
+            ("BODY_PATH", HairLook::BODY_PATH),
+            ("STRETCH", HairLook::STRETCH),
+            ("SURFACE_SHARE", HairLook::SURFACE_SHARE),
+            ("WHITENING", lovelock_groom::WHITENING),
+            ("UNPIGMENTED", lovelock_groom::UNPIGMENTED),
+            ("PAINTED_FROM", lovelock_groom::PAINTED_FROM),
+            ("SHORT_METRES", FineStrand::SHORT_METRES),
+            ("MOST_LIGHT", crate::light::MOST_LIGHT),
+            ("OWN_FIBRES", fibre::OWN_FIBRES),
+            ("FACING_FIBRES", fibre::FACING_FIBRES),
+            ("MOST_INCLINED", fibre::MOST_INCLINED),
+            ("LARGEST_SOURCE", fibre::LARGEST_SOURCE),
+        ] {
+            let begin = format!("const {name}: f32 = ");
+            let found: Vec<f32> = texts
+                .iter()
+                .flat_map(|text| text.lines().filter_map(|line| line.strip_prefix(&begin)))
+                .map(|rest| rest.trim_end_matches(';').parse().expect("a number"))
+                .collect();
+            assert_eq!(found, [value], "{name}");
+        }
     }
 }

@@ -60,9 +60,20 @@ pub fn load_or_build(folder: &Path, progress: &(dyn Fn(f32) + Sync)) -> (Databas
     (database, note)
 }
 
+static SHARED: OnceLock<(Database, Option<Note>)> = OnceLock::new();
+
+/// The database of this process if it has been read or made, without waiting for it.
+pub fn ready() -> Option<&'static (Database, Option<Note>)> {
+    SHARED.get()
+}
+
+/// What the user is told of the database of this process, if it has been read or made.
+pub fn note() -> Option<&'static Note> {
+    SHARED.get().and_then(|(_, note)| note.as_ref())
+}
+
 /// The database of this process, read or made at its first use, and what the user is told of it.
 pub fn shared() -> &'static (Database, Option<Note>) {
-    static SHARED: OnceLock<(Database, Option<Note>)> = OnceLock::new();
     SHARED.get_or_init(|| match dirs::cache_dir() {
         Some(folder) => load_or_build(&folder.join("lovelock"), &|_| ()),
         None => (Database::build(&|_| ()), None),

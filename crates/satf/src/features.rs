@@ -4,7 +4,7 @@
 //! marginal is the overall average times a constant, so those three numbers are one. The features here keep the density and
 //! add what the marginals can tell, their centroids, and the curl, which the paper leaves open.
 
-use crate::layout::{CURLS, DEPTHS, PATTERNS, S_CENTROIDS, STORED_S_CENTROIDS, T_CENTROIDS};
+use crate::layout::{CURLS, DEPTHS, PATTERNS, S_CENTROIDS, SECTORS, STORED_S_CENTROIDS, T_CENTROIDS};
 
 /// Optical depths of the first and the last bin; those between are equally spaced in the logarithm.
 const DEPTH_RANGE: [f32; 2] = [0.02, 8.0];
@@ -120,6 +120,13 @@ fn centroid_bin(centroid: f32) -> usize {
     CENTROIDS.windows(2).filter(|pair| centroid > 0.5 * (pair[0] + pair[1])).count()
 }
 
+/// The features for which sector `index` of the database was made. An index past the last is that of the last.
+pub fn features_of(index: usize) -> Features {
+    let index = index.min(SECTORS - 1);
+    let (curl, [s_centroid, t_centroid]) = pattern(index / DEPTHS);
+    Features { optical_depth: depth_of(index % DEPTHS), s_centroid, t_centroid, curl }
+}
+
 /// Curl and wanted centroids along s and t of the sectors in pattern `pattern`.
 pub(crate) fn pattern(pattern: usize) -> (Curl, [f32; 2]) {
     debug_assert!(pattern < PATTERNS, "a pattern that does not exist");
@@ -134,12 +141,11 @@ mod tests {
     #[test]
     fn each_bin_finds_itself_and_its_mirror_image() {
         for index in 0..PATTERNS * DEPTHS {
-            let (curl, [s_centroid, t_centroid]) = pattern(index / DEPTHS);
-            let features = Features { optical_depth: depth_of(index % DEPTHS), s_centroid, t_centroid, curl };
+            let features = features_of(index);
             let found = SectorRef::of(&features);
             assert_eq!((found.index, found.mirrored), (index as u32, false));
             assert!((found.tau_ratio - 1.0).abs() < 1e-5);
-            let mirror = SectorRef::of(&Features { s_centroid: 1.0 - s_centroid, ..features });
+            let mirror = SectorRef::of(&Features { s_centroid: 1.0 - features.s_centroid, ..features });
             assert_eq!(mirror, SectorRef { mirrored: true, ..found });
         }
     }

@@ -11,10 +11,16 @@ use crate::layout::{OPACITIES, RECORD, REFLECTANCES, TEXELS};
 
 /// The version of the file and of the program that makes its records. Raise it with every change of either.
 pub const VERSION: u32 = 1;
-const MAGIC: [u8; 8] = *b"LVLKSATF";
+/// The first bytes of the file.
+pub const MAGIC: [u8; 8] = *b"LVLKSATF";
 const HEADER: usize = 28;
 const FINEST_OPACITIES: usize = OPACITIES / RECORD * TEXELS;
 const FINEST: usize = FINEST_OPACITIES + REFLECTANCES / RECORD * TEXELS;
+
+/// The checksum of a whole file: XXH3 of 64 bits, as `xxhsum -H3` prints it.
+pub fn checksum(bytes: &[u8]) -> u64 {
+    xxh3_64(bytes)
+}
 
 /// Why bytes are not a usable database.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_groom::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp, interpolate};
+use lovelock_groom::{GuideFrame, HairLook, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use rayon::prelude::*;
 
 use crate::cells::{Cell, cells_of, strand_width};
@@ -36,8 +36,8 @@ pub struct ClusterHair {
 }
 
 impl ClusterHair {
-    /// The clusters of `style`.
-    pub fn new(style: &Arc<Hairstyle>, settings: &ClusterSettings) -> Self {
+    /// The clusters of `style`, whose sectors look as those of strands about `width` metres wide; see [`nominal_width`].
+    pub fn new(style: &Arc<Hairstyle>, settings: &ClusterSettings, width: f32) -> Self {
         let wisps = style.wisps.iter().filter(|w| w.strand_count > 0).count();
         let grid = settings.grid(wisps, mean_length(style), MOST_VOLUMES);
         let core = settings.core.clamp(0.0, 0.9);
@@ -47,7 +47,6 @@ impl ClusterHair {
             // Strands of such a style can only be given, not placed by guides.
             vec![Vec::new(); style.wisps.len()]
         };
-        let width = strand_width(&style.look, style.strands.count());
         let each: Vec<Vec<Cell>> = sections
             .par_iter()
             .filter(|sections| !sections.is_empty())
@@ -140,6 +139,13 @@ fn casters_of(style: &Arc<Hairstyle>) -> Arc<Hairstyle> {
         }
     }
     Arc::new(Hairstyle { wisps, strands: kept, ..(**style).clone() })
+}
+
+/// The width of strands by which sectors are chosen, metres: [`strand_width`] rounded to a power of two, so that clusters stay the same
+/// while the width changes a little. Their optical depth follows the width itself.
+pub fn nominal_width(look: &HairLook, strands: usize) -> f32 {
+    let width = strand_width(look, strands);
+    if width > 0.0 { width.log2().round().clamp(-40.0, 10.0).exp2() } else { 0.0 }
 }
 
 /// The shade of a rib: that of one of the strands of its wisp, so that clusters vary as strands do.

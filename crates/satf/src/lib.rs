@@ -35,7 +35,7 @@ pub mod trace;
 pub use cells::{Cell, strand_width};
 pub use database::Database;
 pub use features::{Curl, Features, SectorRef};
-pub use hair::ClusterHair;
+pub use hair::{ClusterHair, nominal_width};
 pub use ribs::RibGrid;
 pub use settings::{ClusterSettings, ClusterShading, ClusterView, RecordLookup};
 pub use shadow::LocalShadow;

@@ -168,6 +168,8 @@ pub struct MethodReport {
     pub label: String,
     /// Name that is unique in a report and contains what differs from the others, such as `occupancy-maps resolution=256 cpu`.
     pub name: String,
+    /// What hair was drawn as: `strands`, `clusters` or `auto`. Only strands have errors of transmittance and stability.
+    pub draw: String,
     /// Id of the transparency mode.
     pub transparency: String,
     /// `cpu` or `gpu`.
@@ -216,10 +218,10 @@ pub struct MethodReport {
     pub stray: Option<ChangeReport>,
     /// Banding by slices in uniform density.
     pub banding: Option<BandingReport>,
-    /// Whether no other method with the same backend and transparency is both more accurate and faster, by
+    /// Whether no other method with the same backend, drawing and transparency is both more accurate and faster, by
     /// [`MethodReport::front_error`].
     pub front_of_time: bool,
-    /// Whether no other method with the same backend and transparency is both more accurate and smaller.
+    /// Whether no other method with the same backend, drawing and transparency is both more accurate and smaller.
     pub front_of_memory: bool,
     /// Its files.
     pub files: MethodFiles,

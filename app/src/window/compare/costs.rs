@@ -8,7 +8,7 @@ use lovelock_base::statistics::median;
 use lovelock_panes::request::{LiveError, LivePane, LiveTimes};
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
-use lovelock_render::{Backend, ShadowMethod, Transparency};
+use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
 use lovelock_session::render_thread::Adapter;
 
 /// Seconds that are plotted.
@@ -37,17 +37,20 @@ pub(super) struct Way {
 }
 
 /// The key of one trail: a variant whose other settings change. The backend is the one that rendered it.
-pub(super) type Series = (ShadowMethod, Transparency, Backend);
+pub(super) type Series = (ShadowMethod, HairDrawing, Transparency, Backend);
 
 impl Way {
     /// The trail to which it belongs.
     pub(super) fn series(&self) -> Series {
-        (self.contender.shadow.method, self.contender.transparency, self.adapter.backend)
+        let Contender { draw, transparency, .. } = self.contender;
+        (self.contender.shadow.method, draw, transparency, self.adapter.backend)
     }
 
     /// Its method and its backend, such as `Voxel map · CPU`: times of two backends are not comparable.
     pub(super) fn label(&self) -> String {
-        format!("{} · {}", self.contender.shadow.method.label(), self.adapter.backend_label())
+        let method = self.contender.shadow.method.label();
+        let draw = self.contender.draw_label().map(|draw| format!(" · {draw}")).unwrap_or_default();
+        format!("{method}{draw} · {}", self.adapter.backend_label())
     }
 
     /// The median of a stage over its last images, milliseconds; `None` if the device does not measure it.
@@ -184,7 +187,7 @@ pub(super) mod tests {
         let trail: Vec<u32> =
             costs.trail(mine).map(|way| way.contender.shadow.voxel_map.resolution).collect();
         assert_eq!(trail, [128, 64], "the newest at the end");
-        let other = (ShadowMethod::Exact, mine.1, mine.2);
+        let other = (ShadowMethod::Exact, mine.1, mine.2, mine.3);
         assert_eq!(costs.trail(other).count(), 0);
     }
 

@@ -109,8 +109,9 @@ fn settings(ui: &mut Ui, index: usize, pane: &mut Contender) {
         ui.set_width(300.0);
         all_settings(ui, pane);
     });
-    let response =
-        response.on_hover_text("Transparency, backend, resolution and all settings of the method.");
+    let response = response.on_hover_text(
+        "What hair is drawn as, transparency, backend, resolution and all settings of the method.",
+    );
     let name = format!("Settings of pane {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
 }
@@ -128,7 +129,7 @@ pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
     }
     ui.label(RichText::new(pane.shadow.method.label()).strong());
     note(ui, pane.shadow.method.description());
-    setting_rows(ui, &["transparency", "backend", "scale"], pane, &pane_defaults());
+    setting_rows(ui, &["draw", "transparency", "backend", "scale"], pane, &pane_defaults());
     panels::shadow::of_method(ui, &mut pane.shadow);
 }
 

@@ -2,10 +2,10 @@
 
 use egui::Ui;
 use lovelock_groom::{HAIR_COLOURS, HairColour, HairLook, HairShading};
-use lovelock_render::{PictureSettings, StrandCount};
+use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PictureSettings, StrandCount};
 
 use super::swatch::swatch;
-use crate::window::control::{section, setting, settings};
+use crate::window::control::{section, setting, settings, unless};
 
 const PIGMENT: [&str; 5] = ["eumelanin", "pheomelanin", "variation", "grey", "tip_lightening"];
 
@@ -23,6 +23,12 @@ const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 
 const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
 
+/// How hair is divided into clusters.
+const DIVISION: [&str; 5] = ["layers", "core", "around", "along", "macro_tolerance"];
+
+/// What only the published lighting of clusters uses.
+const PUBLISHED: [&str; 3] = ["diffuse", "primary", "secondary"];
+
 const BACKGROUND: [&str; 3] = ["ground", "background_top", "background_bottom"];
 
 /// The controls of the hair's look; `default` is that of the style. `picture` has the number of strands.
@@ -33,7 +39,8 @@ pub(crate) fn hair(ui: &mut Ui, look: &mut HairLook, default: &HairLook, picture
     section(ui, "Dye", false, |ui| settings(ui, &DYE, look, default));
     section(ui, "Fibre", true, |ui| fibre(ui, look, default));
     section(ui, "Strands", false, |ui| {
-        strands(ui, picture);
+        let none = picture.draw == HairDrawing::Clusters;
+        unless(ui, none.then_some(NO_STRANDS), |ui| strands(ui, picture));
         settings(ui, &WIDTH, look, default);
     });
 }
@@ -61,6 +68,9 @@ fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
     }
 }
 
+/// Why the number of strands has no effect.
+const NO_STRANDS: &str = "Clusters are drawn in place of strands.";
+
 /// How many strands are drawn.
 fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
     let default = PictureSettings::default();
@@ -75,6 +85,30 @@ fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
 /// The controls of the image.
 pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings) {
     let default = PictureSettings::default();
+    setting(ui, "draw", picture, &default);
+    if picture.draw == HairDrawing::Auto {
+        setting(ui, "cluster_size", picture, &default);
+    }
     settings(ui, &PICTURE, picture, &default);
+    if picture.draw != HairDrawing::Strands {
+        section(ui, "Clusters", true, |ui| clusters(ui, picture));
+    }
     section(ui, "Background", false, |ui| settings(ui, &BACKGROUND, picture, &default));
+}
+
+/// The controls of hair that is drawn as clusters.
+fn clusters(ui: &mut Ui, picture: &mut PictureSettings) {
+    let default = PictureSettings::default().clusters;
+    let clusters = &mut picture.clusters;
+    settings(ui, &DIVISION, clusters, &default);
+    settings(ui, &["lookup", "shading"], clusters, &default);
+    match clusters.shading {
+        ClusterShading::AsStrands => drop(setting(ui, "detail", clusters, &default)),
+        ClusterShading::Paper => settings(ui, &PUBLISHED, clusters, &default),
+    }
+    setting(ui, "local_shadow", clusters, &default);
+    if clusters.local_shadow != LocalShadow::Map {
+        setting(ui, "shadow_strength", clusters, &default);
+    }
+    setting(ui, "view", clusters, &default);
 }

@@ -78,14 +78,4 @@ impl Environment {
             Self::Picture(panorama) => panorama.axis_radiance(turn),
         }
     }
-
-    /// The light that stands out, turned as in [`surround`](Self::surround); none where no direction does.
-    ///
-    /// A sky above a ground has none: it has no direction narrower than half of the sphere.
-    pub fn strongest(&self, turn: f32) -> Option<Strongest> {
-        match self {
-            Self::SkyAndGround { .. } => None,
-            Self::Picture(panorama) => panorama.strongest().map(|light| light.turned(turn)),
-        }
-    }
 }

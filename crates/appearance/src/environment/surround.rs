@@ -37,18 +37,6 @@ impl Surround {
         Self { sh }
     }
 
-    /// Irradiance over pi on a surface with the unit normal `normal`: the radiance that a white diffuse surface
-    /// reflects. Never negative.
-    pub fn diffuse_radiance(&self, normal: Vec3) -> Vec3 {
-        // What windowing leaves below zero is rounding and the gaps of the search.
-        self.polynomial(normal).max(Vec3::ZERO)
-    }
-
-    /// Irradiance on a surface with the unit normal `normal`. Never negative.
-    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
-        PI * self.diffuse_radiance(normal)
-    }
-
     /// Mean radiance over all directions.
     pub fn mean(&self) -> Vec3 {
         self.sh[0]
@@ -75,7 +63,7 @@ impl Surround {
         self.sh.map(|s| s.extend(0.0))
     }
 
-    /// The polynomial, which can be negative.
+    /// The polynomial: irradiance over pi, and negative on a ring around a small sun before [`Self::without_ringing`].
     pub(super) fn polynomial(&self, n: Vec3) -> Vec3 {
         let s = &self.sh;
         s[0] + s[1] * n.y

@@ -18,6 +18,20 @@ pub fn three(of: impl Fn(usize) -> f32) -> [f32; 3] {
     [of(0), of(1), of(2)]
 }
 
+/// 0 below `low`, 1 above `high`, smooth between, as in WGSL.
+#[inline(always)]
+pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = clamp((x - low) / (high - low), 0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The floor of `x`, for `x` within ±2^22.
+#[inline(always)]
+pub fn floor(x: f32) -> f32 {
+    let rounded = (x + ROUND) - ROUND;
+    rounded - if rounded > x { 1.0 } else { 0.0 }
+}
+
 /// e to the power of `x`; relative error below 3e-7 for `x` from -80 to 88. Smaller arguments return at least 1e-38, so a product
 /// of a few results is still a normal number or zero.
 #[inline(always)]
@@ -56,7 +70,7 @@ pub fn acos(x: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{acos, exp};
+    use super::{acos, exp, floor, smoothstep};
 
     #[test]
     fn functions_against_double_precision() {
@@ -68,6 +82,11 @@ mod tests {
             let x = -1.0 + i as f32 / 50_000.0;
             assert!((f64::from(acos(x)) - f64::from(x).acos()).abs() < 7e-5, "{x}");
         }
+        assert_eq!([-1.5, -1.0, 0.0, 0.7, 97.0, 97.4].map(floor), [-2.0, -1.0, 0.0, 0.0, 97.0, 97.0]);
+        assert_eq!(
+            [1.0, 2.0, 3.0, 4.0, f32::NAN].map(|x| smoothstep(2.0, 4.0, x)),
+            [0.0, 0.0, 0.5, 1.0, 0.0]
+        );
         assert_eq!(exp(0.0), 1.0);
         assert!(exp(-1e9) > 0.0 && exp(-1e9) < 2e-38 && exp(1e9).is_finite());
         assert!(acos(1.5).abs() < 1e-4 && (acos(-1.5) - std::f32::consts::PI).abs() < 1e-4);

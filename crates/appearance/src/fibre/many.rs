@@ -35,8 +35,6 @@ pub struct FibreTables {
     pub many: ManyTable,
     /// Variances of the lobes.
     pub variances: [f32; LOBES],
-    /// Longitudinal lobes of light that arrives directly.
-    pub lobes: [LongitudinalLobe; LOBES],
     /// Sine and cosine of the angle that each lobe adds to the eye's inclination.
     pub tilts: [[f32; 2]; LOBES],
 }
@@ -47,15 +45,8 @@ impl FibreTables {
         let fibre = fibre.clamped();
         let [direct, forward] = ScatterTable::bake(&fibre);
         let many = ManyTable::bake(&fibre);
-        let mut tables = Self {
-            fibre,
-            direct,
-            forward,
-            many,
-            variances: [0.0; LOBES],
-            lobes: [LongitudinalLobe::default(); LOBES],
-            tilts: [[0.0; 2]; LOBES],
-        };
+        let mut tables =
+            Self { fibre, direct, forward, many, variances: [0.0; LOBES], tilts: [[0.0; 2]; LOBES] };
         tables.set_longitudinal(fibre);
         tables
     }
@@ -73,7 +64,7 @@ impl FibreTables {
     fn set_longitudinal(&mut self, fibre: Fibre) {
         self.fibre = fibre;
         let v = variances(fibre.roughness_along);
-        (self.variances, self.lobes) = (v.map(|v| v as f32), v.map(LongitudinalLobe::new));
+        self.variances = v.map(|v| v as f32);
         self.tilts = TILTS.map(|tilts| {
             let angle = tilts * fibre.tilt;
             [angle.sin() as f32, angle.cos() as f32]
@@ -92,8 +83,6 @@ pub struct PointLight {
     pub phi: f32,
     /// Mean count of fibres between the point and the light, `-ln(transmittance) / (extinction per fibre)`.
     pub fibres: f32,
-    /// Mean count of fibres behind the point, seen from the light; infinite if unknown. A thin layer returns less light.
-    pub fibres_behind: f32,
 }
 
 /// What a point of a strand scatters toward the eye. It depends on the eye and the absorption, and on no light.
@@ -123,9 +112,6 @@ pub struct PointScatter {
     pub rest: [f32; 3],
     /// Per channel: share of diffuse light that the strand scatters, `a_f + a_b`.
     pub albedo: [f32; 3],
-    /// Per channel: rate at which diffuse light is lost per crossed fibre, for `exp(-rate * fibres)`. It is zero for white hair,
-    /// so white hair in a white room stays white (two-flux theory of Kubelka and Munk).
-    pub diffuse_rate: [f32; 3],
 }
 
 impl PointScatter {
@@ -160,7 +146,6 @@ impl PointScatter {
             backscatter_lobe: LongitudinalLobe::quick(backscatter_variance),
             rest: column(7),
             albedo: [0, 1, 2].map(|c| rows[c][0] + rows[c][1]),
-            diffuse_rate: column(6),
         }
     }
 
@@ -174,14 +159,9 @@ impl PointScatter {
     /// f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, global and local multiple
     /// scattering). TT has an x per channel. The other lobes share its mean over the channels, weighted by psi, which halves the
     /// time.
-    #[inline(always)]
-    pub fn radiance(&self, tables: &FibreTables, light: &PointLight, strength: f32) -> [f32; 3] {
-        let rows = [tables.direct.row(self.eye, light.phi), tables.forward.row(self.eye, light.phi)];
-        self.radiance_of_rows(&rows, tables.variances, tables.lobes, light, strength)
-    }
-
-    /// [`Self::radiance`] with the rows of both tables at the eye and the light's azimuth, first of direct light and then of
-    /// light that was scattered forward. It is arithmetic alone, so that a loop over several points vectorises after their rows
+    ///
+    /// `rows` are those of both tables at the eye and the light's azimuth, first of direct light and then of light that was scattered
+    /// forward; `lobes` are those of `variances`. It is arithmetic alone, so that a loop over several points vectorises after their rows
     /// are read.
     #[inline(always)]
     pub fn radiance_of_rows(
@@ -225,10 +205,9 @@ impl PointScatter {
         // Backscattered light leaves on the side of the light. Lobe 3 has no tilt.
         let same_side =
             clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
-        let behind = same_side * (1.0 - exp(-clamp(light.fibres_behind, 0.0, f32::MAX)));
-        let back_once = behind * self.lobe_at(self.backscatter_lobe, 3, light);
+        let back_once = same_side * self.lobe_at(self.backscatter_lobe, 3, light);
         let back_after =
-            behind * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
+            same_side * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
 
         let direct = [unhit, strength * back_once, once[0], once[1], once[2], once[3]];
         let scattered = [strength, back_after, after_r, after_trt];

@@ -80,11 +80,6 @@ impl ManyTable {
         Self { rows: rows.collect() }
     }
 
-    /// All rows, in the order that [`ManyTable`] describes.
-    pub fn rows(&self) -> &[ManyRow] {
-        &self.rows
-    }
-
     /// All values as a flat array of 8,192 numbers, for a buffer of the GPU.
     pub fn values(&self) -> &[f32] {
         self.rows.as_flattened()

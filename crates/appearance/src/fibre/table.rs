@@ -104,11 +104,6 @@ impl ScatterTable {
         })
     }
 
-    /// All rows, in the order that [`ScatterTable`] describes.
-    pub fn rows(&self) -> &[ScatterRow] {
-        &self.rows
-    }
-
     /// All values as a flat array of 8,192 numbers, for a buffer of the GPU.
     pub fn values(&self) -> &[f32] {
         self.rows.as_flattened()
@@ -151,10 +146,10 @@ fn rows_of_cosine(
         .collect();
     let mut rows = [[[0.0; 8]; AZIMUTHS]; 2];
     for (which, rows) in rows.iter_mut().enumerate() {
-        for (i, row) in rows.iter_mut().enumerate() {
+        // Per azimuth and lobe, the distribution at the three absorptions of the fit.
+        let mut exact = [[[0.0; 3]; 3]; AZIMUTHS];
+        for (i, d) in exact.iter_mut().enumerate() {
             let phi = PI * i as f64 / (AZIMUTHS - 1) as f64;
-            // Per lobe, the distribution at the three absorptions of the fit.
-            let mut d = [[0.0; 3]; 3];
             for (exits, attenuations) in &paths {
                 for p in 0..3 {
                     let from_exit = phi - exits[p];
@@ -168,11 +163,28 @@ fn rows_of_cosine(
                     }
                 }
             }
+        }
+        for (i, row) in rows.iter_mut().enumerate() {
+            let d: [[f64; 3]; 3] =
+                std::array::from_fn(|p| std::array::from_fn(|s| balanced(&exact, i, |d| d[p][s])));
             let ([tt, trt], r) = ([d[1], d[2]].map(fit), d[0][0]);
             *row = [r, tt[0], tt[1], tt[2], trt[0], trt[1], trt[2], 0.0].map(|x| x as f32);
         }
     }
     rows
+}
+
+/// The entry at azimuth `i` of a table of one of the `exact` values, so that straight lines between the entries deviate from the curve by
+/// as much above as below.
+///
+/// Between exact entries `h` apart a line deviates from the curve by up to `h^2 / 8` times its second derivative. Entries that are moved by
+/// half of that to the other side halve the error. The curve is even at both ends.
+fn balanced(exact: &[[[f64; 3]; 3]; AZIMUTHS], i: usize, of: impl Fn(&[[f64; 3]; 3]) -> f64) -> f64 {
+    let (before, after) = (&exact[i.abs_diff(1)], exact.get(i + 1).unwrap_or(&exact[AZIMUTHS - 2]));
+    let here = of(&exact[i]);
+    let moved = here - (of(before) - 2.0 * here + of(after)) / 16.0;
+    // Values stay positive beside a steep edge.
+    moved.max(0.5 * here)
 }
 
 /// `D0`, `L` and `c` of `D0 exp(-L sigma / (1 + c sigma))` through the values at zero and at [`FITTED`].

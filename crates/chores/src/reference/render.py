@@ -36,11 +36,11 @@ FURNACE_SAMPLES = 32
 MOST_DEATHS = 5
 
 
-def hair(folder, scene, sigma_a):
+def hair(folder, scene, strands_file, sigma_a):
     fibre = scene["fibre"]
     return {
         "type": "bsplinecurve",
-        "filename": str(folder / scene["strands_file"]),
+        "filename": str(folder / strands_file),
         "bsdf": {
             "type": "hair",
             "sigma_a": {"type": "rgb", "value": sigma_a},
@@ -52,8 +52,20 @@ def hair(folder, scene, sigma_a):
     }
 
 
-def setup(folder, scene, size, sigma_a, emitter, **integrator):
+def strands_files(scene):
+    """The files of the strands with pigment and, of grey hair, of those without."""
+    return [scene[key] for key in ("strands_file", "white_strands_file") if key in scene]
+
+
+def absorptions(scene):
+    """Absorption of the strands of each file."""
+    return [scene["fibre"][key] for key in ("sigma_a", "white_sigma_a") if key in scene["fibre"]]
+
+
+def setup(folder, scene, size, sigmas, emitter, **integrator):
     camera = scene["camera"]
+    files = strands_files(scene)
+    parts = {f"hair{i}": hair(folder, scene, files[i], sigma) for i, sigma in enumerate(sigmas)}
     look_at = mi.ScalarTransform4f().look_at(camera["eye"], camera["target"], camera["up"])
     return mi.load_dict(
         {
@@ -81,7 +93,7 @@ def setup(folder, scene, size, sigma_a, emitter, **integrator):
                     "rfilter": {"type": "box"},
                 },
             },
-            "hair": hair(folder, scene, sigma_a),
+            **parts,
             "light": emitter,
         }
     )
@@ -101,7 +113,8 @@ def furnace(folder, scene, seed):
     means = []
     for sigma in (0.0, CONTROL_SIGMA):
         light = {"type": "constant", "radiance": 1.0}
-        loaded = setup(folder, scene, [FURNACE_SIZE] * 2, [sigma] * 3, light, **FURNACE_INTEGRATOR)
+        sigmas = [[sigma] * 3 for _ in strands_files(scene)]
+        loaded = setup(folder, scene, [FURNACE_SIZE] * 2, sigmas, light, **FURNACE_INTEGRATOR)
         image = np.array(mi.render(loaded, spp=FURNACE_SAMPLES, seed=seed))
         means.append(float(image[..., :3].mean(axis=2).sum() / image[..., 3].sum()))
     return means
@@ -111,7 +124,7 @@ def render_half(folder, index, seed, samples, file):
     """Renders half of the samples of a scene. Returns the mean."""
     report = json.loads((folder / "scenes.json").read_text(encoding="utf-8"))
     scene, size = report["scenes"][index], [report["width"], report["height"]]
-    loaded = setup(folder, scene, size, scene["fibre"]["sigma_a"], directional(scene))
+    loaded = setup(folder, scene, size, absorptions(scene), directional(scene))
     image = np.array(mi.render(loaded, spp=samples, seed=seed)).astype("<f4")
     if image.shape != (size[1], size[0], 4) or not np.isfinite(image).all():
         sys.exit(f"{scene['name']}: found an image of shape {image.shape} or with values that are not finite")
@@ -147,7 +160,7 @@ def key_of(folder, scene, size, samples):
     """Changes with everything that the image depends on."""
     what = {name: scene[name] for name in ("camera", "light", "fibre")}
     what.update(size=size, samples=samples, version=mi.__version__, depth=[MOST_BOUNCES, ROULETTE_AFTER])
-    strands = (folder / scene["strands_file"]).read_bytes()
+    strands = b"".join((folder / file).read_bytes() for file in strands_files(scene))
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode() + strands).hexdigest()
 
 

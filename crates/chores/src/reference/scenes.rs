@@ -23,6 +23,7 @@ pub(super) struct Scene {
     pub(super) name: String,
     pub(super) strands: u64,
     pub(super) strands_file: String,
+    white_strands_file: Option<String>,
     pub(super) image_file: String,
     camera: Camera,
     light: Light,
@@ -77,9 +78,13 @@ impl Scenes {
                 "{}: another camera, light or fibre than the first variant; must be the same",
                 b.name
             );
-            if a.strands_file == b.strands_file {
+            for (file, other_file) in [
+                (Some(&a.strands_file), Some(&b.strands_file)),
+                (a.white_strands_file.as_ref(), b.white_strands_file.as_ref()),
+            ] {
+                let Some(file) = file.filter(|_| file == other_file) else { continue };
                 let read = |folder: &Path| {
-                    let path = folder.join(&a.strands_file);
+                    let path = folder.join(file);
                     fs::read(&path).with_context(|| format!("could not read {}", path.display()))
                 };
                 ensure!(

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use lovelock_base::random::SplitMix64;
+use rayon::prelude::*;
 
-use super::hairline::{Edge, edges_of, shorten};
+use super::hairline::{edges_of, shorten};
+use super::nearest::Nearest;
 use super::order::evenly;
-use crate::{GuideFrame, Hairstyle, Strands, interpolate};
+use super::strand::FineStrand;
+use crate::{Guides, Hairstyle};
 
 /// The most points of a fine strand.
 pub(super) const MOST_POINTS: usize = 128;
@@ -20,25 +23,6 @@ const NEIGHBOURS: usize = 7;
 /// Share of children that leave their lock.
 const STRAYS: f32 = 0.06;
 
-/// One strand of the list, 24 bytes.
-///
-/// Its points are those of a polyline `q` cut at `length`, where `q_j = a_j + b(t) (b_j - a_j) + c(t) (c_j - a_j)` at the fraction `t` of
-/// its parents' polylines `a`, `b` and `c`. The weights `b(t)` and `c(t)` are cubic Bézier curves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
-pub struct FineStrand {
-    /// Stored strands between which it lies. It is close to the first one; all three are the same for a stored strand itself.
-    pub parents: [u32; 3],
-    /// Control points of the weights of the second and the third parent, as signed bytes in 127ths.
-    pub weights: [[i8; 4]; 2],
-    /// Its length as a fraction of its parents' length, in 65,535ths.
-    pub length: u16,
-    /// Its shade, 0 to 255; see [`StrandSet::shade`](crate::StrandSet).
-    pub shade: u8,
-    /// Unused; 0.
-    pub spare: u8,
-}
-
 /// The strands of a hairstyle in the order in which they are drawn; see the [module](crate::fine).
 #[derive(Clone, Debug, Default)]
 pub struct FineStrands {
@@ -48,36 +32,84 @@ pub struct FineStrands {
     pub strands: Vec<FineStrand>,
     order: Vec<u32>,
     neighbours: Vec<[u32; NEIGHBOURS]>,
-    edges: Vec<Edge>,
-    of: Topology,
+    /// How near each stored strand is to the edge of the hair.
+    edges: Vec<f32>,
+    of: Source,
     rest: Option<Arc<Hairstyle>>,
 }
 
-/// What the list depends on: hair that is combed from one style into another keeps it.
+/// Everything that the list depends on.
+///
+/// Ties and combing change none of it, so that hair that is combed from one style into another keeps its strands. Only where wisps have few
+/// strands, whose neighbours are on the same side of a parting at rest, a tie may change them.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Topology {
+struct Source {
     wisp: Vec<u32>,
-    weights: Vec<[f32; 3]>,
     first_point: Vec<u32>,
+    shade: Vec<f32>,
+    roots: Vec<Vec3>,
+    /// Middles and tips, if neighbours may be of other wisps.
+    ends: Vec<[Vec3; 2]>,
+    /// Whether the neighbours of each strand may be of other wisps; empty if those of none may.
+    few: Vec<bool>,
+}
+
+impl Source {
+    /// That of a style.
+    ///
+    /// Roots are those of the guides between which a strand lies. Its own root is beside them by an offset, which every tie computes anew.
+    fn of(style: &Hairstyle) -> Self {
+        let set = &style.strands;
+        let count = set.count();
+        let mut source = Self {
+            wisp: set.wisp.clone(),
+            first_point: set.first_point.clone(),
+            shade: set.shade.clone(),
+            ..Self::default()
+        };
+        if style.check().is_err() {
+            // Only strands that are given can be drawn of such a style, without knowing where they are at rest.
+            return source;
+        }
+        let has_few = |strands: u32| strands < FEW_STRANDS && count <= SPARSE;
+        let guides = &style.guides;
+        let at = |strand: usize, u: f32| {
+            blended(guides, style.wisps[set.wisp[strand] as usize].guides, set.weights[strand], u)
+        };
+        source.roots = (0..count).map(|strand| at(strand, 0.0)).collect();
+        if style.wisps.iter().any(|wisp| wisp.strand_count > 0 && has_few(wisp.strand_count)) {
+            let last = |strand: usize| set.guide_param[set.first_point[strand + 1] as usize - 1];
+            source.ends =
+                (0..count).map(|strand| [0.5, 1.0].map(|part| at(strand, part * last(strand)))).collect();
+            source.few =
+                (0..count).map(|i| has_few(style.wisps[set.wisp[i] as usize].strand_count)).collect();
+        }
+        source
+    }
+}
+
+/// The point at `u` links along the straight guides, blended by `weights`.
+fn blended(guides: &Guides, of: [u32; 3], weights: [f32; 3], u: f32) -> Vec3 {
+    let links = guides.points_per_guide - 1;
+    let u = u.max(0.0).min(links as f32);
+    let p = (u as usize).min(links - 1);
+    let point = |guide: u32| {
+        let (a, b) = (guides.point(guide as usize, p), guides.point(guide as usize, p + 1));
+        a + (b - a) * (u - p as f32)
+    };
+    (0..3).map(|k| point(of[k]) * weights[k]).sum()
 }
 
 impl FineStrands {
     /// Makes this the list of `style`, with at least `count` strands. Returns whether anything has changed.
     ///
-    /// The strands of a list do not depend on how many there are.
+    /// The strands of a list do not depend on how many there are, nor on the styles of before.
     pub fn follow(&mut self, style: &Arc<Hairstyle>, count: usize) -> bool {
         if !self.rest.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             self.rest = Some(Arc::clone(style));
-            let set = &style.strands;
-            if (&self.of.wisp, &self.of.weights, &self.of.first_point)
-                != (&set.wisp, &set.weights, &set.first_point)
-            {
-                self.of = Topology {
-                    wisp: set.wisp.clone(),
-                    weights: set.weights.clone(),
-                    first_point: set.first_point.clone(),
-                };
-                self.start(style);
+            let source = Source::of(style);
+            if self.of != source {
+                self.start(source);
             }
         }
         let stored = self.order.len();
@@ -85,40 +117,39 @@ impl FineStrands {
             return false;
         }
         if self.strands.is_empty() {
-            self.strands.extend(self.order.iter().map(|&strand| stored_strand(style, strand)));
+            self.strands.extend(self.order.iter().map(|&strand| stored_strand(&self.of, strand)));
         }
         if count > stored && self.neighbours.is_empty() {
-            (self.neighbours, self.edges) = neighbours_of(style);
+            self.neighbours = neighbours_of(&self.of);
+            self.edges = edges_of(&self.of.roots);
         }
         // In steps, so that an approaching camera does not extend the list in every frame.
         let target = if count > stored { count.max(self.strands.len() * 5 / 4) } else { count };
         for i in self.strands.len()..target {
             let parent = self.order[i % stored];
-            let (near, edge) = (&self.neighbours[parent as usize], self.edges[parent as usize]);
-            self.strands.push(child(style, parent, near, edge, i));
+            let near = &self.neighbours[parent as usize];
+            let edge = self.edges.get(parent as usize).copied().unwrap_or(0.0);
+            self.strands.push(child(&self.of, parent, near, edge, i));
         }
         true
     }
 
-    fn start(&mut self, style: &Hairstyle) {
-        self.order = evenly(&style.strands);
+    fn start(&mut self, source: Source) {
+        self.order = evenly(&source.wisp);
         self.strands.clear();
         self.neighbours.clear();
-        let longest = style.strands.first_point.windows(2).map(|ends| (ends[1] - ends[0]) as usize).max();
+        let longest =
+            source.first_point.windows(2).map(|ends| ends[1].saturating_sub(ends[0]) as usize).max();
         self.points_per_strand = longest.unwrap_or(2).clamp(2, MOST_POINTS);
-    }
-
-    /// The number of stored strands, which are the first of the list.
-    pub fn stored(&self) -> usize {
-        self.order.len()
+        self.of = source;
     }
 }
 
-fn stored_strand(style: &Hairstyle, strand: u32) -> FineStrand {
+fn stored_strand(source: &Source, strand: u32) -> FineStrand {
     FineStrand {
         parents: [strand; 3],
         length: u16::MAX,
-        shade: byte(style.strands.shade.get(strand as usize).copied().unwrap_or(0.5)),
+        shade: byte(source.shade.get(strand as usize).copied().unwrap_or(0.5)),
         ..FineStrand::default()
     }
 }
@@ -128,7 +159,7 @@ fn byte(unit: f32) -> u8 {
 }
 
 /// The child with number `i` in the list.
-fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], edge: Edge, i: usize) -> FineStrand {
+fn child(source: &Source, parent: u32, near: &[u32; NEIGHBOURS], edge: f32, i: usize) -> FineStrand {
     let mut random = SplitMix64::of_stream(0xf17e, i as u64);
     let b = (random.bits() % NEIGHBOURS as u64) as usize;
     let c = (b + 1 + (random.bits() % (NEIGHBOURS as u64 - 1)) as usize) % NEIGHBOURS;
@@ -145,72 +176,66 @@ fn child(style: &Hairstyle, parent: u32, near: &[u32; NEIGHBOURS], edge: Edge, i
         }
     }
     let shorter = random.unit() * random.unit() * if strays { 0.2 } else { 0.05 };
-    let own = style.strands.shade.get(parent as usize).copied().unwrap_or(0.5);
+    let own = source.shade.get(parent as usize).copied().unwrap_or(0.5);
     let mut strand = FineStrand {
         parents: [parent, near[b], near[c]],
         weights,
         length: ((1.0 - shorter) * 65_535.0) as u16,
         shade: byte(0.55 * own + 0.45 * random.unit()),
-        spare: 0,
+        is_short: 0,
     };
     shorten(&mut strand, edge, &mut random);
     strand
 }
 
-/// Root, middle and tip of a strand at rest.
-pub(super) type Shape = [Vec3; 3];
-
-/// The nearest strands of each strand, of its wisp or of all with a similar shape where a wisp has few; and the edge of the hair.
-fn neighbours_of(style: &Hairstyle) -> (Vec<[u32; NEIGHBOURS]>, Vec<Edge>) {
-    if style.check().is_err() {
-        // Only strands that are given can be drawn of such a style, without knowing where they are at rest.
-        let count = style.strands.count();
-        return (
-            (0..count as u32).map(|strand| [strand; NEIGHBOURS]).collect(),
-            vec![Edge::default(); count],
-        );
+/// The nearest strands of each strand, of its wisp or of all with a similar shape where a wisp has few.
+fn neighbours_of(source: &Source) -> Vec<[u32; NEIGHBOURS]> {
+    if source.roots.is_empty() {
+        return (0..source.wisp.len() as u32).map(|strand| [strand; NEIGHBOURS]).collect();
     }
-    let mut rest = Strands::default();
-    interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut rest);
-    let shapes: Vec<Shape> = rest
-        .first_point
-        .windows(2)
-        .map(|ends| {
-            let (first, last) = (ends[0] as usize, ends[1] as usize - 1);
-            let middle =
-                (rest.point(usize::midpoint(first, last)) + rest.point((first + last).div_ceil(2))) / 2.0;
-            [rest.point(first), middle, rest.point(last)]
-        })
-        .collect();
-    let all: Vec<u32> = (0..shapes.len() as u32).collect();
-    let mut out = Vec::with_capacity(shapes.len());
-    for wisp in &style.wisps {
-        let members: Vec<u32> = (wisp.first_strand..wisp.first_strand + wisp.strand_count).collect();
-        for &of in &members {
-            let few = wisp.strand_count < FEW_STRANDS && shapes.len() <= SPARSE;
-            out.push(nearest(&shapes, of, if few { &all } else { &members }, few));
+    let mut out = vec![[0; NEIGHBOURS]; source.roots.len()];
+    let mut first = 0;
+    for members in source.wisp.chunk_by(|a, b| a == b) {
+        let of = first..first + members.len();
+        first = of.end;
+        if source.few.get(of.start).copied().unwrap_or(false) {
+            continue;
         }
+        let tree = Nearest::new(&source.roots[of.clone()]);
+        let start = of.start as u32;
+        let row = |i: u32| {
+            let found = tree.of::<NEIGHBOURS>(source.roots[(start + i) as usize], |other| other != i);
+            repeated(found.points().map(|other| start + other), start + i)
+        };
+        out[of].par_iter_mut().enumerate().with_min_len(64).for_each(|(i, out)| *out = row(i as u32));
     }
-    (out, edges_of(&shapes))
+    if !source.ends.is_empty() {
+        let tree = Nearest::new(&source.roots);
+        out.par_iter_mut().enumerate().filter(|(i, _)| source.few[*i]).for_each(|(i, out)| {
+            let accept = |other: u32| other as usize != i && !is_parted(source, i, other as usize);
+            let found = tree.of::<NEIGHBOURS>(source.roots[i], accept);
+            *out = repeated(found.points(), i as u32);
+        });
+    }
+    out
 }
 
-/// The strands of `among` whose roots are nearest to that of strand `of`; the strand itself where there are too few.
-fn nearest(shapes: &[Shape], of: u32, among: &[u32], other_wisps: bool) -> [u32; NEIGHBOURS] {
-    let own = &shapes[of as usize];
-    let mut found: Vec<(f32, u32)> = among
-        .iter()
-        .filter(|&&other| other != of)
-        .filter_map(|&other| {
-            let [root, middle, tip] = [0, 1, 2].map(|k| own[k].distance(shapes[other as usize][k]));
-            // Hair on the other side of a parting is no neighbour.
-            let parted = other_wisps && middle.max(0.5 * tip) > 2.0 * root + 0.02;
-            (root.is_finite() && !parted).then_some((root, other))
-        })
-        .collect();
-    if found.len() > NEIGHBOURS {
-        found.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
-        found.truncate(NEIGHBOURS);
+/// Whether a parting lies between two strands: their roots are much nearer to each other than the rest of them.
+fn is_parted(source: &Source, a: usize, b: usize) -> bool {
+    let root = source.roots[a].distance(source.roots[b]);
+    let [middle, tip] = [0, 1].map(|k| source.ends[a][k].distance(source.ends[b][k]));
+    middle.max(0.5 * tip) > 2.0 * root + 0.02
+}
+
+/// The neighbours that were found, again from the first where there are too few, and `own` where there are none.
+fn repeated(found: impl ExactSizeIterator<Item = u32>, own: u32) -> [u32; NEIGHBOURS] {
+    let mut out = [own; NEIGHBOURS];
+    let count = found.len();
+    for (out, found) in out.iter_mut().zip(found) {
+        *out = found;
     }
-    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    std::array::from_fn(|k| if found.is_empty() { of } else { found[k % found.len()].1 })
+    for k in count.max(1)..NEIGHBOURS {
+        out[k] = out[k % count.max(1)];
+    }
+    out
 }

@@ -4,8 +4,9 @@
 
 use rayon::prelude::*;
 
-use super::children::{FineStrand, FineStrands, MOST_POINTS};
+use super::children::{FineStrands, MOST_POINTS};
 use super::order::place;
+use super::strand::FineStrand;
 use crate::simd::Width;
 use crate::{Strands, simd_versions};
 
@@ -36,8 +37,11 @@ impl ParentPoints {
         for (to, from) in [(&mut self.x, &strands.x), (&mut self.y, &strands.y), (&mut self.z, &strands.z)] {
             to.resize(strands.count() * points, 0.0);
             to.par_chunks_mut(points).zip(strands.first_point.par_windows(2)).for_each(|(to, ends)| {
-                let own = &from[ends[0] as usize..ends[1] as usize];
-                let links = own.len() - 1;
+                let own = from.get(ends[0] as usize..ends[1] as usize).unwrap_or(&[]);
+                let Some(links) = own.len().checked_sub(1).filter(|links| *links > 0) else {
+                    to.fill(own.first().copied().unwrap_or(f32::NAN));
+                    return;
+                };
                 for (k, to) in to.iter_mut().enumerate() {
                     let at = k as f32 / (points - 1) as f32 * links as f32;
                     let i = (at as usize).min(links - 1);
@@ -131,7 +135,10 @@ fn grow_run(strands: &[FineStrand], points: usize, from: &[&[f32]; 3], mut out: 
                 *share = u * u * u * w0 + 3.0 * t * u * (u * w1 + t * w2) + t * t * t * w3;
             }
         }
-        let length = f32::from(strand.length) * (1.0 / 65_535.0);
+        let length = strand.fraction(|| {
+            let square = |from: &[f32], k: usize| (from[at[0] + k] - from[at[0] + k - 1]).powi(2);
+            (1..points).map(|k| from.iter().map(|from| square(from, k)).sum::<f32>().sqrt()).sum()
+        });
         for (out, from) in out.iter_mut().zip(from) {
             let [a, b, c] = at.map(|at| &from[at..at + points]);
             for k in 0..points {

@@ -12,11 +12,16 @@
 mod children;
 mod grow;
 mod hairline;
+mod locks;
+mod nearest;
 mod order;
 mod portion;
+mod strand;
 #[cfg(test)]
 mod tests;
 
-pub use children::{FineStrand, FineStrands};
+pub use children::FineStrands;
 pub use grow::{ParentPoints, grow_fine, moved_apart};
+pub use locks::{LOCK_NUMBERS, lock_numbers};
 pub use portion::Portion;
+pub use strand::FineStrand;

@@ -1,14 +1,12 @@
 //! The order in which stored strands are drawn: every prefix is spread evenly over all wisps.
 
-use crate::StrandSet;
-
-/// The indices of all strands in their order.
+/// The indices of all strands, of which `wisp` has the wisps, in their order.
 ///
 /// Strand `i` of a wisp has the key `(reversed(i) + random) / count`, where `reversed` reverses the bits of the index, so that the strands
 /// below any key are as many in each wisp, up to one, and are spread over the wisp.
-pub(super) fn evenly(set: &StrandSet) -> Vec<u32> {
-    let mut keys: Vec<(u32, u32)> = Vec::with_capacity(set.count());
-    for members in set.wisp.chunk_by(|a, b| a == b) {
+pub(super) fn evenly(wisp: &[u32]) -> Vec<u32> {
+    let mut keys: Vec<(u32, u32)> = Vec::with_capacity(wisp.len());
+    for members in wisp.chunk_by(|a, b| a == b) {
         let first = keys.len() as u32;
         let count = members.len() as u32;
         let bits = u32::BITS - count.next_power_of_two().trailing_zeros();

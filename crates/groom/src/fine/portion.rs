@@ -38,7 +38,7 @@ impl Portion {
     }
 
     /// The index of the first strand that is narrower than the others.
-    pub fn first_fading(&self) -> usize {
+    fn first_fading(&self) -> usize {
         if self.end.is_finite() {
             ((self.end - self.ramp).max(0.0) as usize).min(self.drawn)
         } else {

@@ -4,6 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use lovelock_project::error::ProjectError;
+use lovelock_render::HairDrawing;
 use serde::Deserialize;
 
 use super::comparison::{Comparison, SLOWER, SlowerStage};
@@ -27,6 +28,9 @@ struct EarlierScene {
     scene: String,
     backend: String,
     shadow: String,
+    /// Runs before clusters were drawn have none.
+    #[serde(default = "strands")]
+    draw: String,
     transparency: String,
     width: u32,
     height: u32,
@@ -38,6 +42,11 @@ struct EarlierScene {
 struct EarlierStage {
     name: String,
     multiple: Option<f64>,
+}
+
+/// What hair is drawn as where an earlier run does not say.
+fn strands() -> String {
+    HairDrawing::Strands.to_string()
 }
 
 impl Baseline {
@@ -127,8 +136,8 @@ impl Baseline {
 
 impl EarlierScene {
     fn is_of(&self, scene: &SceneReport) -> bool {
-        let key = (&self.scene, &self.backend, &self.shadow, &self.transparency);
-        key == (&scene.scene, &scene.backend, &scene.shadow, &scene.transparency)
+        let key = (&self.scene, &self.backend, &self.shadow, &self.draw, &self.transparency);
+        key == (&scene.scene, &scene.backend, &scene.shadow, &scene.draw, &scene.transparency)
             && (self.width, self.height, self.points) == (scene.width, scene.height, scene.points)
     }
 }
@@ -163,11 +172,20 @@ mod tests {
     }
 
     #[test]
+    fn earlier_runs_that_do_not_say_drew_strands() {
+        let mut value = serde_json::to_value(report()).expect("plain data");
+        value["scenes"][0].as_object_mut().expect("a scene").remove("draw");
+        let earlier: Baseline = serde_json::from_value(value).expect("an earlier output");
+        assert!(earlier.scenes[0].is_of(&report().scenes[0]));
+    }
+
+    #[test]
     fn only_the_same_scene_is_compared() {
         let earlier = baseline(100.0);
-        let changes: [fn(&mut SceneReport); 5] = [
+        let changes: [fn(&mut SceneReport); 6] = [
             |scene| scene.scene = "curly".to_owned(),
             |scene| scene.shadow = "exact".to_owned(),
+            |scene| scene.draw = "clusters".to_owned(),
             |scene| scene.transparency = "exact".to_owned(),
             |scene| scene.width += 1,
             |scene| scene.points += 1,

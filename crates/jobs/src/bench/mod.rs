@@ -30,7 +30,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
+use lovelock_render::{Backend, HairDrawing, Picture, RenderError, Renderer, ShadowMethod, Transparency};
 use lovelock_session::clock::FrameClock;
 use lovelock_session::engine::Engine;
 use lovelock_session::health::health;
@@ -58,6 +58,8 @@ pub struct BenchRequest {
     pub size: Option<(u32, u32)>,
     /// The shadow method; `None` uses the scene's own.
     pub shadow: Option<ShadowMethod>,
+    /// What hair is drawn as; `None` uses the scene's own.
+    pub draw: Option<HairDrawing>,
     /// The transparency; `None` uses the scene's own.
     pub transparency: Option<Transparency>,
 }
@@ -73,6 +75,7 @@ impl Default for BenchRequest {
             frames: 15,
             size: None,
             shadow: None,
+            draw: None,
             transparency: None,
         }
     }
@@ -114,6 +117,7 @@ pub fn bench(
     let mut scenes = Vec::new();
     for &scene in &request.scenes {
         let mut project = changed(scene, request, change)?;
+        project.picture.draw = request.draw.unwrap_or(project.picture.draw);
         project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
         let loaded = load(&project)?;
         if scene.is_simulated_alone() {

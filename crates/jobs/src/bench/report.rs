@@ -49,6 +49,8 @@ pub struct SceneReport {
     pub adapter: String,
     /// Id of the shadow method; empty without rendering.
     pub shadow: String,
+    /// What hair was drawn as: `strands`, `clusters` or `auto`; empty without rendering.
+    pub draw: String,
     /// Id of the transparency mode; empty without rendering.
     pub transparency: String,
     /// Width, pixels; 0 without rendering.
@@ -136,6 +138,7 @@ impl SceneReport {
         let own = scene.project();
         // Published figures apply to the scene's own method only.
         let as_published = own.shadow.method == project.shadow.method
+            && own.picture.draw == project.picture.draw
             && own.picture.transparency == project.picture.transparency;
         let published = |name: &str| if as_published { scene.published_ms(name) } else { None };
         let row = |name: &str, of: &dyn Fn(&(f64, StageTimes, FrameStats)) -> f64| {
@@ -166,6 +169,7 @@ impl SceneReport {
             backend: renderer.backend().to_string(),
             adapter: renderer.adapter().to_owned(),
             shadow: project.shadow.method.to_string(),
+            draw: project.picture.draw.to_string(),
             transparency: project.picture.transparency.to_string(),
             width,
             height,
@@ -194,18 +198,19 @@ impl BenchReport {
     /// One line per stage of the scenes, with a heading. Every line contains the yardstick.
     pub fn csv(&self) -> String {
         let mut out =
-            "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes,multiple,multiple_of,change,copy_gb_per_s,multiply_adds_g_per_s,scattered_adds_m_per_s\n"
+            "scene,backend,adapter,shadow,draw,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes,multiple,multiple_of,change,copy_gb_per_s,multiply_adds_g_per_s,scattered_adds_m_per_s\n"
                 .to_owned();
         for scene in &self.scenes {
             for stage in &scene.stages {
                 let optional = |value: Option<String>| value.unwrap_or_default();
                 let _ = writeln!(
                     out,
-                    "{},{},\"{}\",{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{},{},{},{},{:.3},{:.3},{:.3}",
+                    "{},{},\"{}\",{},{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{},{},{},{},{:.3},{:.3},{:.3}",
                     scene.scene,
                     scene.backend,
                     scene.adapter.replace('"', "\"\""),
                     scene.shadow,
+                    scene.draw,
                     scene.transparency,
                     scene.width,
                     scene.height,
@@ -245,6 +250,7 @@ pub(super) mod tests {
             backend: backend.to_owned(),
             adapter: "a \"quoted\", name".to_owned(),
             shadow: "voxel-map".to_owned(),
+            draw: "strands".to_owned(),
             transparency: "sorted".to_owned(),
             width: 1280,
             height: 720,

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use lovelock_base::settings::Settings;
 use lovelock_groom::{GroomSettings, Preset};
 use lovelock_project::Project;
-use lovelock_render::{ShadowMethod, StrandCount, Transparency};
+use lovelock_render::{HairDrawing, ShadowMethod, StrandCount, Transparency};
 
 /// A measured scene: the default project with more or other hair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,14 @@ pub enum BenchScene {
     Near,
     /// As near, with 100,000 strands: a still image.
     Still,
+    /// 40 wisps of 525 strands drawn as clusters.
+    Clusters,
+    /// The same hair drawn as its stored strands.
+    ClustersStrands,
+    /// The clusters seen from so far that the head is 24 pixels high.
+    ClustersFar,
+    /// The same hair from there, drawn as its stored strands.
+    ClustersFarStrands,
     /// The guides of the published smooth hairstyle, simulated by each method without rendering: 402 of 30 links.
     Simulate402,
     /// The same with each of 20,100 strands simulated individually.
@@ -41,7 +49,7 @@ pub enum BenchScene {
 
 impl BenchScene {
     /// All of them, by paper and from small to large.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 17] = [
         Self::Smooth,
         Self::Curly,
         Self::Smooth500k,
@@ -53,6 +61,10 @@ impl BenchScene {
         Self::Middle,
         Self::Near,
         Self::Still,
+        Self::Clusters,
+        Self::ClustersStrands,
+        Self::ClustersFar,
+        Self::ClustersFarStrands,
         Self::Simulate402,
         Self::Simulate20k,
     ];
@@ -71,6 +83,10 @@ impl BenchScene {
             Self::Middle => "middle",
             Self::Near => "near",
             Self::Still => "still",
+            Self::Clusters => "clusters",
+            Self::ClustersStrands => "clusters-strands",
+            Self::ClustersFar => "clusters-far",
+            Self::ClustersFarStrands => "clusters-far-strands",
             Self::Simulate402 => "simulate-402",
             Self::Simulate20k => "simulate-20k",
         }
@@ -96,8 +112,13 @@ impl BenchScene {
         matches!(self, Self::Woman300k | Self::Dog2M)
     }
 
+    /// Whether it compares clusters with the strands for which they stand.
+    const fn is_of_clusters(self) -> bool {
+        matches!(self, Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands)
+    }
+
     /// The measured project: three lights with `voxel-map`, blended; or, as in the paper, one light with `occupancy-maps` of
-    /// 512 x 512 texels and `occupancy-order`. Scenes without rendering move at a quarter of the speed, where four substeps are
+    /// 512 x 512 texels and `occupancy-order`. Scenes of clusters have three lights with `occupancy-maps`. Scenes without rendering move at a quarter of the speed, where four substeps are
     /// enough.
     pub fn project(self) -> Project {
         let mut project = Project::default();
@@ -123,6 +144,9 @@ impl BenchScene {
             | Self::Middle
             | Self::Near
             | Self::Still => {}
+            Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands => {
+                (groom.wisps, groom.strands_per_wisp) = (40, 525);
+            }
             Self::Simulate20k => groom.strands_per_wisp = 150,
             // 134 wisps of 30 segments per strand: 4,020 segments for each strand of a wisp.
             Self::Smooth500k => groom.strands_per_wisp = 125,
@@ -150,6 +174,14 @@ impl BenchScene {
                 // Every strand is a hair.
                 project.look.real_hairs = 400_000.0;
             }
+        }
+        if self.is_of_clusters() {
+            project.shadow.method = ShadowMethod::OccupancyMaps;
+            if matches!(self, Self::Clusters | Self::ClustersFar) {
+                project.picture.draw = HairDrawing::Clusters;
+            }
+            let is_far = matches!(self, Self::ClustersFar | Self::ClustersFarStrands);
+            project.camera.distance = if is_far { FAR } else { 1.0 };
         }
         if self.is_simulated_alone() {
             project.motion.speed = 0.25;
@@ -214,6 +246,9 @@ impl BenchScene {
         }
     }
 }
+
+/// The distance from which a head is 24 pixels high in an image of 720 rows, metres.
+const FAR: f32 = 20.3;
 
 /// The table of Sintorn, Assarsson 2009, milliseconds, by our stages and passes.
 const PASSES: [(&str, f64); 11] = [
@@ -286,6 +321,8 @@ mod tests {
             (BenchScene::Curly, 3350, 201_000),
             (BenchScene::Woman300k, 20_000, 300_000),
             (BenchScene::Dog2M, 400_000, 2_000_000),
+            (BenchScene::Clusters, 21_000, 630_000),
+            (BenchScene::ClustersFarStrands, 21_000, 630_000),
             (BenchScene::Simulate402, 3350, 100_500),
             (BenchScene::Simulate20k, 20_100, 603_000),
         ] {
@@ -293,6 +330,13 @@ mod tests {
             assert_eq!((groom.strand_count(), groom.segment_count()), (strands, segments), "{scene}");
             assert_eq!(groom.clamped(), groom, "{scene}: it grows as it is asked");
         }
+        let drawn = |scene: BenchScene| {
+            let project = scene.project();
+            (project.picture.draw, project.picture.strands, project.shadow.method)
+        };
+        let maps = ShadowMethod::OccupancyMaps;
+        assert_eq!(drawn(BenchScene::Clusters), (HairDrawing::Clusters, StrandCount::Stored, maps));
+        assert_eq!(drawn(BenchScene::ClustersFarStrands), (HairDrawing::Strands, StrandCount::Stored, maps));
         let grown = crate::bench::load(&BenchScene::Woman300k.project()).expect("a scene");
         let strands = &grown.style.strands;
         assert_eq!((strands.count(), strands.segments()), (20_000, 300_000));

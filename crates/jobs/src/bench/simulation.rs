@@ -107,6 +107,7 @@ impl SceneReport {
             backend: Backend::Cpu.to_string(),
             adapter: "simulation".to_owned(),
             shadow: String::new(),
+            draw: String::new(),
             transparency: String::new(),
             width: 0,
             height: 0,
@@ -132,14 +133,15 @@ impl SceneReport {
 
     /// One line about the measurement.
     pub(super) fn heading(&self) -> String {
-        let Self { scene, strands, segments, width, height, shadow, transparency, frames, .. } = self;
+        let Self { scene, strands, segments, width, height, shadow, draw, transparency, frames, .. } = self;
         if self.is_simulated_alone() {
             return format!(
                 "{scene}: {strands} guides, {segments} links; medians of {frames} steps, milliseconds"
             );
         }
+        let draw = if draw == "strands" { String::new() } else { format!(", drawn as {draw}") };
         format!(
-            "{scene}: {strands} strands, {segments} segments, {width}x{height}, {shadow}, {transparency}; medians of {frames} \
+            "{scene}: {strands} strands, {segments} segments{draw}, {width}x{height}, {shadow}, {transparency}; medians of {frames} \
              frames, milliseconds"
         )
     }

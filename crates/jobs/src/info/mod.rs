@@ -18,6 +18,8 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
 use serde::Serialize;
 
+use crate::satf::DatabaseInfo;
+
 /// Contents of a file, as `info --json` prints them; displays as text for people.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Info {
@@ -44,6 +46,8 @@ pub enum Content {
     Take(TakeInfo),
     /// A picture of the surroundings.
     Surroundings(SurroundingsInfo),
+    /// A database of hair clusters.
+    HairClusters(DatabaseInfo),
 }
 
 /// Description of a project file.
@@ -77,12 +81,16 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Describes a hair, character, motion, project or take file, or a picture of the surroundings.
+/// Describes a hair, character, motion, project or take file, a picture of the surroundings, or a database of hair clusters.
 ///
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
 pub fn info(path: &Path) -> Result<Info, ProjectError> {
     let refuse = |error: &dyn std::fmt::Display| ProjectError::input(path, error);
+    if let Some(database) = DatabaseInfo::of(path)? {
+        let file = path.display().to_string();
+        return Ok(Info { file, content: Content::HairClusters(database) });
+    }
     let content = match FileKind::of(path)? {
         FileKind::Hair => {
             let file = load_hair(path).map_err(|error| refuse(&error))?;

@@ -20,7 +20,7 @@ pub struct SurroundingsInfo {
     pub mean: [f32; 3],
     /// The light that stands out, if there is one.
     pub strongest: Option<StrongestInfo>,
-    /// Nothing is left out of a picture.
+    /// Always empty: a picture is read whole. Descriptions of other files count here what they leave out.
     pub dropped: BTreeMap<String, u64>,
     /// What was replaced or stretched.
     pub notes: Vec<String>,

@@ -8,6 +8,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Project(_) => "project",
         Content::Take(_) => "take",
         Content::Surroundings(_) => "surroundings",
+        Content::HairClusters(_) => "hair-clusters",
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use super::{Content, Info};
+use crate::satf::DatabaseInfo;
 
 /// Number of changes of a take's guides that are listed individually.
 const MOST_REGROWN: usize = 8;
@@ -86,6 +87,13 @@ impl fmt::Display for Info {
                     None => line(f, "strongest", "no direction stands out")?,
                 }
                 remarks(f, &picture.dropped, &picture.notes)
+            }
+            Content::HairClusters(database) => {
+                line(f, "kind", format_args!("database of hair clusters, {}", database.format))?;
+                let DatabaseInfo { sectors, azimuths, texels, .. } = database;
+                line(f, "records", format_args!("{sectors} sectors, {azimuths} azimuths, {texels} texels"))?;
+                line(f, "size", format_args!("{} bytes, checksum {}", database.bytes, database.checksum))?;
+                remarks(f, &database.dropped, &database.notes)
             }
             Content::Take(take) => {
                 line(f, "kind", &take.format)?;

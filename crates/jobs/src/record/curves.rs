@@ -8,7 +8,8 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Settings;
-use lovelock_groom::{HairLook, Hairstyle, Strands};
+use lovelock_groom::fine::lock_numbers;
+use lovelock_groom::{HairLook, Hairstyle, PigmentVariation, Strands};
 use lovelock_motion::Body;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
@@ -244,8 +245,10 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             let width = look.shadow_width(style.strands.count()) * look.width_scale;
             scene.first_point = (0..=count as u32).map(|guide| guide * per as u32).collect();
             scene.widths = vec![width; count * per];
+            // A guide stands for several locks, and has the colour of most of them.
+            let look = HairLook { grey: 0.0, highlights: 0.0, ..look };
             for _ in 0..count {
-                scene.colors.extend((0..per).map(|p| color(&look, 0.5, p as f32 / (per - 1) as f32)));
+                scene.colors.extend((0..per).map(|p| color(&look, p as f32 / (per - 1) as f32, 0.5, 0)));
             }
         }
         CurveSource::Strands => {
@@ -253,21 +256,21 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             let width = look.shadow_width(set.count()) * look.width_scale;
             scene.first_point.clone_from(&set.first_point);
             scene.widths = set.taper.iter().map(|taper| taper * width).collect();
-            for (&[start, end], &shade) in set.first_point.array_windows().zip(&set.shade) {
+            let locks = lock_numbers(set);
+            for ((&[start, end], &shade), lock) in set.first_point.array_windows().zip(&set.shade).zip(locks)
+            {
                 let last = (end - start - 1).max(1) as f32;
-                scene.colors.extend((0..end - start).map(|p| color(&look, shade, p as f32 / last)));
+                scene.colors.extend((0..end - start).map(|p| color(&look, p as f32 / last, shade, lock)));
             }
         }
     }
     scene
 }
 
-/// Colour at the fraction `along` of a strand with that shade, linear sRGB, as rendered in uniform light.
-fn color(look: &HairLook, shade: f32, along: f32) -> Vec3 {
-    let t = ((along - 0.2) / 0.8).clamp(0.0, 1.0);
-    let lightened = 1.0 - look.tip_lightening * t * t * (3.0 - 2.0 * t);
-    let varied = 1.0 + look.variation * (2.0 * shade - 1.0);
-    HairLook::body_color(look.absorption() * (varied * lightened).max(0.0))
+/// Colour at the fraction `along` of a strand with that shade, of a lock with that number; linear sRGB, as rendered in uniform light.
+fn color(look: &HairLook, along: f32, shade: f32, lock: u8) -> Vec3 {
+    let pigment = PigmentVariation::of(look).factor(along, shade, i32::from(lock));
+    HairLook::body_color(look.absorption() * pigment)
 }
 
 fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
@@ -331,5 +334,42 @@ impl Moved {
             joints: &self.joints,
         });
         CurveFrame { points, body }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_groom::{GroomSettings, PlainHead, UNPIGMENTED, grow};
+
+    use super::*;
+
+    #[test]
+    fn strands_have_the_colours_that_they_are_rendered_with() {
+        let settings = GroomSettings { wisps: 40, strands_per_wisp: 20, ..GroomSettings::default() };
+        let style = grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair");
+        let plain = HairLook { variation: 0.0, tip_lightening: 0.0, ..HairLook::default() };
+        let brown = HairLook::body_color(plain.absorption());
+        // The colour of each strand's tip.
+        let tips = |source, look: &HairLook| {
+            let scene = curves_of(source, &style, look);
+            let ends = scene.first_point.iter().skip(1);
+            ends.map(|&end| scene.colors[end as usize - 1]).collect::<Vec<_>>()
+        };
+        assert!(tips(CurveSource::Strands, &plain).iter().all(|&tip| tip == brown));
+        for (name, look, white, share) in [
+            ("grey", HairLook { grey: 0.4, ..plain }, UNPIGMENTED, 0.4),
+            ("lightened locks", HairLook { highlights: 0.25, highlight_lightening: 0.5, ..plain }, 0.5, 0.25),
+        ] {
+            let light = HairLook::body_color(look.absorption() * white);
+            let tips = tips(CurveSource::Strands, &look);
+            let lighter = tips.iter().filter(|&&tip| tip.abs_diff_eq(light, 1e-5)).count();
+            let others = tips.iter().filter(|&&tip| tip == brown).count();
+            assert_eq!(lighter + others, tips.len(), "{name}");
+            let found = lighter as f32 / tips.len() as f32;
+            println!("{name}: {found} of the strands");
+            assert!((found - share).abs() < 0.1, "{name}: {found}");
+        }
+        let look = HairLook { grey: 1.0, highlights: 1.0, ..plain };
+        assert!(tips(CurveSource::Guides, &look).iter().all(|&tip| tip == brown), "guides stand for all");
     }
 }

@@ -5,12 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::settings::Choices;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_record::{
     FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
 };
-use lovelock_render::{FrameStats, Layers, PendingPicture, Picture};
+use lovelock_render::{FrameStats, HairDrawing, Layers, PendingPicture, Picture};
 use lovelock_session::dance::Dance;
 use lovelock_session::new_folders::NewFolders;
 use lovelock_session::prepare::check_frames;
@@ -115,6 +116,7 @@ pub fn record(
         backend: drawer.backend(),
         adapter: drawer.adapter().to_owned(),
         shadow: job.project.shadow.method.to_string(),
+        draw: job.project.picture.draw.to_string(),
         transparency: job.project.picture.transparency.to_string(),
         format: job.format().to_owned(),
         transparent: job.options.transparent,
@@ -157,6 +159,9 @@ impl<'a> Job<'a> {
             project.shadow.method = shadow;
         }
         project.recording.seamless |= request.seamless;
+        if let Some(draw) = request.draw {
+            project.picture.draw = draw;
+        }
         if let Some(transparency) = request.transparency {
             project.picture.transparency = transparency;
         }
@@ -244,6 +249,7 @@ impl<'a> Job<'a> {
             "program": concat!("lovelock ", env!("CARGO_PKG_VERSION")),
             "backend": drawer.kind(),
             "shadow": self.project.shadow.method.id(),
+            "draw": self.project.picture.draw.to_string(),
             "transparency": self.project.picture.transparency.id(),
             "format": self.options.format.id(),
             "background": if self.options.transparent { "transparent" } else { "drawn" },
@@ -372,7 +378,11 @@ impl<'a> Job<'a> {
     fn label(&self, frame: u64) -> String {
         let (shadow, transparency) =
             (self.project.shadow.method.label(), self.project.picture.transparency.label());
-        format!("{shadow} · {transparency} · frame {frame} · {:.2} s", frame as f64 / self.fps)
+        let draw = match self.project.picture.draw {
+            HairDrawing::Strands => String::new(),
+            other => format!("{} · ", other.names().1),
+        };
+        format!("{draw}{shadow} · {transparency} · frame {frame} · {:.2} s", frame as f64 / self.fps)
     }
 
     fn refused(&self, error: &RecordError) -> ProjectError {

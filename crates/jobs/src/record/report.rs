@@ -34,6 +34,8 @@ pub struct RecordReport {
     pub adapter: String,
     /// Id of the shadow method.
     pub shadow: String,
+    /// What hair was drawn as: `strands`, `clusters` or `auto`.
+    pub draw: String,
     /// Id of the transparency mode.
     pub transparency: String,
     /// Format: `mp4`, `apng`, `png` or `exr`.

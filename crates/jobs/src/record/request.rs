@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::files::Access;
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
+use lovelock_render::{Backend, Gpu, HairDrawing, ShadowMethod, Transparency};
 
 /// What to record. `None` uses the project's value.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,8 @@ pub struct RecordRequest {
     pub size: Option<(u32, u32)>,
     /// Shadow method.
     pub shadow: Option<ShadowMethod>,
+    /// What hair is drawn as.
+    pub draw: Option<HairDrawing>,
     /// Transparency mode.
     pub transparency: Option<Transparency>,
     /// Encoding quality of a film.
@@ -63,6 +65,7 @@ impl RecordRequest {
         let given = [
             (self.size.is_some(), "--size"),
             (self.shadow.is_some(), "--shadow"),
+            (self.draw.is_some(), "--draw"),
             (self.transparency.is_some(), "--transparency"),
             (self.backend.is_some(), "--backend"),
             (self.quality.is_some(), "--quality"),

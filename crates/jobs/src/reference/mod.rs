@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_groom::{HairLook, Preset};
+use lovelock_groom::{HairLook, Preset, UNPIGMENTED};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
@@ -24,7 +24,7 @@ use lovelock_session::snapshot::FrameSnapshot;
 use serde::Serialize;
 
 pub use scenes::{ReferenceColor, ReferenceLight, ReferenceScene};
-use strands::drawn_strands;
+use strands::{DrawnStrands, drawn_strands};
 
 use crate::bench::load;
 
@@ -67,7 +67,10 @@ pub struct ReferenceEntry {
     pub name: String,
     /// Text of control points of cubic B-splines, root first: `x y z radius` per line, an empty line between strands.
     pub strands_file: String,
-    /// Number of strands in it.
+    /// The same for the strands without pigment, of grey hair; `strands_file` then holds the others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub white_strands_file: Option<String>,
+    /// Number of strands.
     pub strands: usize,
     /// Camera.
     pub camera: ReferenceCamera,
@@ -109,6 +112,9 @@ pub struct ReferenceIrradiance {
 pub struct ReferenceFibre {
     /// Absorption per radius, linear sRGB.
     pub sigma_a: Vec3,
+    /// That of strands without pigment, of grey hair.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub white_sigma_a: Option<Vec3>,
     /// Roughness along the fibre. Symbol: `beta_m`.
     pub longitudinal_roughness: f32,
     /// Roughness around the fibre. Symbol: `beta_n`.
@@ -124,6 +130,7 @@ impl ReferenceFibre {
     fn of(look: &HairLook) -> Self {
         Self {
             sigma_a: look.absorption(),
+            white_sigma_a: (look.grey > 0.0).then(|| look.absorption() * UNPIGMENTED),
             longitudinal_roughness: look.roughness,
             azimuthal_roughness: look.roughness_around,
             scale_tilt_degrees: -look.scale_tilt.to_degrees(),
@@ -168,7 +175,7 @@ pub fn write_reference(
         }
         let hair = match settled.take() {
             Some((preset, hair)) if preset == scene.hair => hair,
-            _ => Hair::settle(scene.hair, &project, request)?,
+            _ => Hair::settle(scene.hair, &project)?,
         };
         entries.push(hair.write(scene, &mut project, &mut renderer, request)?);
         settled = Some((scene.hair, hair));
@@ -183,13 +190,15 @@ pub fn write_reference(
 struct Hair {
     snapshot: Arc<FrameSnapshot>,
     camera: Camera,
-    strands_file: String,
-    strands: usize,
+    /// The name of the hairstyle.
+    id: &'static str,
+    /// In the coordinates of the file.
+    strands: DrawnStrands,
 }
 
 impl Hair {
-    /// Settles the hair and writes its strands.
-    fn settle(preset: Preset, project: &Project, request: &ReferenceRequest) -> Result<Self, ProjectError> {
+    /// Settles the hair.
+    fn settle(preset: Preset, project: &Project) -> Result<Self, ProjectError> {
         let mut engine = Engine::at_rest(load(project)?, project.simulation, STEP_SECS);
         engine.follow(project);
         engine.settle();
@@ -200,9 +209,21 @@ impl Hair {
         let camera = view::camera_for(&drawn.points, &input.world_from_head);
         let head_from_world = input.world_from_head.inverse();
         let in_mm = drawn.map(|p| head_from_world.transform_point3(p) * MM, MM);
-        let strands_file = format!("{}.txt", preset.id());
-        write_whole(&request.out.join(&strands_file), in_mm.text().as_bytes())?;
-        Ok(Self { camera, strands_file, strands: drawn.strands.len(), snapshot })
+        Ok(Self { camera, id: preset.id(), strands: in_mm, snapshot })
+    }
+
+    /// Writes the strands, in two files if some are grey. Returns the names of the files.
+    fn write_strands(&self, grey: f32, folder: &Path) -> Result<(String, Option<String>), ProjectError> {
+        let write = |name: String, strands: &DrawnStrands| {
+            write_whole(&folder.join(&name), strands.text().as_bytes()).map(|()| name)
+        };
+        if grey > 0.0 {
+            let [pigmented, white] = self.strands.parted(grey);
+            let white = write(format!("{}-white.txt", self.id), &white)?;
+            Ok((write(format!("{}-pigmented.txt", self.id), &pigmented)?, Some(white)))
+        } else {
+            Ok((write(format!("{}.txt", self.id), &self.strands)?, None))
+        }
     }
 
     /// Renders a scene with this hair and writes its images.
@@ -233,11 +254,13 @@ impl Hair {
         let head_from_world = input.world_from_head.inverse();
         let point = |p: Vec3| head_from_world.transform_point3(p) * MM;
         let vector = |v: Vec3| head_from_world.transform_vector3(v);
+        let (strands_file, white_strands_file) = self.write_strands(project.look.grey, &request.out)?;
         let irradiance = project.lights.iter().filter(|light| light.enabled);
         Ok(ReferenceEntry {
             name: scene.name(),
-            strands_file: self.strands_file.clone(),
-            strands: self.strands,
+            strands_file,
+            white_strands_file,
+            strands: self.strands.strands.len(),
             camera: ReferenceCamera {
                 eye: point(self.camera.eye),
                 target: point(self.camera.target),
@@ -309,5 +332,31 @@ mod tests {
         let json: serde_json::Value = serde_json::from_slice(&read("scenes.json")).expect("JSON");
         assert_eq!(json["scenes"][0]["name"], "smooth-red-back");
         assert_eq!(json["scenes"][0]["fibre"]["sigma_a"].as_array().map(Vec::len), Some(3));
+        assert!(entry.white_strands_file.is_none() && json["scenes"][0]["fibre"]["white_sigma_a"].is_null());
+    }
+
+    #[test]
+    fn grey_hair_is_written_as_strands_with_and_without_pigment() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let request = ReferenceRequest {
+            scenes: vec!["reference-smooth-grey-front".parse().expect("a scene")],
+            out: folder.path().to_owned(),
+            size: (24, 24),
+            strands: Some(1000),
+            backend: Backend::Cpu,
+        };
+        let report =
+            write_reference(&request, &|_| Ok(()), &mut |_| ControlFlow::Continue(())).expect("written");
+        let [entry] = report.scenes.as_slice() else { panic!("{report:?}") };
+        let count = |file: &str| {
+            std::fs::read_to_string(folder.path().join(file)).expect("a file").split("\n\n").count()
+        };
+        let white_file = entry.white_strands_file.as_ref().expect("white strands");
+        let (pigmented, white) = (count(&entry.strands_file), count(white_file));
+        println!("{white} of {} strands are white", entry.strands);
+        assert_eq!(pigmented + white, entry.strands);
+        assert!((540..660).contains(&white), "{white} of 1000, where 60 % are asked for");
+        let (dark, light) = (entry.fibre.sigma_a, entry.fibre.white_sigma_a.expect("an absorption"));
+        assert!(light.max_element() < 0.1 * dark.max_element(), "{light} {dark}");
     }
 }

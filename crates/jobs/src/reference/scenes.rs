@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use glam::Vec3;
-use lovelock_groom::Preset;
+use lovelock_groom::{HAIR_COLOURS, HairColour, Preset};
 use lovelock_project::Project;
 use lovelock_project::project::MotionSource;
 use lovelock_render::{Light, StrandCount, Transparency};
@@ -44,12 +44,14 @@ pub enum ReferenceColor {
     Blonde,
     /// Hardly any absorption, the hardest case for approximations of multiple scattering.
     Platinum,
+    /// Dark strands among white ones.
+    Grey,
 }
 
 impl ReferenceColor {
-    /// All of them, from dark to light.
-    pub const ALL: [Self; 6] =
-        [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Platinum];
+    /// All of them, from dark to light, and grey.
+    pub const ALL: [Self; 7] =
+        [Self::Black, Self::DarkBrown, Self::Brown, Self::Red, Self::Blonde, Self::Platinum, Self::Grey];
 
     /// The stable name.
     pub const fn id(self) -> &'static str {
@@ -60,19 +62,15 @@ impl ReferenceColor {
             Self::Red => "red",
             Self::Blonde => "blonde",
             Self::Platinum => "platinum",
+            Self::Grey => "grey",
         }
     }
 
-    /// Concentrations of eumelanin and pheomelanin.
-    pub const fn melanin(self) -> [f32; 2] {
-        match self {
-            Self::Black => [8.0, 0.0],
-            Self::DarkBrown => [3.0, 0.1],
-            Self::Brown => [1.3, 0.1],
-            Self::Red => [0.3, 0.8],
-            Self::Blonde => [0.3, 0.05],
-            Self::Platinum => [0.06, 0.02],
-        }
+    /// The natural colour of that name.
+    fn colour(self) -> &'static HairColour {
+        let name = self.id().replace('-', " ");
+        let found = HAIR_COLOURS.iter().find(|colour| colour.name.eq_ignore_ascii_case(&name));
+        found.unwrap_or(&HAIR_COLOURS[0])
     }
 }
 
@@ -149,15 +147,14 @@ impl ReferenceScene {
 
     /// The project of the scene, except for its light, which depends on the camera.
     ///
-    /// Both renderers draw the same fibres: as wide as the hairs that they stand for, opaque, and all of one colour. There is no
-    /// body in the picture, no other light and no background.
+    /// Both renderers draw the same fibres: as wide as the hairs that they stand for, opaque, and all of one colour, or white among grey hair. There is
+    /// no body in the picture, no other light and no background.
     pub fn project(self) -> Project {
         let mut project = Project::default();
         project.set_preset(self.hair);
         project.motion.source = MotionSource::Rest;
-        [project.look.eumelanin, project.look.pheomelanin] = self.color.melanin();
-        (project.look.variation, project.look.tip_lightening) = (0.0, 0.0);
-        (project.look.grey, project.look.dye_amount, project.look.highlights) = (0.0, 0.0, 0.0);
+        self.color.colour().apply(&mut project.look);
+        (project.look.variation, project.look.tip_lightening, project.look.highlights) = (0.0, 0.0, 0.0);
         project.look.width_scale = 1.0;
         project.lights =
             vec![Light { intensity: IRRADIANCE, specular: 1.0, softness: 0.0, ..Light::default() }];
@@ -193,8 +190,8 @@ mod tests {
 
     #[test]
     fn an_id_names_all_some_or_one() {
-        assert_eq!(ReferenceScene::named("reference").map(|scenes| scenes.len()), Ok(36));
-        assert_eq!(ReferenceScene::named("reference-curly").map(|scenes| scenes.len()), Ok(18));
+        assert_eq!(ReferenceScene::named("reference").map(|scenes| scenes.len()), Ok(42));
+        assert_eq!(ReferenceScene::named("reference-curly").map(|scenes| scenes.len()), Ok(21));
         assert_eq!(ReferenceScene::named("reference-smooth-brown").map(|scenes| scenes.len()), Ok(3));
         for scene in ReferenceScene::all() {
             assert_eq!(scene.to_string().parse(), Ok(scene));
@@ -203,14 +200,22 @@ mod tests {
             let error = ReferenceScene::named(wrong).unwrap_err();
             assert!(error.contains(wrong) && error.contains("dark-brown"), "{error}");
         }
-        assert!("reference-curly".parse::<ReferenceScene>().unwrap_err().contains("18 scenes"));
+        assert!("reference-curly".parse::<ReferenceScene>().unwrap_err().contains("21 scenes"));
     }
 
     #[test]
     fn fibres_are_of_one_colour_and_as_wide_as_the_hairs_that_they_stand_for() {
         let scene: ReferenceScene = "reference-curly-red-side".parse().expect("a scene");
         let look = scene.project().look;
-        assert_eq!([look.eumelanin, look.pheomelanin], [0.3, 0.8]);
+        assert_eq!([look.eumelanin, look.pheomelanin, look.grey], [0.3, 0.8, 0.0]);
         assert_eq!([look.variation, look.tip_lightening, look.width_scale], [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn colours_are_the_natural_ones_of_their_names() {
+        for color in ReferenceColor::ALL {
+            let name = color.colour().name.to_lowercase().replace(' ', "-");
+            assert_eq!(name, color.id());
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::ops::Range;
 
 use glam::Vec3;
+use lovelock_groom::PigmentVariation;
 use lovelock_render::{DrawnHair, FrameInput};
 
 /// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
@@ -21,6 +22,8 @@ pub(super) struct DrawnStrands {
     pub(super) half_widths: Vec<f32>,
     /// The points of each strand.
     pub(super) strands: Vec<Range<usize>>,
+    /// The shade of each strand, 0 to 1.
+    pub(super) shades: Vec<f32>,
 }
 
 /// The strands that a renderer draws of `input`, and their half widths. `picture.strands` must be a fixed number or the stored ones:
@@ -37,6 +40,7 @@ pub(super) fn drawn_strands(input: &FrameInput<'_>) -> DrawnStrands {
         points: (0..strands.points()).map(|i| strands.point(i)).collect(),
         strands: strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize).collect(),
         half_widths: drawn.half_widths,
+        shades: drawn.shades,
     }
 }
 
@@ -47,7 +51,19 @@ impl DrawnStrands {
             points: self.points.iter().map(|&p| to(p)).collect(),
             half_widths: self.half_widths.iter().map(|w| w * scale).collect(),
             strands: self.strands.clone(),
+            shades: self.shades.clone(),
         }
+    }
+
+    /// The strands with pigment and those without, of hair with that share of grey strands.
+    pub(super) fn parted(&self, grey: f32) -> [Self; 2] {
+        let variation = PigmentVariation { grey, ..PigmentVariation::default() };
+        [false, true].map(|is_white| {
+            let of_part = |&shade: &f32| (variation.factor(0.0, shade, 0) < 1.0) == is_white;
+            let pairs = self.strands.iter().zip(&self.shades).filter(|(_, shade)| of_part(shade));
+            let (strands, shades) = pairs.map(|(strand, &shade)| (strand.clone(), shade)).unzip();
+            Self { points: self.points.clone(), half_widths: self.half_widths.clone(), strands, shades }
+        })
     }
 
     /// Control points of cubic B-splines as text: `x y z radius` per line in the unit of the points, and an empty line between
@@ -110,6 +126,7 @@ mod tests {
             points: points.iter().copied().map(Vec3::from).collect(),
             half_widths: half_widths.to_vec(),
             strands: ranges.collect(),
+            shades: vec![0.5; lengths.len()],
         }
     }
 

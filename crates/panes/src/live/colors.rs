@@ -40,6 +40,17 @@ impl Rounds {
             None => (renderer.picture(&input, size[0], size[1], &mut picture)?, false),
         };
         take_stats(pane, &stats);
+        if !pane.contender.draws_strands() {
+            let shown = match shows {
+                LiveShows::PictureError => self.color_by_picture(request, index, pane, &mut picture),
+                _ => Err(NO_POINTS.to_owned()),
+            };
+            match shown {
+                Ok(()) => pane.image = Image::on(window, &mut picture),
+                Err(why) => pane.colors_problem = Some(why),
+            }
+            return Ok(());
+        }
         let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
         let measured = found.and_then(|found| Ok((self.measure(request, index, &found, pane)?, found)));
         let colored = match (measured, shows.colors()) {
@@ -114,19 +125,12 @@ impl Rounds {
         pane: &mut LivePane,
         picture: &mut Picture,
     ) -> Result<(), String> {
+        if request.view.shows == LiveShows::PictureError {
+            return self.color_by_picture(request, index, pane, picture);
+        }
         let own = self.takes.instant(index).and_then(Result::ok);
         let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
         let largest = largest(request);
-        if request.view.shows == LiveShows::PictureError {
-            let size = [request.width, request.height];
-            let exact = self.reference.picture(&request.project, snapshot, strands, size)?;
-            let is_itself = pane.error == LiveError::Reference
-                && pane.contender.transparency == Transparency::Exact
-                && *picture == *exact;
-            let mean = heat::of_pictures(&exact, largest, picture)?;
-            pane.flip = (!is_itself).then_some(mean);
-            return Ok(());
-        }
         // False colours show the front strands in every pane, whatever its transparency mode.
         let mut shown = drawn.clone();
         shown.picture.transparency = Transparency::Sorted;
@@ -134,7 +138,34 @@ impl Rounds {
         let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), picture);
         colored.map_err(|error| error.to_string())
     }
+
+    /// Replaces the `picture` of a pane in memory by its difference from the reference in colour.
+    ///
+    /// # Errors
+    /// A sentence if there is no reference, or the images cannot be compared.
+    fn color_by_picture(
+        &mut self,
+        request: &LiveRequest,
+        index: usize,
+        pane: &mut LivePane,
+        picture: &mut Picture,
+    ) -> Result<(), String> {
+        let own = self.takes.instant(index).and_then(Result::ok);
+        let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
+        let size = [request.width, request.height];
+        let exact = self.reference.picture(&request.project, snapshot, strands, size)?;
+        let is_itself = pane.error == LiveError::Reference
+            && pane.contender.transparency == Transparency::Exact
+            && *picture == *exact;
+        let mean = heat::of_pictures(&exact, largest(request), picture)?;
+        pane.flip = (!is_itself).then_some(mean);
+        Ok(())
+    }
 }
+
+/// Why a pane that draws clusters has no errors of transmittance.
+const NO_POINTS: &str =
+    "Errors of transmittance are measured at the points of strands, and this pane draws clusters.";
 
 /// The value of the last colour.
 fn largest(request: &LiveRequest) -> f32 {

@@ -7,7 +7,8 @@ use lovelock_groom::{HairLook, Strands};
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Backend, Camera, CpuRenderer, Light, Picture, RayMarkKind, ShadowMethod, ShadowSettings, Transparency,
+    Backend, Camera, CpuRenderer, HairDrawing, Light, Picture, RayMarkKind, ShadowMethod, ShadowSettings,
+    Transparency,
 };
 use lovelock_session::snapshot::FrameSnapshot;
 
@@ -98,6 +99,7 @@ impl ExactReference {
         let mut unseen = project.clone();
         unseen.lights = vec![light.clone()];
         unseen.shadow = shadow;
+        unseen.picture.draw = HairDrawing::Strands;
         unseen.picture.transparency = Transparency::Opaque;
         let size = [UNSEEN; 2];
         let found = draw(&mut self.unseen, &unseen, snapshot, strands, size, &mut Picture::default());
@@ -107,7 +109,7 @@ impl ExactReference {
         found
     }
 
-    /// The image with exact shadows and transparency.
+    /// The image of strands with exact shadows and transparency.
     ///
     /// # Errors
     /// A sentence if the size is out of range, or the map needs too much memory.
@@ -120,6 +122,7 @@ impl ExactReference {
     ) -> OrReason<Picture> {
         let mut exact = project.clone();
         exact.shadow.method = ShadowMethod::Exact;
+        exact.picture.draw = HairDrawing::Strands;
         exact.picture.transparency = Transparency::Exact;
         // The panes do not affect the reference.
         exact.compare.panes = Vec::new();

@@ -172,7 +172,7 @@ impl Rounds {
             // Its time is known when the device has finished it: see `Rounds::finish`.
             pane.times = LiveTimes { whole: 0.0, ..pane.times };
         }
-        if request.view.measures {
+        if request.view.measures && contender.draws_strands() {
             // A missing light has no transmittance, and the image does not need it.
             let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
             let _ = found.and_then(|found| self.measure(request, index, &found, pane));
@@ -210,8 +210,9 @@ impl Rounds {
                 hair.steps = self.reference.steps(hair.position);
             }
             for &pane in &request.panes {
-                // The hair of another take is not the chosen one.
-                if self.takes.instant(pane).is_some() {
+                // The hair of another take is not the chosen one, and other strands shadow clusters.
+                let draws_strands = project.compare.panes.get(pane).is_none_or(Contender::draws_strands);
+                if self.takes.instant(pane).is_some() || !draws_strands {
                     continue;
                 }
                 let Some(renderer) = self.renderers.last(pane) else { continue };

@@ -12,7 +12,7 @@ use std::time::Duration;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_project::project::Contender;
-use lovelock_render::{Backend, CpuRenderer, Gpu, GpuError, Picture, RenderError, ShadowMethod};
+use lovelock_render::{Backend, CpuRenderer, Gpu, GpuError, HairDrawing, Picture, RenderError, ShadowMethod};
 use lovelock_session::engine::Engine;
 use lovelock_session::scene::SceneLoader;
 use lovelock_session::snapshot::FrameSnapshot;

@@ -1,6 +1,7 @@
 //! One way to render hair among those that are compared.
 
-use lovelock_render::{Backend, PictureSettings, ShadowSettings, Transparency};
+use lovelock_base::settings::Choices;
+use lovelock_render::{Backend, HairDrawing, PictureSettings, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
 use super::super::Project;
@@ -12,6 +13,8 @@ use crate::files::FileRef;
 pub struct Contender {
     /// How hair shadows itself, with the values of every method.
     pub shadow: ShadowSettings,
+    /// What hair is drawn as.
+    pub draw: HairDrawing,
     /// How overlapping strands are blended.
     pub transparency: Transparency,
     /// What renders: CPU or GPU.
@@ -31,14 +34,15 @@ impl Default for Contender {
 impl Contender {
     /// The settings of `project` itself.
     pub fn of(project: &Project) -> Self {
-        let PictureSettings { transparency, backend, .. } = project.picture;
-        Self { shadow: project.shadow, transparency, backend, scale: 1.0, take: None }
+        let PictureSettings { draw, transparency, backend, .. } = project.picture;
+        Self { shadow: project.shadow, draw, transparency, backend, scale: 1.0, take: None }
     }
 
     /// The project with these settings.
     pub fn applied_to(&self, project: &Project) -> Project {
         let mut project = project.clone();
         project.shadow = self.shadow;
+        project.picture.draw = self.draw;
         project.picture.transparency = self.transparency;
         project.picture.backend = self.backend;
         project
@@ -49,10 +53,12 @@ impl Contender {
         self.shadow.size_label()
     }
 
-    /// The settings besides the method, such as `128³ · sorted · CPU`.
+    /// The settings besides the method, such as `128³ · sorted · CPU`, or `clusters · 128³ · sorted · CPU` if hair is not drawn as
+    /// strands.
     pub fn settings_label(&self) -> String {
         let mut parts = vec![
             self.take_name().unwrap_or_default(),
+            self.draw_label().unwrap_or_default().to_owned(),
             self.size_label(),
             self.transparency.id().to_owned(),
             backend_label(self.backend).to_owned(),
@@ -62,6 +68,16 @@ impl Contender {
         }
         parts.retain(|part| !part.is_empty());
         parts.join(" · ")
+    }
+
+    /// Whether hair is drawn as strands, at whose points transmittance is compared.
+    pub fn draws_strands(&self) -> bool {
+        self.draw == HairDrawing::Strands
+    }
+
+    /// What hair is drawn as, unless it is drawn as strands.
+    pub fn draw_label(&self) -> Option<&'static str> {
+        (!self.draws_strands()).then(|| self.draw.names().0)
     }
 
     /// The name of the take that is shown.
@@ -100,5 +116,24 @@ mod tests {
         let changed = other.applied_to(&project);
         assert_ne!(changed, project);
         assert_eq!(Contender::of(&changed), other);
+    }
+
+    #[test]
+    fn only_hair_that_is_not_drawn_as_strands_is_named() {
+        let mut pane = Contender::default();
+        let strands = pane.settings_label();
+        assert!(!strands.contains("strands"), "{strands}");
+        for (draw, name) in [(HairDrawing::Clusters, "clusters"), (HairDrawing::Auto, "auto")] {
+            pane.draw = draw;
+            assert_eq!(pane.settings_label(), format!("{name} · {strands}"));
+            let project = pane.applied_to(&Project::default());
+            assert_eq!((project.picture.draw, Contender::of(&project)), (draw, pane.clone()));
+        }
+    }
+
+    #[test]
+    fn a_contender_saved_without_its_drawing_draws_strands() {
+        let pane: Contender = ron::from_str("(transparency: exact, scale: 0.5)").expect("an earlier file");
+        assert_eq!((pane.draw, pane.scale), (HairDrawing::Strands, 0.5));
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairOperation, HairShading, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
@@ -332,6 +332,7 @@ impl Default for CompareSection {
     fn default() -> Self {
         let pane = |method| Contender {
             shadow: ShadowSettings { method, ..ShadowSettings::default() },
+            draw: HairDrawing::default(),
             transparency: Transparency::default(),
             backend: Backend::default(),
             scale: 1.0,

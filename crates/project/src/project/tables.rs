@@ -6,7 +6,7 @@ use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
 use lovelock_groom::{HairShading, HairTie, Preset};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, Transparency};
+use lovelock_render::{Backend, HairDrawing, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, Transparency};
 
 use super::super::Project;
 use super::PROJECT_VERSION;
@@ -420,6 +420,13 @@ impl Settings for CompareSection {
 
 impl Settings for Contender {
     const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<HairDrawing>(
+            field!(Self, draw),
+            "Draw hair as",
+            "What hair is drawn as: strand by strand, lock by lock from a database of rendered sectors, or strands \
+             where it is large in the image and locks where it is small. Errors of transmittance are measured at \
+             strands, so panes that draw locks have none.",
+        ),
         Setting::choice::<Transparency>(
             field!(Self, transparency),
             "Transparency",

@@ -23,6 +23,8 @@ pub struct DrawnHair {
     /// Half of the width of the hairs that each point stands for, metres: what blocks light. The eye sees it as wide if
     /// `look.width_scale` and `picture.strand_opacity` are 1.
     pub half_widths: Vec<f32>,
+    /// The shade of each strand, 0 to 1.
+    pub shades: Vec<f32>,
 }
 
 impl DrawnHair {
@@ -39,7 +41,11 @@ impl DrawnHair {
         let taper = |i: usize| (drawn.details.words.get(i).copied().unwrap_or(255) & 0xff) as f32 / 255.0;
         let half_widths =
             (0..strands.points()).map(|i| half * portion.share(i / points) * taper(i)).collect();
-        Self { strands, half_widths }
+        let shade = |&first: &u32| {
+            drawn.details.words.get(first as usize).map_or(0.5, |word| (word >> 16 & 0xff) as f32 / 255.0)
+        };
+        let shades = strands.first_point.iter().take(strands.count()).map(shade).collect();
+        Self { strands, half_widths, shades }
     }
 }
 

@@ -130,7 +130,7 @@ fn nearest_of(
         let shown = samples.depths(at).into_iter().zip(samples.triangles(at));
         *near = shown.map(held).fold(0.0, f32::max);
     }
-    let opacity = view.uniform.width_opacity_tip_scalp.y;
+    let opacity = view.uniform.width_opacity_tip.y;
     let mut sink = Nearest { samples, near: &mut near };
     let firsts = placed.segments();
     for &segment in placed.segment_bins.of(tile) {

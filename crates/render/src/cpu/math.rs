@@ -1,12 +1,12 @@
 //! Elementary functions without branches, so that loops that call them vectorise.
 //!
 //! They use only additions, products, roots and bit operations, no library functions and no fused products, so that every CPU and
-//! every vector width gives the same bits. (A few numbers per frame, such as the tangent of the field of view, come from the
-//! system's library.)
+//! every vector width gives the same bits. (Constants per frame, such as the tangent of the field of view, and the tables of fibre
+//! scattering come from the system's library.)
 // Inlined into the loops that `simd_versions!` compiles; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
-pub(super) use lovelock_appearance::fibre::arithmetic::{clamp, exp, exp2, three};
+pub(super) use lovelock_appearance::fibre::arithmetic::{clamp, exp, exp2, floor, smoothstep, three};
 
 /// Adding this to a number below 2^22 rounds it to an integer, which is then in the lowest bits.
 const ROUND: f32 = 12_582_912.0;
@@ -33,20 +33,6 @@ pub(super) fn saturate(x: f32) -> f32 {
 #[inline(always)]
 pub(super) fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
-}
-
-/// 0 below `low`, 1 above `high`, smooth between, as in WGSL.
-#[inline(always)]
-pub(super) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    let t = saturate((x - low) / (high - low));
-    t * t * (3.0 - 2.0 * t)
-}
-
-/// The floor of `x`, for `x` within ±2^22.
-#[inline(always)]
-pub(super) fn floor(x: f32) -> f32 {
-    let rounded = (x + ROUND) - ROUND;
-    rounded - if rounded > x { 1.0 } else { 0.0 }
 }
 
 /// The integer `x` as an index, for `x` from 0 to 2^22, without a saturating conversion.

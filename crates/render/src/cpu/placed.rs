@@ -187,7 +187,7 @@ impl PlacedScene {
         segments: &[u32],
         scratch: &mut TileScratch,
     ) {
-        let opacity = view.uniform.width_opacity_tip_scalp.y;
+        let opacity = view.uniform.width_opacity_tip.y;
         if transparency == Transparency::Sorted {
             self.keys.sort(segments, self.segments(), &mut scratch.order);
             let order = std::mem::take(&mut scratch.order);
@@ -223,7 +223,7 @@ impl PlacedScene {
             segments,
             first_points: self.segments(),
             samples: &scratch.samples,
-            opacity: view.uniform.width_opacity_tip_scalp.y,
+            opacity: view.uniform.width_opacity_tip.y,
         };
         list_segments_simd(self.width, &input, &mut scratch.fragments);
     }

@@ -27,7 +27,7 @@ use crate::picture::check_size;
 use crate::scene_light::SceneLight;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
+use crate::{ClusterStats, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -343,6 +343,7 @@ impl CpuRenderer {
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
+            clusters: self.placed.clusters.hair().map(|hair| ClusterStats::of(&hair)),
             ..FrameStats::default()
         }
     }

@@ -22,7 +22,7 @@ use crate::{FrameInput, HairPose};
 #[repr(C)]
 struct ShadedPoint([u32; 8]);
 
-/// The width of a strand that is aimed at, pixels, on a card and on a software adapter.
+/// The width of a strand that is aimed at, pixels, on a GPU and on a software adapter.
 const TARGET_PIXELS: [f32; 2] = [0.35, 0.7];
 /// The most points of fine strands.
 const MOST_POINTS: u64 = 1 << 22;
@@ -118,7 +118,7 @@ impl HairBuffers {
         if needed > gpu.most_storage_bytes() {
             return Err(GpuError::Input(format!(
                 "{points} strand points need a buffer of {needed} bytes, and {} takes at most {}: draw fewer strands, or \
-                 by the processor",
+                 on the CPU",
                 gpu.info.name,
                 gpu.most_storage_bytes()
             )));

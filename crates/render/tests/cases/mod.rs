@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::BACKEND;
 use crate::common::{self, Scene, pixel, quad, scene};
 use glam::Vec3;
-use lovelock_render::{Camera, Light, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_render::{Camera, Light, ShadowMethod, ShadowSettings, StrandCount, Transparency};
 use lovelock_testkit::{flip, mean_color};
 
 /// `count` horizontal strands of 20 cm, spread over `height` metres around the origin, at depth `z`.
@@ -274,8 +274,9 @@ fn sizes_out_of_range_are_refused_with_the_limit() {
 fn odd_hair_in_every_combination_is_a_picture() {
     let point = Vec3::new(0.01, 0.0, 0.0);
     let along_light = (0..11).map(|i| Vec3::new(0.0, -0.006, -0.008) * i as f32).collect();
-    let odd: [(&str, Vec<Vec<Vec3>>); 5] = [
+    let odd: [(&str, Vec<Vec<Vec3>>); 6] = [
         ("no strand", vec![]),
+        ("a strand of no point", vec![vec![], vec![point; 2]]),
         ("a strand of one point", vec![vec![point]]),
         ("points in one place", vec![vec![point; 5]; 3]),
         ("a strand along the light", vec![along_light]),
@@ -296,6 +297,9 @@ fn odd_hair_in_every_combination_is_a_picture() {
                 }
             }
         }
+        (s.picture.strands, s.picture.strand_number) = (StrandCount::Fixed, 100.0);
+        let picture = s.draw_by(BACKEND, 24, 16).expect("an adapter");
+        assert!(sum(pixel(&picture, 1, 1)) > 60, "{name}, fine strands");
     }
 }
 

@@ -4,7 +4,11 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{GuideFrame, HairLook, HairShading, Hairstyle, StrandSet, Strands};
+use lovelock_appearance::environment::Panorama;
+use lovelock_groom::{
+    GroomSettings, GuideFrame, HairLook, HairShading, Hairstyle, PlainHead, StrandSet, Strands, grow,
+    interpolate,
+};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
     Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Light, Picture, PictureSettings,
@@ -49,6 +53,7 @@ pub struct Scene {
     pub shadow: ShadowSettings,
     pub camera: Camera,
     pub picture: PictureSettings,
+    pub surroundings: Option<Arc<Panorama>>,
 }
 
 impl Scene {
@@ -83,10 +88,42 @@ impl Scene {
             camera: &self.camera,
             picture: &self.picture,
             is_draft: false,
-            surroundings: None,
+            surroundings: self.surroundings.as_ref(),
             known: None,
         }
     }
+}
+
+/// A picture of surroundings with the radiance `of` a row and a column, in 32 rows of 64 columns.
+pub fn panorama(of: impl Fn(usize, usize) -> Vec3) -> Arc<Panorama> {
+    let pixels: Vec<Vec3> = (0..32 * 64).map(|i| of(i / 64, i % 64)).collect();
+    Arc::new(Panorama::from_pixels(64, 32, &pixels).expect("a picture"))
+}
+
+/// A head of short hair of 2,000 strands, without the head.
+pub fn wig() -> Scene {
+    let settings = GroomSettings { wisps: 100, strands_per_wisp: 20, ..GroomSettings::default() };
+    let style: Arc<Hairstyle> = Arc::new(grow(&settings, &PlainHead.scalp(48), &PlainHead).expect("hair"));
+    let mut strands = Strands::default();
+    interpolate(&style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+    let mut scene = scene(&[]);
+    (scene.style, scene.strands, scene.look) = (style, strands, settings.look);
+    scene.shadow.method = ShadowMethod::VoxelMap;
+    scene.lights = Light::default_rig();
+    scene.camera.target = Vec3::new(0.0, 0.08, 0.0);
+    scene.camera.eye = scene.camera.target + Vec3::new(-0.3, 0.15, -0.9);
+    scene.picture.strands = StrandCount::Fixed;
+    scene
+}
+
+/// Fine strands that scatter as fibres, in soft light, in front of a body that receives their shadow.
+pub fn soft_wig() -> Scene {
+    let mut scene = wig();
+    scene.body = Some(grid(-0.16, 0.3, 24, Vec3::splat(0.6)));
+    scene.camera.eye = scene.camera.target + Vec3::new(-0.5, 0.15, 0.6);
+    scene.lights[0].direction = Vec3::new(0.25, -0.1, -1.0);
+    scene.picture.strand_number = 3_000.0;
+    scene
 }
 
 /// A hairstyle for strands given as points, with default properties.
@@ -138,6 +175,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
             ambient: 0.5,
             ..PictureSettings::default()
         },
+        surroundings: None,
     }
 }
 

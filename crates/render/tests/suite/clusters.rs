@@ -91,6 +91,8 @@ struct Errors {
     light: f64,
     /// Mean difference of the light of a square of 8 by 8 pixels, as a fraction of the mean light of the lock.
     local_light: f64,
+    /// Mean opacities of clusters and strands.
+    alphas: [f64; 2],
 }
 
 fn errors(clusters: &Layers, strands: &Layers) -> Errors {
@@ -110,7 +112,8 @@ fn errors(clusters: &Layers, strands: &Layers) -> Errors {
             local += (sum(clusters) - sum(strands)).abs();
         }
     }
-    Errors { opacity, light: total(clusters) / of - 1.0, local_light: local / of }
+    let alphas = [0, 1].map(|k| pairs().map(|(a, b)| f64::from([a, b][k][3])).sum::<f64>() / count);
+    Errors { opacity, light: total(clusters) / of - 1.0, local_light: local / of, alphas }
 }
 
 /// The mean of errors over directions of view and light.
@@ -127,10 +130,16 @@ fn mean_errors(renderers: &mut [CpuRenderer; 2], scene: &mut Scene, views: u32, 
             mean.opacity += of.opacity;
             mean.light += of.light.abs();
             mean.local_light += of.local_light;
+            (mean.alphas[0], mean.alphas[1]) = (mean.alphas[0] + of.alphas[0], mean.alphas[1] + of.alphas[1]);
         }
     }
     let count = f64::from(views * lights);
-    Errors { opacity: mean.opacity / count, light: mean.light / count, local_light: mean.local_light / count }
+    Errors {
+        opacity: mean.opacity / count,
+        light: mean.light / count,
+        local_light: mean.local_light / count,
+        alphas: mean.alphas.map(|sum| sum / count),
+    }
 }
 
 #[test]
@@ -142,6 +151,7 @@ fn clusters_are_near_the_strands_for_which_they_stand() {
     for layers in [1, 2, 4, 8, 15] {
         scene.picture.clusters = ClusterSettings { layers, around: 32, ..ClusterSettings::default() };
         let of = mean_errors(&mut renderers, &mut scene, 4, 3);
+        println!("  alphas {:?}", of.alphas);
         println!("{layers:>6}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
         found.push(of);
     }

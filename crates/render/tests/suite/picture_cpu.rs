@@ -13,7 +13,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_render::{CpuRenderer, FrameStats, Light, Picture, ShadowMethod};
 
-use crate::common::{Scene, grid, scene, tuft};
+use crate::common::{Scene, grid, scene, soft_wig, tuft};
 
 /// A change of a scene.
 type Change = fn(&mut Scene);
@@ -24,6 +24,15 @@ fn what_is_kept_from_picture_to_picture_changes_no_byte() {
     scene.body = Some(grid(-0.1, 0.3, 8, Vec3::new(0.5, 0.3, 0.2)));
     scene.picture.ground = true;
     scene.shadow.method = ShadowMethod::VoxelMap;
+    keeps(scene);
+}
+
+#[test]
+fn what_is_kept_of_fine_strands_changes_no_byte() {
+    keeps(soft_wig());
+}
+
+fn keeps(mut scene: Scene) {
     let (mut keeping, mut plain) = (CpuRenderer::default(), CpuRenderer::default().keeping_nothing());
     // What changes, and whether the depth maps of the body and the shadows of hair are kept.
     let changes: [(&str, Change, [bool; 2]); 12] = [

@@ -8,6 +8,9 @@ use lovelock_satf::{ClusterHair, ClusterSettings};
 
 use super::hair::{LINKS, Made, at_rest, corners, guides, lively, random_weights, style};
 
+/// The width of a strand, metres.
+const WIDTH: f32 = 80e-6;
+
 /// Strands whose places fill the disk of the guides evenly.
 fn disk(seed: u64, count: usize) -> Vec<[f32; 3]> {
     let angles = [0, 1, 2].map(|g| std::f32::consts::FRAC_PI_2 + std::f32::consts::TAU / 3.0 * g as f32);
@@ -26,7 +29,7 @@ fn plain(weights: Vec<[f32; 3]>) -> Vec<Made> {
 
 fn clusters(style: Hairstyle, settings: &ClusterSettings) -> (Arc<Hairstyle>, ClusterHair) {
     let style = Arc::new(style);
-    let hair = ClusterHair::new(&style, settings);
+    let hair = ClusterHair::new(&style, settings, WIDTH);
     (style, hair)
 }
 
@@ -214,7 +217,7 @@ fn a_part_of_many_strands_casts_their_shadow() {
     assert_eq!(casters.strands.count(), 4000, "every second one of 8,000");
     assert_eq!(casters.wisps.len(), style.wisps.len());
     let few = style_of_few();
-    let hair = ClusterHair::new(&few, &ClusterSettings::default());
+    let hair = ClusterHair::new(&few, &ClusterSettings::default(), WIDTH);
     assert!(Arc::ptr_eq(&hair.casters, &few), "all of few strands");
 }
 
@@ -227,7 +230,7 @@ fn grown_hair_becomes_clusters_of_all_its_wisps() {
     let groom = lovelock_groom::GroomSettings::default();
     let head = lovelock_groom::PlainHead;
     let style = Arc::new(lovelock_groom::grow(&groom, &head.scalp(48), &head).expect("a hairstyle"));
-    let hair = ClusterHair::new(&style, &ClusterSettings::default());
+    let hair = ClusterHair::new(&style, &ClusterSettings::default(), WIDTH);
     assert_eq!(hair.clusters(), style.wisps.len());
     let frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
     assert!(ribs_at(&hair, &frame).x.iter().all(|x| x.is_finite()));

@@ -24,6 +24,7 @@ fn row(report: &CompareReport, method: &MethodReport) -> Vec<(&'static str, Stri
     let mut row = vec![
         ("name", quoted(&method.name)),
         ("method", method.id.clone()),
+        ("draw", method.draw.clone()),
         ("transparency", method.transparency.clone()),
         ("backend", method.backend.clone()),
         ("adapter", quoted(&method.adapter)),

@@ -1,9 +1,9 @@
-//! The entrants of a comparison: each method with each value of the sweeps, transparency and backend.
+//! The entrants of a comparison: each method with each value of the sweeps, what hair is drawn as, transparency and backend.
 
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::Contender;
-use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 
 use super::sweep;
 use super::sweep::Sweep;
@@ -19,19 +19,24 @@ pub(super) struct Entrant {
     pub report: MethodReport,
 }
 
-/// The entrants, in the order of the report. `backends` contains no [`Backend::Auto`].
+/// The entrants of `methods`, what hair is drawn as, and transparencies, in the order of the report. `backends` contains no
+/// [`Backend::Auto`].
 ///
 /// # Errors
 /// If no method has a setting, a value is invalid, or there are too many entrants.
 pub(super) fn entrants(
     project: &Project,
-    methods: &[ShadowMethod],
-    transparencies: &[Transparency],
+    (methods, draws, transparencies): (&[ShadowMethod], &[HairDrawing], &[Transparency]),
     backends: &[Backend],
     sweeps: &[Sweep],
 ) -> Result<Vec<Entrant>, ProjectError> {
     let methods = without_repetition(methods, ShadowMethod::ALL);
+    let draws = without_repetition(draws, &[project.picture.draw]);
     let transparencies = without_repetition(transparencies, &[project.picture.transparency]);
+    let looks: Vec<_> = draws
+        .iter()
+        .flat_map(|&draw| transparencies.iter().map(move |&transparency| (draw, transparency)))
+        .collect();
     for sweep in sweeps {
         let has = |method: &ShadowMethod| sweep::has_setting(*method, &sweep.setting);
         if !methods.iter().any(has) {
@@ -41,17 +46,19 @@ pub(super) fn entrants(
     let mut all = Vec::new();
     for &method in &methods {
         for (shadow, swept) in runs(&ShadowSettings { method, ..project.shadow }, sweeps)? {
-            for &transparency in &transparencies {
+            for &(draw, transparency) in &looks {
                 for &backend in backends {
-                    let contender = Contender { shadow, transparency, backend, scale: 1.0, take: None };
+                    let contender = Contender { shadow, draw, transparency, backend, scale: 1.0, take: None };
                     let changes = swept.iter().map(|(setting, value)| format!("{setting}={value}"));
                     let mut name: Vec<String> = [method.id().to_owned()].into_iter().chain(changes).collect();
+                    name.extend((draws.len() > 1).then(|| draw.to_string()));
                     name.extend((transparencies.len() > 1).then(|| transparency.to_string()));
                     name.extend((backends.len() > 1).then(|| backend.to_string()));
                     let report = MethodReport {
                         id: method.id().to_owned(),
                         label: method.label().to_owned(),
                         name: name.join(" "),
+                        draw: draw.to_string(),
                         transparency: transparency.id().to_owned(),
                         backend: backend.id().to_owned(),
                         settings: sweep::values(&shadow, method),
@@ -143,7 +150,7 @@ mod tests {
         sweeps: &[&str],
     ) -> Result<Vec<Entrant>, ProjectError> {
         let sweeps: Vec<Sweep> = sweeps.iter().map(|text| text.parse().expect("a sweep")).collect();
-        entrants(&Project::default(), methods, &[], backends, &sweeps)
+        entrants(&Project::default(), (methods, &[], &[]), backends, &sweeps)
     }
 
     fn names(entrants: &[Entrant]) -> Vec<&str> {
@@ -163,6 +170,22 @@ mod tests {
         assert_eq!(swept[9].contender.shadow.occupancy_maps.slabs, 8);
         assert_eq!(swept[9].contender.shadow.occupancy_maps.resolution, 128);
         assert_eq!(file_name(names(&swept)[2]), "occupancy-maps-slabs-4-resolution-64-cpu");
+    }
+
+    #[test]
+    fn what_hair_is_drawn_as_multiplies_the_entrants() {
+        let methods = [ShadowMethod::None, ShadowMethod::OccupancyMaps];
+        let draws = [HairDrawing::Strands, HairDrawing::Clusters, HairDrawing::Strands];
+        let project = Project::default();
+        let all = entrants(&project, (&methods, &draws, &[]), &[Backend::Cpu], &[]).expect("entrants");
+        let expected = ["none strands", "none clusters", "occupancy-maps strands", "occupancy-maps clusters"];
+        assert_eq!(names(&all), expected);
+        assert_eq!((all[1].contender.draw, all[1].report.draw.as_str()), (HairDrawing::Clusters, "clusters"));
+        let one = entrants(&project, (&methods, &draws[1..2], &[]), &[Backend::Cpu], &[]).expect("entrants");
+        assert_eq!(
+            (names(&one), one[0].contender.draw),
+            (vec!["none", "occupancy-maps"], HairDrawing::Clusters)
+        );
     }
 
     #[test]

@@ -30,13 +30,22 @@ impl Work<'_> {
         let name = file_name(&entrant.report.name);
         let report = &mut entrant.report;
         let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, check_cancel)?;
+        let [width, height] = self.size;
+        report.files.picture = Some(self.folder.picture(&name, (width, height, &drawn.picture.rgba))?);
+        if let Some(reference) = against.picture {
+            let seen = draw::picture_error(&drawn.picture, reference, against.hair_pixels, report)
+                .map_err(ProjectError::work)?;
+            report.files.picture_error = self.pixel_map(&name, maps::PICTURE_ERROR, &seen)?;
+        }
+        // The points at which light reaches clusters are not those of the strands.
+        if !entrant.contender.draws_strands() {
+            return Ok(());
+        }
+
         let shadow_input = against.hair.shadow_input(&project, &self.lights[0]);
         for probe in probes {
             probe.ask(renderer, &shadow_input, &project.shadow, &report.name)?;
         }
-        let [width, height] = self.size;
-        report.files.picture = Some(self.folder.picture(&name, (width, height, &drawn.picture.rgba))?);
-
         if let Ok(truth) = &against.truths.0[truth].transmittance {
             report.transmittance =
                 Some(draw::transmittance_error(&drawn.transmittance, truth, against.points));
@@ -54,11 +63,6 @@ impl Work<'_> {
         {
             report.transmittance_at_points =
                 Some(draw::transmittance_error(&drawn.transmittance, &points.transmittance, against.points));
-        }
-        if let Some(reference) = against.picture {
-            let seen = draw::picture_error(&drawn.picture, reference, against.hair_pixels, report)
-                .map_err(ProjectError::work)?;
-            report.files.picture_error = self.pixel_map(&name, maps::PICTURE_ERROR, &seen)?;
         }
         report.banding = banding::slab(&entrant.contender.shadow);
 

@@ -2,7 +2,8 @@
 
 use lovelock_project::error::ProjectError;
 use lovelock_render::{
-    Backend, KnownTransmittance, Picture, RenderError, Renderer, ShadowMethod, Transparency, ValueRenderer,
+    Backend, HairDrawing, KnownTransmittance, Picture, RenderError, Renderer, ShadowMethod, Transparency,
+    ValueRenderer,
 };
 
 use super::hair::Hair;
@@ -13,7 +14,7 @@ use super::work::Work;
 use crate::report::{CompareReport, NamedTruth};
 
 impl Work<'_> {
-    /// Renders the reference image: exact transparency, shaded with converged transmittance, which is known for the first light.
+    /// Renders the reference image: strands with exact transparency, shaded with converged transmittance, which is known for the first light.
     /// `None` if the ground truth does not fit in memory; the report says so.
     ///
     /// # Errors
@@ -26,6 +27,7 @@ impl Work<'_> {
     ) -> Result<Option<Picture>, ProjectError> {
         let mut project = self.project.clone();
         project.shadow.method = ShadowMethod::Exact;
+        project.picture.draw = HairDrawing::Strands;
         project.picture.transparency = Transparency::Exact;
         let mut at_points = Vec::new();
         for (i, light) in self.lights.iter().enumerate() {

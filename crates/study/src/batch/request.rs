@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lovelock_project::files::Access;
-use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
+use lovelock_render::{Backend, Gpu, HairDrawing, ShadowMethod, Transparency};
 
 use super::sweep::Sweep;
 
@@ -24,6 +24,8 @@ pub struct CompareRequest {
     pub size: Option<(u32, u32)>,
     /// Shadow methods in the order of the report; all if empty.
     pub methods: Vec<ShadowMethod>,
+    /// What hair is drawn as, combined with every method.
+    pub draws_as: Vec<HairDrawing>,
     /// Transparency modes, combined with every method.
     pub transparencies: Vec<Transparency>,
     /// Backends, combined with every method. An unavailable one is skipped with a note, unless it is the only one.
@@ -49,6 +51,7 @@ impl Default for CompareRequest {
             fps: None,
             size: None,
             methods: Vec::new(),
+            draws_as: Vec::new(),
             transparencies: Vec::new(),
             backends: Vec::new(),
             sweeps: Vec::new(),

@@ -40,7 +40,8 @@ pub fn compare(
     check(&project, request, fps, size)?;
     let (mut renderers, mut notes) = open(&project, request)?;
     let backends: Vec<Backend> = renderers.iter().map(Renderer::backend).collect();
-    let entrants = entrants(&project, &request.methods, &request.transparencies, &backends, &request.sweeps)?;
+    let asked = (&request.methods[..], &request.draws_as[..], &request.transparencies[..]);
+    let entrants = entrants(&project, asked, &backends, &request.sweeps)?;
     let folder = Folder::new(&request.out)?;
 
     let (mut dance, problems) = Dance::open(&project, &request.access, fps, progress)?;

@@ -235,7 +235,7 @@ fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Poin
     reference.points = points.map(|points| points.facts.clone());
 }
 
-/// Marks the methods on the front of error and cost among those with the same backend and transparency.
+/// Marks the methods on the front of error and cost among those with the same backend, drawing and transparency.
 fn mark_fronts(report: &mut CompareReport) {
     let methods = &mut report.methods;
     let error = |method: &MethodReport| method.front_error().unwrap_or(f64::NAN);
@@ -246,7 +246,9 @@ fn mark_fronts(report: &mut CompareReport) {
     let memory = |method: &MethodReport| method.memory_bytes.map_or(f64::NAN, |bytes| bytes as f64);
     let mut fronts = vec![[false; 2]; methods.len()];
     for (at, method) in methods.iter().enumerate() {
-        let key = |method: &MethodReport| (method.backend.clone(), method.transparency.clone());
+        let key = |method: &MethodReport| {
+            (method.backend.clone(), method.draw.clone(), method.transparency.clone())
+        };
         let same: Vec<usize> = (0..methods.len()).filter(|&i| key(&methods[i]) == key(method)).collect();
         // Handle each group once, at its first member.
         if same.first() != Some(&at) {

@@ -23,6 +23,7 @@ pub(super) fn color(method: &MethodReport) -> &'static str {
 /// Names of the methods of one report, as short as possible while still unique.
 pub(super) struct Names {
     backends: bool,
+    draws: bool,
     transparencies: bool,
 }
 
@@ -33,6 +34,7 @@ impl Names {
         };
         Self {
             backends: differ(|method| &method.backend),
+            draws: differ(|method| &method.draw),
             transparencies: differ(|method| &method.transparency),
         }
     }
@@ -40,6 +42,9 @@ impl Names {
     /// The name, with everything that distinguishes it from the others.
     pub(super) fn full(&self, method: &MethodReport) -> String {
         let mut name = self.within_group(method);
+        if self.draws {
+            let _ = write!(name, " · {}", method.draw);
+        }
         if self.transparencies {
             let _ = write!(name, " · {}", method.transparency);
         }
@@ -49,7 +54,7 @@ impl Names {
         name
     }
 
-    /// The name among those of one backend and transparency.
+    /// The name among those of one backend, drawing and transparency.
     #[expect(clippy::unused_self, reason = "read beside `full`")]
     pub(super) fn within_group(&self, method: &MethodReport) -> String {
         let mut name = if method.label.is_empty() { method.id.clone() } else { method.label.clone() };
@@ -69,9 +74,9 @@ impl Names {
     }
 }
 
-/// Methods with comparable costs: those with the same backend, adapter and transparency, in the order of the report.
+/// Methods with comparable costs: those with the same backend, adapter, drawing and transparency, in the order of the report.
 pub(super) struct Group<'a> {
-    /// Backend, adapter and transparency, for a heading.
+    /// Backend, adapter, drawing and transparency, for a heading.
     pub(super) title: String,
     /// The backend: CPU or GPU.
     pub(super) backend: &'static str,
@@ -81,7 +86,8 @@ pub(super) struct Group<'a> {
 
 /// The groups of a report, in order of appearance.
 pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<'a>> {
-    let key = |method: &'a MethodReport| (&method.backend, &method.adapter, &method.transparency);
+    let key =
+        |method: &'a MethodReport| (&method.backend, &method.adapter, &method.draw, &method.transparency);
     let mut groups: Vec<Group<'a>> = Vec::new();
     for (index, method) in report.methods.iter().enumerate() {
         if let Some(group) = groups.iter_mut().find(|group| key(group.methods[0].1) == key(method)) {
@@ -91,6 +97,9 @@ pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<
         let mut title = format!("On the {}", backend(&method.backend));
         if !method.adapter.is_empty() {
             let _ = write!(title, ": {}", method.adapter);
+        }
+        if names.draws {
+            let _ = write!(title, ", drawn as {}", method.draw);
         }
         if names.transparencies {
             let _ = write!(title, ", transparency {}", method.transparency);

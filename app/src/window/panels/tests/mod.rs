@@ -17,7 +17,7 @@ use lovelock_groom::{HairShading, HairTie, Preset, TieKind, TieReach};
 use lovelock_motion::ColliderEdit;
 use lovelock_project::Project;
 use lovelock_project::project::HairSource;
-use lovelock_render::{PassTime, StrandCount, VoxelDeposit};
+use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PassTime, StrandCount, VoxelDeposit};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
 use super::recording::State;
@@ -168,6 +168,9 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_surroundings_file("/a/b c/a panorama of a rather long name that says much.exr");
     files.look.shading = HairShading::KajiyaKay;
     files.picture.strands = StrandCount::Fixed;
+    files.picture.draw = HairDrawing::Auto;
+    files.picture.clusters.shading = ClusterShading::Paper;
+    files.picture.clusters.local_shadow = LocalShadow::Layers;
     files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
     let patch = HairTie { reach: TieReach::InSphere, sphere_at_ring: false, ..HairTie::default() };
     files.hair.ties.push(HairTie { kind: TieKind::Bun, ..patch });

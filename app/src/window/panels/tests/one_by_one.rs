@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_groom::{GroomSettings, HAIR_COLOURS, HairTie, Preset, TieKind, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, HairSource, MotionSource};
-use lovelock_render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
+use lovelock_render::{HairDrawing, MAX_LIGHTS, ShadowMethod, VoxelDeposit};
 use lovelock_session::stats::Stage;
 use lovelock_simulation::SimulationSettings;
 
@@ -412,4 +412,43 @@ fn statistics_group_passes_and_show_their_sums() {
     harness.run();
     assert!(harness.query_by_label("This device does not measure its passes.").is_some());
     assert!(harness.query_by_label("Range").is_none());
+}
+
+#[test]
+fn controls_of_clusters_appear_with_what_they_change() {
+    let mut harness = panel("Picture", Project::default());
+    let has = |harness: &egui_kittest::Harness<'_, Shown<Bench>>, name: &str| {
+        harness.query_all_by_label(name).next().is_some()
+    };
+    for name in ["Clusters", "Layers", "Clusters below", "Look-up"] {
+        assert!(!has(&harness, name), "{name}");
+    }
+    choose(&mut harness, "Draw hair as", "Clusters");
+    assert_eq!(harness.state().state.project.picture.draw, HairDrawing::Clusters);
+    assert!(!has(&harness, "Clusters below"));
+    let at = control(&harness, Role::SpinButton, "Layers").rect().center();
+    type_at(&mut harness, at, "7");
+    assert_eq!(harness.state().state.project.picture.clusters.layers, 7);
+    assert!(has(&harness, "Detail") && !has(&harness, "Diffuse light"));
+    choose(&mut harness, "Shading", "As published");
+    assert!(!has(&harness, "Detail"));
+    for name in ["Diffuse light", "Primary highlight", "Secondary highlight"] {
+        control(&harness, Role::SpinButton, name);
+    }
+    assert!(!has(&harness, "Own shadow strength"), "the shadow map has none");
+    choose(&mut harness, "Own shadow", "Outer layers");
+    control(&harness, Role::SpinButton, "Own shadow strength");
+    choose(&mut harness, "Show", "Records");
+    choose(&mut harness, "Draw hair as", "Strands near, clusters far");
+    control(&harness, Role::SpinButton, "Clusters below");
+
+    let project = harness.state().state.project.clone();
+    let mut harness = panel("Look", project);
+    assert!(
+        !control(&harness, Role::ComboBox, "Strands").accesskit_node().is_disabled(),
+        "near ones are drawn"
+    );
+    harness.state_mut().state.project.picture.draw = HairDrawing::Clusters;
+    harness.run();
+    assert!(control(&harness, Role::ComboBox, "Strands").accesskit_node().is_disabled());
 }

@@ -26,9 +26,9 @@ const DWA_SIZES: std::ops::Range<usize> = 1..10;
 
 /// Reads the first flat layer with the channels R, G and B.
 pub(super) fn read(content: impl BufRead + Seek) -> Result<Reducer, Problem> {
-    // The decoder is not ours, and it decodes data of strangers: an assertion of it that fails is a damaged file.
+    // Files may come from anywhere, and assertions of the decoder may fail on damaged ones.
     catch_unwind(AssertUnwindSafe(|| read_blocks(content))).unwrap_or_else(|_| {
-        Err(Problem::Damaged { found: "content that the decoder stumbles over".to_owned(), wanted: WANTED })
+        Err(Problem::Damaged { found: "pixel data that cannot be decoded".to_owned(), wanted: WANTED })
     })
 }
 

@@ -152,3 +152,54 @@ fn the_picture_of_the_reference_differs_from_none_but_itself() {
     assert!(flip(0) > 0.005, "{}", flip(0));
     assert_ne!(pixels(&rig.pane(0)), pixels(&rig.pane(1)));
 }
+
+#[test]
+fn a_pane_of_clusters_is_compared_by_its_image_and_has_no_error_of_transmittance() {
+    let mut rig = on_processor(&[ShadowMethod::Exact, ShadowMethod::Exact]);
+    for pane in &mut rig.project.compare.panes {
+        pane.transparency = lovelock_render::Transparency::Exact;
+    }
+    rig.project.compare.panes[0].draw = HairDrawing::Clusters;
+    rig.draw(rig.request(&[0, 1]));
+    assert_eq!(rig.pane(0).error, LiveError::NotMeasured);
+    assert_eq!(rig.pane(1).error, LiveError::Reference);
+    assert!(!rig.pane(0).image.is_empty() && rig.pane(0).problem.is_none());
+    assert!(rig.pane(0).settings_label().starts_with("clusters · "), "{}", rig.pane(0).settings_label());
+
+    let view = LiveView { shows: LiveShows::TransmittanceError, ..LiveView::default() };
+    rig.draw(LiveRequest { view, ..rig.request(&[0, 1]) });
+    let pane = rig.pane(0);
+    assert!(pane.colors_problem.as_ref().is_some_and(|why| why.contains("clusters")), "{pane:?}");
+    assert!(pane.image.is_empty() && pane.problem.is_none());
+    assert!(rig.pane(1).colors_problem.is_none());
+
+    // The project itself draws clusters: the reference stays one of strands.
+    rig.project.picture.draw = HairDrawing::Clusters;
+    let view = LiveView { shows: LiveShows::PictureError, ..LiveView::default() };
+    rig.draw(LiveRequest { view, ..rig.request(&[0, 1]) });
+    let pane = rig.pane(0);
+    assert!(pane.flip.is_some_and(|flip| flip > 1e-4), "{:?}", pane.flip);
+    assert!(!pane.image.is_empty() && pane.colors_problem.is_none());
+    assert_eq!((rig.pane(1).flip, &rig.pane(1).error), (None, &LiveError::Reference), "it is the reference");
+}
+
+#[test]
+fn statistics_count_the_clusters() {
+    let rig = on_processor(&[ShadowMethod::None]);
+    let mut project = rig.project.clone();
+    let camera = rig.snapshot.camera(&project.camera);
+    let mut renderer = CpuRenderer::default();
+    let mut draw = |project: &Project| {
+        let input = rig.snapshot.frame_input(project, &camera);
+        renderer.picture(&input, 64, 48, &mut Picture::default()).expect("a picture").clusters
+    };
+    assert_eq!(draw(&project), None, "strands");
+    project.picture.draw = HairDrawing::Clusters;
+    let stats = draw(&project).expect("clusters");
+    assert_eq!(stats.clusters, rig.snapshot.scene.style.wisps.len() as u64);
+    assert!((1..=stats.clusters).contains(&stats.macro_clusters), "{stats:?}");
+    assert!(stats.volumes >= stats.clusters && stats.bytes > 0, "{stats:?}");
+    project.picture.clusters.macro_tolerance = 1.0;
+    let shared = draw(&project).expect("clusters");
+    assert!(shared.macro_clusters < stats.clusters && shared.bytes < shared.bytes_unshared, "{shared:?}");
+}

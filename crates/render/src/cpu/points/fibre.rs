@@ -65,10 +65,11 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
                 cos_theta: cos_l[lane],
                 phi: phi[lane],
                 fibres: fibres[lane],
-                fibres_behind: f32::INFINITY,
             };
             let mut variances = own;
-            variances.iter_mut().for_each(|variance| *variance += turn[lane]);
+            for variance in &mut variances {
+                *variance += turn[lane];
+            }
             let lobes = variances.map(LongitudinalLobe::quick);
             let [r, g, b] = points[lane].radiance_of_rows(&rows[lane], variances, lobes, &at, strength);
             found[0][lane] = r;

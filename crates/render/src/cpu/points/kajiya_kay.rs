@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+use lovelock_groom::HairLook;
+
 use super::{LANES, Lane, ShadedFrom};
 use crate::MAX_LIGHTS;
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate};
@@ -16,17 +18,17 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
     let absorption = uniform.absorption_variation.to_array();
     let mut stretched = [0.0; LANES];
     for lane in 0..LANES {
-        stretched[lane] = pow(pigment[lane], 0.7);
+        stretched[lane] = pow(pigment[lane], HairLook::STRETCH);
     }
     let mut body = [[0.0; LANES]; 3];
     let mut body_log = [[0.0; LANES]; 3];
     let mut second = [[0.0; LANES]; 3];
     let mut through = [[0.0; LANES]; 3];
     for c in 0..3 {
-        let sigma = pow(max(absorption[c], 0.0), 0.7);
+        let sigma = pow(max(absorption[c], 0.0), HairLook::STRETCH);
         for lane in 0..LANES {
             let s = sigma * stretched[lane];
-            body[c][lane] = exp(-5.2 * s) + 0.012;
+            body[c][lane] = exp(-HairLook::BODY_PATH * s) + HairLook::SURFACE_SHARE;
             body_log[c][lane] = log2(body[c][lane]);
             second[c][lane] = exp(-4.1 * s) + 0.02;
             through[c][lane] = exp(-3.15 * s) + 0.02;

@@ -4,11 +4,12 @@
 
 use glam::Vec4;
 use lovelock_groom::simd::Width;
-use lovelock_groom::{Strands, simd_versions};
+use lovelock_groom::{PigmentVariation, Strands, simd_versions};
 use rayon::prelude::*;
 
-use super::math::{exp, floor, max, saturate, smoothstep};
+use super::math::{exp, floor, max, min, saturate, smoothstep, three};
 use super::view::View;
+use crate::light::MOST_LIGHT;
 
 mod fibre;
 mod kajiya_kay;
@@ -76,13 +77,6 @@ pub(super) fn shade_all(
 
 type Lane = [f32; LANES];
 
-/// The multiple of the shade whose fraction tells which strands are grey; twin of `WHITENING` in `strand_points.wgsl`.
-const WHITENING: f32 = 97.381;
-/// What is left of the pigment in grey strands.
-const UNPIGMENTED: f32 = 0.03;
-/// The fraction of a strand's length from the root over which lightening begins.
-const PAINTED_FROM: f32 = 0.2;
-
 /// Points to shade.
 struct ShadedFrom<'a> {
     here: &'a [Lane; 3],
@@ -124,11 +118,6 @@ fn turn_variance(first: [f32; 3], second: [f32; 3]) -> f32 {
     let cos = if lengths > 1e-30 { dot(first, second) / lengths.sqrt() } else { 1.0 };
     // The square of a small angle is twice what its cosine lacks.
     2.0 / 3.0 * max(1.0 - cos, 0.0)
-}
-
-#[inline(always)]
-fn fraction(x: f32) -> f32 {
-    x - floor(x)
 }
 
 /// The number of complete points: strands and hairstyle should have the same size, but surplus points are ignored.
@@ -311,11 +300,11 @@ fn shade_group<const COLORED: bool>(
     } else {
         [[0.0; LANES]; 3]
     };
-    let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip_scalp.x);
+    let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip.x);
     // The last of fine strands fade.
     let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
     let points_per_strand = max(points_per_strand, 1.0) as u32;
-    let (opacity, fine) = (uniform.width_opacity_tip_scalp.y, points_per_strand > 1);
+    let (opacity, fine) = (uniform.width_opacity_tip.y, points_per_strand > 1);
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
@@ -328,7 +317,8 @@ fn shade_group<const COLORED: bool>(
         let share = saturate((fade_end - strand as f32) * fade_slope);
         let wide = 0.5 * thin(width * taper * share * scale / max(w, 1e-3), opacity, fine);
         // A NaN point is not drawn: every comparison with it is false.
-        let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
+        let known = !(sum[0][lane] + sum[1][lane] + sum[2][lane]).is_nan();
+        let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & known;
         half_width[lane] = if drawn { wide } else { -1.0 };
     }
     let mut out = [ShadedPoint::default(); LANES];
@@ -340,7 +330,7 @@ fn shade_group<const COLORED: bool>(
             half_width: half_width[lane],
             run_x: run[0][lane],
             run_y: run[1][lane],
-            color: [sum[0][lane], sum[1][lane], sum[2][lane]],
+            color: three(|c| min(sum[c][lane], MOST_LIGHT)),
             hash: hash[lane],
         };
     }
@@ -351,21 +341,19 @@ fn shade_group<const COLORED: bool>(
 #[inline(always)]
 fn pigment_of(view: &View, detail: &[i32; LANES]) -> Lane {
     let uniform = view.uniform;
-    let colors = uniform.colors.to_array();
-    let (tip_lightening, variation) = (uniform.width_opacity_tip_scalp.z, uniform.absorption_variation.w);
-    let [grey, highlights, lightening, _] = colors;
+    let [grey, highlights, lightening, _] = uniform.colors.to_array();
+    let of = PigmentVariation {
+        variation: uniform.absorption_variation.w,
+        tip_lightening: uniform.width_opacity_tip.z,
+        grey,
+        highlights,
+        lightening,
+    };
     let mut pigment = [0.0; LANES];
     for lane in 0..LANES {
         let along = (detail[lane] >> 8 & 0xff) as f32 * (1.0 / 255.0);
         let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
-        let lock = (detail[lane] >> 26 & 0x3f) as f32 * (1.0 / 64.0);
-        let lightened = 1.0 - tip_lightening * smoothstep(0.2, 1.0, along);
-        let whitened = if fraction(shade * WHITENING) < grey { UNPIGMENTED } else { 1.0 };
-        let painted = if lock < highlights { smoothstep(0.0, PAINTED_FROM, along) } else { 0.0 };
-        pigment[lane] = max(1.0 + variation * (2.0 * shade - 1.0), 0.0)
-            * lightened
-            * whitened
-            * (1.0 - lightening * painted);
+        pigment[lane] = of.factor(along, shade, detail[lane] >> 26 & 0x3f);
     }
     pigment
 }

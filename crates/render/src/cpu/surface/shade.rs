@@ -2,7 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
-use lovelock_groom::simd_versions;
+use lovelock_groom::{HairLook, simd_versions};
 
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
 use crate::cpu::view::View;
@@ -54,7 +54,8 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     }
     let mut albedo = [[0.0; LANES]; 3];
     for c in 0..3 {
-        let root = 0.3 * (exp(-5.2 * pow(max(absorption[c], 0.0), 0.7)) + 0.012);
+        let stretched = pow(max(absorption[c], 0.0), HairLook::STRETCH);
+        let root = 0.3 * (exp(-HairLook::BODY_PATH * stretched) + HairLook::SURFACE_SHARE);
         for lane in 0..LANES {
             albedo[c][lane] = mix(batch.albedo[c][lane], root, paint[lane]);
         }

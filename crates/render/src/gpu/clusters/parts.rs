@@ -52,7 +52,7 @@ impl Parts {
         if needed > gpu.most_storage_bytes() || 2 * frame.quads() > u64::from(u32::MAX) {
             return Err(GpuError::Input(format!(
                 "the clusters of this hairstyle need a buffer of {needed} bytes, and {} takes at most {}: choose fewer layers or \
-                 volumes, or draw by the processor",
+                 volumes, or draw on the CPU",
                 gpu.info.name,
                 gpu.most_storage_bytes()
             )));

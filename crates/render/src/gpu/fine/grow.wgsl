@@ -17,9 +17,12 @@ struct Strand {
     // Signed bytes in 127ths.
     weights_b: u32,
     weights_c: u32,
-    // 16 bits of the length, 8 bits of the shade.
+    // 16 bits of the length, 8 bits of the shade, and whether the length is one of short hairs.
     length_shade: u32,
 }
+
+// Twin of `FineStrand::SHORT_METRES`.
+const SHORT_METRES: f32 = 0.1;
 
 @group(0) @binding(0) var<uniform> grow: Grow;
 @group(0) @binding(1) var<storage, read> list: array<Strand>;
@@ -74,6 +77,22 @@ fn mixed(strand: Strand, j: u32, links: u32) -> vec3f {
     return a + bezier(strand.weights_b, t) * (b - a) + bezier(strand.weights_c, t) * (c - a);
 }
 
+// The length of a strand as a fraction of its first parent's length.
+fn length_of(strand: Strand, links: u32) -> f32 {
+    let length = f32(strand.length_shade & 0xffffu) * (1.0 / 65535.0);
+    if (strand.length_shade >> 24u == 0u) {
+        return length;
+    }
+    var parent = 0.0;
+    var before = stored_at(strand.parent_a, 0u, links);
+    for (var j = 1u; j <= links; j += 1u) {
+        let next = stored_at(strand.parent_a, j, links);
+        parent += distance(before, next);
+        before = next;
+    }
+    return min(length * SHORT_METRES / max(parent, 1e-3), 1.0);
+}
+
 @compute @workgroup_size(64)
 fn grow_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
@@ -87,7 +106,7 @@ fn grow_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         put(thread, stored_at(strand.parent_a, k, links));
         return;
     }
-    let at = f32(k) * (f32(strand.length_shade & 0xffffu) * (1.0 / 65535.0));
+    let at = f32(k) * length_of(strand, links);
     let i = min(u32(at), links - 1u);
     let low = mixed(strand, i, links);
     put(thread, low + (mixed(strand, i + 1u, links) - low) * (at - f32(i)));

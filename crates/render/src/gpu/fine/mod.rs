@@ -116,5 +116,6 @@ impl FineBuffers {
 fn words_of(strand: &FineStrand) -> StrandWords {
     let [a, b, c] = strand.parents;
     let [near, far] = strand.weights.map(|weights| u32::from_le_bytes(weights.map(|w| w as u8)));
-    [a, b, c, near, far, u32::from(strand.length) | u32::from(strand.shade) << 16]
+    let length = u32::from(strand.length) | u32::from(strand.shade) << 16 | u32::from(strand.is_short) << 24;
+    [a, b, c, near, far, length]
 }

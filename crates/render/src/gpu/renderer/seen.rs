@@ -50,7 +50,7 @@ pub(super) fn eye_input<'a>(
         segments: strands.segments,
         segment_count: if seen.has_strands { strands.segment_count } else { 0 },
         depth: &targets.depth,
-        opacity: uniform.width_opacity_tip_scalp.y,
+        opacity: uniform.width_opacity_tip.y,
         drawn,
         clusters,
     }
@@ -65,7 +65,7 @@ impl GpuRenderer {
         size: [u32; 2],
     ) -> SeenHair {
         let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
-        let strand_width = uniform.width_opacity_tip_scalp.x;
+        let strand_width = uniform.width_opacity_tip.x;
         let reach_at =
             |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
         let area = Area::of(input.camera, size, (bounds.min, bounds.max), strand_width);

@@ -26,8 +26,8 @@ struct FrameUniform {
     background_bottom: vec4f,
     // Absorption of the hair; w: variation between strands.
     absorption_variation: vec4f,
-    // Full width of a drawn strand in metres, opacity, tip lightening, colour on the scalp.
-    width_opacity_tip_scalp: vec4f,
+    // Full width of a drawn strand in metres, opacity, tip lightening.
+    width_opacity_tip: vec4f,
     // Strength of the first and second highlight, their exponents.
     highlights: vec4f,
     // The index of the strand at which the width of fading strands would reach 0, the slope of their widths, points per strand, and
@@ -64,6 +64,11 @@ fn lean_of(i: u32, n: vec3f) -> vec3f {
     let v = -dot(n, normalize(rows[1].xyz));
     return vec3f(u, v, -dot(n, light.direction_specular.xyz));
 }
+
+// The colour of much hair: see `HairLook::body_color` in groom.
+const BODY_PATH: f32 = 5.2;
+const STRETCH: f32 = 0.7;
+const SURFACE_SHARE: f32 = 0.012;
 
 // Taps of a soft shadow on a surface. Six taps would show bands.
 const SURFACE_TAPS: u32 = 12u;

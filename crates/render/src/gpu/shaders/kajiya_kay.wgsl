@@ -16,8 +16,8 @@ struct StrandColor {
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
     // Twin of `HairLook::body_color` in groom: paths of many lengths, and a grey part that only met surfaces.
-    let s = pow(max(sigma, vec3f(0.0)), vec3f(0.7));
-    return StrandColor(exp(-5.2 * s) + 0.012, exp(-4.1 * s) + 0.02, exp(-3.15 * s) + 0.02);
+    let s = pow(max(sigma, vec3f(0.0)), vec3f(STRETCH));
+    return StrandColor(exp(-BODY_PATH * s) + SURFACE_SHARE, exp(-4.1 * s) + 0.02, exp(-3.15 * s) + 0.02);
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;

@@ -23,7 +23,7 @@ fn drawn_points() -> u32 {
 
 // The width with which a strand is drawn: see `thin` in cpu/points/mod.rs.
 fn thin(width: f32) -> f32 {
-    let opacity = frame.width_opacity_tip_scalp.y;
+    let opacity = frame.width_opacity_tip.y;
     let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);
     return select(width, narrow + (width - narrow) * smoothstep(0.5, 2.0, width), frame.fading.z > 1.5);
 }
@@ -47,7 +47,10 @@ fn project(p: vec3f) -> Projected {
 // Whether hair scatters as fibres do; otherwise it is shaded by Kajiya-Kay.
 override FIBRE: bool = true;
 
-// See cpu/points/mod.rs.
+// The largest half float. See cpu/points/mod.rs.
+const MOST_LIGHT: f32 = 65504.0;
+
+// See pigment.rs in groom.
 const WHITENING: f32 = 97.381;
 const UNPIGMENTED: f32 = 0.03;
 const PAINTED_FROM: f32 = 0.2;
@@ -58,7 +61,7 @@ struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatte
 // Factor on the absorption of a point.
 fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
     let lock = f32(detail >> 26u) / 64.0;
-    let lightened = 1.0 - frame.width_opacity_tip_scalp.z * smoothstep(0.2, 1.0, along);
+    let lightened = 1.0 - frame.width_opacity_tip.z * smoothstep(0.2, 1.0, along);
     let whitened = select(1.0, UNPIGMENTED, fract(shade * WHITENING) < frame.colors.x);
     let painted = select(0.0, smoothstep(0.0, PAINTED_FROM, along), lock < frame.colors.y);
     let varied = max(1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0), 0.0);
@@ -170,7 +173,8 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         sum += ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
     }
 
-    let width = frame.width_opacity_tip_scalp.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    sum = min(sum, vec3f(MOST_LIGHT));
+    let width = frame.width_opacity_tip.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
     let half_width = 0.5 * thin(width);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
     if (thread < count) {

@@ -41,7 +41,8 @@ fn shade_surface(in: Surface) -> vec3f {
     let v = normalize(frame.eye_lights.xyz - in.world);
     let n = normalize(in.normal);
     // Skin under hair has the colour of the roots, so that gaps do not look bald.
-    let root = 0.3 * (exp(-5.2 * pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(0.7))) + 0.012);
+    let stretched = pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(STRETCH));
+    let root = 0.3 * (exp(-BODY_PATH * stretched) + SURFACE_SHARE);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);
     var sum = vec3f(0.0);

@@ -1,0 +1,39 @@
+//! `lovelock satf`.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lovelock_jobs::satf::build_satf;
+use lovelock_project::error::ProjectError;
+
+use super::args::{Satf, SatfTask};
+use super::output::Output;
+
+/// Resolution of the progress bar.
+const TICKS: f32 = 1000.0;
+
+/// Makes the database of hair clusters.
+pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
+    let SatfTask::Build(task) = &task.task;
+    let bar = std::io::stderr().is_terminal().then(|| {
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %")
+            .unwrap_or_else(|_| ProgressStyle::default_bar());
+        ProgressBar::new(TICKS as u64).with_style(style).with_message("making the database")
+    });
+    if bar.is_none() {
+        eprintln!("making the database of hair clusters");
+    }
+    let report = build_satf(&task.out, &|done| {
+        if let Some(bar) = &bar {
+            bar.set_position((TICKS * done) as u64);
+        }
+    });
+    if let Some(bar) = &bar {
+        bar.finish_and_clear();
+    }
+    let report = report?;
+    output.result(&report, || {
+        let megabytes = report.bytes as f64 / 1e6;
+        format!("{}: {megabytes:.2} MB in {:.2} s, checksum {}", report.file, report.seconds, report.checksum)
+    })
+}
