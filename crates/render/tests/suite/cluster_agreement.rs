@@ -94,15 +94,29 @@ fn clusters_look_the_same_on_both_in_every_mode() {
 /// A change of a scene.
 type Change = fn(&mut Scene);
 
+fn assert_same_with(settings: &[(&str, Change)]) {
+    for (name, change) in settings {
+        let mut s = wig();
+        change(&mut s);
+        assert_same(name, &s, LIMIT);
+    }
+}
+
 #[test]
-fn clusters_look_the_same_on_both_with_every_setting() {
-    let settings: [(&str, Change); 9] = [
+fn every_shadow_and_shading_of_clusters_looks_the_same_on_both() {
+    assert_same_with(&[
         ("outer layers", |s| s.picture.clusters.local_shadow = LocalShadow::Layers),
         ("outer layers, linear", |s| s.picture.clusters.local_shadow = LocalShadow::Linear),
         ("layers toward the light", |s| s.picture.clusters.local_shadow = LocalShadow::Directional),
-        ("nearest records", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
         ("published light", |s| s.picture.clusters.shading = ClusterShading::Paper),
         ("Kajiya-Kay", |s| s.look.shading = HairShading::KajiyaKay),
+    ]);
+}
+
+#[test]
+fn every_look_up_of_clusters_looks_the_same_on_both() {
+    assert_same_with(&[
+        ("nearest records", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
         ("colours of records", |s| s.picture.clusters.view = ClusterView::Records),
         ("shared sectors", |s| s.picture.clusters.macro_tolerance = 0.3),
         ("half behind a wall", |s| {
@@ -110,11 +124,34 @@ fn clusters_look_the_same_on_both_with_every_setting() {
             s.picture.clusters.view = ClusterView::Records;
             s.body = Some(common::grid(-0.02, 0.3, 48, Vec3::ZERO));
         }),
-    ];
-    for (name, change) in settings {
-        let mut s = wig();
-        change(&mut s);
-        assert_same(name, &s, LIMIT);
+    ]);
+}
+
+/// Whether the corner of the image shows the background.
+fn is_background(renderer: &mut Renderer, scene: &Scene) -> bool {
+    let mut picture = Picture::default();
+    renderer.picture(&scene.input(), 64, 48, &mut picture).expect("a picture");
+    picture.rgba[..3].iter().all(|&c| c > 60)
+}
+
+#[test]
+fn broken_guides_leave_the_rest_of_the_image() {
+    for value in [f32::NAN, f32::INFINITY, 1e30, 0.0] {
+        for shadow in [LocalShadow::Map, LocalShadow::Directional] {
+            let mut s = wig();
+            (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.2), Vec3::splat(0.2));
+            s.picture.clusters.local_shadow = shadow;
+            // Some guides of the first wisp, and all of the second one.
+            let guides = &mut s.guides.as_mut().expect("guides").guides;
+            let points = guides.points_per_guide;
+            for i in (points..2 * points).chain(3 * points..6 * points) {
+                (guides.x[i], guides.y[i], guides.z[i]) = (value, value, value);
+            }
+            let Some(mut renderers) = renderers() else { return };
+            for renderer in renderers.iter_mut() {
+                assert!(is_background(renderer, &s), "{value}, {shadow:?}, {:?}", renderer.backend());
+            }
+        }
     }
 }
 
