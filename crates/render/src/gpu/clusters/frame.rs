@@ -104,7 +104,7 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
 }
 
 /// The most threads per triangle.
-const MOST_LANES: u32 = 64;
+const MOST_LANES: u64 = 64;
 /// How much larger than at rest volumes may become in each direction.
 const GROWN: f32 = 2.0;
 
@@ -119,8 +119,10 @@ pub(super) fn lanes(
     let most = (along * across).min((right - left) * (bottom - top));
     // No thread has too many pixels. Each pixel of a shadowed layer has a loop of its own.
     let steps = most * (1 + frame.variant.shadow_steps(frame.grid().layers)) as f32;
+    // The number of a thread has 32 bits.
+    let room = u64::from(u32::MAX) / (2 * frame.quads()).max(1);
     // NaN gives one.
-    ((steps / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, MOST_LANES)
+    ((steps / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, room.clamp(1, MOST_LANES) as u32)
 }
 
 #[cfg(test)]
