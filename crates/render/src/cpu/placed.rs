@@ -223,7 +223,7 @@ impl PlacedScene {
             segments,
             first_points: self.segments(),
             samples: &scratch.samples,
-            opacity: view.uniform.width_opacity_tip_scalp.y,
+            opacity: view.uniform.width_opacity_tip.y,
         };
         list_segments_simd(self.width, &input, &mut scratch.fragments);
     }

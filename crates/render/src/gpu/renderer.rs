@@ -5,16 +5,16 @@ mod flight;
 mod inspect;
 mod layers;
 mod picture;
+mod seen;
 
 use std::sync::Arc;
 
 use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
-use lovelock_groom::HairShading;
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
-use super::clusters::{Clusters, DrawnClusters, RibLighting};
-use super::eye::{Area, Eye, EyeInput, HairOutput, Lists, WIDEST_PLAIN, too_large};
+use super::clusters::{Clusters, RibLighting};
+use super::eye::{Area, Eye, HairOutput, Lists, too_large};
 use super::false_colors::FalseColors;
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
@@ -33,10 +33,11 @@ use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::shadow_stage::has_soft_skin;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError, Transparency};
+use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
 use flight::Flights;
 pub use flight::{Finished, MOST_IN_FLIGHT};
 pub use picture::PendingPicture;
+use seen::{SeenHair, eye_input};
 
 /// The most attempts to render a frame whose lists were too short. Each attempt has longer lists or half as many rows per band.
 const MOST_ATTEMPTS: u32 = 16;
@@ -328,53 +329,6 @@ impl GpuRenderer {
         Ok(report)
     }
 
-    /// The area that may contain hair, and the largest width of a strand.
-    fn seen_hair(&mut self, input: &FrameInput, uniform: &FrameUniform, size: [u32; 2]) -> SeenHair {
-        let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
-        let strand_width = uniform.width_opacity_tip.x;
-        let reach_at =
-            |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
-        let area = Area::of(input.camera, size, (bounds.min, bounds.max), strand_width);
-        let share = self.clusters.share();
-        let transparency = input.picture.transparency;
-        let ribs = self.clusters.bounds(input, Area::axes(input.camera), input.camera.eye);
-        let area_of_ribs =
-            ribs.map_or(Area::default(), |ribs| Area::of(input.camera, size, (ribs.min, ribs.max), 0.0));
-        SeenHair {
-            area: area.with(area_of_ribs),
-            reach: reach_at(0.05),
-            // Nothing nearer than this is drawn.
-            streaked: reach_at(0.02) > WIDEST_PLAIN,
-            has_strands: share < 1.0,
-            nearest_rib: ribs.map_or(0.0, |ribs| ribs.min.x),
-            // Segments and layers have no order of their own.
-            transparency: match transparency {
-                Transparency::Sorted if share > 0.0 && share < 1.0 => Transparency::Exact,
-                _ => transparency,
-            },
-        }
-    }
-
-    /// Encodes projecting the strands of the last frame if only clusters were drawn: then they have only cast shadows.
-    fn shade_hidden_strands(&mut self, gpu: &Gpu, commands: &mut Commands) -> Result<(), RenderError> {
-        if self.seen.has_strands {
-            return Ok(());
-        }
-        let frame = FrameResources {
-            uniform: &self.uniform,
-            body_depth: &self.surface.depth,
-            columns: self.shadow.columns_view(),
-            linear: &self.linear,
-            compare: &self.compare,
-            ambient: self.light.cells(),
-        };
-        let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
-        // Values replace their light.
-        let shading = (lit, HairShading::KajiyaKay, self.light.tables());
-        self.hair.shade(gpu, "draw/points", shading, commands, &frame);
-        Ok(())
-    }
-
     /// Draws the attributes of the body per sample, for shading later.
     fn draw_body(&self, gpu: &Gpu, commands: &mut Commands, targets: &Targets) {
         // Samples without depth are never read. Clearing them is slow on software adapters, but on a GPU it is faster than loading.
@@ -433,47 +387,4 @@ enum Output<'a> {
 fn number_of_bytes(bytes: &[u8]) -> f64 {
     let words = bytes.as_chunks::<4>().0.iter();
     words.map(|&bytes| f64::from(u32::from_le_bytes(bytes))).fold(0.0, |sum, word| sum + word)
-}
-
-/// See [`EyeInput`].
-#[derive(Clone, Copy, Debug, Default)]
-struct SeenHair {
-    area: Area,
-    reach: f32,
-    streaked: bool,
-    /// Whether strands are drawn, beside clusters or alone.
-    has_strands: bool,
-    /// The least distance of the ribs of clusters along the view, metres.
-    nearest_rib: f32,
-    transparency: Transparency,
-}
-
-impl SeenHair {
-    /// The strands alone, also where only clusters are drawn: see [`GpuRenderer::shade_hidden_strands`].
-    fn of_strands(self) -> Self {
-        Self { has_strands: true, ..self }
-    }
-}
-
-fn eye_input<'a>(
-    seen: &SeenHair,
-    hair: &'a HairBuffers,
-    clusters: Option<DrawnClusters<'a>>,
-    targets: &'a Targets,
-    uniform: &FrameUniform,
-    drawn: HairOutput,
-) -> EyeInput<'a> {
-    let strands = hair.drawn();
-    EyeInput {
-        area: seen.area,
-        reach: seen.reach,
-        streaked: seen.streaked,
-        shaded: hair.shaded(),
-        segments: strands.segments,
-        segment_count: if seen.has_strands { strands.segment_count } else { 0 },
-        depth: &targets.depth,
-        opacity: uniform.width_opacity_tip.y,
-        drawn,
-        clusters,
-    }
 }

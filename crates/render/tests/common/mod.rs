@@ -11,8 +11,8 @@ use lovelock_groom::{
 };
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Layers, Light, Picture,
-    PictureSettings, RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
+    Backend, Camera, DeviceImages, FrameInput, GpuRenderer, HairPose, Light, Picture, PictureSettings,
+    RenderError, Renderer, ShadowMethod, ShadowSettings, StrandCount,
 };
 
 /// The renderer that all tests of a binary share: creating one takes seconds with a software adapter.
@@ -72,14 +72,6 @@ impl Scene {
         let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let mut picture = Picture::default();
         Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
-    }
-
-    /// Renders its layers with `backend`, without the background.
-    pub fn layers_by(&self, backend: Backend, width: u32, height: u32) -> Option<Layers> {
-        let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mut layers = Layers::default();
-        renderer.layers(&self.input(), width, height, false, &mut layers).expect("layers");
-        Some(layers)
     }
 
     /// The input of the renderer.

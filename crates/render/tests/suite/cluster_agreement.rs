@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use common::{Scene, scene};
 use glam::{Affine3A, Vec3};
@@ -10,8 +10,8 @@ use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, HairShading, Hairstyle, PlainHead, StrandSet, Wisp, grow,
 };
 use lovelock_render::{
-    Backend, ClusterShading, ClusterView, HairDrawing, Layers, Light, LocalShadow, MapExtent, RecordLookup,
-    ShadowMethod, Transparency,
+    Backend, ClusterShading, ClusterView, HairDrawing, Layers, Light, LocalShadow, MapExtent, Picture,
+    RecordLookup, Renderer, ShadowMethod, Transparency,
 };
 use lovelock_testkit::{Flip, flip};
 
@@ -39,7 +39,7 @@ fn lit(style: Hairstyle) -> Scene {
 }
 
 /// A head of 24 clusters.
-fn wig() -> Scene {
+pub fn wig() -> Scene {
     let settings = GroomSettings { wisps: 24, strands_per_wisp: 40, ..GroomSettings::default() };
     let mut scene = lit(grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair"));
     scene.look = settings.look;
@@ -48,10 +48,29 @@ fn wig() -> Scene {
     scene
 }
 
+/// The renderers of these tests, the GPU's first. Maps of light roll with the lights of earlier pictures, so both draw the same scenes.
+fn renderers() -> Option<MutexGuard<'static, Vec<Renderer>>> {
+    static RENDERERS: OnceLock<Option<Mutex<Vec<Renderer>>>> = OnceLock::new();
+    let opened = RENDERERS.get_or_init(|| match Renderer::open(Backend::Gpu) {
+        Ok(gpu) => Some(Mutex::new(vec![gpu, Renderer::open(Backend::Cpu).expect("a processor")])),
+        Err(error) => {
+            lovelock_testkit::skip_without_adapter(&error);
+            None
+        }
+    });
+    opened.as_ref().map(|both| both.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// The difference of `scene` by the GPU from `other` by the CPU.
 fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
-    let (w, h) = (240, 200);
-    let gpu = scene.draw_by(Backend::Gpu, w, h)?;
-    let cpu = other.draw_by(Backend::Cpu, w, h)?;
+    compared_at([240, 200], scene, other)
+}
+
+fn compared_at([w, h]: [u32; 2], scene: &Scene, other: &Scene) -> Option<Flip> {
+    let mut renderers = renderers()?;
+    let [mut gpu, mut cpu] = [Picture::default(), Picture::default()];
+    renderers[0].picture(&scene.input(), w, h, &mut gpu).expect("a picture");
+    renderers[1].picture(&other.input(), w, h, &mut cpu).expect("a picture");
     Some(flip(&gpu.rgba, &cpu.rgba, w, h))
 }
 
@@ -75,15 +94,29 @@ fn clusters_look_the_same_on_both_in_every_mode() {
 /// A change of a scene.
 type Change = fn(&mut Scene);
 
+fn assert_same_with(settings: &[(&str, Change)]) {
+    for (name, change) in settings {
+        let mut s = wig();
+        change(&mut s);
+        assert_same(name, &s, LIMIT);
+    }
+}
+
 #[test]
-fn clusters_look_the_same_on_both_with_every_setting() {
-    let settings: [(&str, Change); 9] = [
+fn every_shadow_and_shading_of_clusters_looks_the_same_on_both() {
+    assert_same_with(&[
         ("outer layers", |s| s.picture.clusters.local_shadow = LocalShadow::Layers),
         ("outer layers, linear", |s| s.picture.clusters.local_shadow = LocalShadow::Linear),
         ("layers toward the light", |s| s.picture.clusters.local_shadow = LocalShadow::Directional),
-        ("nearest records", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
         ("published light", |s| s.picture.clusters.shading = ClusterShading::Paper),
         ("Kajiya-Kay", |s| s.look.shading = HairShading::KajiyaKay),
+    ]);
+}
+
+#[test]
+fn every_look_up_of_clusters_looks_the_same_on_both() {
+    assert_same_with(&[
+        ("nearest records", |s| s.picture.clusters.lookup = RecordLookup::Nearest),
         ("colours of records", |s| s.picture.clusters.view = ClusterView::Records),
         ("shared sectors", |s| s.picture.clusters.macro_tolerance = 0.3),
         ("half behind a wall", |s| {
@@ -91,11 +124,34 @@ fn clusters_look_the_same_on_both_with_every_setting() {
             s.picture.clusters.view = ClusterView::Records;
             s.body = Some(common::grid(-0.02, 0.3, 48, Vec3::ZERO));
         }),
-    ];
-    for (name, change) in settings {
-        let mut s = wig();
-        change(&mut s);
-        assert_same(name, &s, LIMIT);
+    ]);
+}
+
+/// Whether the corner of the image shows the background.
+fn is_background(renderer: &mut Renderer, scene: &Scene) -> bool {
+    let mut picture = Picture::default();
+    renderer.picture(&scene.input(), 64, 48, &mut picture).expect("a picture");
+    picture.rgba[..3].iter().all(|&c| c > 60)
+}
+
+#[test]
+fn broken_guides_leave_the_rest_of_the_image() {
+    for value in [f32::NAN, f32::INFINITY, 1e30, 0.0] {
+        for shadow in [LocalShadow::Map, LocalShadow::Directional] {
+            let mut s = wig();
+            (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.2), Vec3::splat(0.2));
+            s.picture.clusters.local_shadow = shadow;
+            // Some guides of the first wisp, and all of the second one.
+            let guides = &mut s.guides.as_mut().expect("guides").guides;
+            let points = guides.points_per_guide;
+            for i in (points..2 * points).chain(3 * points..6 * points) {
+                (guides.x[i], guides.y[i], guides.z[i]) = (value, value, value);
+            }
+            let Some(mut renderers) = renderers() else { return };
+            for renderer in renderers.iter_mut() {
+                assert!(is_background(renderer, &s), "{value}, {shadow:?}, {:?}", renderer.backend());
+            }
+        }
     }
 }
 
@@ -192,8 +248,12 @@ fn worst(a: &Layers, b: &Layers, value: impl Fn(&Layers, usize) -> Option<f32>) 
 }
 
 fn both(scene: &Scene) -> Option<[Layers; 2]> {
-    let gpu = scene.layers_by(Backend::Gpu, 160, 160)?;
-    Some([gpu, scene.layers_by(Backend::Cpu, 160, 160)?])
+    let mut renderers = renderers()?;
+    let mut both = [Layers::default(), Layers::default()];
+    for (renderer, layers) in renderers.iter_mut().zip(&mut both) {
+        renderer.layers(&scene.input(), 160, 160, false, layers).expect("layers");
+    }
+    Some(both)
 }
 
 #[test]
@@ -236,5 +296,21 @@ fn own_shadows_agree_within_a_step() {
         }
         println!("{shadow:?}: {worst} in the worst of {all} pixels, shadows from {least}");
         assert!(worst < STEP && all > 2000 && least < 1.0 - 30.0 * STEP, "{shadow:?}");
+    }
+}
+
+#[test]
+fn layers_that_fill_the_picture_are_drawn_whole() {
+    let mut s = one_cluster();
+    // Few and large volumes close to the eye: one thread would iterate over more than 65,535 pixels.
+    let clusters = &mut s.picture.clusters;
+    (clusters.layers, clusters.around, clusters.along) = (2, 4, 2);
+    s.camera.eye = Vec3::new(0.0, 0.0, 0.16);
+    s.camera.fov_y = 0.4;
+    for shadow in [LocalShadow::Map, LocalShadow::Layers, LocalShadow::Directional] {
+        s.picture.clusters.local_shadow = shadow;
+        let Some(difference) = compared_at([800, 600], &s, &s) else { return };
+        println!("{shadow:?}: {difference:?}");
+        assert!(difference.mean < LIMIT[0] && difference.p99 < LIMIT[1], "{shadow:?}: {difference:?}");
     }
 }

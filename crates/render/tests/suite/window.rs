@@ -6,10 +6,11 @@ use std::time::Duration;
 use glam::Vec3;
 use lovelock_groom::{Hairstyle, Strands};
 use lovelock_render::{
-    DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, Picture, RenderError, ShadowMethod,
-    Shrinker, Traffic, Transparency,
+    DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, LocalShadow, Picture, RenderError,
+    ShadowMethod, Shrinker, Traffic, Transparency,
 };
 
+use super::cluster_agreement::wig;
 use crate::common::{Scene, grid, on_device, scene, tuft};
 
 const SIZE: [u32; 2] = [160, 120];
@@ -117,6 +118,35 @@ fn images_stay_on_the_device_and_nothing_waits_or_is_created() {
                 stats.traffic
             );
         }
+    }
+}
+
+#[test]
+fn clusters_follow_guides_without_further_traffic() {
+    let Some(mut rig) = Rig::new() else { return };
+    for shadow in [LocalShadow::Map, LocalShadow::Directional] {
+        let mut scene = wig();
+        scene.picture.clusters.local_shadow = shadow;
+        scene.picture.transparency = Transparency::WeightedAverage;
+        let mut all = Traffic::default();
+        for step in 0..9 {
+            let guides = scene.guides.as_mut().expect("guides");
+            guides.guides.x.iter_mut().for_each(|x| *x += 0.002 * (step as f32).sin());
+            let (_, stats) = rig.image(&scene);
+            rig.finish();
+            // The first frames make textures and bind groups.
+            if step >= 5 {
+                let Traffic { bytes_up, bytes_back, waits, created } = stats.traffic;
+                all.bytes_up += bytes_up;
+                all.bytes_back += bytes_back;
+                all.waits += waits;
+                all.created += created;
+            }
+        }
+        assert_eq!((all.bytes_back, all.waits, all.created), (0, 0, 0), "{shadow:?}: {all:?}");
+        // The guides, for the strands that cast shadows and for the ribs, the grid of light from all directions, and uniforms.
+        let guides = scene.guides.as_ref().map_or(0, |frame| frame.guides.x.len()) as u64;
+        assert!(all.bytes_up < 4 * (2 * 12 * guides + 8 * 32 * 32 * 32 + 4096), "{shadow:?}: {all:?}");
     }
 }
 

@@ -24,22 +24,32 @@ fn edge_of(p: vec2f, q: vec2f, area: f32) -> vec3f {
     return vec3f(slope, -dot(slope, p));
 }
 
-// The range of columns of row `y` of which an edge leaves a part inside.
-fn narrowed(edge: vec3f, y: f32, range: vec2f) -> vec2f {
-    let inside = max(edge.y * y, edge.y * (y + 1.0)) + edge.z;
-    if (edge.x > 0.0) {
-        return vec2f(max(range.x, -inside / edge.x - 1.0), range.y);
-    }
-    if (edge.x < 0.0) {
-        return vec2f(range.x, min(range.y, -inside / edge.x));
-    }
-    return select(range, vec2f(range.x, -1.0), inside < 0.0);
+// The columns of a row of which the edges of a triangle leave a part inside, as lines over rows: slopes and offsets of three lower bounds
+// and of three upper ones.
+struct Span { low_slopes: vec3f, low: vec3f, high_slopes: vec3f, high: vec3f }
+
+const UNBOUNDED: f32 = 1e9;
+
+fn span_of(edge_a: vec3f, edge_b: vec3f, edge_c: vec3f) -> Span {
+    let x = vec3f(edge_a.x, edge_b.x, edge_c.x);
+    let y = vec3f(edge_a.y, edge_b.y, edge_c.y);
+    let inverse = -1.0 / select(x, vec3f(1.0), abs(x) < vec3f(1e-12));
+    let slopes = y * inverse;
+    // An edge is tested at the end of the row where it leaves more inside.
+    let at_zero = (vec3f(edge_a.z, edge_b.z, edge_c.z) + max(y, vec3f(0.0))) * inverse;
+    let is_low = x >= vec3f(1e-12);
+    let is_high = x <= vec3f(-1e-12);
+    return Span(
+        select(vec3f(0.0), slopes, is_low),
+        select(vec3f(-UNBOUNDED), at_zero - 1.0, is_low),
+        select(vec3f(0.0), slopes, is_high),
+        select(vec3f(UNBOUNDED), at_zero, is_high),
+    );
 }
 
 // Optical depth before the curve of the layer, and reflectance, of a map at a place of its layer.
-fn map_at(quad: u32, u: f32, t: f32) -> vec2f {
+fn map_at(quad: u32, texels: u32, u: f32, t: f32) -> vec2f {
     let first = quad * clusters.entries;
-    let texels = maps[first].y;
     let x = u * f32(texels) + 0.5;
     let i = min(u32(select(x, floor(x + 0.5), NEAREST)), texels);
     let f = select(x - f32(i), 0.0, NEAREST);
@@ -59,7 +69,8 @@ fn own_shadow(quad: u32, layer: u32, cos_view: f32, u: f32, t: f32) -> f32 {
     var sum = 0.0;
     if (LOCAL_SHADOW == SHADOW_OF_LAYERS || LOCAL_SHADOW == SHADOW_LINEAR) {
         for (var outer = layer + 1u; outer < layers; outer++) {
-            let depth = map_at(quad + outer - layer, u, t).x * curved(cos_view, thickness_of(outer));
+            let above = quad + outer - layer;
+            let depth = map_at(above, maps[above * clusters.entries].y, u, t).x * curved(cos_view, thickness_of(outer));
             sum += select(min(depth, OPAQUE_DEPTH), 1.0 - exp(-depth), LOCAL_SHADOW == SHADOW_LINEAR);
         }
     }
@@ -138,6 +149,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let edge_a = edge_of(b, c, area);
     let edge_b = edge_of(c, a, area);
     let edge_c = edge_of(a, b, area);
+    let span = span_of(edge_a, edge_b, edge_c);
     let u_of = select(vec3f(0.0, 1.0, 1.0), vec3f(0.0, 1.0, 0.0), is_second);
     let t_of = select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 1.0), is_second);
     let depth_of = vec3f(p.z, q.z, r.z);
@@ -147,9 +159,10 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let color_b = color_on(at.y, share);
     let color_c = color_on(at.z, share);
     let color_d = color_on(at.w, share);
+    let header = maps[quad * clusters.entries];
     let detail = clusters.light_detail.w;
     let as_published = clusters.core_strength_finest_paper.w > 0.5;
-    let slope = select(detail * bitcast<f32>(maps[quad * clusters.entries].x), 1.0, as_published);
+    let slope = select(detail * bitcast<f32>(header.x), 1.0, as_published);
     let even = select(1.0 - detail, 0.0, as_published);
     let hash = fract(f32(quad) * 0.618034);
     let middle_distance = 4.0 / max(corner_a.z + corner_b.z + corner_c.z + corner_d.z, 1e-9);
@@ -168,9 +181,12 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 break;
             }
             let y = f32(row);
-            let range = narrowed(edge_c, y, narrowed(edge_b, y, narrowed(edge_a, y, vec2f(low.x, high.x))));
-            x = i32(range.x);
-            last = select(-1, i32(range.y), range.x <= range.y);
+            let lows = span.low_slopes * y + span.low;
+            let highs = span.high_slopes * y + span.high;
+            let left = max(max(lows.x, lows.y), max(lows.z, low.x));
+            let right = min(min(highs.x, highs.y), min(highs.z, high.x));
+            x = i32(left);
+            last = select(-1, i32(right), left <= right);
         }
         if (x <= last) {
             let corner = vec2f(f32(x), f32(row));
@@ -198,7 +214,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
             let u = clamp(dot(middle, u_of), 0.0, 1.0);
             let t = clamp(dot(middle, t_of), 0.0, 1.0);
             let cos_view = bilinear(cosines, u, t);
-            let found = map_at(quad, u, t);
+            let found = map_at(quad, header.y, u, t);
             let alpha = 1.0 - exp(-found.x * curved(cos_view, thickness));
             if (!(alpha >= FAINTEST)) {
                 continue;

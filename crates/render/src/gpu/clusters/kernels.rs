@@ -134,12 +134,11 @@ fn find_or_make<K: PartialEq>(
     wanted: K,
     make: impl FnOnce() -> Result<Kernel, GpuError>,
 ) -> Result<&Kernel, GpuError> {
-    let at = match known.iter().position(|(key, _)| *key == wanted) {
-        Some(at) => at,
-        None => {
-            known.push((wanted, make()?));
-            known.len() - 1
-        }
+    let at = if let Some(at) = known.iter().position(|(key, _)| *key == wanted) {
+        at
+    } else {
+        known.push((wanted, make()?));
+        known.len() - 1
     };
     Ok(&known[at].1)
 }

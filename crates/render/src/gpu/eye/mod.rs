@@ -6,15 +6,17 @@
 
 mod area;
 mod modes;
+mod passes;
 
 use bytemuck::{Pod, Zeroable};
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
 
-use super::clusters::{ClusterVariant, DrawnClusters, FRAGMENT_PARTS};
-use crate::Transparency;
+use super::clusters::{ClusterVariant, DrawnClusters};
 pub(super) use area::Area;
 pub(super) use modes::HairOutput;
-use modes::{Mode, Over, Pass};
+use modes::{Mode, Over};
+use passes::behind_source;
+pub(super) use passes::shaders;
 
 macro_rules! part {
     ($name:literal) => {
@@ -25,12 +27,6 @@ macro_rules! part {
     };
 }
 use part;
-
-const FRAME: ShaderPart = part!("frame.wgsl");
-const FRAGMENT: ShaderPart = part!("fragment.wgsl");
-const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
-const EACH_PIXEL: ShaderPart = part!("each_pixel.wgsl");
-const BEHIND: ShaderPart = part!("behind.wgsl");
 
 /// Half the width in pixels up to which no strand is streaked; a little less than in fragments.wgsl, to allow for rounding.
 pub(super) const WIDEST_PLAIN: f32 = 0.79;
@@ -126,57 +122,6 @@ pub(super) struct Lists {
     rows: u32,
 }
 
-impl Pass {
-    fn source(&self) -> ShaderSource {
-        let last: &[ShaderPart] = match self.over {
-            Over::Fragments => &[FRAGMENT, FRAGMENTS],
-            Over::Pixels => &[EACH_PIXEL],
-            Over::Groups(_) => &[],
-        };
-        let parts: Vec<_> = [FRAME].iter().chain(self.parts).chain(last).copied().collect();
-        ShaderSource::new(&parts)
-    }
-
-    /// The same pass over the fragments of clusters.
-    fn cluster_source(&self) -> ShaderSource {
-        let parts: Vec<_> =
-            [FRAME, FRAGMENT].iter().chain(self.parts).chain(&FRAGMENT_PARTS).copied().collect();
-        ShaderSource::new(&parts)
-    }
-
-    fn kernel(&self, gpu: &Gpu, streaked: bool) -> Result<Kernel, GpuError> {
-        let entry = match self.over {
-            Over::Fragments => "each_fragment",
-            Over::Pixels => "each_pixel",
-            Over::Groups(entry) => entry,
-        };
-        let constants = [("STREAKED", f64::from(u8::from(streaked)))];
-        Kernel::specialised(gpu, self.name, &self.source(), entry, &constants)
-    }
-}
-
-fn behind_source() -> ShaderSource {
-    ShaderSource::new(&[FRAME, BEHIND, EACH_PIXEL])
-}
-
-/// Every composed shader with its label.
-pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
-    let behind = ("behind".to_owned(), behind_source());
-    let blended = Transparency::ALL.into_iter().map(|mode| (mode.to_string(), HairOutput::Blended(mode)));
-    let all = blended.chain([("nearest".to_owned(), HairOutput::NearestDepth)]);
-    let modes = all.flat_map(|(name, drawn)| {
-        let passes = Mode::of(drawn).passes.iter();
-        passes
-            .flat_map(move |pass| {
-                let clusters = (pass.over == Over::Fragments)
-                    .then(|| (format!("{name}: {} of clusters", pass.name), pass.cluster_source()));
-                std::iter::once((format!("{name}: {}", pass.name), pass.source())).chain(clusters)
-            })
-            .collect::<Vec<_>>()
-    });
-    std::iter::once(behind).chain(modes).collect()
-}
-
 impl Eye {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
@@ -228,11 +173,8 @@ impl Eye {
         if let Some(clusters) = &input.clusters {
             let variant = (input.drawn, clusters.variant);
             if !self.cluster_modes.iter().any(|(known, _)| *known == variant) {
-                let constants = clusters.variant.constants();
                 let passes = mode.passes.iter().filter(|pass| pass.over == Over::Fragments);
-                let kernels = passes.map(|pass| {
-                    Kernel::specialised(gpu, pass.name, &pass.cluster_source(), "each_fragment", &constants)
-                });
+                let kernels = passes.map(|pass| pass.cluster_kernel(gpu, clusters.variant));
                 self.cluster_modes.push((variant, kernels.collect::<Result<_, _>>()?));
             }
         }

@@ -1,0 +1,168 @@
+//! What a frame draws of clusters, and the uniform of their kernels.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use lovelock_gpu::Gpu;
+use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
+
+use super::constant::Largest;
+use super::kernels::{ClusterVariant, MOST_PIXELS_A_THREAD};
+use crate::clusters::{guides_of, to_strongest_light};
+use crate::{FrameInput, HairPose, PictureSettings};
+
+/// Twin of `ClusterUniform` in clusters.wgsl.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct ClusterUniform {
+    eye_depth: [f32; 4],
+    light_detail: [f32; 4],
+    pub area: [f32; 4],
+    grid: [u32; 4],
+    core_strength_finest_paper: [f32; 4],
+    published: [f32; 4],
+    entries: u32,
+    pattern: u32,
+    pub lanes: u32,
+    pad: u32,
+}
+
+/// Twin of `ClusterVertex` in clusters.wgsl; never read on the CPU.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Vertex([u32; 16]);
+
+/// What the last frame drew.
+#[derive(Debug)]
+pub(super) struct Frame {
+    pub hair: Arc<ClusterHair>,
+    pub share: f32,
+    pub picture: PictureSettings,
+    pub variant: ClusterVariant,
+    pub uniform: ClusterUniform,
+}
+
+impl Frame {
+    /// How each cluster is divided.
+    pub fn grid(&self) -> RibGrid {
+        self.hair.grid
+    }
+
+    /// Layers of all columns.
+    pub fn quads(&self) -> u64 {
+        (self.hair.clusters() * self.grid().volumes()) as u64
+    }
+
+    /// Vertices of all clusters.
+    pub fn vertices(&self) -> usize {
+        self.hair.clusters() * self.grid().around * self.grid().points()
+    }
+
+    /// The finest level of detail for which the maps of all layers fit a buffer of the device.
+    pub fn finest(&self, gpu: &Gpu) -> u32 {
+        let fits = |mip: &u32| 8 * self.quads() * u64::from(entries_of(*mip)) <= gpu.most_storage_bytes();
+        let last = layout::MIPS as u32 - 1;
+        (0..last).find(fits).unwrap_or(last)
+    }
+
+    /// `input` with the ribs in place of the hairstyle.
+    pub fn of_ribs<'a>(&'a self, input: &FrameInput<'a>) -> FrameInput<'a> {
+        let hair = guides_of(input).map_or(input.hair, HairPose::Guides);
+        FrameInput { style: &self.hair.ribs, hair, picture: &self.picture, ..*input }
+    }
+}
+
+/// Entries of a map with texels from level `finest` on: a header, and a texel of each neighbour.
+pub(super) fn entries_of(finest: u32) -> u32 {
+    (layout::TEXELS as u32 >> finest) + 3
+}
+
+/// The uniform without what depends on the image.
+pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> ClusterUniform {
+    let settings = &input.picture.clusters;
+    let RibGrid { layers, around, along } = frame.grid();
+    let opacity = input.picture.strand_opacity;
+    let depth = frame.share * opacity * lovelock_satf::strand_width(input.look, frame.hair.strands);
+    ClusterUniform {
+        eye_depth: input.camera.eye.extend(depth).to_array(),
+        light_detail: to_strongest_light(input.lights).extend(settings.detail).to_array(),
+        area: [0.0; 4],
+        // Each fits, because the vertices fit a buffer.
+        grid: [around, along, layers, frame.hair.clusters()].map(|n| n as u32),
+        core_strength_finest_paper: [
+            frame.hair.core,
+            settings.shadow_strength,
+            finest as f32,
+            f32::from(u8::from(settings.shading == ClusterShading::Paper)),
+        ],
+        published: [settings.diffuse, settings.primary, settings.secondary, 0.0],
+        entries: entries_of(finest),
+        pattern: SectorRef::literal(1.0).index / layout::DEPTHS as u32,
+        lanes: 1,
+        pad: 0,
+    }
+}
+
+/// The most threads per triangle.
+const MOST_LANES: u32 = 64;
+/// How much larger than at rest volumes may become in each direction.
+const GROWN: f32 = 2.0;
+
+/// Threads per triangle for hair in an area of the image (left, top, right, bottom), in which a metre has at most `scale` pixels.
+pub(super) fn lanes(
+    largest: Largest,
+    frame: &Frame,
+    [left, top, right, bottom]: [f32; 4],
+    scale: f32,
+) -> u32 {
+    let [along, across] = [largest.along, largest.across].map(|metres| GROWN * metres * scale + 2.0);
+    let most = (along * across).min((right - left) * (bottom - top));
+    // No thread has too many pixels. Each pixel of a shadowed layer has a loop of its own.
+    let steps = most * (1 + frame.variant.shadow_steps(frame.grid().layers)) as f32;
+    // NaN gives one.
+    ((steps / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, MOST_LANES)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use lovelock_gpu::check_shader;
+    use naga::TypeInner;
+
+    use super::super::kernels::shaders;
+    use super::*;
+
+    fn layout_in_shader(name: &str) -> Vec<usize> {
+        let (_, source) = shaders().into_iter().next().expect("a shader");
+        let module = check_shader(&source).expect("valid");
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))
+            .unwrap_or_else(|| panic!("no structure {name}"));
+        let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no structure") };
+        members.iter().map(|m| m.offset as usize).chain([*span as usize]).collect()
+    }
+
+    #[test]
+    fn structures_have_the_layout_of_the_shader() {
+        assert_eq!(
+            layout_in_shader("ClusterUniform"),
+            [
+                offset_of!(ClusterUniform, eye_depth),
+                offset_of!(ClusterUniform, light_detail),
+                offset_of!(ClusterUniform, area),
+                offset_of!(ClusterUniform, grid),
+                offset_of!(ClusterUniform, core_strength_finest_paper),
+                offset_of!(ClusterUniform, published),
+                offset_of!(ClusterUniform, entries),
+                offset_of!(ClusterUniform, pattern),
+                offset_of!(ClusterUniform, lanes),
+                size_of::<ClusterUniform>(),
+            ]
+        );
+        // Only shaders access it, but Rust allocates it.
+        assert_eq!(layout_in_shader("ClusterVertex").last(), Some(&size_of::<Vertex>()));
+    }
+}
