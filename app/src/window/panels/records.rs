@@ -14,6 +14,8 @@ use crate::window::control::{is_escaped, note, row, typed};
 
 /// Height of a row of texels in the picture, points.
 const ROW: f32 = 7.0;
+/// Width that the slider leaves for its number, points.
+const NUMBER_WIDTH: f32 = 78.0;
 /// Degrees between two azimuths.
 const STEP: f64 = 360.0 / ANGLES as f64;
 /// The sector that is shown first: half opaque, with its hair in the middle.
@@ -54,6 +56,7 @@ pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
     let tip = "The azimuth of the light in the plane of the sector, from the outward normal.";
     row(ui, "Light angle", tip, *light != 0, light, 0, |ui, light| {
         let canceled = is_escaped(ui);
+        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
         let slider = Slider::new(light, 0..=ANGLES - 1).update_while_editing(false);
         let slider = slider.custom_formatter(|light, _| format!("{}°", light * STEP));
         ui.add(

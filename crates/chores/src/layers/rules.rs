@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 20] = [
+const ARROWS: [(&str, &[&str]); 21] = [
     (
         "app",
         &[
@@ -14,6 +14,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
             "session",
             "project",
             "render",
+            "satf",
             "simulation",
             "motion",
             "groom",
@@ -31,6 +32,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
             "project",
             "render",
             "shadow",
+            "satf",
             "simulation",
             "motion",
             "groom",
@@ -44,8 +46,9 @@ const ARROWS: [(&str, &[&str]); 20] = [
     ("panes", &["session", "project", "render", "shadow", "groom", "metrics", "base"]),
     ("session", &["project", "render", "simulation", "motion", "groom", "record", "appearance", "base"]),
     ("project", &["render", "simulation", "motion", "groom", "record", "base"]),
-    ("render", &["shadow", "gpu", "groom", "motion", "appearance", "base"]),
+    ("render", &["shadow", "satf", "gpu", "groom", "motion", "appearance", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
+    ("satf", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
     ("motion", &["base"]),
@@ -64,11 +67,12 @@ const ARROWS: [(&str, &[&str]); 20] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 10] = [
+const WITHOUT_WGPU: [&str; 11] = [
     "appearance",
     "base",
     "groom",
     "motion",
+    "satf",
     "simulation",
     "record",
     "metrics",

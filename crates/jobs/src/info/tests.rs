@@ -116,3 +116,22 @@ fn content_speaks_before_the_ending() {
     assert!(FileKind::of(dir.path()).is_err(), "a folder");
     assert!(FileKind::of(&dir.path().join("gone.hair")).is_err(), "a missing file");
 }
+
+#[test]
+fn a_database_of_hair_clusters_is_described() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a ü.bin");
+    let report = crate::satf::build_satf(&path, &|_| ()).expect("a database");
+    let found = info(&path).expect("a description");
+    let Content::HairClusters(described) = &found.content else { panic!("{found:?}") };
+    assert_eq!((described.sectors, &described.checksum), (384, &report.checksum));
+    assert!(found.to_string().contains("384 sectors"), "{found}");
+    let mut bytes = std::fs::read(&path).expect("bytes");
+    bytes.truncate(1000);
+    std::fs::write(&path, &bytes).expect("written");
+    let error = info(&path).expect_err("cut short");
+    assert!(error.to_string().contains("a ü.bin") && error.exit_code() == 2, "{error}");
+    // A file that only begins alike is none.
+    std::fs::write(&path, b"LVLKSA").expect("written");
+    assert!(info(&path).is_err_and(|error| error.to_string().contains("not a file that is known here")));
+}

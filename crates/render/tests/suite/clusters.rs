@@ -143,31 +143,136 @@ fn mean_errors(renderers: &mut [CpuRenderer; 2], scene: &mut Scene, views: u32, 
 }
 
 #[test]
-fn clusters_are_near_the_strands_for_which_they_stand() {
+fn clusters_are_near_the_strands_for_which_they_stand_and_nearer_with_more_layers() {
     let mut renderers = [CpuRenderer::default(), CpuRenderer::default()];
     let mut scene = lock(600);
-    println!("layers  opacity  light  local light");
+    let (few, all) = ([2, 8], [1, 2, 4, 8, 15]);
+    let (views, lights) = if lovelock_testkit::suite::is_long() { (4, 3) } else { (2, 2) };
+    println!("layers  opacity  light  local light  mean opacity of clusters and strands");
     let mut found = Vec::new();
-    for layers in [1, 2, 4, 8, 15] {
+    for &layers in lovelock_testkit::suite::cases(&few, &all) {
         scene.picture.clusters = ClusterSettings { layers, around: 32, ..ClusterSettings::default() };
-        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
-        println!("  alphas {:?}", of.alphas);
-        println!("{layers:>6}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
+        let of = mean_errors(&mut renderers, &mut scene, views, lights);
+        print(&layers.to_string(), &of);
         found.push(of);
     }
-    for (name, settings) in [
-        ("nearest", ClusterSettings { lookup: RecordLookup::Nearest, ..ClusterSettings::default() }),
-        ("layers", ClusterSettings { local_shadow: LocalShadow::Layers, ..ClusterSettings::default() }),
-        ("linear", ClusterSettings { local_shadow: LocalShadow::Linear, ..ClusterSettings::default() }),
-        (
-            "directional",
-            ClusterSettings { local_shadow: LocalShadow::Directional, ..ClusterSettings::default() },
-        ),
-        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..ClusterSettings::default() }),
-        ("no detail", ClusterSettings { detail: 0.0, ..ClusterSettings::default() }),
-    ] {
+    assert!(found.is_sorted_by(|a, b| a.opacity > b.opacity), "{found:?}");
+    // Measured with 8 layers over 12 pairs of directions: 0.057, 0.046 and 0.059.
+    let best = found[found.len() - 1];
+    assert!(best.opacity < 0.07 && best.light < 0.06 && best.local_light < 0.08, "{best:?}");
+    // The control: half of the hair.
+    scene.look.real_hairs *= 0.5;
+    let thin = cluster_errors_against(&mut renderers, &mut scene, 2.0);
+    print("half", &thin);
+    assert!(thin.opacity > 2.0 * best.opacity, "{thin:?}");
+}
+
+#[test]
+fn every_way_to_read_records_and_to_shade_is_measured_against_strands() {
+    let mut renderers = [CpuRenderer::default(), CpuRenderer::default()];
+    let mut scene = lock(600);
+    let default = ClusterSettings::default();
+    let ways = [
+        ("default", default),
+        ("nearest", ClusterSettings { lookup: RecordLookup::Nearest, ..default }),
+        ("layers", ClusterSettings { local_shadow: LocalShadow::Layers, ..default }),
+        ("linear", ClusterSettings { local_shadow: LocalShadow::Linear, ..default }),
+        ("directional", ClusterSettings { local_shadow: LocalShadow::Directional, ..default }),
+        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..default }),
+        ("no detail", ClusterSettings { detail: 0.0, ..default }),
+    ];
+    for (name, settings) in ways {
         scene.picture.clusters = settings;
-        let of = mean_errors(&mut renderers, &mut scene, 4, 3);
-        println!("{name:>12}  {:>7.4}  {:>5.3}  {:>11.3}", of.opacity, of.light, of.local_light);
+        let of = mean_errors(&mut renderers, &mut scene, 2, 1);
+        print(name, &of);
+        // Opacity does not depend on how layers are lit: measured 0.080 and 0.093 over 12 pairs of directions.
+        assert!(of.opacity < 0.12, "{name}: {of:?}");
+        assert!(of.light.is_finite() && of.light < 1.0, "{name}: {of:?}");
+    }
+}
+
+/// Errors of clusters of which the strands have `times` as much hair.
+fn cluster_errors_against(renderers: &mut [CpuRenderer; 2], scene: &mut Scene, times: f32) -> Errors {
+    seen_from(scene, 0.0, 0.1);
+    scene.picture.draw = HairDrawing::Clusters;
+    let clusters = drawn(&mut renderers[1], scene, 160);
+    scene.picture.draw = HairDrawing::Strands;
+    scene.look.real_hairs *= times;
+    let strands = drawn(&mut renderers[0], scene, 160);
+    scene.look.real_hairs /= times;
+    errors(&clusters, &strands)
+}
+
+fn print(name: &str, of: &Errors) {
+    let [clusters, strands] = of.alphas;
+    println!(
+        "{name:>11}  {:>7.4}  {:>5.3}  {:>11.3}  {clusters:.3} {strands:.3}",
+        of.opacity, of.light, of.local_light
+    );
+}
+
+/// The largest change of the mean light of the lock from step to step, as a fraction, beyond the mean of the changes before and after.
+fn largest_jump(renderer: &mut CpuRenderer, scene: &mut Scene, turned: impl Fn(&mut Scene, f32)) -> f64 {
+    let light: Vec<f64> = (0..24)
+        .map(|step| {
+            turned(scene, 0.1 + step as f32 / 720.0);
+            let layers = drawn(renderer, scene, 160);
+            layers.light.iter().map(|[r, g, b, _]| f64::from(r + g + b)).sum()
+        })
+        .collect();
+    let bend = light.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs() / w[1]);
+    bend.fold(0.0, f64::max)
+}
+
+#[test]
+fn nothing_pops_while_eye_or_light_turn() {
+    let mut renderer = CpuRenderer::default();
+    let mut scene = lock(200);
+    scene.shadow.method = ShadowMethod::VoxelMap;
+    let mut jumps = Vec::new();
+    for (draw, lookup) in [
+        (HairDrawing::Strands, RecordLookup::Interpolated),
+        (HairDrawing::Clusters, RecordLookup::Interpolated),
+        (HairDrawing::Clusters, RecordLookup::Nearest),
+    ] {
+        (scene.picture.draw, scene.picture.clusters.lookup) = (draw, lookup);
+        let eye = largest_jump(&mut renderer, &mut scene, |scene, turn| seen_from(scene, turn, 0.3));
+        let light = largest_jump(&mut renderer, &mut scene, |scene, turn| seen_from(scene, 0.3, turn));
+        println!("{draw} {lookup:?}: eye {eye:.5}, light {light:.5}");
+        jumps.push(eye.max(light));
+    }
+    let [strands, clusters, nearest] = jumps[..] else { panic!("three ways") };
+    assert!(clusters < 2.0 * strands.max(0.001), "{jumps:?}");
+    assert!(nearest > 2.0 * clusters, "the control: {jumps:?}");
+}
+
+#[test]
+fn strands_and_clusters_mix_in_proportion_to_the_size_of_the_head() {
+    let mut renderer = CpuRenderer::default();
+    let mut scene = lock(600);
+    seen_from(&mut scene, 0.0, 0.1);
+    let mean = |layers: &Layers| {
+        layers.light.iter().map(|l| f64::from(l[3])).sum::<f64>() / layers.light.len() as f64
+    };
+    let mut of = |scene: &mut Scene, draw, size: f32| {
+        (scene.picture.draw, scene.picture.cluster_size) = (draw, size);
+        drawn(&mut renderer, scene, 160)
+    };
+    // The head of 25 cm is 132 pixels high.
+    let strands = of(&mut scene, HairDrawing::Strands, 60.0);
+    let clusters = of(&mut scene, HairDrawing::Clusters, 60.0);
+    assert_eq!(of(&mut scene, HairDrawing::Auto, 20.0).light, strands.light, "near");
+    assert_eq!(of(&mut scene, HairDrawing::Auto, 300.0).light, clusters.light, "far");
+    let ends = [mean(&strands), mean(&clusters)];
+    let mut before = of(&mut scene, HairDrawing::Auto, 85.0);
+    for step in 1..=12 {
+        let now = of(&mut scene, HairDrawing::Auto, 85.0 + 5.0 * step as f32);
+        let opacity = mean(&now);
+        println!("{step}: {opacity:.4} between {ends:.4?}");
+        // Optical depth is shared, so the opacity lies between both, or a little above where they cover different pixels.
+        assert!(opacity > 0.97 * ends[0].min(ends[1]) && opacity < 1.06 * ends[0].max(ends[1]), "{step}");
+        let change = now.light.iter().zip(&before.light).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
+        assert!(change < 0.25, "step {step}: {change}");
+        before = now;
     }
 }
