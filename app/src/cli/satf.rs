@@ -1,6 +1,7 @@
 //! `lovelock satf`.
 
 use std::io::IsTerminal;
+use std::sync::Once;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lovelock_jobs::satf::build_satf;
@@ -20,13 +21,11 @@ pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         ProgressBar::new(TICKS as u64).with_style(style).with_message("making the database")
     });
-    if bar.is_none() {
-        eprintln!("making the database of hair clusters");
-    }
-    let report = build_satf(&task.out, &|done| {
-        if let Some(bar) = &bar {
-            bar.set_position((TICKS * done) as u64);
-        }
+    // An output that cannot be written is refused before any work.
+    let begins = Once::new();
+    let report = build_satf(&task.out, &|done| match &bar {
+        Some(bar) => bar.set_position((TICKS * done) as u64),
+        None => begins.call_once(|| eprintln!("making the database of hair clusters")),
     });
     if let Some(bar) = &bar {
         bar.finish_and_clear();
