@@ -23,8 +23,7 @@ impl Between {
     /// Around `position`, in samples, on a circle of `count`. A position that is no number is at 0.
     #[inline]
     fn new(position: f32, count: usize) -> Self {
-        // The maximum of NaN and 0 is 0.
-        let position = (position + TURNS).max(0.0).min(2.0 * TURNS);
+        let position = if position.is_nan() { 0.0 } else { (position + TURNS).clamp(0.0, 2.0 * TURNS) };
         let low = position as usize;
         Self { low: low & (count - 1), high: (low + 1) & (count - 1), fraction: position - low as f32 }
     }

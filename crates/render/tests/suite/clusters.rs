@@ -271,7 +271,8 @@ fn strands_and_clusters_mix_in_proportion_to_the_size_of_the_head() {
         println!("{step}: {opacity:.4} between {ends:.4?}");
         // Optical depth is shared, so the opacity lies between both, or a little above where they cover different pixels.
         assert!(opacity > 0.97 * ends[0].min(ends[1]) && opacity < 1.06 * ends[0].max(ends[1]), "{step}");
-        let change = now.light.iter().zip(&before.light).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
+        let change =
+            now.light.iter().zip(&before.light).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
         assert!(change < 0.25, "step {step}: {change}");
         before = now;
     }

@@ -35,11 +35,9 @@ pub(super) fn each_pixel<S: Sink>(
         for edge in &edges {
             edge.narrow(y as f32, &mut from, &mut to);
         }
-        // False for NaN.
-        if !(from <= to) {
-            continue;
-        }
-        for x in from as usize..=to as usize {
+        // Empty for NaN.
+        let columns = if from <= to { from as usize..to as usize + 1 } else { 0..0 };
+        for x in columns {
             let at = y * STRIDE + x;
             if !sink.is_open(at) {
                 continue;

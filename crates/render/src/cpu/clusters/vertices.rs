@@ -5,8 +5,9 @@ use lovelock_groom::Strands;
 use lovelock_satf::{ClusterHair, RibGrid};
 use rayon::prelude::*;
 
+use crate::FrameInput;
+use crate::clusters::to_strongest_light;
 use crate::cpu::points::ShadedPoint;
-use crate::{FrameInput, Light, MAX_LIGHTS};
 
 /// Where an outer and an inner rib cross a section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,14 +28,6 @@ pub(super) struct Vertex {
     pub sin_view: f32,
 }
 
-/// The direction toward the strongest light; upward without any.
-pub(super) fn to_strongest_light(input: &FrameInput) -> Vec3 {
-    let lights = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized);
-    // The first of equally strong ones.
-    let strongest = lights.reduce(|a, b| if b.intensity > a.intensity { b } else { a });
-    strongest.map_or(Vec3::Y, |light| -light.direction)
-}
-
 /// Computes the vertices of all clusters, in the order of cluster, rib and section.
 pub(super) fn place(
     hair: &ClusterHair,
@@ -47,7 +40,7 @@ pub(super) fn place(
     let points = hair.grid.points();
     let of_cluster = around * points;
     out.resize(hair.clusters() * of_cluster, Vertex::default());
-    let to_light = to_strongest_light(input);
+    let to_light = to_strongest_light(input.lights);
     out.par_chunks_mut(of_cluster).enumerate().for_each(|(cluster, out)| {
         let first = cluster * hair.grid.rib_points();
         let outer = first + of_cluster;
