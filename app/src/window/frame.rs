@@ -29,10 +29,10 @@ impl Window {
         self.warn(said);
         self.report_saved();
         // The database is read or made when clusters are first drawn.
-        if !self.database_noted
+        if !self.record.is_noted
             && let Some((_, note)) = lovelock_satf::cache::ready()
         {
-            self.database_noted = true;
+            self.record.is_noted = true;
             self.warn(note.as_ref().map(ToString::to_string));
         }
         if let Some(end) = self.recorder.update() {

@@ -131,8 +131,6 @@ pub(crate) struct Window {
     scissors: Scissors,
     /// The shown record of the database of clusters.
     record: panels::records::RecordView,
-    /// Whether the note on the database of clusters was shown, if there is one.
-    database_noted: bool,
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
@@ -206,7 +204,6 @@ impl Window {
             ties_shown: false,
             scissors: Scissors::default(),
             record: panels::records::RecordView::default(),
-            database_noted: false,
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,

@@ -29,6 +29,8 @@ pub(crate) struct RecordView {
     texture: Option<(Shown, TextureHandle)>,
     /// Whether a thread reads the database or makes it.
     is_asked: bool,
+    /// Whether the note on the database was shown, if there is one.
+    pub(crate) is_noted: bool,
 }
 
 /// A sector and an azimuth of light.
@@ -143,7 +145,7 @@ mod tests {
     #[test]
     fn a_record_is_shown_with_its_features_and_its_texture_is_made_once() {
         let (database, _) = shared();
-        let mut harness = screen(RecordView::default(), |ui, view| super::ui(ui, view));
+        let mut harness = screen(RecordView::default(), super::ui);
         harness.run();
         let first = harness.state().state.texture.as_ref().map(|(_, texture)| texture.id());
         assert!(first.is_some());
@@ -171,7 +173,7 @@ mod tests {
     #[test]
     fn typed_sectors_and_angles_stay_in_range() {
         shared();
-        let mut harness = screen(RecordView::default(), |ui, view| super::ui(ui, view));
+        let mut harness = screen(RecordView::default(), super::ui);
         for text in ["1e300", "-5", "nan", "words"] {
             for name in ["Sector", "Light angle"] {
                 let at = control(&harness, Role::SpinButton, name).rect().center();
