@@ -75,7 +75,7 @@ fn ribs_surround_the_strands_in_every_pose() {
         }
         // Strands at this section lie inside the outer ring: no further from its middle than it is that way.
         let radius = |toward: Vec3| {
-            let along = |p: &&Vec3| (**p - middle).normalize().dot(toward);
+            let along = |p: &&Vec3| (**p - middle).normalize_or_zero().dot(toward);
             rim.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map_or(0.0, |p| p.distance(middle))
         };
         for ends in strands.first_point.windows(2) {
