@@ -242,6 +242,7 @@ fn nothing_pops_while_eye_or_light_turn() {
         jumps.push(eye.max(light));
     }
     let [strands, clusters, nearest] = jumps[..] else { panic!("three ways") };
+    // Measured 0.0009, 0.0014 and 0.0074.
     assert!(clusters < 2.0 * strands.max(0.001), "{jumps:?}");
     assert!(nearest > 2.0 * clusters, "the control: {jumps:?}");
 }
@@ -270,10 +271,11 @@ fn strands_and_clusters_mix_in_proportion_to_the_size_of_the_head() {
         let opacity = mean(&now);
         println!("{step}: {opacity:.4} between {ends:.4?}");
         // Optical depth is shared, so the opacity lies between both, or a little above where they cover different pixels.
-        assert!(opacity > 0.97 * ends[0].min(ends[1]) && opacity < 1.06 * ends[0].max(ends[1]), "{step}");
+        assert!(opacity > 0.99 * ends[0].min(ends[1]) && opacity < 1.01 * ends[0].max(ends[1]), "{step}");
         let change =
             now.light.iter().zip(&before.light).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
-        assert!(change < 0.25, "step {step}: {change}");
+        // Measured at most 0.076 in a pixel, for steps of 5 of 45 pixels.
+        assert!(change < 0.12, "step {step}: {change}");
         before = now;
     }
 }

@@ -62,7 +62,7 @@ fn ribs_surround_the_strands_in_every_pose() {
     let mut strands = Strands::default();
     interpolate(&style, &moved, &mut strands);
     let ribs = ribs_at(&hair, &moved);
-    let mut outside = 0;
+    let (mut outside, mut outside_of_half) = (0, 0);
     for i in 0..points {
         let rim: Vec<Vec3> = (0..around).map(|rib| ribs.point((around + rib) * points + i)).collect();
         let core: Vec<Vec3> = (0..around).map(|rib| ribs.point(rib * points + i)).collect();
@@ -84,11 +84,13 @@ fn ribs_surround_the_strands_in_every_pose() {
             let p =
                 strands.point(first).lerp(strands.point((first + 1).min(ends[1] as usize - 1)), at.fract());
             let off = p - middle;
-            outside += usize::from(off.length() > 1.08 * radius(off.normalize_or_zero()));
+            let reach = off.length() / radius(off.normalize_or_zero());
+            outside += usize::from(reach > 1.08);
+            outside_of_half += usize::from(reach > 0.54);
         }
     }
-    // Measured: none of 400 strands at any section; with ribs half as far out most of them.
-    assert!(outside <= points * 400 / 100, "{outside}");
+    // Measured: 7 of 7,600 places. The control: ribs half as far out would leave 5,373 outside.
+    assert!(outside < 20 && outside_of_half > points * 200, "{outside} and {outside_of_half}");
 }
 
 #[test]
@@ -139,7 +141,7 @@ fn the_layers_are_as_dense_as_the_disk_that_they_divide() {
             / (std::f32::consts::PI * radius * (outer * outer - inner * inner))
     });
     let ratio = depth / paper.sum::<f32>();
-    // Measured 1.004: 12 chords in place of arcs add 1.2 %, the ellipse is 0.5 % larger.
+    // Measured 1.010: 12 chords in place of arcs add 1.2 %, the ellipse is 0.5 % larger.
     assert!((0.98..1.03).contains(&ratio), "{ratio}");
 }
 
@@ -201,7 +203,7 @@ fn clusters_that_are_alike_up_to_a_turn_share_their_cells() {
             total += own;
         }
     }
-    // Measured 0.006: a strand near the axis has no certain direction. The control: without the turn, 0.3.
+    // Measured 0.008: a strand near the axis has no certain direction. The control: without the turn, 0.29.
     assert!(off < 0.02 * total && unturned > 0.1 * total, "{off} and {unturned} of {total}");
     let [own, alone] = shared.bytes();
     assert!(own < alone * 6 / 10, "{own} of {alone} bytes");
