@@ -172,19 +172,19 @@ impl ShadowStage {
         Ok(())
     }
 
-    /// Packed transmittances of further points in the maps of the last run.
-    pub fn look_up_more(&self, strands: &Strands, packed: &mut Vec<u32>) {
-        let answers: Vec<Vec<f32>> = self
-            .lights
-            .par_iter()
-            .map(|light| {
-                let mut answers = vec![1.0; strands.points()];
-                light.shadow.transmittance_at(&strands.x, &strands.y, &strands.z, &mut answers);
-                answers
-            })
-            .collect();
-        let answers: Vec<&[f32]> = answers.iter().map(Vec::as_slice).collect();
-        pack(&answers, strands.points(), packed);
+    /// Packed transmittances of further points in the maps of the last run. `answers` is scratch memory, a list per light.
+    pub fn look_up_more(
+        &self,
+        strands: &Strands,
+        answers: &mut [Vec<f32>; MAX_LIGHTS],
+        packed: &mut Vec<u32>,
+    ) {
+        self.lights.par_iter().zip(&mut answers[..]).for_each(|(light, answers)| {
+            answers.resize(strands.points(), 1.0);
+            light.shadow.transmittance_at(&strands.x, &strands.y, &strands.z, answers);
+        });
+        let lights = self.lights.len().min(MAX_LIGHTS);
+        pack(&answers.each_ref().map(Vec::as_slice)[..lights], strands.points(), packed);
     }
 
     fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {

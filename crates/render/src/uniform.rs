@@ -135,31 +135,23 @@ fn highlight_exponents(roughness: f32) -> [f32; 2] {
 mod tests {
     use std::mem::offset_of;
 
-    use lovelock_gpu::check_shader;
+    use lovelock_gpu::layout_in_shader;
     use lovelock_groom::HairLook;
     use lovelock_groom::fine::FineStrand;
-    use naga::TypeInner;
 
     use super::*;
     use crate::{all_shaders, fibre};
 
-    /// Offsets of the members of a structure of the composed shaders, with its size at the end.
-    fn layout_in_shader(name: &str) -> Vec<usize> {
+    /// The layout of a structure that all these shaders have.
+    fn layout_of(name: &str) -> Vec<usize> {
         let (_, source) = all_shaders().into_iter().next().expect("a shader");
-        let module = check_shader(&source).expect("valid");
-        let (_, ty) = module
-            .types
-            .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some(name))
-            .unwrap_or_else(|| panic!("no structure {name}"));
-        let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no structure") };
-        members.iter().map(|m| m.offset as usize).chain([*span as usize]).collect()
+        layout_in_shader(&source, name)
     }
 
     #[test]
     fn structures_have_the_layout_of_the_shader() {
         assert_eq!(
-            layout_in_shader("LightUniform"),
+            layout_of("LightUniform"),
             [
                 offset_of!(LightUniform, direction_specular),
                 offset_of!(LightUniform, radiance_blur),
@@ -169,7 +161,7 @@ mod tests {
             ]
         );
         assert_eq!(
-            layout_in_shader("FrameUniform"),
+            layout_of("FrameUniform"),
             [
                 offset_of!(FrameUniform, clip_from_world),
                 offset_of!(FrameUniform, world_from_clip),
@@ -191,7 +183,7 @@ mod tests {
             ]
         );
         // Only shaders access it, but Rust allocates it.
-        assert_eq!(layout_in_shader("ShadedPoint").last(), Some(&32));
+        assert_eq!(layout_of("ShadedPoint").last(), Some(&32));
     }
 
     #[test]

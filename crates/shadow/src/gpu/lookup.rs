@@ -115,8 +115,8 @@ mod tests {
 
     use super::*;
     use crate::all_shaders;
-    use crate::gpu::layout::layout_in_shader;
     use crate::gpu::wgsl;
+    use lovelock_gpu::layout_in_shader;
 
     #[test]
     fn the_uniform_has_the_layout_of_every_shader() {

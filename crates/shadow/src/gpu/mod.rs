@@ -1,7 +1,5 @@
 //! Shadow methods on the GPU. Each computes what its definition on the CPU computes.
 
-#[cfg(test)]
-pub(crate) mod layout;
 mod lookup;
 mod memory;
 

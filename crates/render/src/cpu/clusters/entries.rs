@@ -17,23 +17,20 @@ pub(super) fn place(hair: &ClusterHair, ribs: &Strands, input: &FrameInput, out:
     let to_light = to_strongest_light(input.lights);
     out.first_point = Arc::clone(&ribs.first_point);
     let of_cluster = hair.grid.rib_points();
-    let moved: Vec<Vec3> = (0..hair.clusters())
-        .into_par_iter()
-        .flat_map_iter(|cluster| {
-            let outer = cluster * of_cluster + around * points;
-            (0..of_cluster).map(move |k| {
-                let (rib, i) = (k / points, k % points);
-                let radius = if rib < around { hair.core } else { 1.0 };
-                let here = ribs.point(cluster * of_cluster + k);
-                let rim = |rib: usize| ribs.point(outer + rib * points + i);
-                here + to_light * way_out(rim, around, (rib % around, radius), to_light)
-            })
-        })
-        .collect();
-    for (axis, values) in [&mut out.x, &mut out.y, &mut out.z].into_iter().enumerate() {
-        values.clear();
-        values.extend(moved.iter().map(|p| p[axis]));
-    }
+    let [x, y, z] = [&mut out.x, &mut out.y, &mut out.z].map(|axis| {
+        axis.resize(ribs.points(), 0.0);
+        &mut axis[..]
+    });
+    let axes = x.par_iter_mut().zip(y).zip(z).with_min_len(of_cluster).enumerate();
+    axes.for_each(|(at, ((x, y), z))| {
+        let (cluster, k) = (at / of_cluster, at % of_cluster);
+        let outer = cluster * of_cluster + around * points;
+        let (rib, i) = (k / points, k % points);
+        let radius = if rib < around { hair.core } else { 1.0 };
+        let rim = |rib: usize| ribs.point(outer + rib * points + i);
+        let moved = ribs.point(at) + to_light * way_out(rim, around, (rib % around, radius), to_light);
+        [*x, *y, *z] = moved.to_array();
+    });
 }
 
 /// Light along the hair would go a long way in it: at most so far, metres.

@@ -21,10 +21,10 @@ use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::raster::SurfaceSamples;
 use super::tile::{Grid, HairPlanes};
 use super::view::View;
-use crate::FrameInput;
 use crate::clusters::{ClusterStage, cluster_share, guides_of};
 use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
+use crate::{FrameInput, MAX_LIGHTS};
 use columns::Columns;
 use sink::Blend;
 use vertices::Vertex;
@@ -40,6 +40,8 @@ pub(super) struct PlacedClusters {
     entries: Strands,
     details: StrandDetails,
     transmittance: Vec<u32>,
+    /// Transmittances of the ribs by light, before they are packed.
+    answers: [Vec<f32>; MAX_LIGHTS],
     shaded: Vec<ShadedPoint>,
     vertices: Vec<Vertex>,
     bins: Bins,
@@ -96,7 +98,7 @@ impl PlacedClusters {
             entries::place(hair, &self.ribs, input, &mut self.entries);
             &self.entries
         };
-        shadow.look_up_more(asked, &mut self.transmittance);
+        shadow.look_up_more(asked, &mut self.answers, &mut self.transmittance);
         let from = PointsIn {
             strands: &self.ribs,
             details: &self.details.words,

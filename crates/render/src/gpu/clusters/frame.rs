@@ -129,28 +129,21 @@ pub(super) fn lanes(
 mod tests {
     use std::mem::offset_of;
 
-    use lovelock_gpu::check_shader;
-    use naga::TypeInner;
+    use lovelock_gpu::layout_in_shader;
 
     use super::super::kernels::shaders;
     use super::*;
 
-    fn layout_in_shader(name: &str) -> Vec<usize> {
+    /// The layout of a structure that all these shaders have.
+    fn layout_of(name: &str) -> Vec<usize> {
         let (_, source) = shaders().into_iter().next().expect("a shader");
-        let module = check_shader(&source).expect("valid");
-        let (_, ty) = module
-            .types
-            .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some(name))
-            .unwrap_or_else(|| panic!("no structure {name}"));
-        let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no structure") };
-        members.iter().map(|m| m.offset as usize).chain([*span as usize]).collect()
+        layout_in_shader(&source, name)
     }
 
     #[test]
     fn structures_have_the_layout_of_the_shader() {
         assert_eq!(
-            layout_in_shader("ClusterUniform"),
+            layout_of("ClusterUniform"),
             [
                 offset_of!(ClusterUniform, eye_depth),
                 offset_of!(ClusterUniform, light_detail),
@@ -165,6 +158,6 @@ mod tests {
             ]
         );
         // Only shaders access it, but Rust allocates it.
-        assert_eq!(layout_in_shader("ClusterVertex").last(), Some(&size_of::<Vertex>()));
+        assert_eq!(layout_of("ClusterVertex").last(), Some(&size_of::<Vertex>()));
     }
 }

@@ -359,25 +359,15 @@ pub(super) fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
 mod tests {
     use std::mem::offset_of;
 
-    use lovelock_gpu::check_shader;
-    use naga::TypeInner;
+    use lovelock_gpu::layout_in_shader;
 
     use super::*;
 
     #[test]
     fn the_uniform_has_the_layout_of_the_shader() {
         let (_, source) = shaders().into_iter().nth(1).expect("a pass");
-        let module = check_shader(&source).expect("valid");
-        let (_, ty) = module
-            .types
-            .iter()
-            .find(|(_, ty)| ty.name.as_deref() == Some("EyeUniform"))
-            .expect("the structure");
-        let TypeInner::Struct { members, span } = &ty.inner else { panic!("no structure") };
-        let found: Vec<usize> =
-            members.iter().map(|member| member.offset as usize).chain([*span as usize]).collect();
         assert_eq!(
-            found,
+            layout_in_shader(&source, "EyeUniform"),
             [
                 offset_of!(EyeUniform, area),
                 offset_of!(EyeUniform, segments),

@@ -224,7 +224,7 @@ mod tests {
     use std::mem::offset_of;
 
     use super::*;
-    use crate::gpu::layout::layout_in_shader;
+    use lovelock_gpu::layout_in_shader;
 
     #[test]
     fn the_uniform_has_the_layout_of_every_shader() {

@@ -1,11 +1,15 @@
 //! The layout of structures in shaders, for tests that compare it with their Rust twins.
 
-use lovelock_gpu::{ShaderSource, check_shader};
 use naga::TypeInner;
 
-/// Offsets of the members of a structure of a composed shader, with its size at the end.
-pub(crate) fn layout_in_shader(source: &ShaderSource, name: &str) -> Vec<usize> {
-    let module = check_shader(source).expect("valid");
+use crate::{ShaderSource, check_shader};
+
+/// Offsets of the members of a structure of a composed shader, with its size at the end, bytes.
+///
+/// # Panics
+/// The shader is not valid, or has no such structure.
+pub fn layout_in_shader(source: &ShaderSource, name: &str) -> Vec<usize> {
+    let module = check_shader(source).unwrap_or_else(|error| panic!("{error}"));
     let (_, ty) = module
         .types
         .iter()
