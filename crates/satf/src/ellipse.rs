@@ -1,17 +1,6 @@
-//! A linear map of the plane as two rotations and two semi-axes, continuous along a wisp.
-
-use std::f32::consts::{FRAC_PI_2, PI};
+//! A linear map of the plane as two rotations and two semi-axes.
 
 use glam::{Mat2, Vec2};
-
-use crate::boundary::wrapped;
-
-/// Semi-axes within this part of each other are those of a circle, which has no direction.
-const ROUND: f32 = 1e-3;
-/// Up to this difference, as a part of the longer one, the semi-axes may change places from sample to sample.
-const ALMOST_ROUND: f32 = 0.2;
-/// A second semi-axis below this part of the first does not say whether the map mirrors.
-const FLAT: f32 = 0.02;
 
 /// The map `R(phi) · diag(a, b) · R(theta)`: from the unit disk to an ellipse.
 ///
@@ -19,7 +8,7 @@ const FLAT: f32 = 0.02;
 /// equation 1 has no `phi`; without it, the axes of the ellipse cannot turn in the normal plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ellipse {
-    /// The first semi-axis, not negative: the longer one, unless they have changed places along the wisp.
+    /// The first semi-axis, not negative: the longer one.
     pub a: f32,
     /// The second semi-axis, negative where the map mirrors.
     pub b: f32,
@@ -45,64 +34,16 @@ impl Ellipse {
         }
     }
 
-    /// The factors of `m` that are nearest to `before`, those of the sample before.
-    ///
-    /// Angles are unwrapped. A circle keeps the direction of its axes, and the change goes into the twist. An ellipse that is
-    /// almost a line keeps its side.
-    pub fn continued(m: Mat2, before: &Self) -> Self {
-        let mut now = Self::of(m);
-        if now.b.abs() < FLAT * now.a {
-            now.b = now.b.abs().copysign(before.b);
-        }
-        let mirrored = now.b < 0.0;
-        let apart = now.a - now.b.abs();
-        if apart <= ROUND * now.a {
-            // A circle's map depends on the sum of the angles alone, or on their difference if it mirrors.
-            now.theta =
-                if mirrored { before.phi - (now.phi - now.theta) } else { now.phi + now.theta - before.phi };
-            now.phi = before.phi;
-        } else {
-            let swapped = Self {
-                a: now.b.abs(),
-                b: now.a.copysign(now.b),
-                phi: now.phi + FRAC_PI_2,
-                theta: now.theta + if mirrored { FRAC_PI_2 } else { -FRAC_PI_2 },
-            };
-            let turned = |of: Self| Self { phi: of.phi + PI, theta: of.theta + PI, ..of };
-            let off = |of: &Self| wrapped(of.phi - before.phi).abs();
-            let choices = if apart < ALMOST_ROUND * now.a { 4 } else { 2 };
-            now = [now, turned(now), swapped, turned(swapped)][..choices]
-                .iter()
-                .copied()
-                .min_by(|x, y| off(x).total_cmp(&off(y)))
-                .unwrap_or(now);
-        }
-        now.phi = before.phi + wrapped(now.phi - before.phi);
-        now.theta = before.theta + wrapped(now.theta - before.theta);
-        now
-    }
-
     /// With semi-axes of at least `least`, and at least a tenth of the other one.
     pub fn widened(self, least: f32) -> Self {
         let least = least.max(0.1 * self.a.max(self.b.abs()));
         Self { a: self.a.max(least), b: self.b.abs().max(least).copysign(self.b), ..self }
     }
 
-    /// Scaled by `factor`.
-    pub fn scaled(self, factor: f32) -> Self {
-        Self { a: self.a * factor, b: self.b * factor, ..self }
-    }
-
     /// The map.
     pub fn matrix(&self) -> Mat2 {
         let scale = Mat2::from_diagonal(Vec2::new(self.a, self.b));
         Mat2::from_angle(self.phi) * scale * Mat2::from_angle(self.theta)
-    }
-
-    /// The point of the unit disk that the map carries to `point`. The semi-axes must not be 0.
-    pub fn disk_point(&self, point: Vec2) -> Vec2 {
-        let along = Vec2::from_angle(-self.phi).rotate(point) / Vec2::new(self.a, self.b);
-        Vec2::from_angle(-self.theta).rotate(along)
     }
 }
 
@@ -123,32 +64,6 @@ mod tests {
             let found = Ellipse::of(m);
             assert!(close(found.matrix(), m), "{found:?}");
             assert!((found.a - a).abs() < 1e-6 && (found.b - b).abs() < 1e-6);
-            let next = Ellipse::continued(m, &Ellipse { phi: 7.0, theta: 20.0, b: 1.0, ..found });
-            assert!(close(next.matrix(), m) && (next.phi - 7.0).abs() <= PI + 1e-5, "{next:?}");
-        }
-    }
-
-    #[test]
-    fn angles_and_axes_are_continuous_through_a_circle_and_full_turns() {
-        for side in [1.0, -1.0] {
-            let exact = |i: f32| {
-                // The axes change places halfway, while both angles turn.
-                let b = side * (1.0 + 0.15 * (1.0 - i / 100.0));
-                Ellipse { a: 1.0 + 0.15 * (i / 100.0), b, phi: 0.1 * i, theta: -0.07 * i }
-            };
-            let mut before = exact(0.0);
-            let mut jumps_without_history = 0;
-            for i in 1..=100 {
-                let m = exact(i as f32).matrix();
-                let now = Ellipse::continued(m, &before);
-                assert!(close(now.matrix(), m), "{i}");
-                let change = (now.phi - before.phi).abs().max((now.theta - before.theta).abs());
-                assert!(change < 0.35 && (now.a - before.a).abs() < 0.01, "{i}: {before:?} to {now:?}");
-                jumps_without_history += usize::from((Ellipse::of(m).phi - now.phi).abs() > 1.0);
-                before = now;
-            }
-            assert!((before.phi - 10.0).abs() < 0.2 && (before.theta + 7.0).abs() < 0.2, "{before:?}");
-            assert!(jumps_without_history > 10, "the plain decomposition jumps");
         }
     }
 
@@ -159,6 +74,6 @@ mod tests {
         let point = Ellipse::of(Mat2::ZERO).widened(0.01);
         assert_eq!((point.a, point.b), (0.01, 0.01));
         let p = Vec2::new(0.003, -0.002);
-        assert!((line.matrix() * line.disk_point(p)).abs_diff_eq(p, 1e-6));
+        assert!((line.matrix() * (line.matrix().inverse() * p)).abs_diff_eq(p, 1e-6));
     }
 }

@@ -35,14 +35,6 @@ impl Curl {
             _ => Self::Straight,
         }
     }
-
-    /// The class of a helix with `radius` and `pitch` (advance in a turn), for volumes of `length` whose sectors are
-    /// `width` wide; all in metres.
-    pub fn of_helix(radius: f32, pitch: f32, length: f32, width: f32) -> Self {
-        let half_turn =
-            (std::f32::consts::PI * length / pitch.abs().max(1e-9)).min(std::f32::consts::FRAC_PI_2);
-        Self::of_reach(2.0 * radius.abs() * half_turn.sin() / width.abs().max(1e-9))
-    }
 }
 
 /// The features of a sector. Symbol: `ρ_feature`.
@@ -170,16 +162,5 @@ mod tests {
         }
         let much = SectorRef::of(&Features { optical_depth: f32::INFINITY, ..Features::default() });
         assert_eq!((much.index as usize % DEPTHS, much.tau_ratio), (DEPTHS - 1, 1e6));
-    }
-
-    #[test]
-    fn a_helix_reaches_its_diameter_in_half_a_turn_and_never_more() {
-        assert_eq!(Curl::of_helix(0.0, 0.01, 0.01, 0.01), Curl::Straight);
-        assert_eq!(Curl::of_helix(0.002, 0.02, 0.01, 0.01), Curl::Tight);
-        assert_eq!(Curl::of_helix(0.002, 0.02, 0.1, 0.01), Curl::Tight);
-        // A quarter of a turn reaches 0.7 of the diameter, an eighth 0.38.
-        assert_eq!(Curl::of_helix(0.002, 0.04, 0.01, 0.01), Curl::Loose);
-        assert_eq!(Curl::of_helix(0.002, 0.08, 0.01, 0.01), Curl::Loose);
-        assert_eq!(Curl::of_helix(0.002, 0.0, 0.0, 0.0), Curl::Straight);
     }
 }

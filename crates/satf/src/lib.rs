@@ -16,7 +16,7 @@ pub mod cache;
 mod cells;
 pub mod composite;
 pub mod database;
-pub mod ellipse;
+mod ellipse;
 pub mod features;
 pub mod file;
 mod generate;

@@ -132,11 +132,6 @@ impl Database {
         (self.opacity_at(SectorRef { tau_ratio: 1.0, ..of }, &place), self.reflectance_at(of, &place))
     }
 
-    /// [`Database::opacity`] of the nearest record and texel, as in the paper.
-    pub fn opacity_nearest(&self, of: SectorRef, theta_v: f32, u: f32, mip: f32) -> f32 {
-        self.opacity_at(of, &Place::new(of, [theta_v, 0.0], u, mip, true))
-    }
-
     /// [`Database::sample`] of the nearest record and texel, as in the paper.
     pub fn sample_nearest(&self, of: SectorRef, angles: [f32; 2], u: f32, mip: f32) -> (f32, f32) {
         let place = Place::new(of, angles, u, mip, true);
