@@ -48,7 +48,7 @@ fn radius(of: &[Vec3A; 3]) -> (f32, Vec3A) {
 
 /// The radius up to which the guides of each wisp may open at each of their points, metres, in the layout of [`Guides`].
 /// Without a limit where a guide belongs to no wisp.
-pub(crate) fn widest_radii(rest: &Guides, wisps: &[Wisp]) -> Vec<f32> {
+pub fn widest_radii(rest: &Guides, wisps: &[Wisp]) -> Vec<f32> {
     let mut out = vec![f32::MAX; rest.x.len()];
     let points = rest.points_per_guide;
     for wisp in wisps {
@@ -330,7 +330,7 @@ fn orthonormal<const N: usize>(mut tangent: Lanes<N>, mut normal: Lanes<N>) -> [
 }
 
 /// A unit vector square to the unit vector `tangent`, made from the axis least along it.
-pub(crate) fn reference_normal(tangent: Vec3A) -> Vec3A {
+pub fn reference_normal(tangent: Vec3A) -> Vec3A {
     let size = tangent.abs();
     let axis = if size.x <= size.y && size.x <= size.z {
         Vec3A::X
@@ -344,7 +344,7 @@ pub(crate) fn reference_normal(tangent: Vec3A) -> Vec3A {
 
 /// Carries `normal`, square to the unit vector `from`, by the smallest rotation from `from` to the unit vector
 /// `to`. Where they oppose, the rotation is the half turn about the normal itself.
-pub(crate) fn transport(normal: Vec3A, from: Vec3A, to: Vec3A) -> Vec3A {
+pub fn transport(normal: Vec3A, from: Vec3A, to: Vec3A) -> Vec3A {
     let one_plus_cos = 1.0 + from.dot(to);
     let turned =
         if one_plus_cos > 1e-6 { normal - (from + to) * (normal.dot(to) / one_plus_cos) } else { normal };

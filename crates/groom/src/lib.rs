@@ -20,7 +20,7 @@ mod obstacle;
 mod operation;
 mod pigment;
 mod plain_head;
-mod polyline;
+pub mod polyline;
 mod presets;
 mod scalp;
 mod scalp_index;
@@ -33,7 +33,7 @@ mod whole_part;
 pub mod simd;
 
 pub use colours::{HAIR_COLOURS, HairColour};
-pub use frame::WispCurve;
+pub use frame::{WispCurve, reference_normal, transport, widest_radii};
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
 pub use haircut::{Blade, Haircut, trimmed};
@@ -47,8 +47,7 @@ pub use io::{
     load_hair, load_hair_bytes,
 };
 pub use look::{HairLook, HairShading};
-pub(crate) use obstacle::Bounded;
-pub use obstacle::{NoObstacle, Obstacle};
+pub use obstacle::{Bounded, NoObstacle, Obstacle};
 pub use operation::{HairOperation, OperationCache, OperationResult};
 pub use pigment::{PAINTED_FROM, PigmentVariation, UNPIGMENTED, WHITENING};
 pub use plain_head::PlainHead;
@@ -58,4 +57,4 @@ pub use scalp_index::ScalpIndex;
 pub use settings::{GroomSettings, MOST_POINTS};
 pub use strand_bounds::StrandBounds;
 pub use strands::Strands;
-pub use ties::{HairTie, TieKind, TieReach, tied};
+pub use ties::{HairTie, TieKind, TieReach, tied, tied_where};

@@ -29,7 +29,7 @@ const DEEPEST: f32 = 0.02;
 ///
 /// Near the open edges of clothes, the distance of a mesh may have the wrong sign. A point that seems to be deep inside is
 /// therefore moved only in small steps, and returns to its path beyond such a place.
-pub(crate) struct Bounded<'a>(pub(crate) &'a dyn Obstacle);
+pub struct Bounded<'a>(pub &'a dyn Obstacle);
 
 impl Obstacle for Bounded<'_> {
     fn distance(&self, p: Vec3) -> (f32, Vec3) {

@@ -4,14 +4,16 @@ use glam::Vec3;
 
 /// The search range for the next point past the end of the polyline, and the search step, both in segments.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach {
-    pub(crate) beyond: f32,
-    pub(crate) step: f32,
+pub struct Reach {
+    /// How far past the end.
+    pub beyond: f32,
+    /// The step.
+    pub step: f32,
 }
 
 /// The first position on the polyline after `at`, in segments, whose distance from `from` is `link`. Past the end, the
 /// last segment is extended.
-pub(crate) fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Reach) -> f32 {
+pub fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Reach) -> f32 {
     let last = (target.len() - 1) as f32 + reach.beyond;
     let mut low = at;
     let mut high = at;
@@ -32,7 +34,7 @@ pub(crate) fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Re
 
 /// The point of a polyline (two points or more) at position `at`, in segments; the last segment is extended past its
 /// end.
-pub(crate) fn sample(target: &[Vec3], at: f32) -> Vec3 {
+pub fn sample(target: &[Vec3], at: f32) -> Vec3 {
     let i = (at as usize).min(target.len() - 2);
     target[i] + (target[i + 1] - target[i]) * (at - i as f32)
 }

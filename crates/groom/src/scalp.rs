@@ -92,6 +92,15 @@ impl Scalp {
         self.twice_area(triangle).normalize_or(Vec3::Y)
     }
 
+    /// Middle and half of the size of the box of the vertices whose mask is at least a half, head space, metres; `None` where no hair
+    /// may grow.
+    pub fn hairy_box(&self) -> Option<(Vec3, Vec3)> {
+        let hairy = self.positions.iter().zip(&self.mask).filter(|(p, mask)| **mask >= 0.5 && p.is_finite());
+        let (low, high) =
+            hairy.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), (p, _)| (l.min(*p), h.max(*p)));
+        low.cmple(high).all().then(|| (0.5 * (low + high), 0.5 * (high - low)))
+    }
+
     /// The area whose mask is at least `hairline`, in square metres. Triangles count as a whole.
     pub fn hairy_area(&self, hairline: f32) -> f32 {
         (0..self.triangles.len() as u32).map(|t| self.hairy_weight(t, hairline)).sum()

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 21] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     (
         "app",
         &[
@@ -49,6 +49,7 @@ const ARROWS: [(&str, &[&str]); 21] = [
     ("render", &["shadow", "satf", "gpu", "groom", "motion", "appearance", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
     ("satf", &["groom", "base"]),
+    ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
     ("motion", &["base"]),
@@ -67,13 +68,14 @@ const ARROWS: [(&str, &[&str]); 21] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 11] = [
+const WITHOUT_WGPU: [&str; 12] = [
     "appearance",
     "base",
     "groom",
     "motion",
     "satf",
     "simulation",
+    "style",
     "record",
     "metrics",
     "testkit",

@@ -45,9 +45,21 @@ struct Gathered {
 /// wisps stay as they are. Only the first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
 #[must_use]
 pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hairstyle {
+    tied_where(style, ties, obstacle, |_| true)
+}
+
+/// As [`tied`], of the wisps for whose root, the middle of those of its guides in head space, `includes` is true. Wisps that a tie
+/// holds already stay with it.
+#[must_use]
+pub fn tied_where(
+    style: &Hairstyle,
+    ties: &[HairTie],
+    obstacle: &dyn Obstacle,
+    includes: impl Fn(Vec3) -> bool,
+) -> Hairstyle {
     let mut out = style.clone();
     let points = style.guides.points_per_guide;
-    let Some((middle, half)) = settings::hairy_box(&style.scalp) else { return out };
+    let Some((middle, half)) = style.scalp.hairy_box() else { return out };
     if ties.is_empty() || points < 3 {
         return out;
     }
@@ -61,15 +73,16 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
     let ears = middle.z - 0.1 * half.z;
     // From below the middle, the shortest path over the head crosses its top.
     let middle = middle - Vec3::Y * (0.5 * half.y);
-    let gathered = gather(style, &rings, ears);
+    let gathered = gather(style, &rings, ears, includes);
 
     let laid: Vec<Option<lay::Laid>> = gathered
         .par_iter()
         .map(|caught| lay::wisp(style, &rings[caught.ring], caught, middle, obstacle))
         .collect();
     let mut caught = Vec::new();
-    out.held = vec![-1.0; style.guides.x.len()];
-    out.ropes = rings.iter().map(|ring| Rope { guides: Vec::new(), tightness: ring.tie.tightness }).collect();
+    out.held.resize(style.guides.x.len(), -1.0);
+    let first_rope = out.ropes.len();
+    out.ropes.extend(rings.iter().map(|ring| Rope { guides: Vec::new(), tightness: ring.tie.tightness }));
     for (of, laid) in gathered.iter().zip(laid) {
         let Some(laid) = laid else { continue };
         let tie = &rings[of.ring].tie;
@@ -90,7 +103,7 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
         if tie.kind == TieKind::Ponytail {
             let guides = style.wisps[of.wisp].guides;
             let beyond = laid.ring_point.map(|i| i as u32 + 1);
-            out.ropes[of.ring].guides.extend(guides.into_iter().zip(beyond));
+            out.ropes[first_rope + of.ring].guides.extend(guides.into_iter().zip(beyond));
         }
         caught.push((of, laid));
     }
@@ -121,11 +134,19 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
 
 /// The ring of each wisp and its position in that ring: hair from far away lies around hair from nearby, on the side
 /// that it comes from.
-fn gather(style: &Hairstyle, rings: &[Ring], ears: f32) -> Vec<Gathered> {
+fn gather(style: &Hairstyle, rings: &[Ring], ears: f32, includes: impl Fn(Vec3) -> bool) -> Vec<Gathered> {
     let root_of =
         |wisp: &Wisp| wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
     let mut out = Vec::new();
-    let mut taken = vec![false; style.wisps.len()];
+    let held = |wisp: &Wisp| {
+        let first = wisp.guides[0] as usize * style.guides.points_per_guide;
+        style
+            .held
+            .get(first..first + style.guides.points_per_guide)
+            .is_some_and(|of| of.iter().any(|v| *v >= 0.0))
+    };
+    let mut taken: Vec<bool> =
+        style.wisps.iter().map(|wisp| held(wisp) || !includes(root_of(wisp))).collect();
     for (r, ring) in rings.iter().enumerate() {
         let mut of_ring: Vec<(f32, usize, Vec3)> = Vec::new();
         for (w, wisp) in style.wisps.iter().enumerate() {

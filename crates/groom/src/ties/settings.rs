@@ -202,7 +202,7 @@ impl HairTie {
     #[must_use]
     pub fn on(scalp: &Scalp, direction: Vec3, kind: TieKind) -> Self {
         let tie = Self { kind, ..Self::default() };
-        let (Some((centre, half)), Some(out)) = (hairy_box(scalp), direction.try_normalize()) else {
+        let (Some((centre, half)), Some(out)) = (scalp.hairy_box(), direction.try_normalize()) else {
             return tie;
         };
         let Some(hit) = ScalpIndex::new(scalp).closest(centre + out * (2.0 * half.max_element())) else {
@@ -240,12 +240,4 @@ impl HairTie {
             TieReach::InSphere => root.distance(self.sphere_middle()) < self.sphere_radius,
         }
     }
-}
-
-/// Middle and half of the box of the hairy scalp; `None` where no hair may grow.
-pub(super) fn hairy_box(scalp: &Scalp) -> Option<(Vec3, Vec3)> {
-    let hairy = scalp.positions.iter().zip(&scalp.mask).filter(|(p, mask)| **mask >= 0.5 && p.is_finite());
-    let (low, high) =
-        hairy.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), (p, _)| (l.min(*p), h.max(*p)));
-    low.cmple(high).all().then(|| (0.5 * (low + high), 0.5 * (high - low)))
 }

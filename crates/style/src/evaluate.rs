@@ -1,0 +1,109 @@
+//! Applies a stack, again only from the first change on.
+
+use std::sync::Arc;
+
+use lovelock_groom::{Hairstyle, Obstacle};
+
+use crate::{Layer, Scope, StyleStack};
+
+/// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
+#[derive(Default)]
+pub struct StyleCache {
+    start: Option<(Arc<Hairstyle>, Arc<dyn Obstacle + Send>)>,
+    steps: Vec<Step>,
+}
+
+/// A layer and the hairstyle after it.
+struct Step {
+    layer: Layer,
+    factor: f32,
+    style: Arc<Hairstyle>,
+    fits: bool,
+}
+
+/// The result of a stack.
+#[derive(Debug)]
+pub struct Styled {
+    /// The hairstyle after all layers; the base itself if none has an effect.
+    pub style: Arc<Hairstyle>,
+    /// The names of the layers that were skipped because they were made for another hairstyle.
+    pub skipped: Vec<String>,
+}
+
+/// The hairstyle after one layer; `None` if the layer changes nothing.
+///
+/// `factor` is [`StyleStack::factor`] of the layer, and `obstacle` the body without hair.
+pub fn apply_layer(
+    layer: &Layer,
+    factor: f32,
+    style: &Hairstyle,
+    obstacle: &dyn Obstacle,
+) -> Option<Hairstyle> {
+    let operation = layer.operation.known()?;
+    let idle = !layer.on || factor * layer.weight == 0.0 || layer.ramp.is_zero();
+    if idle || !operation.fits(style) {
+        return None;
+    }
+    let scope = Scope::new(layer, factor, style, obstacle);
+    let acts = |guide: usize| scope.at(style.guides.point(guide, 0)) != 0.0;
+    if !(0..style.guides.count()).any(acts) {
+        return None;
+    }
+    let mut out = style.clone();
+    operation.apply(&mut out, &scope);
+    Some(out)
+}
+
+impl StyleCache {
+    /// Applies the layers of `stack` to `base` in their order. Results are reused for the first layers that act as in the last call, if
+    /// that one had the same `base` and `obstacle` (the same allocations).
+    pub fn apply(
+        &mut self,
+        base: &Arc<Hairstyle>,
+        stack: &StyleStack,
+        obstacle: Arc<dyn Obstacle + Send>,
+    ) -> Styled {
+        let body = Arc::clone(&obstacle);
+        self.fold(base, stack, obstacle, |layer, factor, style| apply_layer(layer, factor, style, &*body))
+    }
+
+    fn fold(
+        &mut self,
+        base: &Arc<Hairstyle>,
+        stack: &StyleStack,
+        obstacle: Arc<dyn Obstacle + Send>,
+        mut compute: impl FnMut(&Layer, f32, &Hairstyle) -> Option<Hairstyle>,
+    ) -> Styled {
+        let same_start = self.start.as_ref().is_some_and(|(style, body)| {
+            Arc::ptr_eq(style, base) && std::ptr::addr_eq(Arc::as_ptr(body), Arc::as_ptr(&obstacle))
+        });
+        let same = |(step, layer): &(&Step, &Layer)| {
+            step.layer.acts_like(layer) && step.factor.to_bits() == stack.factor(layer).to_bits()
+        };
+        let kept = if same_start { self.steps.iter().zip(&stack.layers).take_while(same).count() } else { 0 };
+        self.start = Some((Arc::clone(base), obstacle));
+        self.steps.truncate(kept);
+        for layer in &stack.layers[kept..] {
+            let before = self.steps.last().map_or(base, |step| &step.style);
+            let factor = stack.factor(layer);
+            let fits = layer.operation.known().is_none_or(|operation| operation.fits(before));
+            let after = if fits { compute(layer, factor, before) } else { None };
+            let style = after.map_or_else(|| Arc::clone(before), Arc::new);
+            self.steps.push(Step { layer: layer.clone(), factor, style, fits });
+        }
+        let skipped = self.steps.iter().filter(|step| !step.fits && step.layer.on);
+        Styled {
+            style: Arc::clone(self.steps.last().map_or(base, |step| &step.style)),
+            skipped: skipped.map(|step| step.layer.label().to_owned()).collect(),
+        }
+    }
+}
+
+impl std::fmt::Debug for StyleCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.steps.iter().map(|step| &step.layer.operation)).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Changing guides: their points, lengths and the body that they stay out of.
+
+use glam::Vec3;
+use lovelock_groom::polyline::{Reach, next_at, sample};
+use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, widest_radii};
+use rayon::prelude::*;
+
+use crate::Scope;
+
+/// Clearance between the body and guides that had more of it before, metres.
+const CLEAR: f32 = 0.003;
+/// How far past its end a guide may be laid, in links, and the step of the search.
+const REACH: Reach = Reach { beyond: 64.0, step: 0.25 };
+/// Links shorter than this belong to the cut part of a guide, metres.
+const NO_LINK: f32 = 1e-6;
+
+/// What a change of a guide does to its length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lengths {
+    /// It stays.
+    Keep,
+    /// It is that of the changed points.
+    Change,
+}
+
+/// A guide that an operation changes.
+pub struct GuideShape {
+    /// Its index.
+    pub index: usize,
+    /// The wisp that it belongs to; none where no wisp follows it.
+    pub wisp: Option<usize>,
+    /// [`Scope::at`] its root.
+    pub strength: f32,
+    /// Its points from the root, without the cut part: two or more.
+    pub points: Vec<Vec3>,
+    /// Length of each link, metres.
+    pub link: f32,
+}
+
+impl GuideShape {
+    /// The length of the guide, metres.
+    pub fn length(&self) -> f32 {
+        self.link * (self.points.len() - 1) as f32
+    }
+
+    /// The place of a point along the guide: 0 is the root, 1 the tip.
+    pub fn place(&self, point: usize) -> f32 {
+        point as f32 / (self.points.len() - 1) as f32
+    }
+
+    /// Unit direction of the guide at a point.
+    pub fn direction(&self, point: usize) -> Vec3 {
+        let last = self.points.len() - 1;
+        let (a, b) = (self.points[point.saturating_sub(1)], self.points[(point + 1).min(last)]);
+        (b - a).normalize_or(Vec3::NEG_Y)
+    }
+}
+
+/// Changes every guide on which the layer acts. Roots stay where they are, links become equal again, and hair stays out of the body.
+pub fn reshape(
+    style: &mut Hairstyle,
+    scope: &Scope<'_>,
+    lengths: Lengths,
+    change: impl Fn(&mut GuideShape) + Sync,
+) {
+    let strengths = scope.guides(style);
+    let wisps = wisp_of_guide(style);
+    let guides = &style.guides;
+    let obstacle = Bounded(scope.obstacle);
+    let changed: Vec<(usize, Vec<Vec3>)> = (0..guides.count())
+        .into_par_iter()
+        .filter(|&index| strengths[index] != 0.0)
+        .filter_map(|index| {
+            let mut shape = shape_of(guides, index, strengths[index], wisps[index])?;
+            let before = shape.points.clone();
+            change(&mut shape);
+            shape.points[0] = before[0];
+            let finite = shape.points.len() == before.len() && shape.points.iter().all(|p| p.is_finite());
+            if !finite || shape.points == before {
+                return None;
+            }
+            let link = match lengths {
+                Lengths::Keep => shape.link,
+                Lengths::Change => length(&shape.points) / (before.len() - 1) as f32,
+            };
+            Some((index, laid(&shape.points, &before, link, &obstacle)))
+        })
+        .collect();
+    for (index, points) in changed {
+        put(&mut style.guides, index, &points);
+    }
+    widen(style);
+}
+
+/// Lets wisps open as far as their new guides need.
+pub fn widen(style: &mut Hairstyle) {
+    if !style.widest.is_empty() {
+        for (widest, now) in style.widest.iter_mut().zip(widest_radii(&style.guides, &style.wisps)) {
+            *widest = widest.max(now);
+        }
+    }
+}
+
+/// The wisp of each guide.
+pub fn wisp_of_guide(style: &Hairstyle) -> Vec<Option<usize>> {
+    let mut out = vec![None; style.guides.count()];
+    for (w, wisp) in style.wisps.iter().enumerate() {
+        for guide in wisp.guides {
+            out[guide as usize] = Some(w);
+        }
+    }
+    out
+}
+
+/// One guide without its cut part; `None` if that leaves fewer than two points.
+pub fn shape_of(guides: &Guides, index: usize, strength: f32, wisp: Option<usize>) -> Option<GuideShape> {
+    let mut points: Vec<Vec3> = (0..guides.points_per_guide).map(|i| guides.point(index, i)).collect();
+    let end = points.windows(2).rposition(|pair| pair[0].distance(pair[1]) > NO_LINK)? + 2;
+    points.truncate(end);
+    let link = length(&points) / (end - 1) as f32;
+    (link.is_finite() && link > NO_LINK).then_some(GuideShape { index, wisp, strength, points, link })
+}
+
+/// Writes the points of a guide; the rest of its points lie on the last of them.
+fn put(guides: &mut Guides, index: usize, points: &[Vec3]) {
+    let first = index * guides.points_per_guide;
+    for i in 0..guides.points_per_guide {
+        let p = points[i.min(points.len() - 1)];
+        (guides.x[first + i], guides.y[first + i], guides.z[first + i]) = (p.x, p.y, p.z);
+    }
+}
+
+/// The length of a polyline.
+pub fn length(points: &[Vec3]) -> f32 {
+    points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+}
+
+/// Equal links along `target`, as many as `before` has, outside the body as far as those of `before` were.
+fn laid(target: &[Vec3], before: &[Vec3], link: f32, obstacle: &dyn Obstacle) -> Vec<Vec3> {
+    let mut out = Vec::with_capacity(before.len());
+    out.push(target[0]);
+    let mut at = 0.0;
+    for old in &before[1..] {
+        let from = out[out.len() - 1];
+        at = next_at(target, at, from, link, REACH);
+        let mut p = sample(target, at);
+        let clear = obstacle.distance(*old).0.clamp(0.0, CLEAR);
+        for _ in 0..3 {
+            let (distance, normal) = obstacle.distance(p);
+            if distance < clear {
+                p += normal * (clear - distance);
+            }
+            p = from + (p - from).normalize_or(*old - from) * link;
+        }
+        out.push(p);
+    }
+    out
+}

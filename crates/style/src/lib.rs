@@ -1,0 +1,25 @@
+//! The style of hair as a stack of operations.
+//!
+//! A [`StyleStack`] changes a hairstyle, grown or imported, layer by layer. A [`Layer`] is an [`Operation`] with a weight, a [`Mask`] over the
+//! scalp and a [`Ramp`] along the strand. [`StyleCache`] applies a stack, and after a change only what depends on it.
+//!
+//! A new operation is a file in `operations` and a name in the table of [`operation`].
+
+mod evaluate;
+mod guides;
+mod mask;
+pub mod operation;
+pub mod operations;
+mod ramp;
+mod scope;
+mod stack;
+mod stored;
+mod strands;
+
+pub use evaluate::{StyleCache, Styled, apply_layer};
+pub use mask::{HeadBox, Mask, MaskMap, MaskMix, MaskPart, MaskRegion};
+pub use operation::{AnyOperation, Kind, Operate, Operation, RampInfo, Subject, UnknownOperation};
+pub use ramp::{Ramp, RampShape};
+pub use scope::Scope;
+pub use stack::{Group, Layer, StyleStack};
+pub use stored::Stored;

@@ -1,0 +1,249 @@
+//! What every operation can do, and the table of all of them.
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+
+use lovelock_base::settings::{AnySettings, Settings};
+use lovelock_groom::Hairstyle;
+
+use crate::operations::*;
+use crate::stored::Stored;
+use crate::{Ramp, Scope};
+
+/// What an operation changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The guides, which are simulated.
+    Shape,
+    /// The drawn strands alone.
+    Strands,
+    /// Colours.
+    Colour,
+    /// How hair moves.
+    Motion,
+}
+
+/// What a kind of operation is called.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// The id in files and on the command line.
+    pub id: &'static str,
+    /// The name in the window.
+    pub label: &'static str,
+    /// What it does to hair.
+    pub text: &'static str,
+    /// What it changes.
+    pub subject: Subject,
+}
+
+/// A curve along the strand that an operation has besides the layer's own.
+#[derive(Clone, Copy, Debug)]
+pub struct RampInfo {
+    /// The name in files.
+    pub name: &'static str,
+    /// The name in the window.
+    pub label: &'static str,
+    /// What it changes.
+    pub text: &'static str,
+}
+
+/// An operation of a hairstyle: settings, and what they do.
+///
+/// An operation changes nothing where [`Scope::at`] is 0.
+pub trait Operate: Settings + Debug + PartialEq {
+    /// What it is called.
+    const KIND: Kind;
+    /// Its curves along the strand.
+    const RAMPS: &'static [RampInfo] = &[];
+
+    /// Changes a hairstyle.
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>);
+
+    /// Whether it was made for this hairstyle.
+    fn fits(&self, _style: &Hairstyle) -> bool {
+        true
+    }
+
+    /// One of [`Operate::RAMPS`] by its index.
+    fn ramp(&self, _index: usize) -> &Ramp {
+        unreachable!("an operation without ramps was asked for one")
+    }
+
+    /// The same, to be changed.
+    fn ramp_mut(&mut self, _index: usize) -> &mut Ramp {
+        unreachable!("an operation without ramps was asked for one")
+    }
+
+    /// Lists of numbers that it keeps besides its settings, by their names in files.
+    fn lists(&self) -> Vec<(&'static str, Vec<f32>)> {
+        Vec::new()
+    }
+
+    /// Takes one of those lists.
+    fn set_list(&mut self, _name: &str, _numbers: Vec<f32>) {}
+}
+
+/// An [`Operate`] of any kind.
+pub trait AnyOperation: AnySettings {
+    /// What it is called.
+    fn kind(&self) -> &'static Kind;
+    /// Its curves along the strand.
+    fn ramps(&self) -> &'static [RampInfo];
+    /// One of its curves.
+    fn ramp(&self, index: usize) -> &Ramp;
+    /// The same, to be changed.
+    fn ramp_mut(&mut self, index: usize) -> &mut Ramp;
+    /// See [`Operate::apply`].
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>);
+    /// See [`Operate::fits`].
+    fn fits(&self, style: &Hairstyle) -> bool;
+    /// See [`Operate::lists`].
+    fn lists(&self) -> Vec<(&'static str, Vec<f32>)>;
+    /// See [`Operate::set_list`].
+    fn set_list(&mut self, name: &str, numbers: Vec<f32>);
+    /// As settings.
+    fn settings(&self) -> &dyn AnySettings;
+    /// The same, to be changed.
+    fn settings_mut(&mut self) -> &mut dyn AnySettings;
+}
+
+impl<T: Operate> AnyOperation for T {
+    fn kind(&self) -> &'static Kind {
+        &T::KIND
+    }
+
+    fn ramps(&self) -> &'static [RampInfo] {
+        T::RAMPS
+    }
+
+    fn ramp(&self, index: usize) -> &Ramp {
+        Operate::ramp(self, index)
+    }
+
+    fn ramp_mut(&mut self, index: usize) -> &mut Ramp {
+        Operate::ramp_mut(self, index)
+    }
+
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        Operate::apply(self, style, scope);
+    }
+
+    fn fits(&self, style: &Hairstyle) -> bool {
+        Operate::fits(self, style)
+    }
+
+    fn lists(&self) -> Vec<(&'static str, Vec<f32>)> {
+        Operate::lists(self)
+    }
+
+    fn set_list(&mut self, name: &str, numbers: Vec<f32>) {
+        Operate::set_list(self, name, numbers);
+    }
+
+    fn settings(&self) -> &dyn AnySettings {
+        self
+    }
+
+    fn settings_mut(&mut self) -> &mut dyn AnySettings {
+        self
+    }
+}
+
+/// An operation of another version: its id and everything that was written about it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UnknownOperation {
+    /// Its id.
+    pub id: String,
+    /// Its values by their names.
+    pub values: BTreeMap<String, Stored>,
+    /// Its curves by their names.
+    pub ramps: BTreeMap<String, Ramp>,
+}
+
+macro_rules! operations {
+    ($($name:ident),+ $(,)?) => {
+        /// An operation of a style.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Operation {
+            $(
+                #[doc = concat!("See [`", stringify!($name), "`].")]
+                $name($name),
+            )+
+            /// An operation of another version, which does nothing.
+            Unknown(UnknownOperation),
+        }
+
+        impl Operation {
+            /// Every kind, in the order of menus.
+            pub const KINDS: &'static [Kind] = &[$(<$name as Operate>::KIND),+];
+
+            /// A new operation of the kind with that id.
+            pub fn new(id: &str) -> Option<Self> {
+                $(
+                    if <$name as Operate>::KIND.id == id {
+                        return Some(Self::$name($name::default()));
+                    }
+                )+
+                None
+            }
+
+            /// The operation itself; `None` for one of another version.
+            pub fn known(&self) -> Option<&dyn AnyOperation> {
+                match self {
+                    $(Self::$name(operation) => Some(operation),)+
+                    Self::Unknown(_) => None,
+                }
+            }
+
+            /// The same, to be changed.
+            pub fn known_mut(&mut self) -> Option<&mut dyn AnyOperation> {
+                match self {
+                    $(Self::$name(operation) => Some(operation),)+
+                    Self::Unknown(_) => None,
+                }
+            }
+        }
+
+        $(
+            impl From<$name> for Operation {
+                fn from(operation: $name) -> Self {
+                    Self::$name(operation)
+                }
+            }
+        )+
+    };
+}
+
+// The table of operations, in the order of menus: each is a file or folder of `operations`.
+operations!(Length, Scissors, Wave, HairTie, Curl);
+
+impl Operation {
+    /// Its id in files.
+    pub fn id(&self) -> &str {
+        match self {
+            Self::Unknown(unknown) => &unknown.id,
+            known => known.known().map_or("", |operation| operation.kind().id),
+        }
+    }
+
+    /// Its name in the window.
+    pub fn label(&self) -> &str {
+        match self {
+            Self::Unknown(unknown) => &unknown.id,
+            known => known.known().map_or("", |operation| operation.kind().label),
+        }
+    }
+
+    /// The operation with every value in its range.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let mut out = self.clone();
+        if let Some(operation) = out.known_mut() {
+            operation.settings_mut().clamp();
+            for i in 0..operation.ramps().len() {
+                *operation.ramp_mut(i) = operation.ramp(i).clamped();
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,203 @@
+//! Shortens and lengthens hair.
+
+use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
+use lovelock_groom::{Haircut, Hairstyle, trimmed};
+
+use crate::Scope;
+use crate::guides::{self, Lengths, reshape};
+use crate::operation::{Kind, Operate, Subject};
+
+/// The length to which hair can be lengthened, metres.
+const LONGEST: f32 = 1.5;
+
+/// What decides the length of hair.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LengthBy {
+    /// A factor on its own length.
+    #[default]
+    Factor,
+    /// A length that none exceeds.
+    Limit,
+    /// A plane below which nothing is left.
+    Plane,
+}
+
+impl Choices for LengthBy {
+    const ALL: &'static [Self] = &[Self::Factor, Self::Limit, Self::Plane];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Factor => ("factor", "By a factor"),
+            Self::Limit => ("limit", "To a length"),
+            Self::Plane => ("plane", "To a plane"),
+        }
+    }
+}
+
+/// Shortens hair, or lengthens it by a factor above 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Length {
+    /// What decides the length.
+    pub by: LengthBy,
+    /// Factor on the length of hair.
+    pub factor: f32,
+    /// The longest hair, metres.
+    pub limit: f32,
+    /// Height of the plane over the middle of the head, metres.
+    pub height: f32,
+    /// How the plane rises toward the wearer's left, radians.
+    pub tilt: f32,
+    /// How the plane rises toward the face, radians.
+    pub slope: f32,
+    /// How much shorter the hair at the top of the head is, as a fraction.
+    pub layers: f32,
+    /// How much shorter a wisp may be by chance, as a fraction.
+    pub variation: f32,
+}
+
+impl Default for Length {
+    fn default() -> Self {
+        Self {
+            by: LengthBy::Factor,
+            factor: 0.8,
+            limit: 0.2,
+            height: -0.15,
+            tilt: 0.0,
+            slope: 0.0,
+            layers: 0.0,
+            variation: 0.0,
+        }
+    }
+}
+
+impl Settings for Length {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<LengthBy>(field!(Self, by), "Cut", "What decides the length of hair."),
+        Setting::number(
+            field!(Self, factor),
+            [0.0, 4.0],
+            "Factor",
+            "Factor on the length of hair. More than 100 % lengthens it.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.0, 2.0]),
+        Setting::number(field!(Self, limit), [0.0, 1.5], "Longest", "Length that no hair exceeds.")
+            .unit(Unit::METRES_AS_CM)
+            .soft([0.0, 0.7]),
+        Setting::number(
+            field!(Self, height),
+            [-1.5, 0.5],
+            "Height",
+            "Height of the plane over the middle of the head. Hair ends where it first reaches it.",
+        )
+        .unit(Unit::METRES_AS_CM)
+        .soft([-0.6, 0.1]),
+        Setting::number(
+            field!(Self, tilt),
+            [-1.2, 1.2],
+            "Tilt",
+            "How the plane rises toward the wearer's left.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(field!(Self, slope), [-1.2, 1.2], "Slope", "How the plane rises toward the face.")
+            .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, layers),
+            [0.0, 1.0],
+            "Layers",
+            "How much shorter the hair at the top of the head is. 0 % is blunt.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, variation),
+            [0.0, 1.0],
+            "Variation",
+            "How much shorter a lock may be by chance. Higher values thin out the ends.",
+        )
+        .unit(Unit::FRACTION),
+    ];
+}
+
+impl Length {
+    /// The part of a guide that remains where the layer acts; above 1 it is lengthened.
+    fn part(&self, shape: &guides::GuideShape, scope: &Scope<'_>) -> f32 {
+        let mut part = match self.by {
+            LengthBy::Factor => self.factor,
+            LengthBy::Limit => (self.limit / shape.length()).min(1.0),
+            LengthBy::Plane => {
+                let (left, front) = (self.tilt.tan(), self.slope.tan());
+                let over = |p: Vec3| {
+                    let p = p - scope.head.middle;
+                    p.y - (self.height + left * p.x + front * p.z)
+                };
+                let links = shape.points.windows(2).enumerate();
+                let crossing = links.filter_map(|(i, pair)| {
+                    let (a, b) = (over(pair[0]), over(pair[1]));
+                    (b < 0.0).then(|| i as f32 + if a > 0.0 { a / (a - b) } else { 0.0 })
+                });
+                crossing.take(1).next().map_or(1.0, |at| at / (shape.points.len() - 1) as f32)
+            }
+        };
+        let rank = 0.5 + 0.5 * scope.head.relative(shape.points[0]).y.clamp(-1.0, 1.0);
+        part *= 1.0 - self.layers * rank * rank;
+        let chance = scope.random(0, shape.index).unit();
+        part *= 1.0 - self.variation * chance;
+        let part = 1.0 + (part - 1.0) * shape.strength;
+        // However many layers lengthen hair, it ends somewhere.
+        if part > 1.0 { part.min((LONGEST / shape.length()).max(1.0)) } else { part.max(0.0) }
+    }
+}
+
+impl Operate for Length {
+    const KIND: Kind = Kind {
+        id: "length",
+        label: "Length",
+        text: "Shortens or lengthens hair: by a factor, to a length or to a plane, blunt or in layers.",
+        subject: Subject::Shape,
+    };
+
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        let strengths = scope.guides(style);
+        let links = style.guides.points_per_guide - 1;
+        // Shortening keeps the control points of what remains, as scissors do.
+        let mut kept = vec![1.0; style.guides.count()];
+        let mut longer = false;
+        for (guide, strength) in strengths.iter().enumerate().filter(|(_, strength)| **strength != 0.0) {
+            let Some(shape) = guides::shape_of(&style.guides, guide, *strength, None) else { continue };
+            let part = self.part(&shape, scope);
+            longer |= part > 1.0;
+            if part < 1.0 {
+                kept[guide] = part * (shape.points.len() - 1) as f32 / links as f32;
+            }
+        }
+        if longer {
+            reshape(style, scope, Lengths::Change, |shape| {
+                let part = self.part(shape, scope);
+                if part > 1.0 {
+                    lengthen(&mut shape.points, part);
+                }
+            });
+        }
+        if kept.iter().any(|kept| *kept < 1.0) {
+            *style = trimmed(style, &Haircut { first_root: style.guides.point(0, 0), kept });
+        }
+    }
+}
+
+/// Makes a guide longer by a factor: new hair goes on at its end and bends down.
+fn lengthen(points: &mut Vec<Vec3>, factor: f32) {
+    let links = points.len() - 1;
+    let link = guides::length(points) / links as f32;
+    let mut way = points.clone();
+    let mut direction = (points[links] - points[links - 1]).normalize_or(Vec3::NEG_Y);
+    for _ in 0..((factor - 1.0) * links as f32).ceil() as usize {
+        direction = (direction + Vec3::NEG_Y * (link / 0.05).min(1.0)).normalize_or(Vec3::NEG_Y);
+        way.push(way[way.len() - 1] + direction * link);
+    }
+    // As many points as before, at even places of the longer way.
+    for (i, point) in points.iter_mut().enumerate() {
+        *point = lovelock_groom::polyline::sample(&way, i as f32 * factor);
+    }
+}

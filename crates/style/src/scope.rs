@@ -1,0 +1,67 @@
+//! Where and how strongly a layer acts.
+
+use glam::Vec3;
+use lovelock_base::random::SplitMix64;
+use lovelock_groom::{Hairstyle, Obstacle};
+
+use crate::Layer;
+use crate::mask::HeadBox;
+
+/// Where and how strongly a layer acts on a hairstyle.
+pub struct Scope<'a> {
+    /// The body without hair, head space.
+    pub obstacle: &'a dyn Obstacle,
+    /// The box of the hair on the head.
+    pub head: HeadBox,
+    layer: &'a Layer,
+    weight: f32,
+}
+
+impl<'a> Scope<'a> {
+    /// The scope of a layer whose groups add the factor `group_weight`.
+    pub fn new(layer: &'a Layer, group_weight: f32, style: &Hairstyle, obstacle: &'a dyn Obstacle) -> Self {
+        Self { obstacle, head: HeadBox::of(&style.scalp), layer, weight: layer.weight * group_weight }
+    }
+
+    /// The layer's weight times its mask at a place of the scalp, head space: 0 where it does nothing.
+    pub fn at(&self, root: Vec3) -> f32 {
+        self.weight * self.layer.mask.at(&self.head, root)
+    }
+
+    /// The layer's ramp at a place along a strand: 0 is the root, 1 the tip.
+    pub fn along(&self, place: f32) -> f32 {
+        self.layer.ramp.at(place)
+    }
+
+    /// Whether the layer's ramp is 1 everywhere.
+    pub fn is_even(&self) -> bool {
+        self.layer.ramp.is_one()
+    }
+
+    /// [`Scope::at`] the root of each guide.
+    pub fn guides(&self, style: &Hairstyle) -> Vec<f32> {
+        (0..style.guides.count()).map(|guide| self.at(style.guides.point(guide, 0))).collect()
+    }
+
+    /// [`Scope::at`] the middle of the roots of each wisp.
+    pub fn wisps(&self, style: &Hairstyle) -> Vec<f32> {
+        let root =
+            |guides: [u32; 3]| guides.map(|g| style.guides.point(g as usize, 0)).iter().sum::<Vec3>() / 3.0;
+        style.wisps.iter().map(|wisp| self.at(root(wisp.guides))).collect()
+    }
+
+    /// [`Scope::at`] the root of each strand.
+    pub fn strands(&self, style: &Hairstyle) -> Vec<f32> {
+        let set = &style.strands;
+        let root = |strand: usize| -> Vec3 {
+            let guides = style.wisps[set.wisp[strand] as usize].guides;
+            guides.iter().zip(set.weights[strand]).map(|(&g, w)| style.guides.point(g as usize, 0) * w).sum()
+        };
+        (0..set.count()).map(|strand| self.at(root(strand))).collect()
+    }
+
+    /// Random numbers of one thing that the layer acts on, such as a wisp; `purpose` keeps two uses apart.
+    pub fn random(&self, purpose: u32, thing: usize) -> SplitMix64 {
+        SplitMix64::of_stream(self.layer.seed, (u64::from(purpose) << 32) | thing as u64)
+    }
+}

@@ -1,0 +1,133 @@
+//! Changing drawn strands: their offsets from the guides and the number of their points.
+
+use glam::Vec3;
+use lovelock_groom::{Hairstyle, MOST_POINTS, StrandSet};
+use rayon::prelude::*;
+
+use crate::Scope;
+
+/// A point of a strand that an operation moves.
+#[derive(Clone, Copy, Debug)]
+pub struct StrandPoint {
+    /// Index of the strand.
+    pub strand: usize,
+    /// Index of its wisp.
+    pub wisp: usize,
+    /// [`Scope::at`] the root of the strand.
+    pub strength: f32,
+    /// The place along the strand: 0 is the root, 1 the tip.
+    pub place: f32,
+    /// Distance from the root along the guides, metres.
+    pub metres: f32,
+    /// Offset from the guides along the frame's normal, binormal and tangent, metres.
+    pub offset: Vec3,
+}
+
+/// Changes the offsets of every point of the strands on which the layer acts. `change` returns the new offset.
+pub fn displace(style: &mut Hairstyle, scope: &Scope<'_>, change: impl Fn(&StrandPoint) -> Vec3 + Sync) {
+    let strengths = scope.strands(style);
+    let links = links_of_strands(style);
+    let set = &style.strands;
+    let moved: Vec<Option<Vec<Vec3>>> = (0..set.count())
+        .into_par_iter()
+        .map(|strand| {
+            if strengths[strand] == 0.0 {
+                return None;
+            }
+            let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+            let end = set.guide_param[range.end - 1].max(1e-6);
+            let point = |i: usize| StrandPoint {
+                strand,
+                wisp: set.wisp[strand] as usize,
+                strength: strengths[strand],
+                place: set.guide_param[i] / end,
+                metres: set.guide_param[i] * links[strand],
+                offset: Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]),
+            };
+            let new = |i: usize| {
+                let old = point(i);
+                let offset = change(&old);
+                if offset.is_finite() { offset } else { old.offset }
+            };
+            Some(range.map(new).collect())
+        })
+        .collect();
+    let set = &mut style.strands;
+    for (strand, offsets) in moved.into_iter().enumerate() {
+        let first = set.first_point[strand] as usize;
+        for (k, offset) in offsets.into_iter().flatten().enumerate() {
+            set.offset_normal[first + k] = offset.x;
+            set.offset_binormal[first + k] = offset.y;
+            set.offset_tangent[first + k] = offset.z;
+        }
+    }
+}
+
+/// Mean length of the links that each strand follows, metres.
+pub fn links_of_strands(style: &Hairstyle) -> Vec<f32> {
+    let links: Vec<f32> = (0..style.guides.count())
+        .map(|guide| style.guides.point(guide, 0).distance(style.guides.point(guide, 1)))
+        .collect();
+    let set = &style.strands;
+    let of = |(&wisp, weights): (&u32, &[f32; 3])| -> f32 {
+        let guides = style.wisps[wisp as usize].guides;
+        guides.iter().zip(weights).map(|(&g, w)| links[g as usize] * w).sum::<f32>().max(0.0)
+    };
+    set.wisp.iter().zip(&set.weights).map(of).collect()
+}
+
+/// Adds points to the strands on which the layer acts until no segment is longer than `segment` metres, within the most points that a
+/// hairstyle may have.
+pub fn refine(style: &mut Hairstyle, scope: &Scope<'_>, segment: f32) {
+    let strengths = scope.strands(style);
+    let links = links_of_strands(style);
+    let set = &style.strands;
+    // How many parts each segment is divided into.
+    let parts = |strand: usize| -> u32 {
+        let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+        let metres = (set.guide_param[range.end - 1] - set.guide_param[range.start]) * links[strand];
+        let now = (range.len() - 1) as f32;
+        if strengths[strand] == 0.0 { 1 } else { (metres / (now * segment)).ceil().clamp(1.0, 16.0) as u32 }
+    };
+    let mut parts: Vec<u32> = (0..set.count()).map(parts).collect();
+    let points = |parts: &[u32]| -> u64 {
+        let of = |(strand, n): (usize, &u32)| {
+            let segments = set.first_point[strand + 1] - set.first_point[strand] - 1;
+            u64::from(segments) * u64::from(*n) + 1
+        };
+        parts.iter().enumerate().map(of).sum()
+    };
+    while points(&parts) > u64::from(MOST_POINTS) && parts.iter().any(|n| *n > 1) {
+        parts.iter_mut().for_each(|n| *n = (*n - 1).max(1));
+    }
+    if parts.iter().all(|n| *n == 1) {
+        return;
+    }
+    style.strands = divided(set, &parts);
+}
+
+/// The strands with each segment of strand `i` divided into `parts[i]` equal ones.
+fn divided(set: &StrandSet, parts: &[u32]) -> StrandSet {
+    let mut out = StrandSet { first_point: vec![0], ..StrandSet::default() };
+    out.wisp.clone_from(&set.wisp);
+    out.weights.clone_from(&set.weights);
+    out.shade.clone_from(&set.shade);
+    for (strand, &n) in parts.iter().enumerate() {
+        let (first, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
+        for i in first..end {
+            for k in 0..if i + 1 < end { n } else { 1 } {
+                let t = k as f32 / n as f32;
+                let mix = |values: &[f32]| {
+                    if k == 0 { values[i] } else { values[i] + (values[i + 1] - values[i]) * t }
+                };
+                out.guide_param.push(mix(&set.guide_param));
+                out.offset_normal.push(mix(&set.offset_normal));
+                out.offset_binormal.push(mix(&set.offset_binormal));
+                out.offset_tangent.push(mix(&set.offset_tangent));
+                out.taper.push(mix(&set.taper));
+            }
+        }
+        out.first_point.push(out.guide_param.len() as u32);
+    }
+    out
+}
