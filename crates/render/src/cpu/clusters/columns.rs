@@ -206,8 +206,7 @@ fn shade<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &m
         for lane in 0..LANES.min(covered.len - first) {
             let n = first + lane;
             let (alpha, at) = (alpha[lane], covered.at[n] as usize);
-            // Left out as well if it is no number.
-            if !(alpha >= FAINTEST) {
+            if alpha < FAINTEST || alpha.is_nan() {
                 continue;
             }
             let mut color = colors[lane];
