@@ -76,7 +76,7 @@ pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f3
         sums.resize(grid.layers * grid.around, Sum::default());
         add_strands(section, grid, core, &mut sums);
         let reach = sideways(section, sections.get(i + 1).or(sections.get(i.wrapping_sub(1))), &mut own);
-        let radius = (section.guides * section.fill).determinant().abs().sqrt();
+        let radius = section.shape.determinant().abs().sqrt();
         for (rib, sum) in sums.iter().enumerate() {
             let arc = std::f32::consts::TAU * grid.middle_radius(rib / grid.around, core) * radius
                 / grid.around as f32;
