@@ -235,8 +235,9 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 pub(crate) struct Bench {
     /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, far, middle, near and still (fine strands that scatter,
     /// from a whole figure to a head of 100,000 strands), clusters and clusters-far (40 locks drawn as clusters, near and with a head of 24
-    /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), and simulate-402 and simulate-20k, which
-    /// are simulated by each integrator and not rendered; all of them if none is named. `locks` measures how well the locks of each
+    /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), clusters-crowd and
+    /// clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
+    /// are simulated by each integrator and not rendered; all but crowds if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
     /// sorting exactly. `reference` writes scenes for a path tracer and our images of them; `reference-curly` and

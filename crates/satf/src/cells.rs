@@ -64,8 +64,9 @@ struct Sum {
     weight: f32,
 }
 
-/// The cells of a cluster, in the order of layer, rib and section. `width` is that of one strand, metres.
-pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f32) -> Vec<Cell> {
+/// The cells of a cluster, in the order of layer, rib and section. `width` is that of one strand, metres. `curls` says whether curled
+/// sectors differ from straight ones.
+pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f32, curls: bool) -> Vec<Cell> {
     let points = grid.points();
     let mut cells = vec![Cell::default(); grid.cells()];
     let mut sums = Vec::new();
@@ -75,7 +76,7 @@ pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f3
         sums.resize(grid.layers * grid.around, Sum::default());
         add_strands(section, grid, core, &mut sums);
         let reach = sideways(section, sections.get(i + 1).or(sections.get(i.wrapping_sub(1))), &mut own);
-        let radius = (section.guides * section.fill).determinant().abs().sqrt();
+        let radius = section.shape.determinant().abs().sqrt();
         for (rib, sum) in sums.iter().enumerate() {
             let arc = std::f32::consts::TAU * grid.middle_radius(rib / grid.around, core) * radius
                 / grid.around as f32;
@@ -84,7 +85,7 @@ pub(crate) fn cells_of(sections: &[Section], grid: RibGrid, core: f32, width: f3
                 optical_depth: sum.strands * width / arc.max(1e-6),
                 s_centroid: s,
                 t_centroid: t,
-                curl: Curl::of_reach(reach * radius / arc.max(1e-6)),
+                curl: if curls { Curl::of_reach(reach * radius / arc.max(1e-6)) } else { Curl::Straight },
             };
             cells[rib * points + i] = Cell::new(SectorRef::of(&features), sum.strands);
         }

@@ -50,7 +50,7 @@ impl ClusterHair {
         let each: Vec<Vec<Cell>> = sections
             .par_iter()
             .filter(|sections| !sections.is_empty())
-            .map(|sections| cells_of(sections, grid, core, width))
+            .map(|sections| cells_of(sections, grid, core, width, settings.curls))
             .collect();
         let ribs =
             rib_style(style, &sections, grid, core, |wisp, rib| shade_of(style, wisp, &sections[wisp], rib));

@@ -40,25 +40,26 @@ pub(crate) struct Section {
     pub frame: Mat3,
     /// From the disk of the guides to the plane of the section, metres: `M(t)` with the reference triangle on the guides.
     pub guides: Mat2,
-    /// How far along the hair a place of the disk of the guides lies, metres: at the scalp, where hair lies flat, strands of a wisp begin
-    /// before and behind each other.
+    /// The middle of the strands in the frame, metres.
+    pub centre: Vec3,
+    /// From the disk of the strands to the plane of the section, metres: they fill an ellipse of their own within the triangle of the
+    /// guides or beyond it.
+    pub shape: Mat2,
+    /// How far along the hair a place of the disk of the strands lies, metres: at the scalp, where hair lies flat, and in bends, strands
+    /// of a wisp are before and behind each other.
     pub slope: Vec2,
-    /// From the disk of the strands to the disk of the guides: they fill an ellipse of their own within the triangle or beyond it.
-    pub fill: Mat2,
-    pub offset: Vec2,
     pub crossings: Vec<Crossing>,
 }
 
 impl Section {
     /// A place of the strands' disk in the disk of the guides.
     pub fn in_guides(&self, disk: Vec2) -> Vec2 {
-        self.offset + self.fill * disk
+        self.guides.inverse() * (self.centre.truncate() + self.shape * disk)
     }
 
     /// A place of the strands' disk in head space.
     pub fn place(&self, disk: Vec2) -> Vec3 {
-        let d = self.in_guides(disk);
-        self.middle + self.frame * (self.guides * d).extend(self.slope.dot(d.clamp_length_max(1.0)))
+        self.middle + self.frame * (self.centre + (self.shape * disk).extend(self.slope.dot(disk)))
     }
 }
 
@@ -74,14 +75,13 @@ pub(crate) fn sections_of(style: &Hairstyle, wisp: &Wisp, steps: usize) -> Vec<S
     if strands.is_empty() || end.is_nan() || end <= 0.0 {
         return Vec::new();
     }
-    let mut sections: Vec<Section> = (0..=steps)
+    let (mut sections, places): (Vec<Section>, Vec<Vec<Vec3>>) = (0..=steps)
         .map(|i| {
             let u = end * i as f32 / steps as f32;
             let (middle, frame) = (curve.blend([1.0 / 3.0; 3], u), curve.frame(u));
-            let (guides, slope) =
-                spanned(GUIDES.map(|only| frame.transpose() * (curve.blend(only, u) - middle)));
-            let back = guides.inverse();
+            let corners = GUIDES.map(|only| frame.transpose() * (curve.blend(only, u) - middle));
             let mut crossings = Vec::with_capacity(strands.len());
+            let mut places = Vec::with_capacity(strands.len());
             for (k, (strand, points)) in strands.iter().enumerate() {
                 let params = &set.guide_param[points.clone()];
                 // A hair beyond its end for rounding alone still counts.
@@ -93,99 +93,145 @@ pub(crate) fn sections_of(style: &Hairstyle, wisp: &Wisp, steps: usize) -> Vec<S
                 let t = ((u - low) / (high - low).max(1e-6)).clamp(0.0, 1.0);
                 let i = points.start + after - 1;
                 let mix = |of: &[f32]| of[i] + (of[i + 1] - of[i]) * t;
-                let aside = Vec2::new(mix(&set.offset_normal), mix(&set.offset_binormal));
+                let own =
+                    Vec3::new(mix(&set.offset_normal), mix(&set.offset_binormal), mix(&set.offset_tangent));
                 let weights = set.weights[*strand];
-                let at = (0..3).map(|g| reference(g) * weights[g]).sum::<Vec2>() + back * aside;
-                if at.is_finite() {
-                    crossings.push(Crossing { strand: k, at, taper: mix(&set.taper).max(0.0) });
+                let place = (0..3).map(|g| corners[g] * weights[g]).sum::<Vec3>() + own;
+                if place.is_finite() {
+                    crossings.push(Crossing { strand: k, at: Vec2::ZERO, taper: mix(&set.taper).max(0.0) });
+                    places.push(place);
                 }
             }
-            let (fill, offset) = (Mat2::IDENTITY, Vec2::ZERO);
-            Section { u, middle, frame, guides, slope, fill, offset, crossings }
+            let (guides, shape) = (spanned(corners), Mat2::IDENTITY);
+            (
+                Section { u, middle, frame, guides, centre: Vec3::ZERO, shape, slope: Vec2::ZERO, crossings },
+                places,
+            )
         })
-        .collect();
-    if !sections.iter().all(|s| s.middle.is_finite() && s.guides.is_finite() && s.slope.is_finite()) {
+        .unzip();
+    if !sections.iter().all(|s| s.middle.is_finite() && s.guides.is_finite()) {
         return Vec::new();
     }
-    fill(&mut sections);
+    fit(&mut sections, &places);
     sections
 }
 
 /// The weights of each guide alone.
 const GUIDES: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The map from the unit disk that takes the reference triangle to the guides at `q`: its part in the plane of the section, and that
-/// along the hair. Guides on a line or in a point would span no section: theirs keeps some thickness.
-fn spanned(q: [Vec3; 3]) -> (Mat2, Vec2) {
-    let (mut m, mut slope) = (Mat2::ZERO, Vec2::ZERO);
+/// The map from the unit disk to the plane of the section that takes the reference triangle to the guides at `q`. Guides on a line or in
+/// a point would span no section: theirs keeps some thickness.
+fn spanned(q: [Vec3; 3]) -> Mat2 {
+    let mut m = Mat2::ZERO;
     for (g, q) in q.into_iter().enumerate() {
-        let r = reference(g) * (2.0 / 3.0);
-        m += Mat2::from_cols(q.truncate() * r.x, q.truncate() * r.y);
-        slope += r * q.z;
+        m += outer(q.truncate(), reference(g) * (2.0 / 3.0));
     }
-    (Ellipse::of(m).widened(2.0 * LEAST_RADIUS).matrix(), slope)
+    Ellipse::of(m).widened(2.0 * LEAST_RADIUS).matrix()
 }
 
-/// Mean and covariance of the places of strands in a section.
-type Spread = (Vec2, [f32; 3]);
+/// `a bᵀ`.
+fn outer(a: Vec2, b: Vec2) -> Mat2 {
+    Mat2::from_cols(a * b.x, a * b.y)
+}
+
+/// Where the strands of a section are.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    /// Their mean in the frame, metres.
+    mean: Vec3,
+    /// Their covariance in the plane, square metres.
+    covariance: Mat2,
+    /// How much further along the hair they are per metre in the plane.
+    tilt: Vec2,
+}
+
+impl Spread {
+    fn of(places: &[Vec3]) -> Self {
+        let n = places.len().max(1) as f32;
+        let mean = places.iter().sum::<Vec3>() / n;
+        let (mut covariance, mut along) = (Mat2::ZERO, Vec2::ZERO);
+        for away in places.iter().map(|place| place - mean) {
+            covariance += outer(away.truncate(), away.truncate()) * (1.0 / n);
+            along += away.truncate() * (away.z / n);
+        }
+        Self { mean, covariance, tilt: floored(covariance).inverse() * along }
+    }
+
+    /// This spread of a neighbour, seen from a section with the spread `own`: strands keep either their places among the guides, if
+    /// `turn` leads from the guides of the neighbour to those of the section, or their places in the plane. What leads nearer to
+    /// `own` counts. Guides that are almost on a line in one section say nothing of the next.
+    fn seen(self, own: Self, turn: Mat2) -> Self {
+        let turned = Self {
+            mean: (turn * self.mean.truncate()).extend(self.mean.z),
+            covariance: turn * self.covariance * turn.transpose(),
+            ..self
+        };
+        if turned.unlike(own) < self.unlike(own) { turned } else { self }
+    }
+
+    /// The difference of two spreads, square metres.
+    fn unlike(self, other: Self) -> f32 {
+        let difference = self.covariance - other.covariance;
+        (difference.x_axis.length_squared() + difference.y_axis.length_squared()).sqrt()
+            + (self.mean - other.mean).length_squared()
+    }
+}
 
 /// Fits the ellipse of each section to its strands: a disk that is filled evenly has a quarter of its squared radius as the
 /// variance along every axis.
-fn fill(sections: &mut [Section]) {
+fn fit(sections: &mut [Section], places: &[Vec<Vec3>]) {
     let mut spreads: Vec<Spread> = Vec::with_capacity(sections.len());
-    for section in sections.iter() {
-        let crossings = &section.crossings;
-        let n = crossings.len() as f32;
-        // Two strands or one, at the tip of the longest, say nothing of a section: it keeps the shape of the one before.
-        if crossings.len() < 3 {
-            let before = spreads.last().copied();
-            let mean = crossings.iter().map(|c| c.at).sum::<Vec2>() / n.max(1.0);
-            let (own, [xx, xy, yy]) = before.unwrap_or((mean, [0.25, 0.0, 0.25]));
-            spreads.push((own, [0.8 * xx, 0.8 * xy, 0.8 * yy]));
-            continue;
-        }
-        let mean = crossings.iter().map(|c| c.at).sum::<Vec2>() / n;
-        let mut c = [0.0; 3];
-        for at in crossings.iter().map(|crossing| crossing.at - mean) {
-            for (sum, product) in c.iter_mut().zip([at.x * at.x, at.x * at.y, at.y * at.y]) {
-                *sum += product / n;
-            }
-        }
-        spreads.push((mean, c));
+    for places in places {
+        // Two strands or one, at the tip of the longest, do not span a section: around them it keeps the shape of the one before.
+        let before = spreads.last().copied().filter(|_| places.len() < 3);
+        let own = Spread::of(places);
+        spreads.push(match before {
+            Some(before) => Spread {
+                mean: if places.is_empty() { before.mean } else { own.mean },
+                covariance: before.covariance * 0.8,
+                ..before
+            },
+            None => own,
+        });
     }
     for _ in 0..2 {
-        smooth(&mut spreads);
+        smooth(&mut spreads, sections);
     }
-    for (section, (mean, c)) in sections.iter_mut().zip(spreads) {
-        section.offset = mean;
-        section.fill = root(c, section.guides) * 2.0;
-        let back = section.fill.inverse();
-        for crossing in &mut section.crossings {
-            crossing.at = back * (crossing.at - mean);
+    for ((section, spread), places) in sections.iter_mut().zip(spreads).zip(places) {
+        section.centre = spread.mean;
+        // Turned as the guides are: the ellipse of the strands in the disk of the guides, without a rotation of its own.
+        let back = section.guides.inverse();
+        section.shape = section.guides * root(back * floored(spread.covariance) * back.transpose()) * 2.0;
+        section.slope = section.shape.transpose() * spread.tilt;
+        let back = section.shape.inverse();
+        for (crossing, place) in section.crossings.iter_mut().zip(places) {
+            crossing.at = back * (place - spread.mean).truncate();
         }
     }
 }
 
 /// Replaces each item by a weighted mean with its neighbours, so that strands that end do not make steps.
-fn smooth(spreads: &mut [Spread]) {
+fn smooth(spreads: &mut [Spread], sections: &[Section]) {
     let before = spreads.to_vec();
     let last = before.len().saturating_sub(1);
-    for (i, (mean, c)) in spreads.iter_mut().enumerate() {
-        let near = [before[i.saturating_sub(1)], before[i], before[i], before[(i + 1).min(last)]];
-        *mean = near.iter().map(|(mean, _)| *mean).sum::<Vec2>() / 4.0;
-        *c = std::array::from_fn(|k| near.iter().map(|(_, c)| c[k]).sum::<f32>() / 4.0);
+    for (i, spread) in spreads.iter_mut().enumerate() {
+        let own = before[i];
+        let near = [i.saturating_sub(1), (i + 1).min(last)]
+            .map(|k| before[k].seen(own, sections[i].guides * sections[k].guides.inverse()));
+        spread.mean = own.mean * 0.5 + (near[0].mean + near[1].mean) * 0.25;
+        spread.covariance = own.covariance * 0.5 + (near[0].covariance + near[1].covariance) * 0.25;
     }
 }
 
-/// The symmetric square root of a covariance in the disk of the guides, whose sections keep a thickness.
-fn root([xx, xy, yy]: [f32; 3], guides: Mat2) -> Mat2 {
-    let size = (0.5 * (guides.x_axis.length_squared() + guides.y_axis.length_squared())).sqrt();
-    // A tenth of the larger axis, and a thickness that a few hairs have.
-    let floor = (0.5 * LEAST_RADIUS / size.max(LEAST_RADIUS)).powi(2).max(0.01 * xx.max(yy)).max(1e-6);
-    let (xx, yy) = (xx + floor, yy + floor);
-    let area = (xx * yy - xy * xy).max(0.0).sqrt();
-    let scale = 1.0 / (xx + yy + 2.0 * area).sqrt();
-    Mat2::from_cols(Vec2::new(xx + area, xy) * scale, Vec2::new(xy, yy + area) * scale)
+/// A covariance with a tenth of the larger axis added along every axis, and a thickness that a few hairs have.
+fn floored(c: Mat2) -> Mat2 {
+    c + Mat2::IDENTITY * (0.25 * LEAST_RADIUS * LEAST_RADIUS).max(0.01 * c.x_axis.x.max(c.y_axis.y))
+}
+
+/// The symmetric square root of a covariance.
+fn root(c: Mat2) -> Mat2 {
+    let area = c.determinant().max(0.0).sqrt();
+    (c + Mat2::IDENTITY * area) * (1.0 / (c.x_axis.x + c.y_axis.y + 2.0 * area).sqrt())
 }
 
 #[cfg(test)]
@@ -203,29 +249,36 @@ mod tests {
 
     #[test]
     fn the_root_of_a_covariance_is_its_root() {
-        let c = [0.3, 0.1, 0.2];
-        let m = root(c, Mat2::IDENTITY);
-        let square = m * m;
-        // The floor adds a hundredth of the larger axis.
-        assert!((square.x_axis.x - 0.303).abs() < 1e-4, "{square}");
-        assert!((square.x_axis.y - 0.1).abs() < 1e-4 && (square.y_axis.y - 0.203).abs() < 1e-4, "{square}");
+        let c = Mat2::from_cols(Vec2::new(0.3, 0.1), Vec2::new(0.1, 0.2));
+        assert!((root(c) * root(c)).abs_diff_eq(c, 1e-6));
+        assert!(floored(c).abs_diff_eq(c + Mat2::IDENTITY * 0.003, 1e-6));
     }
 
     #[test]
     fn guides_on_a_line_span_a_thin_section() {
-        let (line, _) = spanned([Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0), Vec3::new(0.03, 0.0, 0.0)]);
+        let line = spanned([Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0), Vec3::new(0.03, 0.0, 0.0)]);
         assert!(line.determinant() > 1e-6, "{line}");
-        let (round, slope) = spanned([0, 1, 2].map(|g| (reference(g) * 0.01).extend(0.2 * reference(g).x)));
-        assert!((slope - Vec2::new(0.2, 0.0)).length() < 1e-6, "{slope}");
-        assert!((round - Mat2::IDENTITY * 0.01).to_cols_array().iter().all(|x| x.abs() < 1e-7), "{round}");
-        assert!(spanned([Vec3::ZERO; 3]).0.determinant().abs() > 0.0);
+        let round = spanned([0, 1, 2].map(|g| (reference(g) * 0.01).extend(0.2 * reference(g).x)));
+        assert!(round.abs_diff_eq(Mat2::IDENTITY * 0.01, 1e-7), "{round}");
+        assert!(spanned([Vec3::ZERO; 3]).determinant().abs() > 0.0);
+    }
+
+    #[test]
+    fn strands_before_and_behind_each_other_tilt_their_section() {
+        let places: Vec<Vec3> = (0..100)
+            .map(|i| Vec2::from_angle(i as f32) * (0.01 * (i as f32 / 100.0).sqrt()))
+            .map(|p| p.extend(0.002 + 0.5 * p.x - 2.0 * p.y))
+            .collect();
+        let found = Spread::of(&places);
+        // The floor of the covariance takes a hundredth.
+        assert!((found.tilt - Vec2::new(0.5, -2.0)).length() < 0.03, "{found:?}");
     }
 
     #[test]
     fn constant_weights_are_the_published_ellipse_with_the_angle_of_its_axes() {
         let q = [Vec2::new(0.011, 0.002), Vec2::new(-0.004, 0.009), Vec2::new(-0.006, -0.008)];
         let middle = (q[0] + q[1] + q[2]) / 3.0;
-        let (m, _) = spanned(q.map(|q| (q - middle).extend(0.0)));
+        let m = spanned(q.map(|q| (q - middle).extend(0.0)));
         let Ellipse { a, b, phi, theta } = Ellipse::of(m);
         for (v, u) in [(0.0, 0.0), (1.0, 0.3), (0.6, 2.0), (0.9, -1.7)] {
             let weights = weights_of(Vec2::from_angle(u) * v);

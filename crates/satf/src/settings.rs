@@ -91,6 +91,8 @@ pub struct ClusterSettings {
     pub along: u32,
     /// How unlike clusters may be that share parameters.
     pub macro_tolerance: f32,
+    /// Whether records are chosen by curls too. Off, all sectors look as if their strands were straight.
+    pub curls: bool,
     /// How records are read.
     pub lookup: RecordLookup,
     /// How the light on a layer is computed.
@@ -119,6 +121,7 @@ impl Default for ClusterSettings {
             around: 12,
             along: 32,
             macro_tolerance: 0.0,
+            curls: true,
             lookup: RecordLookup::default(),
             shading: ClusterShading::default(),
             local_shadow: LocalShadow::default(),
@@ -164,6 +167,11 @@ impl Settings for ClusterSettings {
             [0.0, 1.0],
             "Sharing",
             "How unlike locks may be that share one set of parameters. 0 shares only between equal locks.",
+        ),
+        Setting::switch(
+            field!(Self, curls),
+            "Curl records",
+            "Makes curled locks smoother, by records of loose and tight curls. Off, all locks use records of straight hair.",
         ),
         Setting::choice::<RecordLookup>(
             field!(Self, lookup),
@@ -228,8 +236,8 @@ impl ClusterSettings {
     /// The settings on which the clusters of a hairstyle depend; the others as by default.
     #[must_use]
     pub fn of_shape(&self) -> Self {
-        let Self { layers, core, around, along, macro_tolerance, .. } = *self;
-        Self { layers, core, around, along, macro_tolerance, ..Self::default() }
+        let Self { layers, core, around, along, macro_tolerance, curls, .. } = *self;
+        Self { layers, core, around, along, macro_tolerance, curls, ..Self::default() }
     }
 
     /// How each of `clusters` clusters is divided so that there are at most `most` hair shell volumes. Hair of this mean `length`, metres,

@@ -24,7 +24,7 @@ const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
 
 /// How hair is divided into clusters.
-const DIVISION: [&str; 5] = ["layers", "core", "around", "along", "macro_tolerance"];
+const DIVISION: [&str; 6] = ["layers", "core", "around", "along", "macro_tolerance", "curls"];
 
 /// What only the published lighting of clusters uses.
 const PUBLISHED: [&str; 3] = ["diffuse", "primary", "secondary"];

@@ -3,6 +3,7 @@
 mod baseline;
 mod bound;
 mod comparison;
+mod crowd;
 mod locks;
 mod memory;
 mod occupancy_order;
@@ -30,7 +31,9 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_render::{Backend, HairDrawing, Picture, RenderError, Renderer, ShadowMethod, Transparency};
+use lovelock_render::{
+    Backend, HairDrawing, HairPose, Picture, RenderError, Renderer, ShadowMethod, Transparency,
+};
 use lovelock_session::clock::FrameClock;
 use lovelock_session::engine::Engine;
 use lovelock_session::health::health;
@@ -38,6 +41,7 @@ use lovelock_session::machine::machine;
 use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 
 use bound::Amounts;
+use crowd::Crowd;
 
 /// What to measure. Scenes without rendering ([`BenchScene::is_simulated_alone`]) only use `frames`.
 #[derive(Clone, Debug)]
@@ -67,7 +71,8 @@ pub struct BenchRequest {
 impl Default for BenchRequest {
     fn default() -> Self {
         Self {
-            scenes: BenchScene::ALL.to_vec(),
+            // A crowd of strands takes more memory than many devices have.
+            scenes: BenchScene::ALL.into_iter().filter(|scene| !scene.is_of_crowd()).collect(),
             locks: Vec::new(),
             voxel_map: false,
             occupancy_order: false,
@@ -238,13 +243,19 @@ fn measure(
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
     engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));
     let mut picture = Picture::default();
+    let mut crowd = scene.is_of_crowd().then(|| Crowd::new(&loaded.style));
+    let style = crowd.as_ref().map_or(&loaded.style, |crowd| &crowd.style).clone();
     let mut frames = Vec::new();
     for frame in 0..=u64::from(request.frames.max(1)) {
         let watch = Stopwatch::start();
         engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + 1 + frame));
         let snapshot = engine.snapshot();
         let camera = snapshot.camera(&project.camera);
-        let input = snapshot.frame_input(project, &camera);
+        let mut input = snapshot.frame_input(project, &camera);
+        if let Some(crowd) = &mut crowd {
+            let guides = crowd.follow(&snapshot.guides);
+            (input.style, input.hair, input.guides) = (&style, HairPose::Guides(guides), Some(guides));
+        }
         let stats = renderer.picture(&input, width, height, &mut picture)?;
         let mut times = snapshot.times;
         times.take_picture(&stats);
@@ -254,5 +265,5 @@ fn measure(
         }
     }
     let gauges = health(&engine.totals(), engine.rest_inside(), loaded, &project.simulation);
-    Ok(SceneReport::new(scene, project, renderer, [width, height], &loaded.style.strands, gauges, &frames))
+    Ok(SceneReport::new(scene, project, renderer, [width, height], &style.strands, gauges, &frames))
 }

@@ -41,6 +41,10 @@ pub enum BenchScene {
     ClustersFar,
     /// The same hair from there, drawn as its stored strands.
     ClustersFarStrands,
+    /// The same clusters on 20 heads in one image, each 24 pixels high.
+    ClustersCrowd,
+    /// The same heads, with the stored strands.
+    ClustersCrowdStrands,
     /// The guides of the published smooth hairstyle, simulated by each method without rendering: 402 of 30 links.
     Simulate402,
     /// The same with each of 20,100 strands simulated individually.
@@ -49,7 +53,7 @@ pub enum BenchScene {
 
 impl BenchScene {
     /// All of them, by paper and from small to large.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::Smooth,
         Self::Curly,
         Self::Smooth500k,
@@ -65,6 +69,8 @@ impl BenchScene {
         Self::ClustersStrands,
         Self::ClustersFar,
         Self::ClustersFarStrands,
+        Self::ClustersCrowd,
+        Self::ClustersCrowdStrands,
         Self::Simulate402,
         Self::Simulate20k,
     ];
@@ -87,6 +93,8 @@ impl BenchScene {
             Self::ClustersStrands => "clusters-strands",
             Self::ClustersFar => "clusters-far",
             Self::ClustersFarStrands => "clusters-far-strands",
+            Self::ClustersCrowd => "clusters-crowd",
+            Self::ClustersCrowdStrands => "clusters-crowd-strands",
             Self::Simulate402 => "simulate-402",
             Self::Simulate20k => "simulate-20k",
         }
@@ -114,7 +122,17 @@ impl BenchScene {
 
     /// Whether it compares clusters with the strands for which they stand.
     const fn is_of_clusters(self) -> bool {
-        matches!(self, Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands)
+        matches!(self, Self::Clusters | Self::ClustersStrands) || self.is_of_far_clusters()
+    }
+
+    /// Whether it compares them on heads that are small in the image.
+    const fn is_of_far_clusters(self) -> bool {
+        matches!(self, Self::ClustersFar | Self::ClustersFarStrands) || self.is_of_crowd()
+    }
+
+    /// Whether it has many heads. Its body is that of one of them.
+    pub(super) const fn is_of_crowd(self) -> bool {
+        matches!(self, Self::ClustersCrowd | Self::ClustersCrowdStrands)
     }
 
     /// The measured project: three lights with `voxel-map`, blended; or, as in the paper, one light with `occupancy-maps` of
@@ -144,7 +162,12 @@ impl BenchScene {
             | Self::Middle
             | Self::Near
             | Self::Still => {}
-            Self::Clusters | Self::ClustersStrands | Self::ClustersFar | Self::ClustersFarStrands => {
+            Self::Clusters
+            | Self::ClustersStrands
+            | Self::ClustersFar
+            | Self::ClustersFarStrands
+            | Self::ClustersCrowd
+            | Self::ClustersCrowdStrands => {
                 (groom.wisps, groom.strands_per_wisp) = (40, 525);
             }
             Self::Simulate20k => groom.strands_per_wisp = 150,
@@ -177,11 +200,10 @@ impl BenchScene {
         }
         if self.is_of_clusters() {
             project.shadow.method = ShadowMethod::OccupancyMaps;
-            if matches!(self, Self::Clusters | Self::ClustersFar) {
+            if matches!(self, Self::Clusters | Self::ClustersFar | Self::ClustersCrowd) {
                 project.picture.draw = HairDrawing::Clusters;
             }
-            let is_far = matches!(self, Self::ClustersFar | Self::ClustersFarStrands);
-            project.camera.distance = if is_far { FAR } else { 1.0 };
+            project.camera.distance = if self.is_of_far_clusters() { FAR } else { 1.0 };
         }
         if self.is_simulated_alone() {
             project.motion.speed = 0.25;
@@ -323,6 +345,7 @@ mod tests {
             (BenchScene::Dog2M, 400_000, 2_000_000),
             (BenchScene::Clusters, 21_000, 630_000),
             (BenchScene::ClustersFarStrands, 21_000, 630_000),
+            (BenchScene::ClustersCrowd, 21_000, 630_000),
             (BenchScene::Simulate402, 3350, 100_500),
             (BenchScene::Simulate20k, 20_100, 603_000),
         ] {
@@ -337,6 +360,8 @@ mod tests {
         let maps = ShadowMethod::OccupancyMaps;
         assert_eq!(drawn(BenchScene::Clusters), (HairDrawing::Clusters, StrandCount::Stored, maps));
         assert_eq!(drawn(BenchScene::ClustersFarStrands), (HairDrawing::Strands, StrandCount::Stored, maps));
+        assert_eq!(drawn(BenchScene::ClustersCrowd), drawn(BenchScene::Clusters));
+        assert_eq!(drawn(BenchScene::ClustersCrowdStrands), drawn(BenchScene::ClustersFarStrands));
         let grown = crate::bench::load(&BenchScene::Woman300k.project()).expect("a scene");
         let strands = &grown.style.strands;
         assert_eq!((strands.count(), strands.segments()), (20_000, 300_000));

@@ -239,14 +239,14 @@ impl PlacedScene {
     ) {
         let TileScratch { samples, hair, order, .. } = scratch;
         if segments.is_empty() && transparency == Transparency::Sorted {
-            self.clusters.blend(origin, tile, samples, order, hair);
+            self.clusters.blend(self.width, origin, tile, samples, order, hair);
             return;
         }
         scratch.fragments.clear();
         if !segments.is_empty() {
             self.list_strands(view, origin, segments, scratch);
         }
-        self.clusters.list(origin, tile, &scratch.samples, &mut scratch.fragments);
+        self.clusters.list(self.width, origin, tile, &scratch.samples, &mut scratch.fragments);
         resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
     }
 }

@@ -279,3 +279,33 @@ fn strands_and_clusters_mix_in_proportion_to_the_size_of_the_head() {
         before = now;
     }
 }
+
+#[test]
+fn views_along_a_lock_and_locks_of_no_density_give_finite_images() {
+    let mut renderer = CpuRenderer::default();
+    let mut alphas = |along: bool, width_scale: f32, layers: u32| {
+        let mut scene = lock(60);
+        scene.picture.draw = HairDrawing::Clusters;
+        scene.picture.clusters.layers = layers;
+        scene.look.width_scale = width_scale;
+        seen_from(&mut scene, 0.1, 0.3);
+        if along {
+            // The eye and the light lie on the tangent at the root.
+            scene.camera.eye = scene.camera.target + Vec3::new(0.0, 1.0, 1e-4);
+            scene.lights[0].direction = Vec3::NEG_Y;
+        }
+        let image = drawn(&mut renderer, &scene, 64);
+        assert!(
+            image.light.iter().flatten().all(|c| c.is_finite()),
+            "{along}, {width_scale}, {layers} layers"
+        );
+        let largest = image.light.iter().fold(0.0_f32, |most, l| most.max(l[3]));
+        assert!((0.0..=1.0).contains(&largest), "{largest}");
+        largest
+    };
+    for layers in [1, 2, 15] {
+        assert!(alphas(true, 0.3, layers) > 0.5, "a view along the lock shows it");
+        assert!(alphas(false, 0.3, layers) > 0.2, "a view from the side shows it");
+        assert!(alphas(true, 0.0, layers) < 0.01 && alphas(false, 0.0, layers) < 0.01, "hair of no width");
+    }
+}

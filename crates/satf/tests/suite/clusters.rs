@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Hairstyle, Strands, interpolate};
-use lovelock_satf::{ClusterHair, ClusterSettings};
+use lovelock_satf::{Cell, ClusterHair, ClusterSettings};
 
 use super::hair::{LINKS, Made, at_rest, corners, guides, lively, random_weights, style};
 
@@ -221,6 +221,29 @@ fn a_part_of_many_strands_casts_their_shadow() {
     let few = style_of_few();
     let hair = ClusterHair::new(&few, &ClusterSettings::default(), WIDTH);
     assert!(Arc::ptr_eq(&hair.casters, &few), "all of few strands");
+}
+
+#[test]
+fn curled_locks_have_records_of_their_own_unless_switched_off() {
+    let wound = |weights| Made {
+        offset: |param| glam::Vec2::from_angle(5.0 * param) * 0.004,
+        ..Made::plain(weights)
+    };
+    let of = |strands: Vec<Made>, curls: bool| {
+        let settings = ClusterSettings { curls, ..ClusterSettings::default() };
+        clusters(style(&[(lively(), strands)]), &settings).1.cells
+    };
+    let curled = || disk(10, 200).into_iter().map(wound).collect::<Vec<_>>();
+    let differing = |a: &[Cell], b: &[Cell]| a.iter().zip(b).filter(|(a, b)| !a.has_sector_of(**b)).count();
+    let (with, without) = (of(curled(), true), of(curled(), false));
+    assert!(differing(&with, &without) > with.len() / 2, "{} of {}", differing(&with, &without), with.len());
+    assert!(with.iter().zip(&without).all(|(a, b)| a.strands() == b.strands()), "only records differ");
+    let straight = plain(disk(10, 200));
+    assert_eq!(
+        differing(&of(straight, true), &of(plain(disk(10, 200)), false)),
+        0,
+        "straight hair stays as it is"
+    );
 }
 
 fn style_of_few() -> Arc<Hairstyle> {

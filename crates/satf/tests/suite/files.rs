@@ -56,14 +56,25 @@ fn a_folder_keeps_the_database_and_a_damaged_file_is_replaced_and_told() {
     let (read, note) = load_or_build(&folder, &|_| panic!("built although it is there"));
     assert!(read == built && note.is_none());
 
-    fs::write(&path, &kept[..kept.len() / 2]).unwrap();
-    let (again, note) = load_or_build(&folder, &|_| ());
-    assert!(again == built);
-    assert!(
-        matches!(&note, Some(Note::MadeAgain { path: told, reason }) if *told == path && !reason.is_empty())
-    );
-    assert_eq!(fs::read(&path).unwrap(), kept);
-    assert!(load_or_build(&folder, &|_| ()).1.is_none(), "it is told once");
+    let changed = |at: usize| {
+        let mut bytes = kept.clone();
+        bytes[at] ^= 4;
+        bytes
+    };
+    let (cut, other_version, other_byte) =
+        (kept[..kept.len() / 2].to_vec(), changed(8), changed(kept.len() / 2));
+    for damaged in [cut, other_version, other_byte] {
+        let expected = Database::from_bytes(&damaged).unwrap_err().to_string();
+        fs::write(&path, &damaged).unwrap();
+        let (again, note) = load_or_build(&folder, &|_| ());
+        assert!(again == built, "{expected}");
+        assert!(
+            matches!(&note, Some(Note::MadeAgain { path: told, reason }) if *told == path && reason.contains(&expected)),
+            "{note:?} does not contain {expected}"
+        );
+        assert_eq!(fs::read(&path).unwrap(), kept, "{expected}");
+        assert!(load_or_build(&folder, &|_| ()).1.is_none(), "it is told once");
+    }
 }
 
 #[test]

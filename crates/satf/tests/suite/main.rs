@@ -6,6 +6,7 @@ mod files;
 mod hair;
 mod records;
 mod shading;
+mod shapes;
 mod tracing;
 
 use std::sync::OnceLock;

@@ -158,6 +158,10 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         out += "<p class=\"note\">Click a heading to sort by it; hover over one to see what it means. Shaded costs are on the front: \
                 no other method of the table is both more accurate (by <i>One truth</i>) and cheaper.</p>";
     }
+    if names.draws {
+        out += "<p class=\"note\">Only strands have errors of transmittance and swimming. Images of clusters are compared with the \
+                reference, which is drawn as strands. <i>Times</i> has the times of whole images.</p>";
+    }
     if !report.notes.is_empty() {
         out += "<ul class=\"notes\">";
         for note in &report.notes {

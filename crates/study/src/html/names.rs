@@ -23,7 +23,7 @@ pub(super) fn color(method: &MethodReport) -> &'static str {
 /// Names of the methods of one report, as short as possible while still unique.
 pub(super) struct Names {
     backends: bool,
-    draws: bool,
+    pub(super) draws: bool,
     transparencies: bool,
 }
 

@@ -322,3 +322,12 @@ fn numbers_that_are_none_break_no_plot() {
     assert!(!page.contains("NaN") && !page.contains("inf\"") && !page.contains("inf "));
     balanced(&page);
 }
+
+#[test]
+fn a_note_says_what_is_not_measured_of_clusters() {
+    let note = "Only strands have errors of transmittance";
+    let mut report = report();
+    assert!(!page(&report).contains(note));
+    report.methods[0].draw = "clusters".into();
+    assert!(page(&report).contains(note));
+}

@@ -1,18 +1,23 @@
 //! Draws columns of hair shell volumes, layer by layer.
 
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
+
 use std::f32::consts::TAU;
 
 use glam::Vec2;
+use lovelock_groom::simd::Width;
+use lovelock_groom::simd_versions;
 use lovelock_satf::{
     Cell, ClusterHair, ClusterSettings, ClusterShading, ClusterView, Database, LocalShadow, shadow,
 };
 
-use super::pixels::each_pixel;
+use super::pixels::{Covered, LANES, Triangle, cover_simd};
 use super::records::{Angles, Layer, Map, bilinear};
 use super::sink::Sink;
 use super::vertices::{Vertex, corners};
 use crate::cpu::hair::list::{Fragment, covered_samples};
-use crate::cpu::math::{log2, max, mix, saturate, three};
+use crate::cpu::math::{log2, max, mix, three};
 use crate::cpu::surface::raster::SurfaceSamples;
 use crate::cpu::tile::STRIDE;
 
@@ -21,6 +26,7 @@ const FAINTEST: f32 = 1.0 / 1024.0;
 
 /// The columns of a tile.
 pub(super) struct Columns<'a> {
+    pub width: Width,
     pub hair: &'a ClusterHair,
     pub database: &'a Database,
     pub vertices: &'a [Vertex],
@@ -49,12 +55,21 @@ impl Columns<'_> {
         order.sort_unstable();
     }
 
-    /// Passes the fragments of a layer of a column to `sink`.
-    pub fn draw<S: Sink>(&self, column: usize, index: usize, sink: &mut S) {
+    /// Passes the fragments of a layer of a column to `sink`. `covered` is working space.
+    pub fn draw<S: Sink>(&self, column: usize, index: usize, covered: &mut Covered, sink: &mut S) {
         let grid = self.hair.grid;
         let corners = corners(grid, column).map(|v| &self.vertices[v]);
-        let angles = angles_of(corners);
         let layer = self.layer(column, index, corners);
+        covered.len = 0;
+        for (triangle, places) in TRIANGLES {
+            let triangle = Triangle { corners: triangle.map(|k| layer.corners[k]), places };
+            cover_simd(self.width, &triangle, self.samples, sink, covered);
+        }
+        // Most layers are behind others.
+        if covered.len == 0 {
+            return;
+        }
+        let angles = angles_of(corners);
         let map = |layer: &Layer, angles: &Angles| {
             let [a, b, c, d] = layer.corners;
             let width = 0.5 * (distance(a, b) + distance(c, d));
@@ -74,38 +89,9 @@ impl Columns<'_> {
                 (layer, map, angles, u)
             })
             .collect();
-        // Made for the first pixel that is seen: most layers are behind others.
-        let mut own = None;
-        for (triangle, parameters) in TRIANGLES {
-            let points = triangle.map(|k| layer.corners[k]);
-            each_pixel(points, self.samples, sink, |weights, covered, at, sink| {
-                let mixed = |of: [f32; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
-                let [u, t] = [0, 1].map(|k| saturate(mixed(parameters.map(|p| p[k]))));
-                let map = own.get_or_insert_with(|| map(&layer, &angles));
-                let (alpha, reflected) = map.at(&layer, [u, t], bilinear(angles.cos_view, u, t));
-                if alpha < FAINTEST {
-                    return;
-                }
-                let gain = match self.settings.shading {
-                    ClusterShading::AsStrands => {
-                        max(1.0 + self.settings.detail * (reflected * map.inverse_mean - 1.0), 0.0)
-                    }
-                    ClusterShading::Paper => reflected,
-                };
-                let gain = gain * self.own_shadow(&outer, [u, t]);
-                let color = match self.settings.view {
-                    ClusterView::Hair => {
-                        three(|k| bilinear([0, 1, 2, 3].map(|q| layer.colors[q][k]), u, t) * gain)
-                    }
-                    ClusterView::Records => record_color(layer.cells[1][usize::from(t > 0.5)]),
-                };
-                let depth = mixed(points.map(|p| p[2]));
-                let pixel = [(at % STRIDE) as f32 + self.origin[0], (at / STRIDE) as f32 + self.origin[1]];
-                let hash = (column * grid.layers + index) as f32 * 0.618_034;
-                let opaque = covered_samples(alpha, pixel, hash - hash.floor());
-                sink.take(at, Fragment { depth, alpha, color, seen: covered, covered: opaque });
-            });
-        }
+        let map = map(&layer, &angles);
+        let own = OwnLayer { layer, map, angles, outer, quad: column * grid.layers + index };
+        shade_simd(self.width, self, &own, covered, sink);
     }
 
     /// The layers that shadow a layer: their columns, their numbers, and where across them light passes if that is not where the eye sees
@@ -136,13 +122,11 @@ impl Columns<'_> {
     }
 
     /// The light that other layers let through to a place on a layer (Xu et al., equation 12).
-    fn own_shadow(&self, between: &[(Layer, Map, Angles, Option<f32>)], [u, t]: [f32; 2]) -> f32 {
-        if between.is_empty() {
-            return 1.0;
-        }
+    fn own_shadow(&self, between: &[OuterLayer], [u, t]: [f32; 2]) -> f32 {
         let opacities = between.iter().map(|(layer, map, angles, passed)| {
             let u = passed.unwrap_or(u);
-            map.at(layer, [u, t], bilinear(angles.cos_view, u, t)).0
+            let ([opacity], _) = map.at(layer, [&[u], &[t]], &[bilinear(angles.cos_view, u, t)]);
+            opacity
         });
         shadow::transmittance(self.settings.local_shadow, self.settings.shadow_strength, opacities)
     }
@@ -169,6 +153,78 @@ impl Columns<'_> {
             cells: [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]),
             depths: arc,
             thickness: (1.0 - self.hair.core) / (grid.layers as f32 * radius),
+        }
+    }
+}
+
+/// A layer that shadows another one, and where across it light passes if that is not where the eye sees the shadowed place.
+type OuterLayer = (Layer, Map, Angles, Option<f32>);
+
+/// A layer whose pixels are shaded.
+struct OwnLayer {
+    layer: Layer,
+    map: Map,
+    angles: Angles,
+    outer: Vec<OuterLayer>,
+    quad: usize,
+}
+
+simd_versions! {
+    /// [`shade`] for the vectors of `width`.
+    fn shade_simd<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &mut S) -> () {
+        shade(columns, own, covered, sink)
+    }
+}
+
+/// Passes the fragments of a layer to `sink`.
+#[inline(always)]
+fn shade<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &mut S) {
+    let OwnLayer { layer, map, angles, .. } = own;
+    let hash = own.quad as f32 * 0.618_034;
+    let hash = hash - hash.floor();
+    // The part of the light that does not depend on the reflectance, and the factor of the reflectance.
+    let (even, slope) = match columns.settings.shading {
+        ClusterShading::AsStrands => {
+            (1.0 - columns.settings.detail, columns.settings.detail * map.inverse_mean)
+        }
+        ClusterShading::Paper => (0.0, 1.0),
+    };
+    let channels = [0, 1, 2].map(|k| [0, 1, 2, 3].map(|q| layer.colors[q][k]));
+    for first in (0..covered.len).step_by(LANES) {
+        let of = |values: &'_ [f32]| values[first..].first_chunk::<LANES>().copied().unwrap_or([0.0; LANES]);
+        let (u, t) = (of(&covered.u), of(&covered.t));
+        let mut cos_view = [0.0; LANES];
+        for lane in 0..LANES {
+            cos_view[lane] = bilinear(angles.cos_view, u[lane], t[lane]);
+        }
+        let (alpha, reflected) = map.at(layer, [&u, &t], &cos_view);
+        let mut colors = [[0.0; 3]; LANES];
+        for lane in 0..LANES {
+            let gain = max(even + slope * reflected[lane], 0.0);
+            colors[lane] = three(|k| bilinear(channels[k], u[lane], t[lane]) * gain);
+        }
+        for lane in 0..LANES.min(covered.len - first) {
+            let n = first + lane;
+            let (alpha, at) = (alpha[lane], covered.at[n] as usize);
+            if alpha < FAINTEST || alpha.is_nan() {
+                continue;
+            }
+            let mut color = colors[lane];
+            if !own.outer.is_empty() {
+                let lit = columns.own_shadow(&own.outer, [u[lane], t[lane]]);
+                color = three(|k| color[k] * lit);
+            }
+            if columns.settings.view == ClusterView::Records {
+                color = record_color(layer.cells[1][usize::from(t[lane] > 0.5)]);
+            }
+            let opaque = if S::TAKES_SAMPLES {
+                let [x, y] = columns.origin;
+                covered_samples(alpha, [(at % STRIDE) as f32 + x, (at / STRIDE) as f32 + y], hash)
+            } else {
+                0
+            };
+            let (depth, seen) = (covered.depth[n], covered.samples[n]);
+            sink.take(at, Fragment { depth, alpha, color, seen, covered: opaque });
         }
     }
 }

@@ -26,6 +26,7 @@ use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, MAX_LIGHTS};
 use columns::Columns;
+use pixels::Covered;
 use sink::Blend;
 use vertices::Vertex;
 
@@ -131,34 +132,50 @@ impl PlacedClusters {
     /// Blends the clusters of a tile from near to far, layer by layer.
     pub fn blend(
         &self,
+        width: Width,
         origin: [f32; 2],
         tile: usize,
         samples: &SurfaceSamples,
         order: &mut Vec<u64>,
         out: &mut HairPlanes,
     ) {
-        let Some(columns) = self.columns(origin, samples) else { return };
+        let Some(columns) = self.columns(width, origin, samples) else { return };
         columns.sort(self.bins.of(tile), order);
         let mut sink = Blend::new(out);
         let layers = columns.hair.grid.layers;
+        let mut covered = Covered::default();
         for &entry in order.iter() {
             let quad = entry as u32 as usize;
-            columns.draw(quad / layers, quad % layers, &mut sink);
+            columns.draw(quad / layers, quad % layers, &mut covered, &mut sink);
         }
     }
 
     /// Adds the fragments of a tile to the list.
-    pub fn list(&self, origin: [f32; 2], tile: usize, samples: &SurfaceSamples, out: &mut Fragments) {
-        let Some(columns) = self.columns(origin, samples) else { return };
+    pub fn list(
+        &self,
+        width: Width,
+        origin: [f32; 2],
+        tile: usize,
+        samples: &SurfaceSamples,
+        out: &mut Fragments,
+    ) {
+        let Some(columns) = self.columns(width, origin, samples) else { return };
+        let mut covered = Covered::default();
         for &column in self.bins.of(tile) {
             for layer in 0..columns.hair.grid.layers {
-                columns.draw(column as usize, layer, out);
+                columns.draw(column as usize, layer, &mut covered, out);
             }
         }
     }
 
-    fn columns<'a>(&'a self, origin: [f32; 2], samples: &'a SurfaceSamples) -> Option<Columns<'a>> {
+    fn columns<'a>(
+        &'a self,
+        width: Width,
+        origin: [f32; 2],
+        samples: &'a SurfaceSamples,
+    ) -> Option<Columns<'a>> {
         Some(Columns {
+            width,
             hair: self.hair.as_ref()?,
             database: &shared().0,
             vertices: &self.vertices,

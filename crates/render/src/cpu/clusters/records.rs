@@ -1,9 +1,12 @@
 //! What the layers of a column let through and reflect: the maps of reflectance and opacity, from the records of the database.
 
+// Functions are inlined into the loops that `simd_versions!` compiles.
+#![allow(clippy::inline_always)]
+
 use lovelock_satf::boundary::{Params, Sweep, VolumeRecords};
 use lovelock_satf::{Cell, ClusterSettings, Database, Features, RecordLookup};
 
-use crate::cpu::math::{exp, log2, max, min, mix};
+use crate::cpu::math::{exp, floor, index_of, log2, max, min, mix};
 
 /// Sine of the angle between eye and hair below which the azimuth of the eye is not defined well: five degrees.
 const ALONG_HAIR: f32 = 0.087;
@@ -50,7 +53,7 @@ impl Angles {
 }
 
 /// Between four corners: both ribs at the lower section, then at the upper one.
-#[inline]
+#[inline(always)]
 pub(super) fn bilinear(of: [f32; 4], u: f32, t: f32) -> f32 {
     mix(mix(of[0], of[1], u), mix(of[2], of[3], u), t)
 }
@@ -59,9 +62,8 @@ pub(super) fn bilinear(of: [f32; 4], u: f32, t: f32) -> f32 {
 /// so that nothing jumps where records change.
 pub(super) struct Map {
     texels: usize,
-    /// Optical depth of the texel along the radius, for one strand whose arc is as long as its width.
-    depth: [[f32; 2]; TEXELS],
-    reflected: [[f32; 2]; TEXELS],
+    /// Optical depth along the radius at both sections, for one strand whose arc is as long as its width, and reflectance there.
+    entries: [[f32; 4]; TEXELS],
     /// One over the mean reflectance.
     pub inverse_mean: f32,
     is_nearest: bool,
@@ -80,20 +82,14 @@ impl Map {
         // The maximum of NaN and 0 is 0.
         let mip = if is_nearest { 0.0 } else { min(max(mip, 0.0), 5.0) };
         let texels = 32 >> mip as usize;
-        let mut map = Self {
-            texels,
-            depth: [[0.0; 2]; TEXELS],
-            reflected: [[0.0; 2]; TEXELS],
-            inverse_mean: 1.0,
-            is_nearest,
-        };
+        let mut map = Self { texels, entries: [[0.0; 4]; TEXELS], inverse_mean: 1.0, is_nearest };
         if is_nearest {
             map.fill_nearest(database, layer, angles);
         } else {
             map.fill(database, layer, angles, mip);
         }
-        let own = &map.reflected[1..=texels];
-        let mean = own.iter().map(|[low, high]| low + high).sum::<f32>() / (2 * texels) as f32;
+        let own = &map.entries[1..=texels];
+        let mean = own.iter().map(|[.., low, high]| low + high).sum::<f32>() / (2 * texels) as f32;
         map.inverse_mean = 1.0 / max(mean, 0.02);
         map
     }
@@ -123,12 +119,11 @@ impl Map {
             if low.has_sector_of(high) {
                 // One record, swept from section to section.
                 let (depth, reflected) = read(low, 0.5);
-                (self.depth[k], self.reflected[k]) =
-                    (cells.map(|cell| cell.strands() * depth), [reflected; 2]);
+                self.entries[k] = [low.strands() * depth, high.strands() * depth, reflected, reflected];
             } else {
                 let both = [read(low, 0.0), read(high, 1.0)];
-                self.depth[k] = [0, 1].map(|s| cells[s].strands() * both[s].0);
-                self.reflected[k] = both.map(|of| of.1);
+                let depths = [0, 1].map(|s| cells[s].strands() * both[s].0);
+                self.entries[k] = [depths[0], depths[1], both[0].1, both[1].1];
             }
         }
     }
@@ -145,24 +140,41 @@ impl Map {
             let u = (k as f32 - 0.5) / self.texels as f32;
             for section in 0..2 {
                 let (opacity, reflected) = records.sample(database, section as f32, u, 0.0);
-                self.depth[k][section] = depth_of(opacity) / max(layer.depths[section], 1e-9);
-                self.reflected[k][section] = reflected;
+                self.entries[k][section] = depth_of(opacity) / max(layer.depths[section], 1e-9);
+                self.entries[k][2 + section] = reflected;
             }
         }
     }
 
-    /// Opacity and reflectance at a place of the layer, both coordinates from 0 to 1, for a ray whose azimuth has the cosine `cos_view`.
-    #[inline]
-    pub fn at(&self, layer: &Layer, [u, t]: [f32; 2], cos_view: f32) -> (f32, f32) {
-        let x = u * self.texels as f32 + 0.5;
-        let x = if self.is_nearest { (x + 0.5).floor() } else { x };
-        let i = (x as usize).min(TEXELS - 2);
-        let f = x - i as f32;
-        let between = |of: &[[f32; 2]; TEXELS], section: usize| mix(of[i][section], of[i + 1][section], f);
-        let depth =
-            mix(between(&self.depth, 0) * layer.depths[0], between(&self.depth, 1) * layer.depths[1], t);
-        let opacity = 1.0 - exp(-depth * curved(cos_view, layer.thickness));
-        (opacity, mix(between(&self.reflected, 0), between(&self.reflected, 1), t))
+    /// Opacity and reflectance at places of the layer, both coordinates from 0 to 1, for rays whose azimuths have the cosines `cos_view`.
+    #[inline(always)]
+    pub fn at<const N: usize>(
+        &self,
+        layer: &Layer,
+        [u, t]: [&[f32; N]; 2],
+        cos_view: &[f32; N],
+    ) -> ([f32; N], [f32; N]) {
+        let mut f = [0.0; N];
+        let [mut low, mut high] = [[[0.0; N]; 4]; 2];
+        for lane in 0..N {
+            let x = u[lane] * self.texels as f32 + 0.5;
+            let x = if self.is_nearest { floor(x + 0.5) } else { x };
+            // The mask of `index_of` keeps what is no number in range, and so does the minimum.
+            let i = (index_of(floor(x)) as usize).min(TEXELS - 2);
+            f[lane] = x - i as f32;
+            for value in 0..4 {
+                low[value][lane] = self.entries[i][value];
+                high[value][lane] = self.entries[i + 1][value];
+            }
+        }
+        let [mut opacity, mut reflected] = [[0.0; N]; 2];
+        for lane in 0..N {
+            let between = |value: usize| mix(low[value][lane], high[value][lane], f[lane]);
+            let depth = mix(between(0) * layer.depths[0], between(1) * layer.depths[1], t[lane]);
+            opacity[lane] = 1.0 - exp(-depth * curved(cos_view[lane], layer.thickness));
+            reflected[lane] = mix(between(2), between(3), t[lane]);
+        }
+        (opacity, reflected)
     }
 }
 
@@ -174,9 +186,10 @@ fn depth_of(opacity: f32) -> f32 {
 /// The way of a ray, whose azimuth has the cosine `cos`, through a layer as a fraction of that through a flat one of the same thickness, `thickness` being relative to the
 /// radius. Near the silhouette a ray leaves the layer through the surface by which it came in; half of that way belongs to each of the
 /// two faces.
+#[inline(always)]
 fn curved(cos: f32, thickness: f32) -> f32 {
     let cos = min(cos.abs(), 1.0);
     let inner = (1.0 - thickness) * (1.0 - thickness) - (1.0 - cos * cos);
-    let way = if inner > 0.0 { cos - inner.sqrt() } else { cos };
+    let way = cos - max(inner, 0.0).sqrt();
     way * max(cos, 1.0 / 6.0) / max(thickness, 1e-3)
 }

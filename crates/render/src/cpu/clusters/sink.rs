@@ -1,10 +1,15 @@
 //! Where the fragments of clusters go: into the list of a tile, or blended at once.
 
+// Functions are inlined into the loops that `simd_versions!` compiles.
+#![allow(clippy::inline_always)]
+
 use crate::cpu::hair::list::{Fragment, Fragments};
 use crate::cpu::tile::{HairPlanes, STRIDE, TILE, UNSEEN};
 
 /// Receives fragments.
 pub(super) trait Sink {
+    /// Whether `covered` of fragments is used.
+    const TAKES_SAMPLES: bool;
     /// Whether a fragment in the columns and rows of the tile, both ends included, could be seen.
     fn is_open_in(&self, columns: [usize; 2], rows: [usize; 2]) -> bool;
     /// Whether a fragment in the pixel at `at` could be seen.
@@ -14,10 +19,14 @@ pub(super) trait Sink {
 }
 
 impl Sink for Fragments {
+    const TAKES_SAMPLES: bool = true;
+
+    #[inline(always)]
     fn is_open_in(&self, _columns: [usize; 2], _rows: [usize; 2]) -> bool {
         true
     }
 
+    #[inline(always)]
     fn is_open(&self, _at: usize) -> bool {
         true
     }
@@ -47,7 +56,9 @@ impl<'a> Blend<'a> {
 }
 
 impl Sink for Blend<'_> {
-    #[inline]
+    const TAKES_SAMPLES: bool = false;
+
+    #[inline(always)]
     fn is_open_in(&self, [left, right]: [usize; 2], [top, bottom]: [usize; 2]) -> bool {
         let squares = left / SQUARE..=right / SQUARE;
         self.open[top / SQUARE..=bottom / SQUARE]
@@ -55,12 +66,12 @@ impl Sink for Blend<'_> {
             .any(|row| row[squares.clone()].iter().any(|&n| n > 0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_open(&self, at: usize) -> bool {
         self.planes.through[at] > UNSEEN
     }
 
-    #[inline]
+    #[inline(always)]
     fn take(&mut self, at: usize, fragment: Fragment) {
         let before = self.planes.through[at];
         let share = fragment.opacity() * before;
