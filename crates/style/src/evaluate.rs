@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lovelock_groom::{Hairstyle, Obstacle};
 
-use crate::{Layer, Scope, StyleStack};
+use crate::{HeadBox, Layer, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
 #[derive(Default)]
@@ -44,7 +44,14 @@ pub fn apply_layer(
     if idle || !operation.fits(style) {
         return None;
     }
-    let scope = Scope::new(layer, factor, style, obstacle);
+    let scope = Scope {
+        obstacle,
+        head: HeadBox::of(&style.scalp),
+        weight: layer.weight * factor,
+        mask: &layer.mask,
+        ramp: &layer.ramp,
+        seed: layer.seed,
+    };
     let acts = |guide: usize| scope.at(style.guides.point(guide, 0)) != 0.0;
     if !(0..style.guides.count()).any(acts) {
         return None;

@@ -8,6 +8,7 @@
 mod evaluate;
 mod guides;
 mod mask;
+mod operate;
 pub mod operation;
 pub mod operations;
 mod ramp;
@@ -18,8 +19,9 @@ mod strands;
 
 pub use evaluate::{StyleCache, Styled, apply_layer};
 pub use mask::{HeadBox, Mask, MaskMap, MaskMix, MaskPart, MaskRegion};
-pub use operation::{AnyOperation, Kind, Operate, Operation, RampInfo, Subject, UnknownOperation};
+pub use operate::{AnyOperation, Kind, Operate, RampInfo, Subject};
+pub use operation::Operation;
 pub use ramp::{Ramp, RampShape};
 pub use scope::Scope;
 pub use stack::{Group, Layer, StyleStack};
-pub use stored::Stored;
+pub use stored::{Stored, UnknownOperation};

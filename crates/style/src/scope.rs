@@ -4,8 +4,7 @@ use glam::Vec3;
 use lovelock_base::random::SplitMix64;
 use lovelock_groom::{Hairstyle, Obstacle};
 
-use crate::Layer;
-use crate::mask::HeadBox;
+use crate::{HeadBox, Mask, Ramp};
 
 /// Where and how strongly a layer acts on a hairstyle.
 pub struct Scope<'a> {
@@ -13,29 +12,30 @@ pub struct Scope<'a> {
     pub obstacle: &'a dyn Obstacle,
     /// The box of the hair on the head.
     pub head: HeadBox,
-    layer: &'a Layer,
-    weight: f32,
+    /// The layer's weight, with that of its group.
+    pub weight: f32,
+    /// The layer's mask.
+    pub mask: &'a Mask,
+    /// The layer's ramp.
+    pub ramp: &'a Ramp,
+    /// The layer's seed.
+    pub seed: u32,
 }
 
-impl<'a> Scope<'a> {
-    /// The scope of a layer whose groups add the factor `group_weight`.
-    pub fn new(layer: &'a Layer, group_weight: f32, style: &Hairstyle, obstacle: &'a dyn Obstacle) -> Self {
-        Self { obstacle, head: HeadBox::of(&style.scalp), layer, weight: layer.weight * group_weight }
-    }
-
+impl Scope<'_> {
     /// The layer's weight times its mask at a place of the scalp, head space: 0 where it does nothing.
     pub fn at(&self, root: Vec3) -> f32 {
-        self.weight * self.layer.mask.at(&self.head, root)
+        self.weight * self.mask.at(&self.head, root)
     }
 
     /// The layer's ramp at a place along a strand: 0 is the root, 1 the tip.
     pub fn along(&self, place: f32) -> f32 {
-        self.layer.ramp.at(place)
+        self.ramp.at(place)
     }
 
     /// Whether the layer's ramp is 1 everywhere.
     pub fn is_even(&self) -> bool {
-        self.layer.ramp.is_one()
+        self.ramp.is_one()
     }
 
     /// [`Scope::at`] the root of each guide.
@@ -62,6 +62,6 @@ impl<'a> Scope<'a> {
 
     /// Random numbers of one thing that the layer acts on, such as a wisp; `purpose` keeps two uses apart.
     pub fn random(&self, purpose: u32, thing: usize) -> SplitMix64 {
-        SplitMix64::of_stream(self.layer.seed, (u64::from(purpose) << 32) | thing as u64)
+        SplitMix64::of_stream(self.seed, (u64::from(purpose) << 32) | thing as u64)
     }
 }

@@ -98,7 +98,9 @@ pub fn refine(style: &mut Hairstyle, scope: &Scope<'_>, segment: f32) {
         parts.iter().enumerate().map(of).sum()
     };
     while points(&parts) > u64::from(MOST_POINTS) && parts.iter().any(|n| *n > 1) {
-        parts.iter_mut().for_each(|n| *n = (*n - 1).max(1));
+        for n in &mut parts {
+            *n = (*n - 1).max(1);
+        }
     }
     if parts.iter().all(|n| *n == 1) {
         return;

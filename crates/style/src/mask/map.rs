@@ -70,7 +70,7 @@ fn texel_index(x: i32, y: i32) -> usize {
 /// The place of a direction in the unit square; the middle is up.
 fn unfold(direction: Vec3) -> Vec2 {
     let sum = direction.x.abs() + direction.y.abs() + direction.z.abs();
-    if !(sum > 0.0) || !sum.is_finite() {
+    if sum <= 0.0 || !sum.is_finite() {
         return Vec2::splat(0.5);
     }
     let flat = Vec2::new(direction.x, direction.z) / sum;

@@ -9,7 +9,7 @@ use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 use lovelock_groom::fine::lock_numbers;
 
-use crate::operation::{Kind, Operate, RampInfo, Subject};
+use crate::operate::{Kind, Operate, RampInfo, Subject};
 use crate::strands::{displace, refine};
 use crate::{Ramp, Scope};
 

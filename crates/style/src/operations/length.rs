@@ -7,7 +7,7 @@ use lovelock_groom::{Haircut, Hairstyle, trimmed};
 
 use crate::Scope;
 use crate::guides::{self, Lengths, reshape};
-use crate::operation::{Kind, Operate, Subject};
+use crate::operate::{Kind, Operate, Subject};
 
 /// The length to which hair can be lengthened, metres.
 const LONGEST: f32 = 1.5;
@@ -187,10 +187,10 @@ impl Operate for Length {
 }
 
 /// Makes a guide longer by a factor: new hair goes on at its end and bends down.
-fn lengthen(points: &mut Vec<Vec3>, factor: f32) {
+fn lengthen(points: &mut [Vec3], factor: f32) {
     let links = points.len() - 1;
     let link = guides::length(points) / links as f32;
-    let mut way = points.clone();
+    let mut way = points.to_vec();
     let mut direction = (points[links] - points[links - 1]).normalize_or(Vec3::NEG_Y);
     for _ in 0..((factor - 1.0) * links as f32).ceil() as usize {
         direction = (direction + Vec3::NEG_Y * (link / 0.05).min(1.0)).normalize_or(Vec3::NEG_Y);

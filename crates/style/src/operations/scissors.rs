@@ -5,7 +5,7 @@ use lovelock_base::settings::{Setting, Settings};
 use lovelock_groom::{Haircut, Hairstyle, trimmed};
 
 use crate::Scope;
-use crate::operation::{Kind, Operate, Subject};
+use crate::operate::{Kind, Operate, Subject};
 
 /// A cut by the shape of a blade at one instant: the part that remains of each guide.
 #[derive(Clone, Debug, Default, PartialEq)]

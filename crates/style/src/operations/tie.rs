@@ -3,7 +3,7 @@
 use lovelock_groom::{HairTie, Hairstyle, tied_where};
 
 use crate::Scope;
-use crate::operation::{Kind, Operate, Subject};
+use crate::operate::{Kind, Operate, Subject};
 
 impl Operate for HairTie {
     const KIND: Kind = Kind {

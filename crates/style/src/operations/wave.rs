@@ -9,7 +9,7 @@ use lovelock_groom::{Hairstyle, reference_normal, transport};
 
 use crate::Scope;
 use crate::guides::{Lengths, reshape};
-use crate::operation::{Kind, Operate, Subject};
+use crate::operate::{Kind, Operate, Subject};
 
 /// Waves of guides.
 #[derive(Clone, Debug, PartialEq)]

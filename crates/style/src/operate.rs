@@ -1,13 +1,10 @@
-//! What every operation can do, and the table of all of them.
+//! What every operation can do.
 
-use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 use lovelock_base::settings::{AnySettings, Settings};
 use lovelock_groom::Hairstyle;
 
-use crate::operations::*;
-use crate::stored::Stored;
 use crate::{Ramp, Scope};
 
 /// What an operation changes.
@@ -146,104 +143,5 @@ impl<T: Operate> AnyOperation for T {
 
     fn settings_mut(&mut self) -> &mut dyn AnySettings {
         self
-    }
-}
-
-/// An operation of another version: its id and everything that was written about it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct UnknownOperation {
-    /// Its id.
-    pub id: String,
-    /// Its values by their names.
-    pub values: BTreeMap<String, Stored>,
-    /// Its curves by their names.
-    pub ramps: BTreeMap<String, Ramp>,
-}
-
-macro_rules! operations {
-    ($($name:ident),+ $(,)?) => {
-        /// An operation of a style.
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum Operation {
-            $(
-                #[doc = concat!("See [`", stringify!($name), "`].")]
-                $name($name),
-            )+
-            /// An operation of another version, which does nothing.
-            Unknown(UnknownOperation),
-        }
-
-        impl Operation {
-            /// Every kind, in the order of menus.
-            pub const KINDS: &'static [Kind] = &[$(<$name as Operate>::KIND),+];
-
-            /// A new operation of the kind with that id.
-            pub fn new(id: &str) -> Option<Self> {
-                $(
-                    if <$name as Operate>::KIND.id == id {
-                        return Some(Self::$name($name::default()));
-                    }
-                )+
-                None
-            }
-
-            /// The operation itself; `None` for one of another version.
-            pub fn known(&self) -> Option<&dyn AnyOperation> {
-                match self {
-                    $(Self::$name(operation) => Some(operation),)+
-                    Self::Unknown(_) => None,
-                }
-            }
-
-            /// The same, to be changed.
-            pub fn known_mut(&mut self) -> Option<&mut dyn AnyOperation> {
-                match self {
-                    $(Self::$name(operation) => Some(operation),)+
-                    Self::Unknown(_) => None,
-                }
-            }
-        }
-
-        $(
-            impl From<$name> for Operation {
-                fn from(operation: $name) -> Self {
-                    Self::$name(operation)
-                }
-            }
-        )+
-    };
-}
-
-// The table of operations, in the order of menus: each is a file or folder of `operations`.
-operations!(Length, Scissors, Wave, HairTie, Curl);
-
-impl Operation {
-    /// Its id in files.
-    pub fn id(&self) -> &str {
-        match self {
-            Self::Unknown(unknown) => &unknown.id,
-            known => known.known().map_or("", |operation| operation.kind().id),
-        }
-    }
-
-    /// Its name in the window.
-    pub fn label(&self) -> &str {
-        match self {
-            Self::Unknown(unknown) => &unknown.id,
-            known => known.known().map_or("", |operation| operation.kind().label),
-        }
-    }
-
-    /// The operation with every value in its range.
-    #[must_use]
-    pub fn clamped(&self) -> Self {
-        let mut out = self.clone();
-        if let Some(operation) = out.known_mut() {
-            operation.settings_mut().clamp();
-            for i in 0..operation.ramps().len() {
-                *operation.ramp_mut(i) = operation.ramp(i).clamped();
-            }
-        }
-        out
     }
 }
