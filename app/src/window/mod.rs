@@ -126,6 +126,8 @@ pub(crate) struct Window {
     marked_gauge: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
+    /// The layer of the style whose controls are shown.
+    selected_layer: Option<u32>,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
@@ -201,6 +203,7 @@ impl Window {
             marked_gauge: None,
             colliders: panels::colliders::Shown::default(),
             selected_tie: 0,
+            selected_layer: None,
             ties_shown: false,
             scissors: Scissors::default(),
             record: panels::records::RecordView::default(),

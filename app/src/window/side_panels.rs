@@ -27,6 +27,9 @@ impl Window {
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
+                section(ui, "Layers", false, |ui| {
+                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.selected_layer);
+                });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
                     let scalp = self.session.scene.as_ref().map(|scene| &scene.style.scalp);
                     panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);

@@ -1,10 +1,12 @@
 //! The rows of a panel: a label, a control with its unit, a tooltip, and a mark where the value differs from its default.
 
+mod curve;
 mod number;
 mod setting;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, Ui, Vec2};
 
+pub(crate) use curve::curve;
 pub(crate) use number::{Number, is_escaped, typed};
 pub(crate) use setting::{all_settings, entry, setting, settings};
 

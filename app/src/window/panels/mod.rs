@@ -4,6 +4,7 @@ pub(crate) mod body;
 pub(crate) mod colliders;
 pub(crate) mod hair;
 pub(crate) mod health;
+pub(crate) mod layers;
 pub(crate) mod light;
 pub(crate) mod look;
 pub(crate) mod recording;

@@ -6,6 +6,7 @@ use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_simulation::SimulationSettings;
+use lovelock_style::StyleStack;
 use serde::{Deserialize, Serialize};
 
 use super::contender::Contender;
@@ -116,6 +117,8 @@ pub struct HairSection {
     pub import: ImportSettings,
     /// What gathers the hair, at most [`HairTie::MOST`].
     pub ties: Vec<HairTie>,
+    /// What is done to the hair after cutting and tying, layer by layer.
+    pub stack: StyleStack,
     /// What was cut off while it moved; made by [`Haircut::of`] from an instant, and added up by [`Haircut::and`].
     pub cut: Haircut,
 }
@@ -129,6 +132,7 @@ impl Default for HairSection {
             file: None,
             import: ImportSettings::default(),
             ties: Vec::new(),
+            stack: StyleStack::default(),
             cut: Haircut::default(),
         }
     }

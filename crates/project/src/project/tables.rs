@@ -209,6 +209,7 @@ impl Settings for HairSection {
     fn parts(&self) -> Vec<Part<'_>> {
         let mut parts: Vec<Part<'_>> = vec![("groom".into(), &self.groom), ("import".into(), &self.import)];
         parts.extend(list("ties", &self.ties));
+        parts.push(("stack".into(), &self.stack));
         parts
     }
 
@@ -216,6 +217,7 @@ impl Settings for HairSection {
         let mut parts: Vec<PartMut<'_>> =
             vec![("groom".into(), &mut self.groom), ("import".into(), &mut self.import)];
         parts.extend(list_mut("ties", &mut self.ties));
+        parts.push(("stack".into(), &mut self.stack));
         parts
     }
 

@@ -8,6 +8,7 @@ use lovelock_motion::{Collider, ColliderEdits};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
+use lovelock_style::StyleCache;
 
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
@@ -51,6 +52,7 @@ pub struct SceneLoader {
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
     operations: OperationCache,
+    layers: StyleCache,
     surroundings: SurroundingsLoader,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
     colliders: Option<(Arc<BodyPart>, ColliderEdits, ColliderLists)>,
@@ -96,7 +98,7 @@ impl SceneLoader {
         control.at("creating the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
         let obstacle = Arc::clone(&body.obstacle);
-        let result = self.operations.apply(&hair.style, project.hair.operations(), obstacle);
+        let result = self.operations.apply(&hair.style, project.hair.operations(), obstacle.clone());
         problems.extend(result.skipped.iter().map(|operation| {
             let message = format!(
                 "the {} was made for other hair and has no effect here; it returns with its hairstyle",
@@ -104,6 +106,15 @@ impl SceneLoader {
             );
             Problem::new(Place::Hair, ProblemKind::Ignored, message)
         }));
+        let styled = self.layers.apply(&result.style, &project.hair.stack, obstacle);
+        let other_hair = styled.skipped.into_iter().map(|layer| {
+            format!("the layer \"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle")
+        });
+        let other_version = project.hair.stack.unknown().into_iter().map(|(layer, id)| {
+            format!("the layer \"{layer}\" uses `{id}`, which this version does not know; it is kept and has no effect")
+        });
+        let ignored = |message| Problem::new(Place::Hair, ProblemKind::Ignored, message);
+        problems.extend(other_hair.chain(other_version).map(ignored));
         control.at("loading the surroundings", 0.85)?;
         let surroundings = self.surroundings.load(&project, access, &mut problems);
         control.at("computing the path of the head", 0.9)?;
@@ -125,7 +136,7 @@ impl SceneLoader {
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
-            style: result.style,
+            style: styled.style,
             head_path,
             surroundings,
             notes: notes.into(),

@@ -7,6 +7,8 @@ use lovelock_project::Project;
 use lovelock_project::error::{Place, ProblemKind};
 use lovelock_project::files::Access;
 use lovelock_project::project::{project_of_text, text_of_project};
+use lovelock_style::operations::Length;
+use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation, UnknownOperation};
 
 use super::Scene;
 use super::loader::SceneLoader;
@@ -161,4 +163,45 @@ fn strands_that_are_tied_in_motion_do_not_jump() {
         assert!(Arc::ptr_eq(&there.scene, to), "a second later it is the style itself");
         assert!(engine.totals().max_stretch < 1e-5);
     }
+}
+
+#[test]
+fn layers_act_after_ties_and_survive_the_project_file() {
+    let mut loader = SceneLoader::new();
+    let mut project = small_project();
+    let plain = load(&mut loader, &project);
+    let left = Mask::of(MaskPart::region(MaskRegion::Left));
+    let shorter = Layer { mask: left, ..Layer::of(Length { factor: 0.4, ..Length::default() }) };
+    project.hair.stack.push(shorter);
+    let project = saved_and_read(&project);
+    let cut = load(&mut loader, &project);
+    // Guides of a wisp stay as long as its longest strand needs, so the mean is halved and not the maximum.
+    let mean = |scene: &Scene, side: f32| {
+        let guides = &scene.style.guides;
+        let length = |g: usize| {
+            (1..guides.points_per_guide)
+                .map(|p| guides.point(g, p).distance(guides.point(g, p - 1)))
+                .sum::<f32>()
+        };
+        let of_side: Vec<f32> =
+            (0..guides.count()).filter(|&g| guides.point(g, 0).x * side > 0.03).map(length).collect();
+        of_side.iter().sum::<f32>() / of_side.len() as f32
+    };
+    assert_eq!(mean(&cut, -1.0), mean(&plain, -1.0));
+    let part = mean(&cut, 1.0) / mean(&plain, 1.0);
+    assert!(part < 0.6, "{part}");
+}
+
+#[test]
+fn a_layer_of_another_version_is_kept_and_said() {
+    let mut project = small_project();
+    let operation =
+        Operation::Unknown(UnknownOperation { id: "crystal".to_owned(), ..UnknownOperation::default() });
+    project.hair.stack.push(Layer { operation, ..Layer::default() });
+    let project = saved_and_read(&project);
+    assert_eq!(project.hair.stack.layers[0].operation.id(), "crystal");
+    let (_, problems) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+    assert_eq!(problems.len(), 1);
+    assert_eq!((problems[0].place, problems[0].kind.clone()), (Place::Hair, ProblemKind::Ignored));
+    assert!(problems[0].message.contains("`crystal`"), "{}", problems[0].message);
 }

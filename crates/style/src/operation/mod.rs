@@ -3,8 +3,7 @@
 mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
-#[expect(clippy::wildcard_imports, reason = "the table below is then the only list of operations")]
-use crate::operations::*;
+use crate::operations::{Curl, HairTie, Length, Scissors, Wave};
 use crate::stored::UnknownOperation;
 
 macro_rules! operations {

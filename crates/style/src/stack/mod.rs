@@ -19,6 +19,7 @@ pub struct StyleStack {
     /// The groups that layers name.
     pub groups: Vec<Group>,
     /// The only layer that acts, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub solo: Option<u32>,
 }
 

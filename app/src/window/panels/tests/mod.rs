@@ -1,4 +1,5 @@
 mod every_control;
+mod layers;
 mod one_by_one;
 mod reasons;
 mod recording;
@@ -37,6 +38,7 @@ pub(super) struct Bench {
     pub(super) clip_frames: u64,
     pub(super) colliders: super::colliders::Shown,
     pub(super) selected_tie: usize,
+    pub(super) selected_layer: Option<u32>,
     pub(super) scissors: bool,
 }
 
@@ -76,6 +78,7 @@ impl Bench {
             clip_frames: 480,
             colliders: super::colliders::Shown::default(),
             selected_tie: 0,
+            selected_layer: None,
             scissors: false,
         }
     }
@@ -91,7 +94,7 @@ pub(super) fn surroundings() -> Arc<Panorama> {
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
 /// Every panel, inside a section as in the window.
-pub(super) const PANELS: [(&str, Show); 11] = [
+pub(super) const PANELS: [(&str, Show); 12] = [
     ("Hairstyle", |ui, b| {
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
@@ -114,6 +117,9 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         let shapes = [("neck", false), ("upper arm left of a rather long name", false), ("skull", skull)];
         let fitted = shapes.map(|(name, spared)| super::colliders::Fitted { name, spared });
         super::colliders::ui(ui, edits, &fitted, &mut b.colliders);
+    }),
+    ("Layers", |ui, b| {
+        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.selected_layer);
     }),
     ("Ties and scissors", |ui, b| {
         super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
