@@ -31,8 +31,9 @@ pub(crate) fn curve(ui: &mut Ui, label: &str, tip: &str, ramp: &mut Ramp) {
         distances.enumerate().filter(|(_, d)| *d < GRASP).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
     };
     let held_id = response.id.with("held");
+    // A drag starts some way from where the button went down.
     if response.drag_started()
-        && let Some(at) = response.interact_pointer_pos()
+        && let Some(at) = ui.input(|input| input.pointer.press_origin())
     {
         let held = nearest(ramp, at);
         ui.data_mut(|data| data.insert_temp(held_id, held));

@@ -81,6 +81,8 @@ fn points_of_a_ramp_are_dragged_added_and_removed() {
     let mut harness = with_layers();
     click(&mut harness, "Length");
     unfold(&mut harness);
+    // Sections open slowly.
+    harness.run_steps(30);
     let rect = harness.query_all_by_role(Role::Canvas).last().expect("a curve").rect();
     let ramp = |harness: &Panel| stack(harness).layers[0].ramp.clone();
     assert_eq!(ramp(&harness).points, [[0.0, 1.0]]);
