@@ -3,8 +3,7 @@
 mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
-#[expect(clippy::wildcard_imports, reason = "the table below is then the only list of operations")]
-use crate::operations::*;
+use crate::operations::{Clump, Curl, Frizz, HairTie, Length, Scissors, Strays, Taper, Wander, Wave, Width};
 use crate::stored::UnknownOperation;
 
 macro_rules! operations {

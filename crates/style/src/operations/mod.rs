@@ -1,4 +1,4 @@
-//! The operations. Each is a file or a folder here, and a name in the table of [`crate::operation`].
+//! The operations. Each is a file or a folder here, and a name in the imports and in the table of [`crate::operation`].
 
 mod clump;
 mod curl;

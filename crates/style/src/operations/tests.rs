@@ -30,7 +30,7 @@ fn ends(style: &Hairstyle) -> Vec<[Vec3; 2]> {
     set.first_point.windows(2).map(|w| [at(w[0] as usize), at(w[1] as usize - 1)]).collect()
 }
 
-/// Root mean square distance of points from the mean of their wisp, at the link 20 of the guides.
+/// Root mean square distance of tips from the mean of their wisp, across the hair.
 fn spread(style: &Hairstyle) -> f32 {
     let set = &style.strands;
     let (mut sum, mut count) = (0.0, 0.0);
@@ -43,7 +43,7 @@ fn spread(style: &Hairstyle) -> f32 {
                 let i = range.end - 1;
                 let offset = Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
                 let u = set.guide_param[i];
-                // Across the hair alone: strands end at different lengths.
+                // Without the part along the hair, because strands end at different lengths.
                 let frame = curve.frame(u);
                 let across =
                     frame.transpose() * (curve.blend(set.weights[s], u) - curve.blend([1.0 / 3.0; 3], u));
