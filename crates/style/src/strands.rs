@@ -133,3 +133,18 @@ fn divided(set: &StrandSet, parts: &[u32]) -> StrandSet {
     }
     out
 }
+
+/// Multiplies the width of the strands on which the layer acts. `factor` returns the factor at a place along the strand.
+pub fn widen(style: &mut Hairstyle, scope: &Scope<'_>, factor: impl Fn(f32) -> f32) {
+    let strengths = scope.strands(style);
+    let set = &mut style.strands;
+    for (strand, strength) in strengths.into_iter().enumerate() {
+        let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+        let end = set.guide_param[range.end - 1].max(1e-6);
+        for i in range {
+            let place = set.guide_param[i] / end;
+            let change = (factor(place) - 1.0) * strength * scope.along(place);
+            set.taper[i] *= (1.0 + change).max(0.0);
+        }
+    }
+}

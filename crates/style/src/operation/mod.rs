@@ -3,7 +3,7 @@
 mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
-use crate::operations::{Curl, HairTie, Length, Scissors, Wave};
+use crate::operations::{Clump, Curl, Frizz, HairTie, Length, Scissors, Strays, Taper, Wander, Wave, Width};
 use crate::stored::UnknownOperation;
 
 macro_rules! operations {
@@ -61,7 +61,7 @@ macro_rules! operations {
 }
 
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
-operations!(Length, Scissors, Wave, HairTie, Curl);
+operations!(Length, Scissors, Wave, HairTie, Curl, Clump, Frizz, Strays, Wander, Width, Taper);
 
 impl Operation {
     /// Its id in files.
