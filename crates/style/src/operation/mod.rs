@@ -62,7 +62,7 @@ macro_rules! operations {
 }
 
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
-operations!(Length, Scissors, Wave, HairTie, Curl);
+operations!(Length, Scissors, Lift, Bend, Straighten, Sweep, Part, Wave, HairTie, Curl);
 
 impl Operation {
     /// Its id in files.
