@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 use lovelock_groom::polyline::{Reach, next_at, sample};
-use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, widest_radii};
+use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, transport, widest_radii};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -96,6 +96,26 @@ pub fn wisp_means(style: &Hairstyle) -> Vec<Vec<Vec3>> {
     let point = |guides: [u32; 3], p| guides.map(|g| style.guides.point(g as usize, p)).iter().sum::<Vec3>();
     let mean = |guides| (0..style.guides.points_per_guide).map(|p| point(guides, p) / 3.0).collect();
     style.wisps.iter().map(|wisp| mean(wisp.guides)).collect()
+}
+
+/// Two unit directions square to a path at each of its points, carried along it: the first is square to `outward` at its start.
+pub fn frames(path: &[Vec3], outward: Vec3) -> Vec<(Vec3, Vec3)> {
+    let last = path.len() - 1;
+    let mut before = Vec3::ZERO;
+    let mut across = Vec3::X;
+    let mut out = Vec::with_capacity(path.len());
+    for i in 0..=last {
+        let (a, b) = (path[i.saturating_sub(1)], path[(i + 1).min(last)]);
+        let along = (b - a).normalize_or(if i > 0 { before } else { Vec3::NEG_Y });
+        across = if i == 0 {
+            along.cross(outward).normalize_or(along.any_orthonormal_vector())
+        } else {
+            transport(across.into(), before.into(), along.into()).into()
+        };
+        out.push((across, along.cross(across)));
+        before = along;
+    }
+    out
 }
 
 /// Changes every guide on which the layer acts. Roots stay where they are, links become equal again, and hair stays out of the body.

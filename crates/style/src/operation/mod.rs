@@ -62,7 +62,10 @@ macro_rules! operations {
 }
 
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
-operations!(Length, Scissors, Lift, Bend, Straighten, Sweep, Part, Wave, HairTie, Curl);
+operations!(
+    Length, Scissors, Lift, Bend, Straighten, Smooth, Twist, Sweep, Part, Fringe, Wave, Noise, HairTie, Coil,
+    Braid, Curl
+);
 
 impl Operation {
     /// Its id in files.
