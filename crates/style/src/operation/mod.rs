@@ -3,8 +3,10 @@
 mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
-#[expect(clippy::wildcard_imports, reason = "the table below is then the only list of operations")]
-use crate::operations::*;
+use crate::operations::{
+    Bend, Braid, Coil, Curl, Fringe, HairTie, Length, Lift, Noise, Part, Scissors, Smooth, Straighten, Sweep,
+    Twist, Wave,
+};
 use crate::stored::UnknownOperation;
 
 macro_rules! operations {

@@ -81,7 +81,8 @@ impl Operate for Fringe {
                 // Forward over the top of the head, then down over the forehead.
                 let (distance, normal) = body.distance(at);
                 let fall = smoothstep(0.0, 0.7 * self.length, i as f32 * link);
-                let wanted = (forward * (1.0 - 0.7 * fall) + Vec3::NEG_Y * (0.3 + 0.7 * fall)).normalize();
+                let wanted = (forward * (1.0 - 0.7 * fall) + Vec3::NEG_Y * (0.3 + 0.7 * fall))
+                    .normalize_or(Vec3::NEG_Y);
                 let near = 1.0 - (distance / 0.03).clamp(0.0, 1.0);
                 let target = (wanted - normal * (wanted.dot(normal).min(0.0) * near)).normalize_or(wanted);
                 let amount = belongs * strength * scope.along(i as f32 / (count - 1) as f32);

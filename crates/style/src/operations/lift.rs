@@ -82,7 +82,7 @@ mod tests {
         let middle = crate::HeadBox::of(&before.scalp).middle;
         let last = before.guides.points_per_guide - 1;
         for g in 0..before.guides.count() {
-            let out = (before.guides.point(g, 0) - middle).normalize();
+            let out = (before.guides.point(g, 0) - middle).normalize_or_zero();
             let rise = (after.guides.point(g, last) - before.guides.point(g, last)).dot(out);
             assert!(rise > 0.003, "{rise}");
             let turn = turn_between(&after, g);

@@ -62,12 +62,12 @@ impl Operate for Noise {
                 })
                 .collect();
             let directions: Vec<_> = (0..shape.points.len()).map(|i| shape.direction(i)).collect();
-            for i in 1..shape.points.len() {
+            for (i, direction) in directions.iter().enumerate().skip(1) {
                 let metres = i as f32 * shape.link;
                 let at = metres / self.wavelength.max(0.005);
                 let knot = (at as usize).min(knots - 2);
                 let swing = values[knot].lerp(values[knot + 1], smoothstep(0.0, 1.0, at - knot as f32));
-                let across = swing.reject_from_normalized(directions[i]);
+                let across = swing.reject_from_normalized(*direction);
                 let onset = smoothstep(0.0, self.wavelength, metres);
                 let strength = shape.strength * scope.along(shape.place(i));
                 shape.points[i] += across * (self.amplitude * onset * strength);

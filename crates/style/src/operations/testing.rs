@@ -28,7 +28,7 @@ pub fn acted(operation: impl Into<Operation>, style: &Hairstyle) -> Hairstyle {
 
 /// Unit direction of a link of a guide.
 pub fn direction(style: &Hairstyle, guide: usize, link: usize) -> Vec3 {
-    (style.guides.point(guide, link + 1) - style.guides.point(guide, link)).normalize()
+    (style.guides.point(guide, link + 1) - style.guides.point(guide, link)).normalize_or_zero()
 }
 
 /// Angle between the first and the last link of a guide.
