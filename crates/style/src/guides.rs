@@ -1,8 +1,8 @@
 //! Changing guides: their points, lengths and the body that they stay out of.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use lovelock_groom::polyline::{Reach, next_at, sample};
-use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, widest_radii};
+use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, transport, widest_radii};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -11,6 +11,8 @@ use crate::Scope;
 const CLEAR: f32 = 0.003;
 /// How far past its end a guide may be laid, in links, and the step of the search.
 const REACH: Reach = Reach { beyond: 64.0, step: 0.25 };
+/// Distance from the body within which combed hair follows its surface, metres.
+const NEAR: f32 = 0.03;
 /// Links shorter than this belong to the cut part of a guide, metres.
 const NO_LINK: f32 = 1e-6;
 
@@ -56,6 +58,66 @@ impl GuideShape {
     }
 }
 
+/// Turns a direction toward another by an angle and beyond it only if `past`.
+pub fn turned(direction: Vec3, toward: Vec3, angle: f32, past: bool) -> Vec3 {
+    let Some(axis) = direction.cross(toward).try_normalize() else { return direction };
+    let angle = if past { angle } else { angle.min(direction.angle_between(toward)) };
+    Quat::from_axis_angle(axis, angle) * direction
+}
+
+/// Lays a guide again from its root with other directions of its links: `turn` gets a link's index, the new place of its start and its
+/// direction, and returns the new direction.
+pub fn turn_links(shape: &mut GuideShape, mut turn: impl FnMut(usize, Vec3, Vec3) -> Vec3) {
+    let before = shape.points.clone();
+    for i in 0..before.len() - 1 {
+        let step = before[i + 1] - before[i];
+        let direction = step.normalize_or(Vec3::NEG_Y);
+        let at = shape.points[i];
+        shape.points[i + 1] = at + turn(i, at, direction).normalize_or(direction) * step.length();
+    }
+}
+
+/// Combs a guide over the body: its links turn toward `toward`, along the surface where they are near it, by `amount` of a link.
+pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: impl Fn(usize) -> f32) {
+    let obstacle = Bounded(scope.obstacle);
+    turn_links(shape, |i, at, direction| {
+        let (distance, normal) = obstacle.distance(at);
+        let near = 1.0 - (distance / NEAR).clamp(0.0, 1.0);
+        let along = toward - normal * (toward.dot(normal).min(0.0) * near);
+        match along.try_normalize() {
+            Some(along) => direction.lerp(along, amount(i).clamp(0.0, 1.0)),
+            None => direction,
+        }
+    });
+}
+
+/// The mean of the guides of each wisp, point by point.
+pub fn wisp_means(style: &Hairstyle) -> Vec<Vec<Vec3>> {
+    let point = |guides: [u32; 3], p| guides.map(|g| style.guides.point(g as usize, p)).iter().sum::<Vec3>();
+    let mean = |guides| (0..style.guides.points_per_guide).map(|p| point(guides, p) / 3.0).collect();
+    style.wisps.iter().map(|wisp| mean(wisp.guides)).collect()
+}
+
+/// Two unit directions square to a path at each of its points, carried along it: the first is square to `outward` at its start.
+pub fn frames(path: &[Vec3], outward: Vec3) -> Vec<(Vec3, Vec3)> {
+    let last = path.len() - 1;
+    let mut before = Vec3::ZERO;
+    let mut across = Vec3::X;
+    let mut out = Vec::with_capacity(path.len());
+    for i in 0..=last {
+        let (a, b) = (path[i.saturating_sub(1)], path[(i + 1).min(last)]);
+        let along = (b - a).normalize_or(if i > 0 { before } else { Vec3::NEG_Y });
+        across = if i == 0 {
+            along.cross(outward).normalize_or(along.any_orthonormal_vector())
+        } else {
+            transport(across.into(), before.into(), along.into()).into()
+        };
+        out.push((across, along.cross(across)));
+        before = along;
+    }
+    out
+}
+
 /// Changes every guide on which the layer acts. Roots stay where they are, links become equal again, and hair stays out of the body.
 pub fn reshape(
     style: &mut Hairstyle,
@@ -75,7 +137,7 @@ pub fn reshape(
             let before = shape.points.clone();
             change(&mut shape);
             shape.points[0] = before[0];
-            let finite = shape.points.len() == before.len() && shape.points.iter().all(|p| p.is_finite());
+            let finite = shape.points.len() > 1 && shape.points.iter().all(|p| p.is_finite());
             if !finite || shape.points == before {
                 return None;
             }

@@ -3,7 +3,10 @@
 mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
-use crate::operations::{Clump, Curl, Frizz, HairTie, Length, Scissors, Strays, Taper, Wander, Wave, Width};
+use crate::operations::{
+    Bend, Braid, Clump, Coil, Curl, Fringe, Frizz, HairTie, Length, Lift, Noise, Part, Scissors, Smooth,
+    Straighten, Strays, Sweep, Taper, Twist, Wander, Wave, Width,
+};
 use crate::stored::UnknownOperation;
 
 macro_rules! operations {
@@ -61,7 +64,10 @@ macro_rules! operations {
 }
 
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
-operations!(Length, Scissors, Wave, HairTie, Curl, Clump, Frizz, Strays, Wander, Width, Taper);
+operations!(
+    Length, Scissors, Lift, Bend, Straighten, Smooth, Twist, Sweep, Part, Fringe, Wave, Noise, HairTie, Coil,
+    Braid, Clump, Curl, Frizz, Strays, Wander, Width, Taper
+);
 
 impl Operation {
     /// Its id in files.

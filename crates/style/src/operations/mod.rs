@@ -1,27 +1,51 @@
 //! The operations. Each is a file or a folder here, and a name in the imports and in the table of [`crate::operation`].
 
+mod bend;
+mod braid;
 mod clump;
+mod coil;
 mod curl;
+mod fringe;
 mod frizz;
 mod length;
+mod lift;
+mod noise;
+mod part;
 mod scissors;
+mod smooth;
+mod straighten;
 mod strays;
+mod sweep;
 mod taper;
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;
 mod tie;
+mod twist;
 mod wander;
 mod wave;
 mod width;
 
+pub use bend::Bend;
+pub use braid::Braid;
 pub use clump::Clump;
+pub use coil::Coil;
 pub use curl::Curl;
+pub use fringe::Fringe;
 pub use frizz::Frizz;
 pub use length::{Length, LengthBy};
+pub use lift::Lift;
 pub use lovelock_groom::HairTie;
+pub use noise::Noise;
+pub use part::Part;
 pub use scissors::Scissors;
+pub use smooth::Smooth;
+pub use straighten::Straighten;
 pub use strays::Strays;
+pub use sweep::Sweep;
 pub use taper::Taper;
+pub use twist::Twist;
 pub use wander::Wander;
 pub use wave::Wave;
 pub use width::Width;

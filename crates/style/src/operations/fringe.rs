@@ -1,0 +1,143 @@
+//! Brings front hair forward over the forehead and shortens it.
+
+use crate::guides::{Lengths, reshape, shape_of, turn_links};
+use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_groom::{Bounded, Haircut, Hairstyle, Obstacle, trimmed};
+
+use crate::Scope;
+use crate::operate::{Kind, Operate, Subject};
+
+/// Brings front hair forward over the forehead and shortens it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fringe {
+    /// Length of the fringe, metres.
+    pub length: f32,
+    /// Distance from the foremost hair within which hair belongs to the fringe, metres.
+    pub depth: f32,
+    /// Width of the fringe, metres.
+    pub width: f32,
+    /// Angle toward the wearer's left, radians.
+    pub lean: f32,
+}
+
+impl Default for Fringe {
+    fn default() -> Self {
+        Self { length: 0.09, depth: 0.05, width: 0.12, lean: 0.0 }
+    }
+}
+
+impl Settings for Fringe {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(field!(Self, length), [0.01, 0.4], "Length", "Length of the fringe.")
+            .unit(Unit::METRES_AS_CM),
+        Setting::number(
+            field!(Self, depth),
+            [0.005, 0.2],
+            "Depth",
+            "How far behind the foremost hair the fringe begins.",
+        )
+        .unit(Unit::METRES_AS_CM),
+        Setting::number(field!(Self, width), [0.01, 0.3], "Width", "Width of the fringe on the scalp.")
+            .unit(Unit::METRES_AS_CM),
+        Setting::number(
+            field!(Self, lean),
+            [-1.2, 1.2],
+            "Lean",
+            "How the fringe leans. Above 0° it goes to the wearer's left.",
+        )
+        .unit(Unit::RADIANS),
+    ];
+}
+
+impl Operate for Fringe {
+    const KIND: Kind = Kind {
+        id: "fringe",
+        label: "Fringe",
+        text: "Brings front hair forward over the forehead and shortens it.",
+        subject: Subject::Shape,
+    };
+
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        let head = &scope.head;
+        let part = |root: Vec3| {
+            let back = head.middle.z + head.half.z - root.z;
+            let aside = (root.x - head.middle.x).abs();
+            let half = 0.5 * self.width;
+            (1.0 - smoothstep(0.8 * self.depth, self.depth, back))
+                * (1.0 - smoothstep(0.9 * half, half, aside))
+        };
+        reshape(style, scope, Lengths::Keep, |shape| {
+            let belongs = part(shape.points[0]);
+            if belongs == 0.0 {
+                return;
+            }
+            let (link, strength, count) = (shape.link, shape.strength, shape.points.len());
+            let body = Bounded(scope.obstacle);
+            let forward = Vec3::new(self.lean.sin(), 0.0, self.lean.cos());
+            turn_links(shape, |i, at, direction| {
+                // Forward over the top of the head, then down over the forehead.
+                let (distance, normal) = body.distance(at);
+                let fall = smoothstep(0.0, 0.7 * self.length, i as f32 * link);
+                let wanted = (forward * (1.0 - 0.7 * fall) + Vec3::NEG_Y * (0.3 + 0.7 * fall))
+                    .normalize_or(Vec3::NEG_Y);
+                let near = 1.0 - (distance / 0.03).clamp(0.0, 1.0);
+                let target = (wanted - normal * (wanted.dot(normal).min(0.0) * near)).normalize_or(wanted);
+                let amount = belongs * strength * scope.along(i as f32 / (count - 1) as f32);
+                direction.lerp(target, amount.clamp(0.0, 1.0))
+            });
+        });
+        let links = style.guides.points_per_guide - 1;
+        let strengths = scope.guides(style);
+        let mut kept = vec![1.0; style.guides.count()];
+        for (guide, strength) in strengths.iter().enumerate().filter(|(_, strength)| **strength != 0.0) {
+            let Some(shape) = shape_of(&style.guides, guide, *strength, None) else { continue };
+            let short = (self.length / shape.length()).min(1.0);
+            let amount = (part(shape.points[0]) * strength).clamp(0.0, 1.0);
+            if short < 1.0 && amount > 0.0 {
+                kept[guide] = (1.0 + (short - 1.0) * amount) * (shape.points.len() - 1) as f32 / links as f32;
+            }
+        }
+        if kept.iter().any(|kept| *kept < 1.0) {
+            *style = trimmed(style, &Haircut { first_root: style.guides.point(0, 0), kept });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operations::testing::{acted, straight};
+
+    #[test]
+    fn front_hair_goes_forward_and_becomes_short_and_the_rest_stays() {
+        let before = straight(Vec3::NEG_Z);
+        let fringe = Fringe { depth: 0.1, width: 0.3, ..Fringe::default() };
+        let after = acted(fringe.clone(), &before);
+        let head = crate::HeadBox::of(&before.scalp);
+        let (mut front, mut rest) = (0, 0);
+        let last = before.guides.points_per_guide - 1;
+        for wisp in &before.wisps {
+            let roots = wisp.guides.map(|g| before.guides.point(g as usize, 0));
+            let back = roots.map(|root| head.middle.z + head.half.z - root.z);
+            let within = back.iter().all(|back| *back < 0.08)
+                && roots.iter().all(|root| (root.x - head.middle.x).abs() < 0.13);
+            for (g, root) in wisp.guides.map(|g| g as usize).into_iter().zip(roots) {
+                let tip = after.guides.point(g, last);
+                if within {
+                    front += 1;
+                    // Guides end with the last point of the strands that follow them.
+                    let length = shape_of(&after.guides, g, 1.0, None).expect("hair").length();
+                    assert!((0.08..0.125).contains(&length), "{length}");
+                    assert!(tip.z > root.z && tip.y < root.y, "{tip} {root}");
+                } else if back.iter().all(|back| *back > fringe.depth) {
+                    rest += 1;
+                    assert_eq!(tip, before.guides.point(g, last));
+                }
+            }
+        }
+        assert!(front > 0 && rest > 0);
+    }
+}

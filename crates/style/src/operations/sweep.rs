@@ -1,0 +1,97 @@
+//! Combs hair over the scalp in one direction.
+
+use glam::Vec3;
+use lovelock_base::field;
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_groom::Hairstyle;
+
+use crate::Scope;
+use crate::guides::{Lengths, comb, reshape};
+use crate::operate::{Kind, Operate, Subject};
+
+/// Combs hair over the scalp in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// Direction about the head: 0 is forward, a quarter turn the wearer's left, radians.
+    pub azimuth: f32,
+    /// How far the direction rises, radians.
+    pub elevation: f32,
+    /// How far hair turns to the direction, as a fraction.
+    pub amount: f32,
+    /// Length from the root that is combed, metres.
+    pub length: f32,
+}
+
+impl Default for Sweep {
+    fn default() -> Self {
+        Self { azimuth: 1.57, elevation: -0.3, amount: 0.7, length: 0.15 }
+    }
+}
+
+impl Settings for Sweep {
+    const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(
+            field!(Self, azimuth),
+            [-3.15, 3.15],
+            "Azimuth",
+            "Direction about the head: 0° is forward, 90° the wearer's left, 180° back.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, elevation),
+            [-1.57, 1.57],
+            "Elevation",
+            "How far the direction rises. Below 0° it falls.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(field!(Self, amount), [0.0, 1.0], "Amount", "How far hair turns to the direction.")
+            .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, length),
+            [0.01, 1.5],
+            "Length",
+            "Length of hair from the root that is combed.",
+        )
+        .unit(Unit::METRES_AS_CM),
+    ];
+}
+
+impl Operate for Sweep {
+    const KIND: Kind = Kind {
+        id: "sweep",
+        label: "Sweep",
+        text: "Combs hair over the scalp in one direction.",
+        subject: Subject::Shape,
+    };
+
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        let (sin, cos) = self.azimuth.sin_cos();
+        let level = Vec3::new(sin, 0.0, cos) * self.elevation.cos();
+        let toward = level + Vec3::Y * self.elevation.sin();
+        reshape(style, scope, Lengths::Keep, |shape| {
+            let (link, strength, count) = (shape.link, shape.strength, shape.points.len());
+            comb(shape, scope, toward, |i| {
+                let fade = 1.0 - smoothstep(0.5 * self.length, self.length, i as f32 * link);
+                self.amount * fade * strength * scope.along(i as f32 / (count - 1) as f32)
+            });
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operations::testing::{acted, straight};
+
+    #[test]
+    fn hair_turns_to_the_direction() {
+        let before = straight(Vec3::NEG_Y);
+        let after = acted(Sweep { amount: 1.0, length: 1.5, elevation: 0.0, ..Sweep::default() }, &before);
+        let last = before.guides.points_per_guide - 1;
+        for g in 0..before.guides.count() {
+            let way = after.guides.point(g, last) - after.guides.point(g, 0);
+            assert!(way.distance(Vec3::X * 0.31) < 0.01, "{way}");
+        }
+    }
+}
