@@ -65,8 +65,6 @@ struct Axis {
     frames: Vec<(Vec3, Vec3)>,
     /// The bundle of each wisp; none for those without a braid.
     bundle: Vec<Option<usize>>,
-    /// Number of wisps.
-    wisps: usize,
 }
 
 impl Axis {
@@ -116,7 +114,7 @@ impl Braid {
         for (rank, wisp) in wisps.iter().enumerate() {
             bundle[*wisp] = Some(rank * 3 / wisps.len());
         }
-        Some(Axis { middle, frames, bundle, wisps: style.wisps.len() })
+        Some(Axis { middle, frames, bundle })
     }
 }
 
@@ -131,8 +129,7 @@ impl Operate for Braid {
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         let Some(braid) = self.axis(style, scope) else { return };
         reshape(style, scope, Lengths::Keep, |shape| {
-            let group = shape.wisp.map_or(braid.wisps, |wisp| wisp);
-            let Some(bundle) = braid.bundle.get(group).copied().flatten() else { return };
+            let Some(bundle) = shape.wisp.and_then(|wisp| braid.bundle[wisp]) else { return };
             if shape.length() <= self.start {
                 return;
             }
