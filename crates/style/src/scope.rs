@@ -45,9 +45,7 @@ impl Scope<'_> {
 
     /// [`Scope::at`] the middle of the roots of each wisp.
     pub fn wisps(&self, style: &Hairstyle) -> Vec<f32> {
-        let root =
-            |guides: [u32; 3]| guides.map(|g| style.guides.point(g as usize, 0)).iter().sum::<Vec3>() / 3.0;
-        style.wisps.iter().map(|wisp| self.at(root(wisp.guides))).collect()
+        wisp_roots(style).into_iter().map(|root| self.at(root)).collect()
     }
 
     /// [`Scope::at`] the root of each strand.
@@ -64,4 +62,11 @@ impl Scope<'_> {
     pub fn random(&self, purpose: u32, thing: usize) -> SplitMix64 {
         SplitMix64::of_stream(self.seed, (u64::from(purpose) << 32) | thing as u64)
     }
+}
+
+/// The middle of the roots of each wisp, head space.
+pub(crate) fn wisp_roots(style: &Hairstyle) -> Vec<Vec3> {
+    let root =
+        |guides: [u32; 3]| guides.map(|g| style.guides.point(g as usize, 0)).iter().sum::<Vec3>() / 3.0;
+    style.wisps.iter().map(|wisp| root(wisp.guides)).collect()
 }

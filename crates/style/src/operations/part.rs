@@ -6,9 +6,9 @@ use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
-use crate::Scope;
 use crate::guides::{Lengths, comb, reshape};
 use crate::operate::{Kind, Operate, Subject};
+use crate::scope::{Scope, wisp_roots};
 
 /// Combs hair away from a line along the head.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +71,11 @@ impl Operate for Part {
     };
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        // A wisp stays on one side; its strands would hang between two.
+        let roots = wisp_roots(style);
         reshape(style, scope, Lengths::Keep, |shape| {
-            let aside = shape.points[0].x - scope.head.middle.x - self.position;
+            let root = shape.wisp.map_or(shape.points[0], |wisp| roots[wisp]);
+            let aside = root.x - scope.head.middle.x - self.position;
             let near = 1.0 - smoothstep(0.5 * self.width, self.width, aside.abs());
             if near == 0.0 {
                 return;
@@ -97,9 +100,10 @@ mod tests {
         let before = straight(Vec3::NEG_Y);
         let after = acted(Part { position: 0.0, ..Part::default() }, &before);
         let (last, middle) = (before.guides.points_per_guide - 1, crate::HeadBox::of(&before.scalp).middle.x);
+        let (roots, wisps) = (wisp_roots(&before), crate::guides::wisp_of_guide(&before));
         let mut sides = [0, 0];
         for g in 0..before.guides.count() {
-            let aside = before.guides.point(g, 0).x - middle;
+            let aside = roots[wisps[g].expect("a wisp")].x - middle;
             let moved = after.guides.point(g, last).x - before.guides.point(g, last).x;
             if aside.abs() < 0.03 {
                 assert!(moved * aside.signum() > 0.02, "{moved}");

@@ -11,6 +11,8 @@ use crate::operate::{Kind, Operate, Subject};
 
 /// Neighbours of a guide.
 const NEIGHBOURS: usize = 6;
+/// The part of the length at which the direction of combed hair is taken.
+const COMBED: f32 = 0.2;
 /// Passes of the smoothing along hair.
 const PASSES: usize = 8;
 
@@ -61,7 +63,8 @@ impl Operate for Smooth {
         reshape(style, scope, Lengths::Keep, |shape| {
             let before = shape.points.clone();
             let (count, length) = (before.len(), shape.length());
-            let own = before[count - 1] - before[0];
+            // Hair parts near its roots; further down all of it falls the same way.
+            let own = sample(&before, COMBED * (count - 1) as f32) - before[0];
             let mut near: Vec<(f32, &GuideShape)> = all
                 .iter()
                 .flatten()
@@ -78,9 +81,9 @@ impl Operate for Smooth {
                 let (mut sum, mut weight) = (before[i] - before[0], 1.0);
                 for (_, other) in &near {
                     let last = other.points.len() - 1;
-                    let way = other.points[last] - other.points[0];
+                    let way = sample(&other.points, COMBED * last as f32) - other.points[0];
                     // Hair that goes another way, as across a parting, counts less.
-                    let alike = way.normalize_or_zero().dot(own.normalize_or_zero()).max(0.0);
+                    let alike = way.normalize_or_zero().dot(own.normalize_or_zero()).max(0.0).powi(6);
                     let offset = sample(&other.points, place * last as f32) - other.points[0];
                     sum += offset * (alike * length / other.length());
                     weight += alike;
