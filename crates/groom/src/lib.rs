@@ -17,7 +17,6 @@ mod interpolate;
 mod io;
 mod look;
 mod obstacle;
-mod operation;
 mod pigment;
 mod plain_head;
 pub mod polyline;
@@ -48,7 +47,6 @@ pub use io::{
 };
 pub use look::{HairLook, HairShading};
 pub use obstacle::{Bounded, NoObstacle, Obstacle};
-pub use operation::{HairOperation, OperationCache, OperationResult};
 pub use pigment::{PAINTED_FROM, PigmentVariation, UNPIGMENTED, WHITENING};
 pub use plain_head::PlainHead;
 pub use presets::Preset;

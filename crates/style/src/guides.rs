@@ -1,8 +1,9 @@
 //! Changing guides: their points, lengths and the body that they stay out of.
 
 use glam::{Quat, Vec3};
+use lovelock_base::numbers::smoothstep;
 use lovelock_groom::polyline::{Reach, next_at, sample};
-use lovelock_groom::{Bounded, Guides, Hairstyle, Obstacle, transport, widest_radii};
+use lovelock_groom::{Bounded, Guides, Haircut, Hairstyle, Obstacle, transport, trimmed, widest_radii};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -13,6 +14,8 @@ const CLEAR: f32 = 0.003;
 const REACH: Reach = Reach { beyond: 64.0, step: 0.25 };
 /// Distance from the body within which combed hair follows its surface, metres.
 const NEAR: f32 = 0.03;
+/// How far directions near the body lean away from it before they are turned.
+const OVER: f32 = 0.2;
 /// Links shorter than this belong to the cut part of a guide, metres.
 const NO_LINK: f32 = 1e-6;
 
@@ -77,17 +80,22 @@ pub fn turn_links(shape: &mut GuideShape, mut turn: impl FnMut(usize, Vec3, Vec3
     }
 }
 
-/// Combs a guide over the body: its links turn toward `toward`, along the surface where they are near it, by `amount` of a link.
-pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: impl Fn(usize) -> f32) {
+/// Combs a guide over the body: its links turn toward `toward`, along the surface where they are near it, by the part `amount` of the
+/// way. That fades to nothing at a distance of `metres` from the root.
+pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: f32, metres: f32) {
     let obstacle = Bounded(scope.obstacle);
+    let (link, strength, last) = (shape.link, shape.strength, (shape.points.len() - 1) as f32);
     turn_links(shape, |i, at, direction| {
         let (distance, normal) = obstacle.distance(at);
         let near = 1.0 - (distance / NEAR).clamp(0.0, 1.0);
         let along = toward - normal * (toward.dot(normal).min(0.0) * near);
-        match along.try_normalize() {
-            Some(along) => direction.lerp(along, amount(i).clamp(0.0, 1.0)),
-            None => direction,
-        }
+        let fade = 1.0 - smoothstep(0.5 * metres, metres, i as f32 * link);
+        let amount = (amount * fade * strength * scope.along(i as f32 / last)).clamp(0.0, 1.0);
+        let Some(along) = along.try_normalize() else { return direction };
+        // Hair that is combed back turns over through the direction away from the body, not through it.
+        let from = (direction + normal * (OVER * near)).normalize_or(direction);
+        let amount_of_turn = amount * from.angle_between(along);
+        if amount == 0.0 { direction } else { turned(from, along, amount_of_turn, false) }
     });
 }
 
@@ -152,6 +160,21 @@ pub fn reshape(
         put(&mut style.guides, index, &points);
     }
     widen(style);
+}
+
+/// Shortens every guide on which the layer acts to a part of its length, 0 to 1; parts of 1 and more change nothing. What remains keeps
+/// its control points, as with scissors.
+pub fn shorten(style: &mut Hairstyle, scope: &Scope<'_>, part: impl Fn(&GuideShape) -> f32) {
+    let links = (style.guides.points_per_guide - 1) as f32;
+    let kept = |(guide, strength): (usize, f32)| {
+        let shape = (strength != 0.0).then(|| shape_of(&style.guides, guide, strength, None)).flatten();
+        let kept = shape.map(|shape| (part(&shape), shape)).filter(|(part, _)| *part < 1.0);
+        kept.map_or(1.0, |(part, shape)| part.max(0.0) * (shape.points.len() - 1) as f32 / links)
+    };
+    let kept: Vec<f32> = scope.guides(style).into_iter().enumerate().map(kept).collect();
+    if kept.iter().any(|kept| *kept < 1.0) {
+        *style = trimmed(style, &Haircut { first_root: style.guides.point(0, 0), kept });
+    }
 }
 
 /// Lets wisps open as far as their new guides need.

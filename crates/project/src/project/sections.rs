@@ -1,12 +1,13 @@
 //! The sections of a project that belong to no other crate.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairOperation, HairShading, HairTie, Haircut, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairShading, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_simulation::SimulationSettings;
-use lovelock_style::StyleStack;
+use lovelock_style::operations::Scissors;
+use lovelock_style::{Layer, StyleStack};
 use serde::{Deserialize, Serialize};
 
 use super::contender::Contender;
@@ -139,9 +140,14 @@ impl Default for HairSection {
 }
 
 impl HairSection {
-    /// What is done to the hairstyle after it is grown or imported, in this order.
-    pub fn operations(&self) -> Vec<HairOperation> {
-        vec![HairOperation::Cut(self.cut.clone()), HairOperation::Tie(self.ties.clone())]
+    /// The cut and the ties as layers, which act before those of [`HairSection::stack`].
+    pub fn cut_and_ties(&self) -> StyleStack {
+        let mut layers = Vec::new();
+        if !self.cut.is_empty() {
+            layers.push(Layer::of(Scissors { cut: self.cut.clone() }));
+        }
+        layers.extend(self.ties.iter().map(|tie| Layer::of(*tie)));
+        StyleStack { layers, ..StyleStack::default() }
     }
 
     /// How this hair moves unless it is changed: where the controls of the simulation return to.

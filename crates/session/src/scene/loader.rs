@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use lovelock_groom::OperationCache;
 use lovelock_motion::{Collider, ColliderEdits};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
@@ -51,7 +50,7 @@ pub struct SceneLoader {
     motion: Option<Kept<MotionKey, MotionPart>>,
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
-    operations: OperationCache,
+    cut_and_ties: StyleCache,
     layers: StyleCache,
     surroundings: SurroundingsLoader,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
@@ -98,17 +97,12 @@ impl SceneLoader {
         control.at("creating the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
         let obstacle = Arc::clone(&body.obstacle);
-        let result = self.operations.apply(&hair.style, project.hair.operations(), obstacle.clone());
-        problems.extend(result.skipped.iter().map(|operation| {
-            let message = format!(
-                "the {} was made for other hair and has no effect here; it returns with its hairstyle",
-                operation.name()
-            );
-            Problem::new(Place::Hair, ProblemKind::Ignored, message)
-        }));
-        let styled = self.layers.apply(&result.style, &project.hair.stack, obstacle);
-        let other_hair = styled.skipped.into_iter().map(|layer| {
-            format!("the layer \"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle")
+        let tied = self.cut_and_ties.apply(&hair.style, &project.hair.cut_and_ties(), obstacle.clone());
+        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle);
+        let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
+            format!(
+                "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
+            )
         });
         let other_version = project.hair.stack.unknown().into_iter().map(|(layer, id)| {
             format!("the layer \"{layer}\" uses `{id}`, which this version does not know; it is kept and has no effect")

@@ -1,11 +1,11 @@
 //! Brings front hair forward over the forehead and shortens it.
 
-use crate::guides::{Lengths, reshape, shape_of, turn_links};
+use crate::guides::{Lengths, reshape, shorten, turn_links};
 use glam::Vec3;
 use lovelock_base::field;
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
-use lovelock_groom::{Bounded, Haircut, Hairstyle, Obstacle, trimmed};
+use lovelock_groom::{Bounded, Hairstyle, Obstacle};
 
 use crate::Scope;
 use crate::operate::{Kind, Operate, Subject};
@@ -89,26 +89,17 @@ impl Operate for Fringe {
                 direction.lerp(target, amount.clamp(0.0, 1.0))
             });
         });
-        let links = style.guides.points_per_guide - 1;
-        let strengths = scope.guides(style);
-        let mut kept = vec![1.0; style.guides.count()];
-        for (guide, strength) in strengths.iter().enumerate().filter(|(_, strength)| **strength != 0.0) {
-            let Some(shape) = shape_of(&style.guides, guide, *strength, None) else { continue };
-            let short = (self.length / shape.length()).min(1.0);
-            let amount = (part(shape.points[0]) * strength).clamp(0.0, 1.0);
-            if short < 1.0 && amount > 0.0 {
-                kept[guide] = (1.0 + (short - 1.0) * amount) * (shape.points.len() - 1) as f32 / links as f32;
-            }
-        }
-        if kept.iter().any(|kept| *kept < 1.0) {
-            *style = trimmed(style, &Haircut { first_root: style.guides.point(0, 0), kept });
-        }
+        shorten(style, scope, |shape| {
+            let amount = (part(shape.points[0]) * shape.strength).clamp(0.0, 1.0);
+            1.0 + ((self.length / shape.length()).min(1.0) - 1.0) * amount
+        });
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::guides::shape_of;
     use crate::operations::testing::{acted, straight};
 
     #[test]

@@ -3,10 +3,10 @@
 use glam::Vec3;
 use lovelock_base::field;
 use lovelock_base::settings::{Choices, Setting, Settings, Unit};
-use lovelock_groom::{Haircut, Hairstyle, trimmed};
+use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::guides::{self, Lengths, reshape};
+use crate::guides::{self, GuideShape, Lengths, reshape, shorten};
 use crate::operate::{Kind, Operate, Subject};
 
 /// The length to which hair can be lengthened, metres.
@@ -122,7 +122,7 @@ impl Settings for Length {
 
 impl Length {
     /// The part of a guide that remains where the layer acts; above 1 it is lengthened.
-    fn part(&self, shape: &guides::GuideShape, scope: &Scope<'_>) -> f32 {
+    fn part(&self, shape: &GuideShape, scope: &Scope<'_>) -> f32 {
         let mut part = match self.by {
             LengthBy::Factor => self.factor,
             LengthBy::Limit => (self.limit / shape.length()).min(1.0),
@@ -133,11 +133,11 @@ impl Length {
                     p.y - (self.height + left * p.x + front * p.z)
                 };
                 let links = shape.points.windows(2).enumerate();
-                let crossing = links.filter_map(|(i, pair)| {
+                let mut crossing = links.filter_map(|(i, pair)| {
                     let (a, b) = (over(pair[0]), over(pair[1]));
                     (b < 0.0).then(|| i as f32 + if a > 0.0 { a / (a - b) } else { 0.0 })
                 });
-                crossing.take(1).next().map_or(1.0, |at| at / (shape.points.len() - 1) as f32)
+                crossing.next().map_or(1.0, |at| at / (shape.points.len() - 1) as f32)
             }
         };
         let rank = 0.5 + 0.5 * scope.head.relative(shape.points[0]).y.clamp(-1.0, 1.0);
@@ -159,30 +159,24 @@ impl Operate for Length {
     };
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        // Parts are those of the hair as it was.
+        let part = |shape: &GuideShape| self.part(shape, scope);
         let strengths = scope.guides(style);
-        let links = style.guides.points_per_guide - 1;
-        // Shortening keeps the control points of what remains, as scissors do.
-        let mut kept = vec![1.0; style.guides.count()];
-        let mut longer = false;
-        for (guide, strength) in strengths.iter().enumerate().filter(|(_, strength)| **strength != 0.0) {
-            let Some(shape) = guides::shape_of(&style.guides, guide, *strength, None) else { continue };
-            let part = self.part(&shape, scope);
-            longer |= part > 1.0;
-            if part < 1.0 {
-                kept[guide] = part * (shape.points.len() - 1) as f32 / links as f32;
-            }
-        }
-        if longer {
+        let wisps = guides::wisp_of_guide(style);
+        let parts: Vec<f32> = (0..style.guides.count())
+            .map(|guide| {
+                let shape = guides::shape_of(&style.guides, guide, strengths[guide], wisps[guide]);
+                shape.filter(|shape| shape.strength != 0.0).map_or(1.0, |shape| part(&shape))
+            })
+            .collect();
+        if parts.iter().any(|part| *part > 1.0) {
             reshape(style, scope, Lengths::Change, |shape| {
-                let part = self.part(shape, scope);
-                if part > 1.0 {
-                    lengthen(&mut shape.points, part);
+                if parts[shape.index] > 1.0 {
+                    lengthen(&mut shape.points, parts[shape.index]);
                 }
             });
         }
-        if kept.iter().any(|kept| *kept < 1.0) {
-            *style = trimmed(style, &Haircut { first_root: style.guides.point(0, 0), kept });
-        }
+        shorten(style, scope, |shape| parts[shape.index]);
     }
 }
 

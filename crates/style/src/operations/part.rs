@@ -81,11 +81,7 @@ impl Operate for Part {
                 return;
             }
             let toward = Vec3::new(1f32.copysign(aside), -0.4, 0.0).normalize_or(Vec3::NEG_Y);
-            let (link, strength, count) = (shape.link, shape.strength, shape.points.len());
-            comb(shape, scope, toward, |i| {
-                let fade = 1.0 - smoothstep(0.5 * self.length, self.length, i as f32 * link);
-                self.amount * near * fade * strength * scope.along(i as f32 / (count - 1) as f32)
-            });
+            comb(shape, scope, toward, self.amount * near, self.length);
         });
     }
 }

@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 use lovelock_base::field;
-use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
@@ -70,11 +69,7 @@ impl Operate for Sweep {
         let level = Vec3::new(sin, 0.0, cos) * self.elevation.cos();
         let toward = level + Vec3::Y * self.elevation.sin();
         reshape(style, scope, Lengths::Keep, |shape| {
-            let (link, strength, count) = (shape.link, shape.strength, shape.points.len());
-            comb(shape, scope, toward, |i| {
-                let fade = 1.0 - smoothstep(0.5 * self.length, self.length, i as f32 * link);
-                self.amount * fade * strength * scope.along(i as f32 / (count - 1) as f32)
-            });
+            comb(shape, scope, toward, self.amount, self.length);
         });
     }
 }
