@@ -14,8 +14,8 @@ const CLEAR: f32 = 0.003;
 const REACH: Reach = Reach { beyond: 64.0, step: 0.25 };
 /// Distance from the body within which combed hair follows its surface, metres.
 const NEAR: f32 = 0.03;
-/// How far directions near the body lean away from it before they are turned.
-const OVER: f32 = 0.2;
+/// How far directions near the body lean sideways on it before they are turned.
+const ASIDE: f32 = 0.2;
 /// Links shorter than this belong to the cut part of a guide, metres.
 const NO_LINK: f32 = 1e-6;
 
@@ -85,17 +85,26 @@ pub fn turn_links(shape: &mut GuideShape, mut turn: impl FnMut(usize, Vec3, Vec3
 pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: f32, metres: f32) {
     let obstacle = Bounded(scope.obstacle);
     let (link, strength, last) = (shape.link, shape.strength, (shape.points.len() - 1) as f32);
+    let mut moved = false;
     turn_links(shape, |i, at, direction| {
         let (distance, normal) = obstacle.distance(at);
         let near = 1.0 - (distance / NEAR).clamp(0.0, 1.0);
-        let along = toward - normal * (toward.dot(normal).min(0.0) * near);
+        let over = |direction: Vec3| direction - normal * (direction.dot(normal).min(0.0) * near);
         let fade = 1.0 - smoothstep(0.5 * metres, metres, i as f32 * link);
         let amount = (amount * fade * strength * scope.along(i as f32 / last)).clamp(0.0, 1.0);
-        let Some(along) = along.try_normalize() else { return direction };
-        // Hair that is combed back turns over through the direction away from the body, not through it.
-        let from = (direction + normal * (OVER * near)).normalize_or(direction);
-        let amount_of_turn = amount * from.angle_between(along);
-        if amount == 0.0 { direction } else { turned(from, along, amount_of_turn, false) }
+        moved |= amount > 0.0;
+        match over(toward).try_normalize() {
+            // Hair that is combed the other way turns around on the surface: it neither stands up nor dives into the body.
+            Some(along) if amount > 0.0 => {
+                let side = normal.cross(along).normalize_or_zero();
+                let side = if direction.dot(side) < 0.0 { -side } else { side };
+                let from = (direction + side * (ASIDE * near)).normalize_or(direction);
+                turned(from, along, amount * from.angle_between(along), false)
+            }
+            // Further down it goes on as before, but over the body from its new place.
+            _ if moved => over(direction),
+            _ => direction,
+        }
     });
 }
 
