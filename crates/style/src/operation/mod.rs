@@ -4,7 +4,7 @@ mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
 use crate::operations::{
-    Bend, Braid, Clump, Coil, Curl, Fringe, Frizz, HairTie, Length, Lift, Noise, Part, Scissors, Smooth,
+    Bend, Braid, Clump, Coil, Curl, Dreadlock, Fringe, Frizz, HairTie, Length, Lift, Noise, Part, Scissors, Smooth,
     Straighten, Strays, Sweep, Taper, Twist, Wander, Wave, Width,
 };
 use crate::stored::UnknownOperation;
@@ -66,7 +66,7 @@ macro_rules! operations {
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
 operations!(
     Length, Scissors, Lift, Bend, Straighten, Smooth, Twist, Sweep, Part, Fringe, Wave, Noise, HairTie, Coil,
-    Braid, Clump, Curl, Frizz, Strays, Wander, Width, Taper
+    Dreadlock, Braid, Clump, Curl, Frizz, Strays, Wander, Width, Taper
 );
 
 impl Operation {
