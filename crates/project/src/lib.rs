@@ -4,6 +4,7 @@
 //! - [`files`]: the files that a project names, and which of them it may read.
 //! - [`tracks`]: keys over time for a number of the project.
 //! - [`animation`]: the project at a time of its timeline, and controls that write keys while time passes.
+//! - [`variants`]: a hairstyle changed by chance, and two of them mixed.
 //! - [`history`]: undo and redo.
 //! - [`error`]: the error of all crates above, and the problems that do not stop a load.
 //!
@@ -15,5 +16,6 @@ pub mod files;
 pub mod history;
 pub mod project;
 pub mod tracks;
+pub mod variants;
 
 pub use project::Project;
