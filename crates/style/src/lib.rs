@@ -8,6 +8,7 @@
 mod evaluate;
 mod guides;
 mod mask;
+mod motion;
 mod operate;
 pub mod operation;
 pub mod operations;
