@@ -203,10 +203,10 @@ impl Window {
             }),
         };
         let zoom = &mut self.layout.timeline;
-        let Project { recording, motion, timeline: section, .. } = project;
+        let Project { recording, motion, timeline: section, hair, .. } = project;
         let lovelock_project::project::TimelineSection { markers, tracks, .. } = section;
         let height = timeline::height(tracks.len());
-        let mut edited = timeline::Edited { recording, markers, tracks, motion };
+        let mut edited = timeline::Edited { recording, markers, tracks, motion, stack: &hair.stack };
         Panel::bottom("timeline")
             .exact_size(height)
             .resizable(false)

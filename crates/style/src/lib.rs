@@ -9,6 +9,7 @@ mod evaluate;
 mod guides;
 mod mask;
 mod morph;
+mod motion;
 mod operate;
 pub mod operation;
 pub mod operations;

@@ -11,7 +11,7 @@ use lovelock_style::StyleCache;
 
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
-use super::{Scene, SurroundingsLoader};
+use super::{Scene, StyleSource, SurroundingsLoader};
 
 /// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
@@ -98,7 +98,8 @@ impl SceneLoader {
         let hair = self.hair(&project, access, &body, &mut problems);
         let obstacle = Arc::clone(&body.obstacle);
         let tied = self.cut_and_ties.apply(&hair.style, &project.hair.cut_and_ties(), obstacle.clone());
-        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle);
+        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle.clone());
+        let source = StyleSource { base: tied.style, stack: project.hair.stack.clone(), obstacle };
         let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
             format!(
                 "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
@@ -131,6 +132,7 @@ impl SceneLoader {
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
             style: styled.style,
+            source: Arc::new(source),
             head_path,
             surroundings,
             notes: notes.into(),

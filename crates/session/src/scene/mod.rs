@@ -5,12 +5,15 @@ mod dancer;
 mod head_path;
 mod loader;
 mod parts;
+mod styling;
 mod surroundings;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
+pub use styling::StyleSource;
+pub(crate) use styling::Styling;
 pub(crate) use surroundings::SurroundingsLoader;
 
 use std::sync::Arc;
@@ -56,6 +59,8 @@ pub struct Scene {
     pub field_lift_m: f32,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
+    /// What the hairstyle is made of, for tracks of layers.
+    pub source: Arc<StyleSource>,
     /// The path of the head.
     pub head_path: Arc<HeadPath>,
     /// The picture of the surroundings that gives light from all directions, if there is one.
@@ -143,6 +148,8 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 mod collider_tests;
 #[cfg(test)]
 mod operation_tests;
+#[cfg(test)]
+mod styling_tests;
 #[cfg(test)]
 mod surroundings_tests;
 #[cfg(test)]

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::{
-    Bounded, Guides, Hairstyle, Obstacle, Rope, StrandSet, Wisp, WispCurve, transport, widest_radii,
+    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, transport, widest_radii,
 };
 use rayon::prelude::*;
 
@@ -89,6 +89,7 @@ impl Morph {
             ropes: self.ropes(near),
             look: nearer.look,
             widest,
+            motion: self.motion(amount),
             wisps,
             guides,
             strands,
@@ -254,6 +255,28 @@ impl Morph {
                     row[style.wisps[of as usize].guides[k] as usize * before + point]
                 }));
             }
+        }
+        out
+    }
+
+    /// The factors on how guides move, mixed in a straight line. A wisp that one hairstyle lacks has those of the other.
+    fn motion(&self, amount: f32) -> MotionFactors {
+        let mut out = MotionFactors::default();
+        for (kind, to) in out.lists_mut().into_iter().enumerate() {
+            let [a, b] = [0, 1].map(|side| self.styles[side].motion.lists()[kind].1);
+            if a.is_empty() && b.is_empty() {
+                continue;
+            }
+            let [a, b] = [(0, a), (1, b)].map(|(side, row)| {
+                let even = vec![1.0; self.styles[side].guides.x.len()];
+                self.per_point(side, if row.is_empty() { &even } else { row }, f32::NAN)
+            });
+            let mix = |(a, b): (f32, f32)| match (a.is_nan(), b.is_nan()) {
+                (true, _) => b,
+                (_, true) => a,
+                _ => a * (1.0 - amount) + b * amount,
+            };
+            *to = a.into_iter().zip(b).map(mix).collect();
         }
         out
     }

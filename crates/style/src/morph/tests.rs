@@ -215,3 +215,16 @@ fn the_layout_is_the_same_for_every_amount() {
     assert_eq!(a.guides.count(), b.guides.count());
     assert_eq!(a.strands.first_point, b.strands.first_point);
 }
+
+#[test]
+fn factors_on_the_motion_are_mixed() {
+    let [a, mut b] = [0, 1].map(|_| crate::operations::testing::straight(Vec3::NEG_Y));
+    b.motion.stiffness = vec![3.0; b.guides.x.len()];
+    let morph = Morph::new([Arc::new(a), Arc::new(b)]);
+    for (amount, factor) in [(0.0, 1.0), (0.5, 2.0), (1.0, 3.0)] {
+        let style = morph.at(amount, &lovelock_groom::NoObstacle);
+        style.check().expect("sound");
+        assert!(style.motion.stiffness.iter().all(|f| (f - factor).abs() < 1e-6), "{amount}");
+        assert!(style.motion.hold.is_empty(), "control: a list that neither has");
+    }
+}
