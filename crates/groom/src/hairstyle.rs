@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{Guides, HairLook, MotionFactors, Scalp};
+use crate::{Guides, HairLook, MotionFactors, Scalp, StrandColours};
 
 /// One wisp: three guide strands, and the consecutive strands that follow them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +50,8 @@ pub struct StrandSet {
     pub taper: Vec<f32>,
     /// A shade per strand in 0..=1, by which drawing varies the colour.
     pub shade: Vec<f32>,
+    /// What is different from the look in the colour of each strand.
+    pub colours: StrandColours,
 }
 
 impl StrandSet {
@@ -165,6 +167,9 @@ impl Hairstyle {
             if found != wanted {
                 return Err(HairstyleError::Length(name));
             }
+        }
+        if !set.colours.is_empty() && set.colours.strands().len() != count {
+            return Err(HairstyleError::Length("colours"));
         }
         if set.first_point[0] != 0 || set.first_point[count] as usize != points {
             return Err(HairstyleError::Length("first_point"));

@@ -58,7 +58,8 @@ fn main() {
 fn cpu_ms() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let (_, numbers) = stat.rsplit_once(')')?;
-    let ticks: Vec<f64> = numbers.split_whitespace().skip(11).take(2).filter_map(|v| v.parse().ok()).collect();
+    let ticks: Vec<f64> =
+        numbers.split_whitespace().skip(11).take(2).filter_map(|v| v.parse().ok()).collect();
     // A hundred ticks a second.
     Some(ticks.iter().sum::<f64>() * 10.0)
 }

@@ -4,6 +4,7 @@ use egui::{Sense, Stroke, Ui};
 use egui_material_icons::icons::{ICON_DRAG_INDICATOR, ICON_TONALITY, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 use lovelock_style::{Kind, Layer, Mask, MaskPart, MaskRegion, Operation, StyleStack, Subject};
 
+use super::pigments::pigments;
 use crate::window::control::{all_settings, curve, note, section, settings};
 
 /// Menus of new layers.
@@ -180,6 +181,7 @@ fn controls(ui: &mut Ui, layer: &mut Layer) {
     match (layer.operation.known_mut(), fresh.as_ref().and_then(Operation::known)) {
         (Some(operation), Some(default)) => {
             note(ui, operation.kind().text);
+            pigments(ui, operation.settings_mut());
             all_settings(ui, operation.settings_mut(), default.settings());
             for (i, info) in operation.ramps().iter().enumerate() {
                 ui.push_id(info.name, |ui| curve(ui, info.label, info.text, operation.ramp_mut(i)));

@@ -185,6 +185,7 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
             offset_tangent: vec![0.0; of * points],
             taper: vec![1.0; of * points],
             shade: vec![0.5; of],
+            ..StrandSet::default()
         },
         guides,
         held: Vec::new(),

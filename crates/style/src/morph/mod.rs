@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::{
-    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, transport, widest_radii,
+    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, transport,
+    widest_radii,
 };
 use rayon::prelude::*;
 
