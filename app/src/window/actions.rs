@@ -18,6 +18,9 @@ use super::command::Command;
 use super::path_dialog::Purpose;
 use super::{Pending, Window, copy, notices};
 
+/// Factor by which a key changes the radius of the brush.
+const BRUSH_STEP: f32 = 1.15;
+
 /// A project to start with.
 #[derive(Debug, Default)]
 pub(super) struct Opened {
@@ -75,6 +78,10 @@ impl Window {
             }
             Command::SettleHair => self.session.worker().settle(),
             Command::Scissors => self.scissors.held = !self.scissors.held,
+            Command::ShowMask => self.layers.toggle_mask(),
+            Command::PaintMask => self.layers.toggle_painting(),
+            Command::BrushSmaller => self.layers.resize_brush(1.0 / BRUSH_STEP),
+            Command::BrushLarger => self.layers.resize_brush(BRUSH_STEP),
             Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {

@@ -23,6 +23,14 @@ pub enum Command {
     SettleHair,
     /// Switches the scissors.
     Scissors,
+    /// Shows or hides the mask of the selected layer.
+    ShowMask,
+    /// Starts or ends painting the mask of the selected layer.
+    PaintMask,
+    /// Makes the brush smaller.
+    BrushSmaller,
+    /// Makes the brush larger.
+    BrushLarger,
     /// Shows or hides the colliders.
     ShowColliders,
     /// Starts or ends the recording of a take.

@@ -1,9 +1,12 @@
 //! One pass of the window, from top to bottom.
 
+use std::sync::Arc;
+
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
 use super::path_dialog::{Answer, PathDialog, Purpose};
@@ -93,7 +96,8 @@ impl Window {
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
-        let again = self.session.send(self.history.project(), &seen, size);
+        self.follow_mask(&seen);
+        let again = self.session.send(self.history.project(), &seen, size, self.shown_mask.as_ref());
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
@@ -297,6 +301,19 @@ impl Window {
     pub(super) fn problems(&self, ui: &mut Ui, places: &[Place]) {
         for problem in self.session.problems.iter().filter(|problem| places.contains(&problem.place)) {
             ui.label(RichText::new(&problem.message).color(theme::WRONG));
+        }
+    }
+
+    /// Keeps the mask that the image shows up to date.
+    fn follow_mask(&mut self, project: &Project) {
+        let wanted = self.layers.shown_mask(&project.hair.stack);
+        let same = match (&self.shown_mask, wanted) {
+            (Some(shown), Some(wanted)) => shown.mask == *wanted,
+            (shown, wanted) => shown.is_none() && wanted.is_none(),
+        };
+        if !same {
+            let scale = theme::mask_colors();
+            self.shown_mask = wanted.map(|mask| Arc::new(ShownMask { mask: mask.clone(), scale }));
         }
     }
 

@@ -47,6 +47,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_project::history::History;
 use lovelock_session::health::Gauge;
+use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 use lovelock_session::window_device::WindowDevice;
 use notices::Notices;
@@ -126,8 +127,11 @@ pub(crate) struct Window {
     marked_gauge: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
-    /// The layer of the style whose controls are shown.
-    selected_layer: Option<u32>,
+    /// What is shown of the layers of the style, and the brush that paints their masks.
+    layers: panels::layers::LayersView,
+    stroke: overlay::brush::Stroke,
+    /// The mask that the image shows.
+    shown_mask: Option<Arc<ShownMask>>,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
@@ -203,7 +207,9 @@ impl Window {
             marked_gauge: None,
             colliders: panels::colliders::Shown::default(),
             selected_tie: 0,
-            selected_layer: None,
+            layers: panels::layers::LayersView::default(),
+            stroke: overlay::brush::Stroke::default(),
+            shown_mask: None,
             ties_shown: false,
             scissors: Scissors::default(),
             record: panels::records::RecordView::default(),
@@ -284,6 +290,12 @@ impl Window {
             }
             Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
             Command::FrameHair => self.session.frame.is_some(),
+            Command::ShowMask => self.layers.selected.is_some(),
+            Command::PaintMask => {
+                self.layers.painting
+                    || (self.layers.selected.is_some() && self.history.project().take.file.is_none())
+            }
+            Command::BrushSmaller | Command::BrushLarger => self.layers.painting,
             Command::Scissors => self.history.project().take.file.is_none(),
             Command::SavePicture => self.session.painted.is_some(),
             Command::ExportCurves => !self.recorder.is_running(),

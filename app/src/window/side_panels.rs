@@ -28,7 +28,7 @@ impl Window {
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
                 section(ui, "Layers", false, |ui| {
-                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.selected_layer);
+                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
                     let scalp = self.session.scene.as_ref().map(|scene| &scene.style.scalp);

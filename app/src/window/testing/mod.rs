@@ -5,6 +5,7 @@ mod dialogs;
 mod health;
 mod keyboard;
 mod notices;
+mod painting;
 mod playback;
 mod rows;
 mod takes;

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
 use lovelock_groom::fine::{FineStrands, Portion};
-use lovelock_groom::{HairShading, StrandBounds};
+use lovelock_groom::{HairShading, Hairstyle, StrandBounds};
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
@@ -15,6 +15,7 @@ use super::light_kernels::LightKernels;
 use crate::shadow_stage::soft_reach;
 use crate::strand_details::StrandDetails;
 use crate::strand_portion::portion_of;
+use crate::strand_values::at_points;
 use crate::{FrameInput, HairPose};
 
 /// Twin of `ShadedPoint` in the shaders; never read on the CPU.
@@ -181,6 +182,14 @@ impl HairBuffers {
     /// The part of the fine strands that is drawn, with the points of each; `None` for stored strands.
     pub fn portion(&self) -> Option<(Portion, usize)> {
         self.portion
+    }
+
+    /// One number per drawn point of `style`, that of the last frame, from one per stored strand.
+    pub fn at_points(&self, style: &Hairstyle, of_strands: &[f32]) -> Vec<f32> {
+        let fine = self.portion.map(|(portion, points)| {
+            (&self.list.strands[..portion.drawn.min(self.list.strands.len())], points)
+        });
+        at_points(&style.strands, fine, of_strands)
     }
 
     /// The strands that are drawn.
