@@ -126,6 +126,7 @@ pub(crate) struct Window {
     marked_gauge: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
+    scalp: overlay::scalp::ScalpTool,
     /// The layer of the style whose controls are shown.
     selected_layer: Option<u32>,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
@@ -203,6 +204,7 @@ impl Window {
             marked_gauge: None,
             colliders: panels::colliders::Shown::default(),
             selected_tie: 0,
+            scalp: overlay::scalp::ScalpTool::default(),
             selected_layer: None,
             ties_shown: false,
             scissors: Scissors::default(),

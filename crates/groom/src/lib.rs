@@ -23,6 +23,7 @@ pub mod polyline;
 mod presets;
 mod scalp;
 mod scalp_index;
+mod scaled;
 mod settings;
 mod strand_bounds;
 mod strands;

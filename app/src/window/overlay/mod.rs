@@ -3,6 +3,7 @@
 pub(crate) mod colliders;
 pub(crate) mod head;
 pub(crate) mod mark;
+pub(crate) mod scalp;
 pub(crate) mod scissors;
 pub(crate) mod ties;
 

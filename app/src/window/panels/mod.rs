@@ -9,6 +9,7 @@ pub(crate) mod light;
 pub(crate) mod look;
 pub(crate) mod recording;
 pub(crate) mod records;
+pub(crate) mod scalp;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;
