@@ -132,6 +132,7 @@ pub(crate) struct Window {
     stroke: overlay::brush::Stroke,
     /// The mask that the image shows.
     shown_mask: Option<Arc<ShownMask>>,
+    scalp: overlay::scalp::ScalpTool,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
@@ -210,6 +211,7 @@ impl Window {
             layers: panels::layers::LayersView::default(),
             stroke: overlay::brush::Stroke::default(),
             shown_mask: None,
+            scalp: overlay::scalp::ScalpTool::default(),
             ties_shown: false,
             scissors: Scissors::default(),
             record: panels::records::RecordView::default(),

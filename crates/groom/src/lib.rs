@@ -22,6 +22,7 @@ mod pigment;
 mod plain_head;
 pub mod polyline;
 mod presets;
+mod scaled;
 mod scalp;
 mod scalp_index;
 mod settings;

@@ -21,8 +21,8 @@ pub use file::{
     text_of_project,
 };
 pub use sections::{
-    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
-    MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, KeptScalp,
+    Marker, MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
 };
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
@@ -135,11 +135,9 @@ impl Project {
         self.hair.file = Some(FileRef::new(path));
     }
 
-    /// Switches to a character file that the user picked, with its first clip.
+    /// Switches to a character file that the user picked, with its first clip. Hair and style stay, on the scalp of the new head.
     pub fn set_body_file(&mut self, path: impl Into<std::path::PathBuf>) {
-        self.body.source = BodySource::File;
-        self.body.file = Some(FileRef::new(path));
-        self.body.head_joint = None;
+        self.body.switch(Some(FileRef::new(path)));
         if self.motion.source == MotionSource::Clip {
             self.motion.clip.clear();
         }
@@ -189,7 +187,9 @@ impl Project {
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
         let own = [&mut body.file, &mut motion.file, &mut hair.file, &mut surroundings.file];
+        let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
+            .chain(scalps)
             .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()

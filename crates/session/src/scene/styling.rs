@@ -8,6 +8,7 @@ use lovelock_project::animation::StyleTracks;
 use lovelock_style::{StyleCache, StyleStack};
 
 use super::Scene;
+use super::scalp_part::Enlarged;
 
 /// What the hairstyle of a scene is made of.
 pub struct StyleSource {
@@ -15,8 +16,10 @@ pub struct StyleSource {
     pub base: Arc<Hairstyle>,
     /// The layers.
     pub stack: StyleStack,
-    /// The body without hair, head space.
+    /// The body without hair, in the size of the head that the hair is styled on.
     pub obstacle: Arc<dyn Obstacle + Send>,
+    /// Size of the head that wears the hair as a multiple of the one that it is styled on.
+    pub scale: f32,
 }
 
 impl std::fmt::Debug for StyleSource {
@@ -31,6 +34,7 @@ impl std::fmt::Debug for StyleSource {
 pub(crate) struct Styling {
     tracks: StyleTracks,
     cache: StyleCache,
+    enlarged: Enlarged,
     /// The scene as it was loaded, the numbers of the tracks, and the scene with them.
     last: Option<(Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>)>,
 }
@@ -41,7 +45,10 @@ impl Styling {
         let tracks = StyleTracks::of(project)?;
         match before {
             Some(before) if before.tracks == tracks => Some(before),
-            before => Some(Self { tracks, cache: before.map(|of| of.cache).unwrap_or_default(), last: None }),
+            before => {
+                let (cache, enlarged) = before.map(|of| (of.cache, of.enlarged)).unwrap_or_default();
+                Some(Self { tracks, cache, enlarged, last: None })
+            }
         }
     }
 
@@ -57,6 +64,7 @@ impl Styling {
         let source = &loaded.source;
         let stack = self.tracks.stack_with(&source.stack, &values);
         let style = self.cache.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
+        let style = self.enlarged.of(&style, source.scale);
         let scene = match &self.last {
             // Other numbers of layers that are off.
             Some((of, _, scene)) if Arc::ptr_eq(of, loaded) && Arc::ptr_eq(&scene.style, &style) => {
