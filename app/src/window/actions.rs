@@ -141,7 +141,14 @@ impl Window {
             Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
             Command::Palette => self.palette.toggle(),
             Command::CompareTakes => self.open_path_dialog(Purpose::Beside),
-            Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
+            Command::Compare => {
+                self.layout.compare.shown = !self.layout.compare.shown;
+                self.layout.wall.shown = false;
+            }
+            Command::Wall => {
+                self.layout.wall.shown = !self.layout.wall.shown;
+                self.layout.compare.shown = false;
+            }
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),

@@ -69,6 +69,7 @@ impl Window {
                     project.compare.panes = vec![own, other];
                 });
                 self.layout.compare.shown = true;
+                self.layout.wall.shown = false;
             }
             Ok(kind) => {
                 self.warn([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);

@@ -68,7 +68,9 @@ impl Window {
             self.left_panel(ui, &mut project);
             self.right_panel(ui, &mut project, &ctx);
         }
-        if self.layout.compare.shown {
+        if self.layout.wall.shown {
+            self.wall_page(ui, &mut project);
+        } else if self.layout.compare.shown {
             self.comparison(ui, &mut project);
         } else {
             self.picture(ui, &mut project);
@@ -92,9 +94,10 @@ impl Window {
         }
         self.windows(&ctx);
         // The single image is not visible while panes are shown.
-        let compares = self.layout.compare.shown;
+        let walls = self.layout.wall.shown;
+        let compares = self.layout.compare.shown && !walls;
         let seen = self.seen();
-        let size = if compares { [0, 0] } else { self.viewport.wanted };
+        let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
         self.follow_mask(&seen);
         let again = self.session.send(self.history.project(), &seen, size, self.shown_mask.as_ref());
@@ -106,6 +109,9 @@ impl Window {
             let playing = self.session.playing;
             self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
         }
+        if walls {
+            self.send_wall();
+        }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         // Any command to the window makes it paint again.
         if title != self.display.title {
@@ -114,7 +120,13 @@ impl Window {
         }
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
-            let shown = if compares { self.compare.has_pictures() } else { self.session.painted.is_some() };
+            let shown = if walls {
+                self.wall.has_pictures()
+            } else if compares {
+                self.compare.has_pictures()
+            } else {
+                self.session.painted.is_some()
+            };
             screenshot.update(&ctx, shown);
         }
         self.watch_close(&ctx);

@@ -31,6 +31,7 @@ mod theme;
 mod timeline;
 mod tools;
 mod viewport;
+mod wall;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -59,6 +60,7 @@ use screenshot::Screenshot;
 use serde::{Deserialize, Serialize};
 use session::Session;
 use viewport::Viewport;
+use wall::{WallLayout, WallPage};
 
 /// Key under which the layout is stored. The number changes with the format.
 const LAYOUT_KEY: &str = "layout 1";
@@ -77,6 +79,7 @@ struct Layout {
     /// The rate that images keep while something moves if their size is automatic, images per second.
     view_rate: f32,
     compare: CompareLayout,
+    wall: WallLayout,
     timeline: timeline::Zoom,
 }
 
@@ -88,6 +91,7 @@ impl Default for Layout {
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
             compare: CompareLayout::default(),
+            wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
         }
     }
@@ -115,6 +119,7 @@ pub(crate) struct Window {
     session: Session,
     viewport: Viewport,
     compare: Compare,
+    wall: WallPage,
     recorder: Recorder,
     palette: Palette,
     layout: Layout,
@@ -160,6 +165,8 @@ pub(crate) fn open(
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
         window.layout.compare.shown |= panes;
+        // Nine simulations are not what a program should start with.
+        window.layout.wall.shown = false;
         Ok(window)
     })
 }
@@ -197,6 +204,7 @@ impl Window {
             session,
             viewport: Viewport::default(),
             compare: Compare::default(),
+            wall: WallPage::default(),
             recorder: Recorder::default(),
             palette: Palette::default(),
             layout,
@@ -285,6 +293,7 @@ impl Window {
         match command {
             Command::Undo => self.history.undo_len() > 0,
             Command::Redo => self.history.redo_len() > 0,
+            Command::SavePicture if self.layout.wall.shown => false,
             Command::SavePicture if self.layout.compare.shown => self.compare.has_pictures(),
             Command::RecordTake => self.session.frame.is_some() && self.history.project().take.file.is_none(),
             Command::PlayTake => {

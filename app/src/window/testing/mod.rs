@@ -11,6 +11,7 @@ mod rows;
 mod takes;
 mod tools;
 mod tracks;
+mod wall;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};
