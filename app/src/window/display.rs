@@ -191,6 +191,7 @@ impl Window {
         self.viewport.forget_image();
         self.compare.forget_images();
         self.thumbnails.forget();
+        self.styles.forget_images();
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,

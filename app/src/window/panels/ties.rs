@@ -59,7 +59,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
         note(ui, "No tie: the hair falls as it grows.");
         return;
     };
-    let shipped = hair.preset.ties().get(*selected).copied().unwrap_or_default();
+    let shipped = hair.shipped_ties().get(*selected).copied().unwrap_or_default();
     let d = HairTie { kind: tie.kind, ..shipped };
     controls(ui, tie, &d);
 }

@@ -7,6 +7,7 @@ mod keyboard;
 mod notices;
 mod playback;
 mod rows;
+mod styles;
 mod takes;
 mod tools;
 mod tracks;

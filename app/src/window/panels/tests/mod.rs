@@ -40,6 +40,8 @@ pub(super) struct Bench {
     pub(super) selected_tie: usize,
     pub(super) selected_layer: Option<u32>,
     pub(super) scissors: bool,
+    pub(super) styles: crate::window::styles::Browser,
+    pub(super) kept: crate::window::styles::Kept,
 }
 
 impl Bench {
@@ -80,6 +82,8 @@ impl Bench {
             selected_tie: 0,
             selected_layer: None,
             scissors: false,
+            styles: crate::window::styles::Browser::default(),
+            kept: crate::window::styles::Kept::default(),
         }
     }
 }
@@ -96,6 +100,7 @@ pub(super) type Show = fn(&mut Ui, &mut Bench);
 /// Every panel, inside a section as in the window.
 pub(super) const PANELS: [(&str, Show); 12] = [
     ("Hairstyle", |ui, b| {
+        crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
     ("Simulation", |ui, b| {
