@@ -33,7 +33,7 @@ impl Shelf {
     pub(super) fn start(
         own: OwnStyles,
         cache: Option<PathBuf>,
-        on_found: impl Fn() + Send + 'static,
+        on_found: impl Fn() + Send + Sync + 'static,
     ) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
         let found = Arc::new(Mutex::new(Vec::new()));
@@ -74,7 +74,7 @@ struct Worker {
     cache: Option<PathBuf>,
     jobs: LatestJob<()>,
     found: Arc<Mutex<Vec<Found>>>,
-    on_found: Box<dyn Fn() + Send>,
+    on_found: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Worker {

@@ -6,6 +6,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Character(_) => "character",
         Content::Motion(_) => "motion",
         Content::Project(_) => "project",
+        Content::Style(_) => "style",
         Content::Take(_) => "take",
         Content::Surroundings(_) => "surroundings",
         Content::HairClusters(_) => "hair-clusters",
