@@ -197,6 +197,7 @@ impl Window {
         self.compare.forget_images();
         self.wall.forget_images();
         self.thumbnails.forget();
+        self.styles.forget_images();
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,

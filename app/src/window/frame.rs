@@ -6,6 +6,7 @@ use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Scro
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_project::styles::STYLE_EXTENSION;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
@@ -76,6 +77,7 @@ impl Window {
             self.picture(ui, &mut project);
         }
         self.take_edit(&seen, project, &ctx);
+        self.answer_styles();
         if let Some(ask) = playback {
             match ask {
                 timeline::TimelineRequest::Run(command) => self.run(command, &ctx),
@@ -96,11 +98,11 @@ impl Window {
         // The single image is not visible while panes are shown.
         let walls = self.layout.wall.shown;
         let compares = self.layout.compare.shown && !walls;
-        let seen = self.seen();
+        let (shown, seen) = self.shown();
         let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
         self.follow_mask(&seen);
-        let again = self.session.send(self.history.project(), &seen, size, self.shown_mask.as_ref());
+        let again = self.session.send(&shown, &seen, size, self.shown_mask.as_ref());
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
@@ -192,6 +194,8 @@ impl Window {
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
         let (project_and_access, painted) =
             ((self.history.project(), session.access()), session.painted.as_ref());
+        // A style that is only shown leaves no thumbnails.
+        let painted = painted.filter(|_| self.preview.is_none());
         let shown = (self.layout.timeline, duration_secs, ui.available_width());
         self.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
@@ -371,6 +375,10 @@ impl Window {
             Purpose::Preview => folder.join("out").join("dance.apng"),
             Purpose::Curves => folder.join("out").join("dance.usdc"),
             Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
+            Purpose::ExportStyle => {
+                let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
+                folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
+            }
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
@@ -386,6 +394,7 @@ impl Window {
             | Purpose::Beside
             | Purpose::Surroundings
             | Purpose::SaveProject
+            | Purpose::ExportStyle
             | Purpose::Picture => dialog,
         });
     }

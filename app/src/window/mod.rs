@@ -24,6 +24,7 @@ mod recorder;
 mod screenshot;
 mod session;
 mod side_panels;
+mod styles;
 
 #[cfg(test)]
 mod testing;
@@ -81,6 +82,7 @@ struct Layout {
     compare: CompareLayout,
     wall: WallLayout,
     timeline: timeline::Zoom,
+    styles: styles::Kept,
 }
 
 impl Default for Layout {
@@ -93,6 +95,7 @@ impl Default for Layout {
             compare: CompareLayout::default(),
             wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
+            styles: styles::Kept::default(),
         }
     }
 }
@@ -146,6 +149,11 @@ pub(crate) struct Window {
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
+    styles: styles::Browser,
+    /// The project with the style that is shown and not applied.
+    preview: Option<styles::Preview>,
+    /// The style that is exported, while its path is asked for.
+    exported: Option<Box<lovelock_project::styles::Style>>,
     /// The project at the current time, with the project and the time from which it was computed.
     seen: Option<Seen>,
     quitting: bool,
@@ -183,6 +191,9 @@ impl Window {
         let layout =
             creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
         let mut window = Self::start(ctx, layout, opened)?;
+        let own = lovelock_jobs::presets::own_styles();
+        let cache = lovelock_jobs::presets::thumbnail::cache_folder();
+        window.styles = styles::Browser::new(own, cache, ctx);
         window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
@@ -226,6 +237,9 @@ impl Window {
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
+            styles: styles::Browser::default(),
+            preview: None,
+            exported: None,
             display: Display::new(device, textures),
             seen: None,
             quitting: false,

@@ -24,6 +24,7 @@ impl Window {
                 }
                 section(ui, "Hairstyle", true, |ui| {
                     self.problems(ui, &[Place::Hair]);
+                    super::styles::ui(ui, project, &mut self.styles, &mut self.layout.styles);
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });

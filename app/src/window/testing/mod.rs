@@ -8,6 +8,7 @@ mod notices;
 mod painting;
 mod playback;
 mod rows;
+mod styles;
 mod takes;
 mod tools;
 mod tracks;

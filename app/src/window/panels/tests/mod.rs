@@ -45,6 +45,8 @@ pub(super) struct Bench {
     pub(super) layers: super::layers::LayersView,
     pub(super) scissors: bool,
     pub(super) scalp: ScalpTool,
+    pub(super) styles: crate::window::styles::Browser,
+    pub(super) kept: crate::window::styles::Kept,
 }
 
 impl Bench {
@@ -86,6 +88,8 @@ impl Bench {
             layers: super::layers::LayersView::default(),
             scissors: false,
             scalp: ScalpTool::default(),
+            styles: crate::window::styles::Browser::default(),
+            kept: crate::window::styles::Kept::default(),
         }
     }
 }
@@ -102,6 +106,7 @@ pub(super) type Show = fn(&mut Ui, &mut Bench);
 /// Every panel, inside a section as in the window.
 pub(super) const PANELS: [(&str, Show); 13] = [
     ("Hairstyle", |ui, b| {
+        crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
     ("Simulation", |ui, b| {
