@@ -102,7 +102,8 @@ pub fn refine_where(style: &mut Hairstyle, of: impl Fn(usize) -> Option<(f32, f3
         let params = &set.guide_param[range(strand)];
         params[1..].iter().filter(|u| **u >= from).count() as u64
     };
-    let reach: Vec<u64> = parts.iter().enumerate().map(|(strand, (from, _))| divided_segments(strand, *from)).collect();
+    let reach: Vec<u64> =
+        parts.iter().enumerate().map(|(strand, (from, _))| divided_segments(strand, *from)).collect();
     let points = |parts: &[(f32, u32)]| -> u64 {
         let added = |(reach, (_, n)): (&u64, &(f32, u32))| reach * u64::from(n - 1);
         set.points() as u64 + reach.iter().zip(parts).map(added).sum::<u64>()
@@ -124,6 +125,7 @@ fn divided(set: &StrandSet, parts: &[(f32, u32)]) -> StrandSet {
     out.wisp.clone_from(&set.wisp);
     out.weights.clone_from(&set.weights);
     out.shade.clone_from(&set.shade);
+    out.colours.clone_from(&set.colours);
     for (strand, &(from, n)) in parts.iter().enumerate() {
         let (first, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
         for i in first..end {

@@ -85,7 +85,8 @@ pub fn lay(
                     let row = table.at(u);
                     let back = (1.0 - u * member.link / ROOT_JOIN).max(0.0);
                     let along = if even { 1.0 } else { scope.along(u / end) };
-                    let amount = (smoothstep(0.0, join, row.metres) * member.strength * along).clamp(0.0, 1.0);
+                    let amount =
+                        (smoothstep(0.0, join, row.metres) * member.strength * along).clamp(0.0, 1.0);
                     let start = if amount < 1.0 || back > 0.0 {
                         row.apart(weights) + offset(i) + moved * (back * back)
                     } else {
@@ -93,8 +94,11 @@ pub fn lay(
                     };
                     out.push(if amount > 0.0 {
                         let Laid { place, own } = place(cord, own, row.metres);
-                        let kept =
-                            if own > 0.0 { (row.apart(weights) + offset(i) - row.to_line) * own } else { Vec3::ZERO };
+                        let kept = if own > 0.0 {
+                            (row.apart(weights) + offset(i) - row.to_line) * own
+                        } else {
+                            Vec3::ZERO
+                        };
                         let target = row.to_line + row.side * place.x + row.deep * place.y + kept;
                         start.lerp(target, amount)
                     } else {

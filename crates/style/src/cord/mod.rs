@@ -98,8 +98,11 @@ fn cord(
     group: &[usize],
     (means, ties, strengths): Found<'_>,
 ) -> Option<Cord> {
-    let roots: Vec<Vec3> =
-        group.iter().flat_map(|&w| style.wisps[w].guides).map(|g| style.guides.point(g as usize, 0)).collect();
+    let roots: Vec<Vec3> = group
+        .iter()
+        .flat_map(|&w| style.wisps[w].guides)
+        .map(|g| style.guides.point(g as usize, 0))
+        .collect();
     let middle = roots.iter().sum::<Vec3>() / roots.len().max(1) as f32;
     let squares: f32 = roots.iter().map(|root| root.distance_squared(middle)).sum();
     let spread = (squares / roots.len().max(1) as f32).sqrt();

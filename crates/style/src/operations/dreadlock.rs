@@ -100,11 +100,14 @@ impl Dreadlock {
         let winds = TAU * metres / self.winding;
         let own = strand.disc.length().sqrt();
         let deep = 0.82 + 0.18 * (winds * (1.1 + 1.3 * a) + TAU * b).sin();
-        let angle = strand.disc.to_angle() + winds * (0.6 + 0.8 * c) + 0.5 * (winds * (1.7 + a) + TAU * c).sin();
-        let off = (winds * (2.0 + 3.0 * b) + TAU * a).sin().max(0.0).powi(3) * if stands < 0.35 { 1.0 } else { 0.25 };
+        let angle =
+            strand.disc.to_angle() + winds * (0.6 + 0.8 * c) + 0.5 * (winds * (1.7 + a) + TAU * c).sin();
+        let off = (winds * (2.0 + 3.0 * b) + TAU * a).sin().max(0.0).powi(3)
+            * if stands < 0.35 { 1.0 } else { 0.25 };
         let out = radius * own * deep + self.fuzz * off * round;
         let sway = TAU * metres / SWAY;
-        let course = Vec2::new((sway + phase[2]).sin(), (0.8 * sway + phase[3]).sin()) * (0.6 * half * self.lumps);
+        let course =
+            Vec2::new((sway + phase[2]).sin(), (0.8 * sway + phase[3]).sin()) * (0.6 * half * self.lumps);
         course + Vec2::from_angle(angle) * out
     }
 }
@@ -149,7 +152,8 @@ mod tests {
             let strands = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
             let all: Vec<Vec<Vec3>> = strands.map(|strand| places(&after, strand)).collect();
             // The wisp hangs straight down: its middle has one x and z beyond the start.
-            let guide = |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
+            let guide =
+                |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
             let (top, bottom) = (guide(0).y, guide(30).y);
             let middle = guide(20);
             let off = |p: &Vec3| (*p - middle).with_y(0.0).length();

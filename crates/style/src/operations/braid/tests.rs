@@ -58,17 +58,28 @@ fn bundles_touch_and_overlap_by_less_than_a_fifth() {
 fn a_strand_swings_from_side_to_side_three_pitches_apart() {
     let before = straight(Vec3::NEG_Y);
     // Straight hair of the whole head cannot gather: each wisp makes a braid of its own.
-    let braid = Braid { count: 1000, width: 0.008, pitch: 0.01, tightness: 1.0, flyaways: 0.0, taper: 0.0, ..Braid::default() };
+    let braid = Braid {
+        count: 1000,
+        width: 0.008,
+        pitch: 0.01,
+        tightness: 1.0,
+        flyaways: 0.0,
+        taper: 0.0,
+        ..Braid::default()
+    };
     let after = acted(braid.clone(), &before);
     after.check().expect("sound");
     let mut found = [0; 3];
     for (w, wisp) in after.wisps.iter().enumerate() {
-        let guide = |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
+        let guide =
+            |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
         let middle = guide(20);
         // The guides themselves hang straight and keep their length.
         assert!((guide(10) - guide(20)).with_y(0.0).length() < 0.001, "wisp {w}");
         for g in wisp.guides {
-            let length: f32 = (1..31).map(|i| after.guides.point(g as usize, i).distance(after.guides.point(g as usize, i - 1))).sum();
+            let length: f32 = (1..31)
+                .map(|i| after.guides.point(g as usize, i).distance(after.guides.point(g as usize, i - 1)))
+                .sum();
             assert!((length - 0.31).abs() < 1e-3, "wisp {w}: {length}");
         }
         for (n, strand) in (wisp.first_strand..wisp.first_strand + wisp.strand_count).enumerate() {
@@ -82,7 +93,8 @@ fn a_strand_swings_from_side_to_side_three_pitches_apart() {
             assert!(widest < 0.55 * braid.width && widest > 0.2 * braid.width, "{widest}");
             // Two periods of three pitches: the path comes back to where it was.
             let at = |y: f32| {
-                let i = part.windows(2).position(|pair| pair[0].y >= y && pair[1].y < y).expect("in the part");
+                let i =
+                    part.windows(2).position(|pair| pair[0].y >= y && pair[1].y < y).expect("in the part");
                 let t = (part[i].y - y) / (part[i].y - part[i + 1].y);
                 flat(part[i].lerp(part[i + 1], t))
             };
@@ -130,7 +142,8 @@ fn tied_hair_makes_one_braid_for_each_tie_and_loose_hair_stays() {
         for n in 1..rope.guides.len() {
             for p in end(n).iter().skip(1) {
                 let away = line.windows(2).map(|pair| {
-                    let t = ((*p - pair[0]).dot(pair[1] - pair[0]) / pair[0].distance_squared(pair[1])).clamp(-0.6, 1.6);
+                    let t = ((*p - pair[0]).dot(pair[1] - pair[0]) / pair[0].distance_squared(pair[1]))
+                        .clamp(-0.6, 1.6);
                     p.distance(pair[0].lerp(pair[1], t))
                 });
                 assert!(away.fold(f32::MAX, f32::min) < 0.006, "guide {n}");

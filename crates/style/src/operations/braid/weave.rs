@@ -76,7 +76,8 @@ impl Weave {
         // Strands of a bundle run side by side and change places slowly; in loose braids more so.
         let turn = TAU * metres / self.period;
         let wander = 0.06 + 0.22 * loose;
-        disc += Vec2::new((turn * (0.5 + 0.5 * a) + TAU * b).sin(), (turn * (0.5 + 0.5 * b) + TAU * c).cos()) * wander;
+        disc += Vec2::new((turn * (0.5 + 0.5 * a) + TAU * b).sin(), (turn * (0.5 + 0.5 * b) + TAU * c).cos())
+            * wander;
         disc *= 1.0 + 0.12 * loose;
         if leaves < self.flyaways {
             let out = 0.25 + 0.5 * a;
