@@ -154,12 +154,15 @@ mod tests {
             // The wisp hangs straight down: its middle has one x and z beyond the start.
             let guide =
                 |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
-            let (top, bottom) = (guide(0).y, guide(30).y);
             let middle = guide(20);
             let off = |p: &Vec3| (*p - middle).with_y(0.0).length();
-            for p in all.iter().flatten().filter(|p| p.y < top - 0.06) {
-                assert!(off(p) < 0.5 * lock.thickness * 1.05, "{} at {}", off(p), p.y - bottom);
+            let lowest = all.iter().flatten().map(|p| p.y).fold(f32::MAX, f32::min);
+            for p in all.iter().flatten().filter(|p| p.y < middle.y) {
+                assert!(off(p) < 0.5 * lock.thickness * 1.05, "{} at {}", off(p), p.y);
+                assert!(p.y > lowest + 1e-4 || off(p) < 0.2 * lock.thickness, "{} at the end", off(p));
             }
+            let widest = all.iter().flatten().filter(|p| p.y < middle.y).map(off).fold(0.0, f32::max);
+            assert!(widest > 0.3 * lock.thickness, "{widest}");
         }
     }
 }
