@@ -299,7 +299,7 @@ impl Morph {
                 let first = (first as f32 * scale).round() as u32;
                 for &copy in &copies[guide as usize] {
                     out.guides.push((copy, first));
-                    out.ahead.extend(rope.ahead.get(i).map(|links| links * scale));
+                    out.ahead.extend(rope.ahead.get(i));
                 }
             }
             out
