@@ -294,12 +294,12 @@ impl Morph {
         }
         let scale = self.scale(side);
         let rope = |rope: &Rope| {
-            let mut out = Rope { guides: Vec::new(), ahead: Vec::new(), ..*rope };
-            for (n, &(guide, first)) in rope.guides.iter().enumerate() {
+            let mut out = Rope { guides: Vec::new(), ahead: Vec::new(), ..rope.clone() };
+            for (i, &(guide, first)) in rope.guides.iter().enumerate() {
                 let first = (first as f32 * scale).round() as u32;
                 for &copy in &copies[guide as usize] {
                     out.guides.push((copy, first));
-                    out.ahead.extend(rope.ahead.get(n));
+                    out.ahead.extend(rope.ahead.get(i));
                 }
             }
             out

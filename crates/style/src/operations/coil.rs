@@ -116,7 +116,12 @@ mod tests {
             let low = points[0].y - 0.31 + 0.01;
             let turns: Vec<Vec3> =
                 points.iter().copied().filter(|p| p.y > low && p.y < low + 4.0 * coil.pitch).collect();
-            assert!(turns.len() >= 4 * 10, "{} points of {:?}", turns.len(), points.iter().map(|p| p.y - low).fold((9.0f32, -9.0f32), |a, y| (a.0.min(y), a.1.max(y))));
+            assert!(
+                turns.len() >= 4 * 10,
+                "{} points of {:?}",
+                turns.len(),
+                points.iter().map(|p| p.y - low).fold((9.0f32, -9.0f32), |a, y| (a.0.min(y), a.1.max(y)))
+            );
             let axis = turns.iter().sum::<Vec3>() / turns.len() as f32;
             let mut angle = 0.0;
             for pair in turns.windows(2) {

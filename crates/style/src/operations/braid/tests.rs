@@ -145,7 +145,10 @@ fn tied_hair_makes_one_braid_for_each_tie_and_loose_hair_stays() {
             let away = |p: Vec3| {
                 let to = |pair: &[Vec3]| {
                     let along = (pair[1] - pair[0]).normalize();
-                    p.distance(pair[0] + along * (p - pair[0]).dot(along).clamp(-0.02, pair[0].distance(pair[1]) + 0.02))
+                    p.distance(
+                        pair[0]
+                            + along * (p - pair[0]).dot(along).clamp(-0.02, pair[0].distance(pair[1]) + 0.02),
+                    )
                 };
                 line.windows(2).map(to).fold(f32::MAX, f32::min)
             };
