@@ -107,7 +107,7 @@ impl Settings for Braid {
 }
 
 /// Segments of a strand between two crossings on one side.
-const SEGMENTS: f32 = 7.0;
+const SEGMENTS: f32 = 5.0;
 /// The share of a braid's thickness by which its middle stays away from the body.
 const CLEAR: f32 = 0.35;
 
