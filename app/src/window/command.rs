@@ -87,6 +87,8 @@ pub enum Command {
     Palette,
     /// Shows or closes the comparison.
     Compare,
+    /// Shows or closes the wall of variants.
+    Wall,
     /// Adds a pane with a take that the user picks.
     CompareTakes,
     /// Hides or shows the panels.

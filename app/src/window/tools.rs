@@ -1,6 +1,7 @@
 //! Tools of the pointer in the image: moving ties, cutting hair, selecting and editing colliders.
 
 use egui::{PointerButton, Response, Ui};
+use glam::{Affine3A, Vec3};
 use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
 use lovelock_project::Project;
 use lovelock_session::render_thread::RenderedImage;
@@ -30,16 +31,30 @@ impl Window {
         if let Some(line) = self.scissors.drag(ui, view, response) {
             self.cut(view, painted, line, project);
         }
+        let snapshot = &painted.snapshot;
+        let world_from_head = &snapshot.guides.world_from_head;
         let ties = &mut project.hair.ties;
         if self.ties_shown && !held && !self.layers.painting {
-            let snapshot = &painted.snapshot;
+            // Ties are placed on a head of the usual size.
+            let scale = Affine3A::from_scale(Vec3::splat(snapshot.scene.hair_scale));
+            let world_from_usual = *world_from_head * scale;
             let head = overlay::head::Head {
-                world_from_head: &snapshot.guides.world_from_head,
-                scalp: &snapshot.scene.style.scalp,
+                world_from_head: &world_from_usual,
+                scalp: &snapshot.scene.usual_scalp,
             };
             overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
         }
-        !((held || painted_mask) && response.dragged_by(PointerButton::Primary))
+        let mut free = !((held || painted_mask) && response.dragged_by(PointerButton::Primary));
+        if self.scalp.shown
+            && !held
+            && !self.layers.painting
+            && let Some(skull) = &snapshot.scene.skull
+        {
+            let head = overlay::head::Head { world_from_head, scalp: &snapshot.scene.style.scalp };
+            let edited = (self.scalp, &mut project.body.scalp);
+            free &= !overlay::scalp::edit(ui, response, view, head, skull, edited);
+        }
+        free
     }
 
     /// Paints the mask of the selected layer with the pointer. Returns whether the pointer paints.

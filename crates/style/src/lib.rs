@@ -8,6 +8,8 @@
 mod evaluate;
 mod guides;
 mod mask;
+mod morph;
+mod motion;
 mod operate;
 pub mod operation;
 pub mod operations;
@@ -19,6 +21,7 @@ mod strands;
 
 pub use evaluate::{StyleCache, Styled, apply_layer};
 pub use mask::{BrushMode, HeadBox, Mask, MaskBrush, MaskMap, MaskMix, MaskPart, MaskRegion};
+pub use morph::Morph;
 pub use operate::{AnyOperation, Kind, Operate, RampInfo, Subject};
 pub use operation::Operation;
 pub use ramp::{Ramp, RampShape};

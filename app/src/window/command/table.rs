@@ -307,6 +307,14 @@ pub const COMMANDS: &[CommandInfo] = {
             G::View,
         ),
         entry(
+            C::Wall,
+            "wall",
+            "Wall of variants",
+            "Shows nine variants of the hairstyle that dance beside each other, to adopt one or breed two.",
+            &["N"],
+            G::Hair,
+        ),
+        entry(
             C::CompareTakes,
             "compare-takes",
             "Compare with a take…",

@@ -37,6 +37,22 @@ impl Head<'_> {
         nearest(self.scalp, place).map(|(found, _)| found.normal)
     }
 
+    /// Size of the head in the world as a multiple of head space.
+    pub(super) fn scale(self) -> f32 {
+        Vec3::from(self.world_from_head.matrix3.x_axis).length()
+    }
+
+    /// The place of the head's visible surface under a point of the screen, head space; `None` beside the head. Of several, the one nearest
+    /// to `near`.
+    pub(super) fn under(self, view: View, at: Pos2, near: Vec3) -> Option<Vec3> {
+        under(self.scalp, 0.0, self.ray(view, at), (near, Side::Seen)).map(|at| at.place)
+    }
+
+    /// The camera's position in head space.
+    pub(super) fn eye(self, view: View) -> Vec3 {
+        self.world_from_head.inverse().transform_point3(view.eye)
+    }
+
     /// The camera's position and the unit vector toward a point of the screen, head space.
     fn ray(self, view: View, at: Pos2) -> (Vec3, Vec3) {
         let head_from_world = self.world_from_head.inverse();

@@ -8,9 +8,11 @@ mod notices;
 mod painting;
 mod playback;
 mod rows;
+mod styles;
 mod takes;
 mod tools;
 mod tracks;
+mod wall;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};

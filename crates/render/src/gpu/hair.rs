@@ -43,6 +43,8 @@ pub(super) struct HairBuffers {
     interpolation: Interpolation,
     points: GrowBuffer<[f32; 4]>,
     details: GrowBuffer<u32>,
+    /// See `PointColours::words`.
+    colors: GrowBuffer<u32>,
     segments: GrowBuffer<u32>,
     transmittance: GrowBuffer<u32>,
     shaded: GrowBuffer<ShadedPoint>,
@@ -63,6 +65,7 @@ impl HairBuffers {
             interpolation: Interpolation::new(gpu)?,
             points: GrowBuffer::new(gpu, "strand points", storage),
             details: GrowBuffer::new(gpu, "strand details", storage),
+            colors: GrowBuffer::new(gpu, "strand colours", storage),
             segments: GrowBuffer::new(gpu, "segments", storage),
             transmittance: GrowBuffer::new(gpu, "transmittance", storage),
             shaded: GrowBuffer::new(gpu, "shaded points", storage),
@@ -89,13 +92,13 @@ impl HairBuffers {
         self.portion = portion_of(input, height, target, (points, most)).map(|portion| (portion, points));
         let Some((portion, _)) = self.portion else {
             if self.drawn.follow(input.style) {
-                self.details.write(gpu, &self.drawn.words);
+                self.write_details(gpu);
             }
             return Ok(());
         };
         let longer = self.list.follow(input.style, portion.drawn);
         if self.drawn.follow_fine(input.style, &self.list, longer) {
-            self.details.write(gpu, &self.drawn.words);
+            self.write_details(gpu);
             self.drawn_segments.write(gpu, &self.drawn.segments);
             self.fine.follow(gpu, input.style, &self.list);
         }
@@ -105,6 +108,13 @@ impl HairBuffers {
         let reach = soft_reach(input.lights);
         self.fine.run(gpu, commands, (portion.drawn, points), reach, self.points.raw());
         Ok(())
+    }
+
+    fn write_details(&mut self, gpu: &Gpu) {
+        self.details.write(gpu, &self.drawn.words);
+        if let Some(colours) = self.drawn.colours() {
+            self.colors.write(gpu, &colours.words());
+        }
     }
 
     /// Uploads or interpolates the stored strands.
@@ -210,7 +220,8 @@ impl HairBuffers {
 
     /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let own = [&self.details, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
+        let own = [&self.details, &self.colors, &self.segments, &self.transmittance]
+            .map(|buffer| buffer.raw().size());
         let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
         own + self.drawn_segments.raw().size() + self.fine.bytes() + self.interpolation.bytes()
     }
@@ -231,6 +242,9 @@ impl HairBuffers {
     }
 
     /// Projects and shades every point, in the pass `name`.
+    ///
+    /// # Errors
+    /// The driver cannot compile a kernel.
     pub fn shade(
         &self,
         gpu: &Gpu,
@@ -238,9 +252,12 @@ impl HairBuffers {
         (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
         commands: &mut Commands,
         frame: &FrameResources,
-    ) {
-        let kernel = &kernels.shade_points[usize::from(shading == HairShading::Fibre)];
-        self.run_over_points(gpu, kernel, name, commands, frame, [(8, tables.as_entire_binding())]);
+    ) -> Result<(), GpuError> {
+        let is_colored = self.drawn.colours().is_some();
+        let kernel = kernels.shade_points(gpu, shading == HairShading::Fibre, is_colored)?;
+        let more = [(8, tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
+        self.run_over_points(gpu, kernel, name, commands, frame, more);
+        Ok(())
     }
 
     /// Runs a kernel of strand points over every point, with `more` bindings.

@@ -1,17 +1,16 @@
 //! Masks: how much of an operation the hair at each place of the scalp gets.
 
 mod brush;
-mod map;
 mod region;
 #[cfg(test)]
 mod tests;
 
 use glam::Vec3;
+pub use lovelock_base::direction_map::DirectionMap as MaskMap;
 use lovelock_groom::Scalp;
 use serde::{Deserialize, Serialize};
 
 pub use brush::{BrushMode, MaskBrush};
-pub use map::MaskMap;
 pub use region::{MaskMix, MaskPart, MaskRegion};
 
 /// How much of an operation the hair at each place gets: parts that are combined one after another.

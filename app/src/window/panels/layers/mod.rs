@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 use egui::Ui;
 use lovelock_style::{Layer, Mask, MaskBrush, Operation, StyleStack};
 
+use super::pigments::pigments;
 use crate::window::control::{all_settings, curve, note, section, settings};
 use list::Row;
 use thumbnail::Thumbnails;
@@ -132,6 +133,7 @@ fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView) {
     match (layer.operation.known_mut(), fresh.as_ref().and_then(Operation::known)) {
         (Some(operation), Some(default)) => {
             note(ui, operation.kind().text);
+            pigments(ui, operation.settings_mut());
             all_settings(ui, operation.settings_mut(), default.settings());
             for (i, info) in operation.ramps().iter().enumerate() {
                 ui.push_id(info.name, |ui| {

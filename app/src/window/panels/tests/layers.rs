@@ -5,7 +5,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_project::Project;
-use lovelock_style::operations::{Curl, Length, Wave};
+use lovelock_style::operations::{Curl, Dye, Length, Melanin, Wave};
 use lovelock_style::{Layer, MaskRegion, Operation, Ramp, StyleStack};
 
 use super::{Bench, panel};
@@ -79,6 +79,22 @@ fn a_layer_is_added_from_the_menu_and_selected() {
     assert_eq!(kinds(&harness), ["curl"]);
     assert_eq!(harness.state().state.layers.selected, Some(stack(&harness).layers[0].id));
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Pitch").is_some(), "its controls are shown");
+}
+
+#[test]
+fn layers_of_pigment_offer_the_natural_colours() {
+    let mut project = Project::default();
+    project.hair.stack.push(Layer::of(Melanin::default()));
+    project.hair.stack.push(Layer::of(Dye::default()));
+    let mut harness = panel("Layers", project);
+    click(&mut harness, "Natural colour");
+    click(&mut harness, "Blonde");
+    let Operation::Melanin(melanin) = &stack(&harness).layers[0].operation else { panic!("its kind") };
+    assert_eq!((melanin.eumelanin, melanin.pheomelanin), (0.3, 0.05));
+    assert!(harness.query_all_by_label("Grey").next().is_none(), "grey is no pigment");
+    click(&mut harness, "Dye");
+    assert!(harness.query_all_by_label("Blonde").next().is_none(), "a dye has none");
+    assert!(harness.query_all_by_label("Bleach first").next().is_some());
 }
 
 #[test]

@@ -3,6 +3,7 @@ mod layers;
 mod one_by_one;
 mod reasons;
 mod recording;
+mod scalp;
 mod surroundings;
 mod ties;
 mod undo;
@@ -25,6 +26,7 @@ use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation};
 
 use super::recording::State;
 use crate::window::control::section;
+use crate::window::overlay::scalp::ScalpTool;
 use crate::window::testing::{Shown, screen, unfold};
 
 /// A project and the other data that the panels show.
@@ -42,6 +44,9 @@ pub(super) struct Bench {
     pub(super) selected_tie: usize,
     pub(super) layers: super::layers::LayersView,
     pub(super) scissors: bool,
+    pub(super) scalp: ScalpTool,
+    pub(super) styles: crate::window::styles::Browser,
+    pub(super) kept: crate::window::styles::Kept,
 }
 
 impl Bench {
@@ -82,6 +87,9 @@ impl Bench {
             selected_tie: 0,
             layers: super::layers::LayersView::default(),
             scissors: false,
+            scalp: ScalpTool::default(),
+            styles: crate::window::styles::Browser::default(),
+            kept: crate::window::styles::Kept::default(),
         }
     }
 }
@@ -96,8 +104,9 @@ pub(super) fn surroundings() -> Arc<Panorama> {
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
 /// Every panel, inside a section as in the window.
-pub(super) const PANELS: [(&str, Show); 12] = [
+pub(super) const PANELS: [(&str, Show); 13] = [
     ("Hairstyle", |ui, b| {
+        crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
     ("Simulation", |ui, b| {
@@ -112,6 +121,7 @@ pub(super) const PANELS: [(&str, Show); 12] = [
     ("Body and motion", |ui, b| {
         super::body::ui(ui, &mut b.project, &b.body);
     }),
+    ("Scalp", |ui, b| super::scalp::ui(ui, &mut b.project.body.scalp, &mut b.scalp, true)),
     ("Colliders", |ui, b| {
         let edits = &mut b.project.body.colliders;
         // The skin replaces the skull's shape until that shape is edited.
