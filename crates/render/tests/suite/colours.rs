@@ -10,12 +10,11 @@ use lovelock_render::{Backend, Picture, StrandCount};
 use lovelock_testkit::flip;
 
 use crate::cluster_agreement;
-use crate::common::{self, Scene, wig};
+use crate::common::{Scene, wig};
 
 const SIZE: [u32; 2] = [240, 200];
-/// FLIP between the pictures of the two backends, as in `agreement`: the colours add nothing to the difference of plain hair.
-const MEAN: f32 = 0.005;
-const P99: f32 = 0.06;
+/// By how much more the pictures of the two backends may differ, in mean and 99th percentile of FLIP, than those of plain hair.
+const MORE: [f32; 2] = [0.001, 0.05];
 
 fn root(style: &Hairstyle, strand: usize) -> Vec3 {
     let set = &style.strands;
@@ -87,7 +86,6 @@ fn colours_that_change_nothing_change_no_byte() {
 #[test]
 fn a_dye_over_all_hair_looks_as_the_same_dye_of_the_look() {
     for (name, mut scene) in scenes() {
-        scene.body = Some(common::grid(-0.16, 0.3, 24, Vec3::splat(0.6)));
         scene.look.tip_lightening = 0.0;
         let plain = cpu(&scene);
         let own = HairLook { dye: Vec3::new(0.5, 0.05, 0.2), dye_amount: 1.0, ..scene.look };
@@ -133,17 +131,20 @@ fn hair_of_the_other_side_keeps_every_byte() {
 fn coloured_strands_look_the_same_on_both() {
     for (name, mut scene) in scenes() {
         let plain = draw(&scene, Backend::Cpu).expect("a picture");
+        let Some(plain_gpu) = draw(&scene, Backend::Gpu) else { return };
+        let usual = flip(&plain_gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
         coloured(&mut scene, salon);
-        let Some(gpu) = draw(&scene, Backend::Gpu) else { return };
+        let gpu = draw(&scene, Backend::Gpu).expect("a picture");
         let cpu = draw(&scene, Backend::Cpu).expect("a picture");
         let difference = flip(&gpu.rgba, &cpu.rgba, SIZE[0], SIZE[1]);
         let control = flip(&gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
         // Another colour of a third of the strands.
         coloured(&mut scene, |strand, root| salon(strand + 1, root));
         let shifted = flip(&gpu.rgba, &self::cpu(&scene), SIZE[0], SIZE[1]);
-        println!("{name}: {difference:?}; without colours {control:?}; other strands {shifted:?}");
-        assert!(difference.mean < MEAN && difference.p99 < P99, "{name}: {difference:?}");
-        assert!(control.mean > 2.0 * MEAN && control.p99 > 2.0 * P99, "{name}: {control:?}");
-        assert!(shifted.mean > difference.mean && shifted.p99 > P99, "{name}: {shifted:?}");
+        println!("{name}: {difference:?}; both plain {usual:?}; without {control:?}; other strands {shifted:?}");
+        assert!(difference.mean < usual.mean + MORE[0] && difference.p99 < usual.p99 + MORE[1], "{name}: {difference:?}");
+        for control in [control, shifted] {
+            assert!(control.mean > usual.mean + 2.0 * MORE[0] && control.p99 > usual.p99 + 2.0 * MORE[1], "{name}: {control:?}");
+        }
     }
 }
