@@ -16,11 +16,13 @@ mod import;
 mod interpolate;
 mod io;
 mod look;
+mod motion_factors;
 mod obstacle;
 mod pigment;
 mod plain_head;
 pub mod polyline;
 mod presets;
+mod scaled;
 mod scalp;
 mod scalp_index;
 mod settings;
@@ -47,6 +49,7 @@ pub use io::{
     load_hair, load_hair_bytes,
 };
 pub use look::{HairLook, HairShading};
+pub use motion_factors::MotionFactors;
 pub use obstacle::{Bounded, NoObstacle, Obstacle};
 pub use pigment::{PAINTED_FROM, PigmentVariation, UNPIGMENTED, WHITENING};
 pub use plain_head::PlainHead;

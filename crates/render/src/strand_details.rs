@@ -71,7 +71,8 @@ impl StrandDetails {
         let locks = lock_numbers(&style.strands);
         self.colour_of.clear();
         if !set.colours.is_empty() {
-            self.colour_of.extend(fine.strands.iter().enumerate().map(|(i, strand)| colour_parent(i, strand)));
+            self.colour_of
+                .extend(fine.strands.iter().enumerate().map(|(i, strand)| colour_parent(i, strand)));
         }
         for strand in &fine.strands {
             let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
@@ -180,8 +181,10 @@ mod tests {
         // Children of white strands that are not white.
         let stored = style.strands.count();
         let children = fine.strands.iter().zip(&kept).skip(stored);
-        let of_white: Vec<f32> =
-            children.filter(|(strand, _)| is_white(strand.parents[0] as usize)).map(|(_, kept)| *kept).collect();
+        let of_white: Vec<f32> = children
+            .filter(|(strand, _)| is_white(strand.parents[0] as usize))
+            .map(|(_, kept)| *kept)
+            .collect();
         let mixed = of_white.iter().filter(|kept| **kept == 1.0).count() as f32 / of_white.len() as f32;
         println!("{share} white, {mixed} of the children of white strands are not");
         assert!((share - 0.3).abs() < 0.03, "{share}");

@@ -59,8 +59,8 @@ impl Scope<'_> {
     }
 }
 
-/// The root of each strand, head space.
-pub(crate) fn strand_roots(style: &Hairstyle) -> Vec<Vec3> {
+/// The root of each stored strand between those of its guides, head space: where masks are read for it.
+pub fn strand_roots(style: &Hairstyle) -> Vec<Vec3> {
     let set = &style.strands;
     let root = |strand: usize| -> Vec3 {
         let guides = style.wisps[set.wisp[strand] as usize].guides;

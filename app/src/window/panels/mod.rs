@@ -10,6 +10,7 @@ pub(crate) mod look;
 mod pigments;
 pub(crate) mod recording;
 pub(crate) mod records;
+pub(crate) mod scalp;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;

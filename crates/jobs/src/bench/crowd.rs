@@ -35,7 +35,7 @@ impl Crowd {
             &mut style.strands.taper,
             &mut style.strands.shade,
         ];
-        for values in floats {
+        for values in floats.into_iter().chain(style.motion.lists_mut()) {
             *values = values.repeat(HEADS);
         }
         style.strands.weights = strands.weights.repeat(HEADS);

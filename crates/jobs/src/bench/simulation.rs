@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandSet, Strands, Wisp, interpolate};
+use lovelock_groom::{GuideFrame, Guides, Hairstyle, MotionFactors, StrandSet, Strands, Wisp, interpolate};
 use lovelock_project::Project;
 use lovelock_render::Backend;
 use lovelock_session::clock::STEP_SECS;
@@ -191,6 +191,7 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
         held: Vec::new(),
         ropes: Vec::new(),
         widest: Vec::new(),
+        motion: MotionFactors::default(),
         ..style.clone()
     }
 }

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
 use lovelock_groom::fine::{FineStrands, Portion};
-use lovelock_groom::{HairShading, StrandBounds};
+use lovelock_groom::{HairShading, Hairstyle, StrandBounds};
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
@@ -15,6 +15,7 @@ use super::light_kernels::LightKernels;
 use crate::shadow_stage::soft_reach;
 use crate::strand_details::StrandDetails;
 use crate::strand_portion::portion_of;
+use crate::strand_values::at_points;
 use crate::{FrameInput, HairPose};
 
 /// Twin of `ShadedPoint` in the shaders; never read on the CPU.
@@ -183,6 +184,14 @@ impl HairBuffers {
         self.portion
     }
 
+    /// One number per drawn point of `style`, that of the last frame, from one per stored strand.
+    pub fn at_points(&self, style: &Hairstyle, of_strands: &[f32]) -> Vec<f32> {
+        let fine = self.portion.map(|(portion, points)| {
+            (&self.list.strands[..portion.drawn.min(self.list.strands.len())], points)
+        });
+        at_points(&style.strands, fine, of_strands)
+    }
+
     /// The strands that are drawn.
     pub fn drawn(&self) -> GpuStrands<'_> {
         let Some((portion, points)) = self.portion else { return self.strands() };
@@ -211,7 +220,8 @@ impl HairBuffers {
 
     /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let own = [&self.details, &self.colors, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
+        let own = [&self.details, &self.colors, &self.segments, &self.transmittance]
+            .map(|buffer| buffer.raw().size());
         let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
         own + self.drawn_segments.raw().size() + self.fine.bytes() + self.interpolation.bytes()
     }
@@ -245,8 +255,7 @@ impl HairBuffers {
     ) -> Result<(), GpuError> {
         let is_colored = self.drawn.colours().is_some();
         let kernel = kernels.shade_points(gpu, shading == HairShading::Fibre, is_colored)?;
-        let more =
-            [(8, tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
+        let more = [(8, tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
         self.run_over_points(gpu, kernel, name, commands, frame, more);
         Ok(())
     }

@@ -112,7 +112,10 @@ fn hair_of_the_other_side_keeps_every_byte() {
         scene.camera.eye = scene.camera.target + Vec3::new(0.0, 0.1, 0.95);
         let before = cpu(&scene);
         let far = 0.05;
-        coloured(&mut scene, |_, root| if root.x > far { dyed(Vec3::splat(0.02)) } else { ColourSamples::default() });
+        coloured(
+            &mut scene,
+            |_, root| if root.x > far { dyed(Vec3::splat(0.02)) } else { ColourSamples::default() },
+        );
         let after = cpu(&scene);
         let [mut left, mut right] = [0, 0];
         for (i, (a, b)) in before.chunks(4).zip(after.chunks(4)).enumerate() {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
-    COLOUR_SAMPLES, GroomSettings, GuideFrame, Hairstyle, PlainHead, StrandColour, StrandColours, Strands, grow,
-    interpolate,
+    COLOUR_SAMPLES, GroomSettings, GuideFrame, Hairstyle, PlainHead, StrandColour, StrandColours, Strands,
+    grow, interpolate,
 };
 use lovelock_satf::{Cell, ClusterHair, ClusterSettings};
 

@@ -118,9 +118,7 @@ impl Operate for Highlights {
         let chosen: Vec<bool> = own
             .iter()
             .enumerate()
-            .map(|(strand, lock)| {
-                *lock < self.share && scope.random(STRANDS, strand).unit() < self.strands
-            })
+            .map(|(strand, lock)| *lock < self.share && scope.random(STRANDS, strand).unit() < self.strands)
             .collect();
         let toner = dyed(self.toner);
         recolour(style, scope, |at, below| {

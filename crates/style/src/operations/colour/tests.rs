@@ -59,10 +59,7 @@ fn full_colours_are_those_of_a_look() {
             }
         }
     }
-    let half = applied(
-        &style,
-        &Layer { weight: 0.5, ..Layer::of(Dye { color: pink, ..Dye::default() }) },
-    );
+    let half = applied(&style, &Layer { weight: 0.5, ..Layer::of(Dye { color: pink, ..Dye::default() }) });
     let mean = half.strands.colours.mean().absorption(below());
     assert!(mean.abs_diff_eq(half_look.absorption(), 1e-5), "weight is amount: {mean}");
 }
