@@ -14,7 +14,9 @@ use crate::common::{Scene, wig};
 
 const SIZE: [u32; 2] = [240, 200];
 /// By how much more the pictures of the two backends may differ, in mean and 99th percentile of FLIP, than those of plain hair.
-const MORE: [f32; 2] = [0.001, 0.05];
+const MORE: [f32; 2] = [0.0005, 0.02];
+/// The same where neighbours have different colours: there the order of strands at one depth, which may differ, is seen in single pixels.
+const MORE_MIXED: [f32; 2] = [0.001, 0.2];
 
 fn root(style: &Hairstyle, strand: usize) -> Vec3 {
     let set = &style.strands;
@@ -45,6 +47,13 @@ fn salon(strand: usize, root: Vec3) -> ColourSamples {
             StrandColour::BELOW.faded(if strand.is_multiple_of(3) { 0.1 } else { 1.0 })
         }
     })
+}
+
+/// A dye that grows over the head and along the hair.
+fn gradient(_: usize, root: Vec3) -> ColourSamples {
+    let teal = HairLook::absorption_of_dye(Vec3::new(0.05, 0.45, 0.5), 0.3);
+    let side = (0.5 + 4.0 * root.x).clamp(0.0, 1.0);
+    std::array::from_fn(|k| StrandColour::BELOW.toward(teal, side * StrandColours::place(k)))
 }
 
 fn draw(scene: &Scene, backend: Backend) -> Option<Picture> {
@@ -136,18 +145,28 @@ fn coloured_strands_look_the_same_on_both() {
         let plain = draw(&scene, Backend::Cpu).expect("a picture");
         let Some(plain_gpu) = draw(&scene, Backend::Gpu) else { return };
         let usual = flip(&plain_gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
-        coloured(&mut scene, salon);
-        let gpu = draw(&scene, Backend::Gpu).expect("a picture");
-        let cpu = draw(&scene, Backend::Cpu).expect("a picture");
-        let difference = flip(&gpu.rgba, &cpu.rgba, SIZE[0], SIZE[1]);
-        let control = flip(&gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
-        // Another colour of a third of the strands.
-        coloured(&mut scene, |strand, root| salon(strand + 1, root));
-        let shifted = flip(&gpu.rgba, &self::cpu(&scene), SIZE[0], SIZE[1]);
-        println!("{name}: {difference:?}; both plain {usual:?}; without {control:?}; other strands {shifted:?}");
-        assert!(difference.mean < usual.mean + MORE[0] && difference.p99 < usual.p99 + MORE[1], "{name}: {difference:?}");
-        for control in [control, shifted] {
-            assert!(control.mean > usual.mean + 2.0 * MORE[0] && control.p99 > usual.p99 + 2.0 * MORE[1], "{name}: {control:?}");
+        for (colours, of, more) in
+            [("a gradient", gradient as fn(usize, Vec3) -> ColourSamples, MORE), ("strands", salon, MORE_MIXED)]
+        {
+            coloured(&mut scene, of);
+            let gpu = draw(&scene, Backend::Gpu).expect("a picture");
+            let against = |cpu: &[u8]| flip(&gpu.rgba, cpu, SIZE[0], SIZE[1]);
+            let difference = against(&cpu(&scene));
+            let without = against(&plain.rgba);
+            coloured(&mut scene, |strand, root| of(strand + 1, root + Vec3::X * 0.02));
+            let shifted = against(&cpu(&scene));
+            println!(
+                "{name}, {colours}: {difference:?}; both plain {usual:?}; without {without:?}; shifted {shifted:?}"
+            );
+            let [mean, p99] = more;
+            assert!(
+                difference.mean < usual.mean + mean && difference.p99 < usual.p99 + p99,
+                "{name}, {colours}: {difference:?}"
+            );
+            for control in [without, shifted] {
+                let found = control.mean > usual.mean + 4.0 * mean && control.p99 > usual.p99 + p99;
+                assert!(found, "{name}, {colours}: {control:?}");
+            }
         }
     }
 }
