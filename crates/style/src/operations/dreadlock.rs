@@ -157,7 +157,7 @@ mod tests {
             let (top, bottom) = (guide(0).y, guide(30).y);
             let middle = guide(20);
             let off = |p: &Vec3| (*p - middle).with_y(0.0).length();
-            for p in all.iter().flatten().filter(|p| p.y < top - 0.06) {
+            for p in all.iter().flatten().filter(|p| p.y < top - 0.15) {
                 assert!(off(p) < 0.5 * lock.thickness * 1.05, "{} at {}", off(p), p.y - bottom);
             }
         }
