@@ -83,7 +83,7 @@ fn every_preset_grows_on_every_character() {
             );
             // A sheet encloses nothing: its scalp is a cap around it.
             let is_sheet = scalp.notes.iter().any(|note| note.message.contains("encloses no skull"));
-            assert_eq!(is_sheet, name == "SimpleSkin.gltf", "{name}");
+            assert_eq!(is_sheet, ["SimpleSkin.gltf", "MorphStressTest.gltf"].contains(&name), "{name}");
             assert!(is_sheet || on_skin > 0.5, "{name} {preset:?}: {on_skin} on the skin");
             assert!(is_sheet || deep < 0.01, "{name} {preset:?}: {deep} of the points are inside the body");
             assert!(crown > 4, "{name} {preset:?}: {crown} roots on the crown");
