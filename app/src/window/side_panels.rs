@@ -24,11 +24,12 @@ impl Window {
                 }
                 section(ui, "Hairstyle", true, |ui| {
                     self.problems(ui, &[Place::Hair]);
+                    super::styles::ui(ui, project, &mut self.styles, &mut self.layout.styles);
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
                 section(ui, "Layers", false, |ui| {
-                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.selected_layer);
+                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
                     let scalp = self.session.scene.as_ref().map(|scene| &*scene.usual_scalp);

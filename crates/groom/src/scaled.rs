@@ -29,7 +29,9 @@ impl Hairstyle {
         out.guides.scale(scale);
         out.widest.iter_mut().for_each(|v| *v = (*v * scale).min(f32::MAX));
         let set = &mut out.strands;
-        for lengths in [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent, &mut set.taper] {
+        for lengths in
+            [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent, &mut set.taper]
+        {
             lengths.iter_mut().for_each(|v| *v *= scale);
         }
         out
@@ -42,7 +44,8 @@ mod tests {
 
     #[test]
     fn strands_of_a_larger_head_are_those_of_the_smaller_one_enlarged() {
-        let settings = GroomSettings { wisps: 40, strands_per_wisp: 5, ..GroomSettings::preset(Preset::Curly) };
+        let settings =
+            GroomSettings { wisps: 40, strands_per_wisp: 5, ..GroomSettings::preset(Preset::Curly) };
         let style = grow(&settings, &PlainHead.scalp(24), &PlainHead).expect("it grows");
         let larger = style.scaled(3.0);
         larger.check().expect("whole");

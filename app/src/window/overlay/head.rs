@@ -25,6 +25,18 @@ impl Head<'_> {
         self.world_from_head.transform_point3(place)
     }
 
+    /// The point of the surface under a point of the screen and the normal there, head space.
+    pub(super) fn hit(self, view: View, at: Pos2) -> Option<(Vec3, Vec3)> {
+        let ray = self.ray(view, at);
+        let found = under(self.scalp, 0.0, ray, (ray.0, Side::Seen))?;
+        Some((found.place, found.normal))
+    }
+
+    /// The normal of the vertex that is nearest to a point, head space.
+    pub(super) fn normal_near(self, place: Vec3) -> Option<Vec3> {
+        nearest(self.scalp, place).map(|(found, _)| found.normal)
+    }
+
     /// Size of the head in the world as a multiple of head space.
     pub(super) fn scale(self) -> f32 {
         Vec3::from(self.world_from_head.matrix3.x_axis).length()

@@ -1,5 +1,6 @@
 //! Overlays on the image, drawn for the same instant and camera.
 
+pub(crate) mod brush;
 pub(crate) mod colliders;
 pub(crate) mod head;
 pub(crate) mod mark;

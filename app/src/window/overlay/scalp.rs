@@ -102,15 +102,19 @@ fn paint(
     tool: ScalpTool,
     fit: &mut ScalpFit,
 ) -> bool {
-    let Some(pointer) = response.hover_pos().or_else(|| response.interact_pointer_pos()) else { return false };
+    let Some(pointer) = response.hover_pos().or_else(|| response.interact_pointer_pos()) else {
+        return false;
+    };
     let Some(place) = head.under(view, pointer, head.eye(view)) else {
-        return response.dragged_by(PointerButton::Primary) && ui.data(|data| data.get_temp(response.id) == Some(true));
+        return response.dragged_by(PointerButton::Primary)
+            && ui.data(|data| data.get_temp(response.id) == Some(true));
     };
     let removes = ui.input(|input| input.modifiers.matches_logically(Modifiers::COMMAND));
     let direction = skull.relative(place);
     let size = tool.brush * skull.half.min_element();
     let (world, edge) = (head.world(place), head.world_from_head.transform_vector3(Vec3::X).length() * size);
-    if let (Some(at), Some(right)) = (view.to_screen(world), view.to_screen(world).and_then(|at| view.right_of(at, world)))
+    if let (Some(at), Some(right)) =
+        (view.to_screen(world), view.to_screen(world).and_then(|at| view.right_of(at, world)))
         && let Some(rim) = view.to_screen(world + right * edge)
     {
         let color = if removes { theme::WRONG } else { theme::GOOD };

@@ -97,7 +97,8 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
             tie.sphere_radius = (out / head.scale()).clamp(0.005, 0.6);
         }
     }
-    let outline = ring(view, middle, (view.eye - middle).normalize_or(Vec3::Z), tie.sphere_radius * head.scale());
+    let outline =
+        ring(view, middle, (view.eye - middle).normalize_or(Vec3::Z), tie.sphere_radius * head.scale());
     painter.extend(Shape::dashed_line(&closed(outline), Stroke::new(1.5, theme::ACCENT), 6.0, 4.0));
     dot(painter, rim, rim_at, "Drag to gather more or less hair.");
     if !tie.sphere_at_ring {

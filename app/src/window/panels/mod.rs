@@ -7,6 +7,7 @@ pub(crate) mod health;
 pub(crate) mod layers;
 pub(crate) mod light;
 pub(crate) mod look;
+mod pigments;
 pub(crate) mod recording;
 pub(crate) mod records;
 pub(crate) mod scalp;

@@ -23,11 +23,13 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
         tool.painting &= tool.shown;
     });
     if tool.painting {
-        Number::new("Brush", 0.03..=0.8, Unit::RADIANS, "Size of the brush, seen from the middle of the head.").show(
-            ui,
-            &mut tool.brush,
-            ScalpTool::default().brush,
-        );
+        Number::new(
+            "Brush",
+            0.03..=0.8,
+            Unit::RADIANS,
+            "Size of the brush, seen from the middle of the head.",
+        )
+        .show(ui, &mut tool.brush, ScalpTool::default().brush);
         ui.checkbox(&mut tool.mirrored, "Both sides").on_hover_text("Paints the other side alike.");
     }
     let default = ScalpFit::default();

@@ -14,7 +14,7 @@ use crate::window::Window;
 use crate::window::overlay::View;
 
 /// The window with an image, paused at the start; `None` if nothing can draw.
-fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
+pub(super) fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut harness = window();
     wait(&mut harness, "an image or the reason that there is none", |window| {
         window.session.painted.is_some() || window.session.draw_error.is_some()
@@ -54,14 +54,14 @@ fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name:
 }
 
 /// The projection of the current image.
-fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
+pub(super) fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
     let window = of(harness);
     let rect = control(harness, Role::Image, "Viewport").rect();
     let painted = window.session.painted.as_ref().expect("a picture");
     View::new(painted, window.viewport.place(rect).expect("a place")).expect("a view")
 }
 
-fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
+pub(super) fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
     harness.hover_at(from);
     harness.run_steps(1);
     press(harness, from, true);

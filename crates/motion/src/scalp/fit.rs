@@ -163,11 +163,8 @@ impl ScalpFit {
             let away = at.dot(middle).clamp(-1.0, 1.0).acos() / radius;
             amount.clamp(0.0, 1.0) * (1.5 * (1.0 - away)).clamp(0.0, 1.0)
         };
-        let (more, less) = if removes {
-            (&mut self.removed, &mut self.added)
-        } else {
-            (&mut self.added, &mut self.removed)
-        };
+        let (more, less) =
+            if removes { (&mut self.removed, &mut self.added) } else { (&mut self.added, &mut self.removed) };
         more.paint(|at, old| old.max(brush(at)));
         if !less.is_empty() {
             less.paint(|at, old| old.min(1.0 - brush(at)));
@@ -207,12 +204,39 @@ impl Settings for ScalpFit {
         )
         .unit(Unit::FRACTION)
         .logarithmic(),
-        Setting::number(field!(Self, raise.front), RAISE, "Front", "Raises the hairline at the forehead.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.corner), RAISE, "Corners", "Raises the hairline at the corners of the forehead.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.temple), RAISE, "Temples", "Raises the hairline at the temples.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.before_ear), RAISE, "Before the ears", "Raises the hairline before the ears.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.above_ear), RAISE, "Above the ears", "Raises the hairline above the ears.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.behind_ear), RAISE, "Behind the ears", "Raises the hairline behind the ears.").unit(Unit::RADIANS),
-        Setting::number(field!(Self, raise.nape), RAISE, "Nape", "Raises the hairline at the nape.").unit(Unit::RADIANS),
+        Setting::number(field!(Self, raise.front), RAISE, "Front", "Raises the hairline at the forehead.")
+            .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, raise.corner),
+            RAISE,
+            "Corners",
+            "Raises the hairline at the corners of the forehead.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(field!(Self, raise.temple), RAISE, "Temples", "Raises the hairline at the temples.")
+            .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, raise.before_ear),
+            RAISE,
+            "Before the ears",
+            "Raises the hairline before the ears.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, raise.above_ear),
+            RAISE,
+            "Above the ears",
+            "Raises the hairline above the ears.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(
+            field!(Self, raise.behind_ear),
+            RAISE,
+            "Behind the ears",
+            "Raises the hairline behind the ears.",
+        )
+        .unit(Unit::RADIANS),
+        Setting::number(field!(Self, raise.nape), RAISE, "Nape", "Raises the hairline at the nape.")
+            .unit(Unit::RADIANS),
     ];
 }

@@ -46,7 +46,8 @@ pub(super) fn fitted(body: &Body, skull: &Skull, fit: &ScalpFit, distance: Optio
     };
     let places: Vec<(Vec3, f32)> = (0..directions.len()).map(place).collect();
     let positions: Vec<Vec3> = places.iter().map(|(p, _)| *p).collect();
-    let shares = if distance.is_some() { shares(body, skull, &positions) } else { vec![1.0; positions.len()] };
+    let shares =
+        if distance.is_some() { shares(body, skull, &positions) } else { vec![1.0; positions.len()] };
     let mut out = HeadMesh { positions, scalp_is_guessed: true, ..HeadMesh::default() };
     let all_found = |t: &[u32; 3]| t.iter().all(|&v| found[v as usize].is_some());
     out.triangles = triangles().filter(all_found).collect();
@@ -127,7 +128,8 @@ fn shares(body: &Body, skull: &Skull, places: &[Vec3]) -> Vec<f32> {
         return vec![1.0; places.len()];
     }
     let share = |p: &Vec3| {
-        let nearest = near.iter().min_by(|a, b| a.0.distance_squared(*p).total_cmp(&b.0.distance_squared(*p)));
+        let nearest =
+            near.iter().min_by(|a, b| a.0.distance_squared(*p).total_cmp(&b.0.distance_squared(*p)));
         nearest.map_or(1.0, |(_, share)| *share)
     };
     places.par_iter().map(share).collect()
@@ -137,8 +139,13 @@ fn shares(body: &Body, skull: &Skull, places: &[Vec3]) -> Vec<f32> {
 pub(super) fn on_body(body: &Body, skull: &Skull, net: &HeadMesh) -> Vec<f32> {
     let origin = body.skeleton.rest_position(body.head_joint);
     let near = 0.12 * skull.half.min_element();
-    let hairy: Vec<(Vec3, f32)> =
-        net.positions.iter().copied().zip(net.scalp.iter().copied()).filter(|(_, mask)| *mask > 0.0).collect();
+    let hairy: Vec<(Vec3, f32)> = net
+        .positions
+        .iter()
+        .copied()
+        .zip(net.scalp.iter().copied())
+        .filter(|(_, mask)| *mask > 0.0)
+        .collect();
     let mask = |p: &Vec3| {
         let p = *p - origin;
         if !(skull.relative(p).length() < REACH) {
@@ -185,11 +192,7 @@ pub(super) fn hairline_direction(fit: &ScalpFit, azimuth: f32) -> Vec3 {
     let folded = azimuth.rem_euclid(std::f32::consts::TAU);
     let folded = if folded > std::f32::consts::PI { std::f32::consts::TAU - folded } else { folded };
     let elevation = outline::hairline(folded, fit);
-    let line = Vec3::new(
-        elevation.cos() * azimuth.sin(),
-        elevation.sin(),
-        elevation.cos() * azimuth.cos(),
-    );
+    let line = Vec3::new(elevation.cos() * azimuth.sin(), elevation.sin(), elevation.cos() * azimuth.cos());
     // Along this direction from the outline's middle to the sphere.
     let along = Quat::from_rotation_x(fit.nod) * line * Vec3::new(fit.width, 1.0, 1.0);
     let from = Vec3::new(0.0, fit.up, fit.forward);

@@ -8,8 +8,8 @@ use super::ScalpFit;
 /// Elevation of the hairline, degrees, at every tenth degree from the front to the back, seen from the middle of the skull and
 /// relative to its size. Measured on the shipped dancer; a test measures it again.
 pub(super) const HAIRLINE: [f32; 19] = [
-    32.0, 33.0, 34.0, 34.0, 30.0, 25.0, 13.0, 1.0, -26.0, -20.0, -10.0, -14.0, -40.0, -59.0, -64.0, -64.0, -64.0,
-    -64.0, -64.0,
+    32.0, 33.0, 34.0, 34.0, 30.0, 25.0, 13.0, 1.0, -26.0, -20.0, -10.0, -14.0, -40.0, -59.0, -64.0, -64.0,
+    -64.0, -64.0, -64.0,
 ];
 
 /// Half of the angle over which the mask fades at the hairline, degrees.

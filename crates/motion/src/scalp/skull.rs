@@ -61,10 +61,10 @@ impl Skull {
             let [x, y, z] = [i % counts.x, i / counts.x % counts.y, i / counts.x / counts.y];
             low + (UVec3::new(x, y, z).as_vec3() + 0.5) * (high - low) / counts.as_vec3()
         };
-        let deepest = (0..counts.element_product())
-            .into_par_iter()
-            .map(|i| (depth(place(i)), i))
-            .reduce(|| (f32::NEG_INFINITY, u32::MAX), |a, b| if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a });
+        let deepest = (0..counts.element_product()).into_par_iter().map(|i| (depth(place(i)), i)).reduce(
+            || (f32::NEG_INFINITY, u32::MAX),
+            |a, b| if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a },
+        );
         let (mut radius, mut middle) = (deepest.0, place(deepest.1.min(counts.element_product() - 1)));
         let mut by = step;
         while by > 0.01 * step {
@@ -113,7 +113,10 @@ impl Skull {
         }
         let Some((at, half)) = found else { return self };
         let at = at.clamp(Vec3::splat(-0.5), Vec3::splat(0.5));
-        Self { middle: self.middle + at * radius, half: half.clamp(Vec3::splat(0.8), Vec3::splat(1.8)) * radius }
+        Self {
+            middle: self.middle + at * radius,
+            half: half.clamp(Vec3::splat(0.8), Vec3::splat(1.8)) * radius,
+        }
     }
 }
 

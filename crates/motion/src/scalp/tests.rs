@@ -5,9 +5,10 @@ use crate::load_character;
 
 #[test]
 fn the_outline_is_that_of_the_shipped_dancer() {
-    let body = load_character(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb").as_path())
-        .expect("the dancer")
-        .body;
+    let body =
+        load_character(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb").as_path())
+            .expect("the dancer")
+            .body;
     let rest = RestDistance::new(&body);
     let scalp = fitted_scalp(&body, &rest, &ScalpFit::default());
     let skull = scalp.skull.expect("a skull");
@@ -15,7 +16,9 @@ fn the_outline_is_that_of_the_shipped_dancer() {
     let head = head_mesh(&body);
     let hairy = |p: Vec3| {
         let near = (0..head.positions.len())
-            .min_by(|a, b| head.positions[*a].distance_squared(p).total_cmp(&head.positions[*b].distance_squared(p)))
+            .min_by(|a, b| {
+                head.positions[*a].distance_squared(p).total_cmp(&head.positions[*b].distance_squared(p))
+            })
             .expect("vertices");
         head.scalp[near] >= 0.5
     };
@@ -28,7 +31,9 @@ fn the_outline_is_that_of_the_shipped_dancer() {
             let e = (line - 1.0).to_radians();
             let along = Vec3::new(e.cos() * azimuth.sin(), e.sin(), e.cos() * azimuth.cos()) * skull.half;
             let length = along.length();
-            let Some(t) = skull::surface(skull.middle, along / length, 1.55 * length, &distance) else { break };
+            let Some(t) = skull::surface(skull.middle, along / length, 1.55 * length, &distance) else {
+                break;
+            };
             if !hairy(skull.middle + along / length * t) {
                 break;
             }
@@ -129,7 +134,11 @@ fn a_handle_brings_the_hairline_to_the_pointer_and_paint_adds_and_removes() {
     for degrees in [0.0_f32, 40.0, 90.0, 200.0] {
         let place = skull.relative(hairline_place(&skull, &moved, degrees.to_radians()));
         assert!((place.length() - 1.0).abs() < 1e-4, "on the skull");
-        assert!((outline::mask(place, &moved) - 0.5).abs() < 0.02, "on the line at {degrees}: {}", outline::mask(place, &moved));
+        assert!(
+            (outline::mask(place, &moved) - 0.5).abs() < 0.02,
+            "on the line at {degrees}: {}",
+            outline::mask(place, &moved)
+        );
     }
     let (face, crown) = (Vec3::new(0.0, -0.3, 1.0).normalize_or(Vec3::Z), Vec3::Y);
     let mask = |fit: &ScalpFit, at: Vec3| fit.painted(at, outline::mask(at, fit));

@@ -151,8 +151,13 @@ pub enum HairSource {
 pub struct HairSection {
     /// Where it comes from.
     pub source: HairSource,
-    /// The shipped style that `groom` began as: where its controls return to.
+    /// The shipped style that `groom` began as, where `style` names none: where its controls return to.
     pub preset: Preset,
+    /// The style that was applied last: the id of a shipped one, or `own/NAME` of one of the user's; empty where only `preset` was.
+    /// Controls return to the style's values if it is shipped.
+    pub style: String,
+    /// How the style that was applied moves, where it is none of the shipped ones: where the controls of the simulation return to.
+    pub moves: Option<SimulationSettings>,
     /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
     pub groom: GroomSettings,
     /// A hair file, in one of [`lovelock_groom::HAIR_FORMATS`].
@@ -172,6 +177,8 @@ impl Default for HairSection {
         Self {
             source: HairSource::Grown,
             preset: Preset::Smooth,
+            style: String::new(),
+            moves: None,
             groom: GroomSettings::preset(Preset::Smooth),
             file: None,
             import: ImportSettings::default(),
@@ -183,6 +190,9 @@ impl Default for HairSection {
 }
 
 impl HairSection {
+    /// The longest name of a style, characters.
+    pub const LONGEST_STYLE: usize = 100;
+
     /// The cut and the ties as layers, which act before those of [`HairSection::stack`].
     pub fn cut_and_ties(&self) -> StyleStack {
         let mut layers = Vec::new();
@@ -191,14 +201,6 @@ impl HairSection {
         }
         layers.extend(self.ties.iter().map(|tie| Layer::of(*tie)));
         StyleStack { layers, ..StyleStack::default() }
-    }
-
-    /// How this hair moves unless it is changed: where the controls of the simulation return to.
-    pub fn simulation(&self) -> SimulationSettings {
-        match self.source {
-            HairSource::Grown => SimulationSettings::preset(self.preset),
-            HairSource::File => SimulationSettings::default(),
-        }
     }
 }
 

@@ -234,6 +234,8 @@ impl Settings for HairSection {
     fn reconcile(&mut self) {
         self.ties.truncate(HairTie::MOST);
         self.cut = self.cut.clamped();
+        self.style = self.style.chars().filter(|c| !c.is_control()).take(Self::LONGEST_STYLE).collect();
+        self.moves = self.moves.map(|moves| moves.clamped());
     }
 }
 

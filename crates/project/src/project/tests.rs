@@ -411,7 +411,10 @@ fn hair_moves_from_one_character_to_another_and_each_keeps_its_scalp() {
     assert_eq!((project.body.scalp.up, project.hair == hair), (0.0, true));
     project.body.scalp.nod = 0.2;
     project.body.switch(None);
-    assert_eq!((project.body.scalp.up, project.body.scalp.nod, project.body.source), (0.1, 0.0, crate::project::BodySource::Dancer));
+    assert_eq!(
+        (project.body.scalp.up, project.body.scalp.nod, project.body.source),
+        (0.1, 0.0, crate::project::BodySource::Dancer)
+    );
     project.body.switch(Some(crate::files::FileRef::new("/a/one.glb")));
     assert_eq!((project.body.scalp.up, project.body.scalp.nod), (0.0, 0.2));
     assert_eq!(project.body.other_scalps.len(), 1);

@@ -49,7 +49,9 @@ fn strands(scene: &Scene) -> Strands {
 
 #[test]
 fn every_preset_grows_on_every_character() {
-    for name in ["mh_body.glb", "CesiumMan.glb", "robot.glb", "Fox.glb", "MorphStressTest.gltf", "SimpleSkin.gltf"] {
+    for name in
+        ["mh_body.glb", "CesiumMan.glb", "robot.glb", "Fox.glb", "MorphStressTest.gltf", "SimpleSkin.gltf"]
+    {
         let Some(path) = character(name) else {
             eprintln!("skipped: {name} is not in the folder of real files");
             return;
@@ -65,15 +67,19 @@ fn every_preset_grows_on_every_character() {
             let scalp = ScalpPart::new(&body, &project.body.scalp);
             let strands = strands(&scene);
             let at = |i: usize| Vec3::new(strands.x[i], strands.y[i], strands.z[i]);
-            let roots: Vec<Vec3> = (0..strands.count()).map(|s| at(strands.first_point[s] as usize)).collect();
+            let roots: Vec<Vec3> =
+                (0..strands.count()).map(|s| at(strands.first_point[s] as usize)).collect();
             assert!(roots.len() > 150, "{name} {preset:?}: {} strands", roots.len());
             let scale = scene.hair_scale;
             let away: Vec<f32> = roots.iter().map(|p| body.rest.distance(*p).0 / scale).collect();
-            let share = |is: &dyn Fn(f32) -> bool| away.iter().filter(|d| is(**d)).count() as f32 / away.len() as f32;
+            let share =
+                |is: &dyn Fn(f32) -> bool| away.iter().filter(|d| is(**d)).count() as f32 / away.len() as f32;
             let on_skin = share(&|d| d.abs() < 0.002);
-            let deep = (0..strands.points()).filter(|&i| body.rest.distance(at(i)).0 < -0.004 * scale).count();
+            let deep =
+                (0..strands.points()).filter(|&i| body.rest.distance(at(i)).0 < -0.004 * scale).count();
             let deep = deep as f32 / strands.points() as f32;
-            let of_roots = |is: &dyn Fn(Vec3) -> bool| roots.iter().filter(|p| is(skull.relative(**p))).count();
+            let of_roots =
+                |is: &dyn Fn(Vec3) -> bool| roots.iter().filter(|p| is(skull.relative(**p))).count();
             let crown = of_roots(&|p| p.normalize_or_zero().y > 0.85);
             let face = of_roots(&|p| p.z > 0.3 && p.y < -0.1 && p.x.abs() < 0.5);
             eprintln!(
@@ -149,8 +155,16 @@ fn the_dancers_own_scalp_stays_until_it_is_corrected() {
 
 #[test]
 fn a_file_that_is_no_character_is_refused_in_a_sentence() {
-    for name in ["RecursiveNodes.gltf", "BoxWithInfinites.glb", "IndexOutOfRange.gltf", "badArray.gltf", "quad_skin.glb", "BoxTextured.gltf"] {
-        let Some(path) = character("broken").map(|folder| folder.join(name)).filter(|path| path.exists()) else {
+    for name in [
+        "RecursiveNodes.gltf",
+        "BoxWithInfinites.glb",
+        "IndexOutOfRange.gltf",
+        "badArray.gltf",
+        "quad_skin.glb",
+        "BoxTextured.gltf",
+    ] {
+        let Some(path) = character("broken").map(|folder| folder.join(name)).filter(|path| path.exists())
+        else {
             eprintln!("skipped: {name} is not in the folder of real files");
             return;
         };

@@ -12,7 +12,7 @@ use lovelock_style::StyleCache;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
-use super::{Scene, SurroundingsLoader};
+use super::{Scene, StyleSource, SurroundingsLoader};
 
 /// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
@@ -102,7 +102,9 @@ impl SceneLoader {
         let hair = self.hair(&project, access, &scalp, &mut problems);
         let obstacle = Arc::clone(&scalp.obstacle);
         let tied = self.cut_and_ties.apply(&hair.style, &project.hair.cut_and_ties(), obstacle.clone());
-        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle);
+        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle.clone());
+        let source =
+            StyleSource { base: tied.style, stack: project.hair.stack.clone(), obstacle, scale: scalp.scale };
         let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
             format!(
                 "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
@@ -135,6 +137,7 @@ impl SceneLoader {
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
             style: self.enlarged.of(&styled.style, scalp.scale),
+            source: Arc::new(source),
             hair_scale: scalp.scale,
             usual_scalp: Arc::clone(&scalp.scalp),
             skull: scalp.skull,

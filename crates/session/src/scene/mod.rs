@@ -6,12 +6,15 @@ mod head_path;
 mod loader;
 mod parts;
 mod scalp_part;
+mod styling;
 mod surroundings;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
+pub use styling::StyleSource;
+pub(crate) use styling::Styling;
 pub(crate) use surroundings::SurroundingsLoader;
 
 use std::sync::Arc;
@@ -64,6 +67,8 @@ pub struct Scene {
     pub field_lift_m: f32,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
+    /// What the hairstyle is made of, for tracks of layers.
+    pub source: Arc<StyleSource>,
     /// Size of the hair as a multiple of that on the shipped dancer: lengths of the project's settings are those on her head.
     pub hair_scale: f32,
     /// The scalp in the size of the shipped dancer's head, in which the project's settings are.
@@ -159,6 +164,8 @@ mod collider_tests;
 mod head_tests;
 #[cfg(test)]
 mod operation_tests;
+#[cfg(test)]
+mod styling_tests;
 #[cfg(test)]
 mod surroundings_tests;
 #[cfg(test)]

@@ -71,7 +71,7 @@ impl ScalpPart {
 }
 
 /// A style in the size of the head that wears it, kept until the style changes.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Enlarged(Option<(Arc<Hairstyle>, f32, Arc<Hairstyle>)>);
 
 impl Enlarged {
