@@ -52,6 +52,8 @@ pub(crate) enum Task {
     Convert(Convert),
     /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
     Farm(Farm),
+    /// Lists the hairstyles that are shipped and one's own, and draws contact sheets of them.
+    Presets(Presets),
     /// Lists every setting of a project: name, label, range, default, and what it changes.
     Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
@@ -65,7 +67,8 @@ pub(crate) enum Task {
 pub(crate) struct SourceArguments {
     /// Project or take; the default project if none is given.
     pub(crate) project: Option<PathBuf>,
-    /// Shipped hairstyle to use instead of the project's: smooth, curly, long, ponytail or bun.
+    /// Hairstyle to use instead of the project's: the id of a shipped one, the name of one's own, or a .lovelockstyle file.
+    /// `lovelock presets` lists all.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,
     /// Hair file to use instead of the project's hairstyle.
@@ -303,6 +306,39 @@ impl FromStr for BenchTarget {
                 .map_err(|error: String| format!("{error}, locks, voxel-map, occupancy-order or reference")),
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Presets {
+    /// Hairstyle to list or draw, as --preset of `lovelock record`; may be given several times. All if none is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) preset: Vec<String>,
+    /// Draw a contact sheet with names as this PNG file: each hairstyle at rest.
+    #[arg(long, value_name = "PNG")]
+    pub(crate) sheet: Option<PathBuf>,
+    /// Give each hairstyle a row of the sheet with this many instants of the dance.
+    #[arg(long, value_name = "N", requires = "sheet", num_args = 0..=1, default_missing_value = "6",
+        value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub(crate) dance: Option<u32>,
+    /// Give each hairstyle a row of the sheet with this many sides of it at rest.
+    #[arg(long, value_name = "N", requires = "sheet", conflicts_with = "dance", num_args = 0..=1, default_missing_value = "4",
+        value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub(crate) sides: Option<u32>,
+    /// Size of each picture of the sheet in pixels.
+    #[arg(long, value_name = "WxH", requires = "sheet", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Hairstyles side by side in the sheet.
+    #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub(crate) columns: Option<u32>,
+    /// Write the thumbnails of the window's browser into this folder, ID.jpg each; those of the program are in assets/styles.
+    #[arg(long, value_name = "DIR", conflicts_with = "sheet")]
+    pub(crate) thumbnails: Option<PathBuf>,
+    /// Change a setting of each hairstyle in the sheet, such as camera.azimuth=90; may be given several times.
+    #[arg(long = "set", value_name = "NAME=VALUE", requires = "sheet", value_parser = assignment)]
+    pub(crate) set: Vec<Assignment>,
+    /// Backend: auto (the graphics card if there is a real one), gpu or cpu. Thumbnails are always drawn by cpu.
+    #[arg(long, value_name = "BACKEND", requires = "sheet")]
+    pub(crate) backend: Option<Backend>,
 }
 
 #[derive(Debug, Args)]

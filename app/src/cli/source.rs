@@ -4,13 +4,14 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use lovelock_base::settings::Settings;
-use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
+use lovelock_jobs::presets::style_named;
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{CompareSection, Contender, load_project_with};
+use lovelock_project::styles::StyleParts;
 use lovelock_session::progress::Progress;
 use lovelock_session::take::project_of_take;
 
@@ -60,7 +61,11 @@ impl Source {
         };
         let mut names = vec![task.project.as_ref().map_or_else(|| "default project".to_owned(), file_name)];
         if let Some(id) = &task.preset {
-            project.set_preset(preset(id)?);
+            let listed = style_named(id)?;
+            if let Some(file) = &listed.style.hair.file {
+                access.pick(&file.path);
+            }
+            project.apply_style(&listed.style, StyleParts::ALL);
             names.push(id.clone());
         }
         let places = [
@@ -209,13 +214,6 @@ pub(crate) fn apply(set: &[Assignment], project: &mut Project) -> Result<(), Pro
 
 /// The sections that a take has recorded.
 const RECORDED: [&str; 4] = ["body", "motion", "hair", "simulation"];
-
-fn preset(id: &str) -> Result<Preset, ProjectError> {
-    Preset::from_id(id).ok_or_else(|| {
-        let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
-        ProjectError::option(format!("--preset: found `{id}`; must be one of {}", known.join(", ")))
-    })
-}
 
 /// Prints the problems in the project's text. The loader reports missing files and their replacements.
 fn print_problems(problems: &[Problem]) {

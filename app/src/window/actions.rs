@@ -8,6 +8,7 @@ use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection, load_project_with};
+use lovelock_project::styles::StyleParts;
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
 use lovelock_session::take::project_of_take;
@@ -17,6 +18,9 @@ use crate::cli::Assignment;
 use super::command::Command;
 use super::path_dialog::Purpose;
 use super::{Pending, Window, copy, notices};
+
+/// Factor by which a key changes the radius of the brush.
+const BRUSH_STEP: f32 = 1.15;
 
 /// A project to start with.
 #[derive(Debug, Default)]
@@ -45,6 +49,11 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
         FileKind::Character => opened.project.set_body_file(path),
         FileKind::Motion => opened.project.set_motion_file(path),
         FileKind::Surroundings => opened.project.set_surroundings_file(path),
+        FileKind::Style => {
+            let listed = lovelock_jobs::presets::style_in(path)?;
+            opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
+            opened.project.apply_style(&listed.style, StyleParts::ALL);
+        }
         FileKind::Take => (opened.project, opened.problems) = project_of_take(path)?,
     }
     Ok(opened)
@@ -75,6 +84,10 @@ impl Window {
             }
             Command::SettleHair => self.session.worker().settle(),
             Command::Scissors => self.scissors.held = !self.scissors.held,
+            Command::ShowMask => self.layers.toggle_mask(),
+            Command::PaintMask => self.layers.toggle_painting(),
+            Command::BrushSmaller => self.layers.resize_brush(1.0 / BRUSH_STEP),
+            Command::BrushLarger => self.layers.resize_brush(BRUSH_STEP),
             Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {
@@ -134,7 +147,14 @@ impl Window {
             Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
             Command::Palette => self.palette.toggle(),
             Command::CompareTakes => self.open_path_dialog(Purpose::Beside),
-            Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
+            Command::Compare => {
+                self.layout.compare.shown = !self.layout.compare.shown;
+                self.layout.wall.shown = false;
+            }
+            Command::Wall => {
+                self.layout.wall.shown = !self.layout.wall.shown;
+                self.layout.compare.shown = false;
+            }
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -234,6 +254,7 @@ impl Window {
                 let resume = purpose == Purpose::Resume;
                 self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }
+            Purpose::ExportStyle => self.export_style(path),
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };

@@ -23,6 +23,14 @@ pub enum Command {
     SettleHair,
     /// Switches the scissors.
     Scissors,
+    /// Shows or hides the mask of the selected layer.
+    ShowMask,
+    /// Starts or ends painting the mask of the selected layer.
+    PaintMask,
+    /// Makes the brush smaller.
+    BrushSmaller,
+    /// Makes the brush larger.
+    BrushLarger,
     /// Shows or hides the colliders.
     ShowColliders,
     /// Starts or ends the recording of a take.
@@ -79,6 +87,8 @@ pub enum Command {
     Palette,
     /// Shows or closes the comparison.
     Compare,
+    /// Shows or closes the wall of variants.
+    Wall,
     /// Adds a pane with a take that the user picks.
     CompareTakes,
     /// Hides or shows the panels.

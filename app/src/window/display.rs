@@ -49,6 +49,11 @@ impl Display {
             loses_device: secs.map(|secs| (Stopwatch::start(), secs)),
         }
     }
+
+    /// The graphics device of the window.
+    pub(super) fn device(&self) -> &WindowDevice {
+        &self.device
+    }
 }
 
 /// How often the window is opened again, a second apart, before the program gives up.
@@ -190,7 +195,9 @@ impl Window {
         display.sharpen_text = true;
         self.viewport.forget_image();
         self.compare.forget_images();
+        self.wall.forget_images();
         self.thumbnails.forget();
+        self.styles.forget_images();
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,

@@ -24,11 +24,14 @@ impl Window {
                 self.project_path = None;
                 self.session.set_project_path(None);
             }
+            Ok(FileKind::Style) => self.open_style(path),
             Ok(kind) => self.open_part(path, |project| match kind {
                 FileKind::Hair => project.set_hair_file(path),
                 FileKind::Character => project.set_body_file(path),
                 FileKind::Surroundings => project.set_surroundings_file(path),
-                FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
+                FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
+                    project.set_motion_file(path)
+                }
             }),
             Err(error) => self.warn([error.to_string()]),
         }
@@ -69,6 +72,7 @@ impl Window {
                     project.compare.panes = vec![own, other];
                 });
                 self.layout.compare.shown = true;
+                self.layout.wall.shown = false;
             }
             Ok(kind) => {
                 self.warn([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);

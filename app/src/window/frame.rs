@@ -1,9 +1,13 @@
 //! One pass of the window, from top to bottom.
 
+use std::sync::Arc;
+
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_project::styles::STYLE_EXTENSION;
+use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
 use super::path_dialog::{Answer, PathDialog, Purpose};
@@ -65,12 +69,15 @@ impl Window {
             self.left_panel(ui, &mut project);
             self.right_panel(ui, &mut project, &ctx);
         }
-        if self.layout.compare.shown {
+        if self.layout.wall.shown {
+            self.wall_page(ui, &mut project);
+        } else if self.layout.compare.shown {
             self.comparison(ui, &mut project);
         } else {
             self.picture(ui, &mut project);
         }
         self.take_edit(&seen, project, &ctx);
+        self.answer_styles();
         if let Some(ask) = playback {
             match ask {
                 timeline::TimelineRequest::Run(command) => self.run(command, &ctx),
@@ -89,11 +96,13 @@ impl Window {
         }
         self.windows(&ctx);
         // The single image is not visible while panes are shown.
-        let compares = self.layout.compare.shown;
-        let seen = self.seen();
-        let size = if compares { [0, 0] } else { self.viewport.wanted };
+        let walls = self.layout.wall.shown;
+        let compares = self.layout.compare.shown && !walls;
+        let (shown, seen) = self.shown();
+        let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
-        let again = self.session.send(self.history.project(), &seen, size);
+        self.follow_mask(&seen);
+        let again = self.session.send(&shown, &seen, size, self.shown_mask.as_ref());
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
@@ -101,6 +110,9 @@ impl Window {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
             self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
+        }
+        if walls {
+            self.send_wall();
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         // Any command to the window makes it paint again.
@@ -110,7 +122,13 @@ impl Window {
         }
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
-            let shown = if compares { self.compare.has_pictures() } else { self.session.painted.is_some() };
+            let shown = if walls {
+                self.wall.has_pictures()
+            } else if compares {
+                self.compare.has_pictures()
+            } else {
+                self.session.painted.is_some()
+            };
             screenshot.update(&ctx, shown);
         }
         self.watch_close(&ctx);
@@ -176,6 +194,8 @@ impl Window {
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
         let (project_and_access, painted) =
             ((self.history.project(), session.access()), session.painted.as_ref());
+        // A style that is only shown leaves no thumbnails.
+        let painted = painted.filter(|_| self.preview.is_none());
         let shown = (self.layout.timeline, duration_secs, ui.available_width());
         self.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
@@ -203,10 +223,10 @@ impl Window {
             }),
         };
         let zoom = &mut self.layout.timeline;
-        let Project { recording, motion, timeline: section, .. } = project;
+        let Project { recording, motion, timeline: section, hair, .. } = project;
         let lovelock_project::project::TimelineSection { markers, tracks, .. } = section;
         let height = timeline::height(tracks.len());
-        let mut edited = timeline::Edited { recording, markers, tracks, motion };
+        let mut edited = timeline::Edited { recording, markers, tracks, motion, stack: &hair.stack };
         Panel::bottom("timeline")
             .exact_size(height)
             .resizable(false)
@@ -300,6 +320,19 @@ impl Window {
         }
     }
 
+    /// Keeps the mask that the image shows up to date.
+    fn follow_mask(&mut self, project: &Project) {
+        let wanted = self.layers.shown_mask(&project.hair.stack);
+        let same = match (&self.shown_mask, wanted) {
+            (Some(shown), Some(wanted)) => shown.mask == *wanted,
+            (shown, wanted) => shown.is_none() && wanted.is_none(),
+        };
+        if !same {
+            let scale = theme::mask_colors();
+            self.shown_mask = wanted.map(|mask| Arc::new(ShownMask { mask: mask.clone(), scale }));
+        }
+    }
+
     /// Shows the dialogs above everything else.
     fn windows(&mut self, ctx: &egui::Context) {
         if let Some(dialog) = &mut self.dialog {
@@ -342,6 +375,10 @@ impl Window {
             Purpose::Preview => folder.join("out").join("dance.apng"),
             Purpose::Curves => folder.join("out").join("dance.usdc"),
             Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
+            Purpose::ExportStyle => {
+                let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
+                folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
+            }
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
@@ -357,6 +394,7 @@ impl Window {
             | Purpose::Beside
             | Purpose::Surroundings
             | Purpose::SaveProject
+            | Purpose::ExportStyle
             | Purpose::Picture => dialog,
         });
     }

@@ -129,6 +129,9 @@ pub(crate) fn list(ui: &mut Ui) {
             ("Hold V", "Shows another pane of a comparison in place of a pane."),
             ("Click a pane", "Plots the transmittance along the light at that point."),
             ("Double-click a control", "Restores its default."),
+            ("Ctrl+drag, Shift+drag", "While a mask is painted: erases it, smooths it."),
+            ("Up, Down", "In the list of layers: select the layer above or below."),
+            ("Delete, Ctrl+D, Ctrl+G, F2", "In the list of layers: remove, duplicate, group, rename."),
         ] {
             ui.label(RichText::new(keys).monospace().color(theme::ACCENT));
             ui.label(what);

@@ -24,6 +24,7 @@ mod recorder;
 mod screenshot;
 mod session;
 mod side_panels;
+mod styles;
 
 #[cfg(test)]
 mod testing;
@@ -31,6 +32,7 @@ mod theme;
 mod timeline;
 mod tools;
 mod viewport;
+mod wall;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -47,6 +49,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_project::history::History;
 use lovelock_session::health::Gauge;
+use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 use lovelock_session::window_device::WindowDevice;
 use notices::Notices;
@@ -58,6 +61,7 @@ use screenshot::Screenshot;
 use serde::{Deserialize, Serialize};
 use session::Session;
 use viewport::Viewport;
+use wall::{WallLayout, WallPage};
 
 /// Key under which the layout is stored. The number changes with the format.
 const LAYOUT_KEY: &str = "layout 1";
@@ -76,7 +80,9 @@ struct Layout {
     /// The rate that images keep while something moves if their size is automatic, images per second.
     view_rate: f32,
     compare: CompareLayout,
+    wall: WallLayout,
     timeline: timeline::Zoom,
+    styles: styles::Kept,
 }
 
 impl Default for Layout {
@@ -87,7 +93,9 @@ impl Default for Layout {
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
             compare: CompareLayout::default(),
+            wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
+            styles: styles::Kept::default(),
         }
     }
 }
@@ -114,6 +122,7 @@ pub(crate) struct Window {
     session: Session,
     viewport: Viewport,
     compare: Compare,
+    wall: WallPage,
     recorder: Recorder,
     palette: Palette,
     layout: Layout,
@@ -126,8 +135,12 @@ pub(crate) struct Window {
     marked_gauge: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
-    /// The layer of the style whose controls are shown.
-    selected_layer: Option<u32>,
+    /// What is shown of the layers of the style, and the brush that paints their masks.
+    layers: panels::layers::LayersView,
+    stroke: overlay::brush::Stroke,
+    /// The mask that the image shows.
+    shown_mask: Option<Arc<ShownMask>>,
+    scalp: overlay::scalp::ScalpTool,
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
@@ -136,6 +149,11 @@ pub(crate) struct Window {
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
+    styles: styles::Browser,
+    /// The project with the style that is shown and not applied.
+    preview: Option<styles::Preview>,
+    /// The style that is exported, while its path is asked for.
+    exported: Option<Box<lovelock_project::styles::Style>>,
     /// The project at the current time, with the project and the time from which it was computed.
     seen: Option<Seen>,
     quitting: bool,
@@ -155,6 +173,8 @@ pub(crate) fn open(
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
         window.layout.compare.shown |= panes;
+        // Nine simulations are not what a program should start with.
+        window.layout.wall.shown = false;
         Ok(window)
     })
 }
@@ -171,6 +191,9 @@ impl Window {
         let layout =
             creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
         let mut window = Self::start(ctx, layout, opened)?;
+        let own = lovelock_jobs::presets::own_styles();
+        let cache = lovelock_jobs::presets::thumbnail::cache_folder();
+        window.styles = styles::Browser::new(own, cache, ctx);
         window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
@@ -192,6 +215,7 @@ impl Window {
             session,
             viewport: Viewport::default(),
             compare: Compare::default(),
+            wall: WallPage::default(),
             recorder: Recorder::default(),
             palette: Palette::default(),
             layout,
@@ -203,13 +227,19 @@ impl Window {
             marked_gauge: None,
             colliders: panels::colliders::Shown::default(),
             selected_tie: 0,
-            selected_layer: None,
+            layers: panels::layers::LayersView::default(),
+            stroke: overlay::brush::Stroke::default(),
+            shown_mask: None,
+            scalp: overlay::scalp::ScalpTool::default(),
             ties_shown: false,
             scissors: Scissors::default(),
             record: panels::records::RecordView::default(),
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
+            styles: styles::Browser::default(),
+            preview: None,
+            exported: None,
             display: Display::new(device, textures),
             seen: None,
             quitting: false,
@@ -277,6 +307,7 @@ impl Window {
         match command {
             Command::Undo => self.history.undo_len() > 0,
             Command::Redo => self.history.redo_len() > 0,
+            Command::SavePicture if self.layout.wall.shown => false,
             Command::SavePicture if self.layout.compare.shown => self.compare.has_pictures(),
             Command::RecordTake => self.session.frame.is_some() && self.history.project().take.file.is_none(),
             Command::PlayTake => {
@@ -284,6 +315,12 @@ impl Window {
             }
             Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
             Command::FrameHair => self.session.frame.is_some(),
+            Command::ShowMask => self.layers.selected.is_some(),
+            Command::PaintMask => {
+                self.layers.painting
+                    || (self.layers.selected.is_some() && self.history.project().take.file.is_none())
+            }
+            Command::BrushSmaller | Command::BrushLarger => self.layers.painting,
             Command::Scissors => self.history.project().take.file.is_none(),
             Command::SavePicture => self.session.painted.is_some(),
             Command::ExportCurves => !self.recorder.is_running(),

@@ -7,6 +7,7 @@ use egui::{Modal, RichText};
 use lovelock_base::clock::Stopwatch;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_project::styles::STYLE_EXTENSION;
 
 use super::theme;
 
@@ -31,6 +32,8 @@ pub(crate) enum Purpose {
     Resume,
     /// Exporting hair and body for other programs.
     Curves,
+    /// Exporting a style.
+    ExportStyle,
     /// Saving the image in the viewport.
     Picture,
 }
@@ -56,6 +59,7 @@ impl Purpose {
             Self::Preview => "Record an animated preview",
             Self::Resume => "Resume the images in a folder",
             Self::Curves => "Export curves: .usdc, .usda or .glb",
+            Self::ExportStyle => "Export the style",
             Self::Picture => "Save the image",
         }
     }
@@ -64,7 +68,7 @@ impl Purpose {
         match self {
             Self::Open | Self::Surroundings => "Open file",
             Self::Beside => "Compare",
-            Self::SaveProject | Self::Picture | Self::Curves => "Save file",
+            Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle => "Save file",
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
             Self::Resume => "Resume recording",
         }
@@ -78,6 +82,7 @@ impl Purpose {
             Self::Film => Some("mp4"),
             Self::Preview => Some("apng"),
             Self::Curves => Some("usdc"),
+            Self::ExportStyle => Some(STYLE_EXTENSION),
             Self::Picture => Some("png"),
         }
     }
@@ -224,6 +229,7 @@ impl PathDialog {
                 let dialog = dialog.add_filter("Curves", &lovelock_record::CurveFormat::EXTENSIONS);
                 Box::pin(dialog.save_file())
             }
+            Purpose::ExportStyle => Box::pin(dialog.add_filter("Style", &[STYLE_EXTENSION]).save_file()),
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };
         let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {

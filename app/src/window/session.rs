@@ -9,7 +9,7 @@ use lovelock_panes::live::Live;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage};
+use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage, ShownMask};
 use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -258,13 +258,14 @@ impl Session {
     }
 
     /// Sends changes on: the project to the simulation, and the frame to the render thread, with the project `seen` at the current
-    /// time. Images have the size `size`, or less while something moves: see [`ViewOptions`]. Returns after which time
+    /// time. Images have the size `size`, or less while something moves: see [`ViewOptions`]; they show `mask`, if any. Returns after which time
     /// it must be called again even if nothing happens.
     pub(crate) fn send(
         &mut self,
         project: &Arc<Project>,
         seen: &Arc<Project>,
         size: [u32; 2],
+        mask: Option<&Arc<ShownMask>>,
     ) -> Option<Duration> {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
@@ -296,12 +297,18 @@ impl Session {
             still: still && automatic,
             moving: automatic && !still,
             measured: self.view.measured,
+            mask: mask.cloned(),
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = same
             && self.drawn.as_ref().is_some_and(|drawn| {
-                (drawn.still, drawn.moving, drawn.size, drawn.measured)
-                    == (request.still, request.moving, request.size, request.measured)
+                let same_mask = match (&drawn.mask, &request.mask) {
+                    (Some(drawn), Some(request)) => Arc::ptr_eq(drawn, request),
+                    (drawn, request) => drawn.is_none() && request.is_none(),
+                };
+                same_mask
+                    && (drawn.still, drawn.moving, drawn.size, drawn.measured)
+                        == (request.still, request.moving, request.size, request.measured)
             });
         if !fresh {
             self.painter.request(request.clone());

@@ -24,14 +24,15 @@ impl Window {
                 }
                 section(ui, "Hairstyle", true, |ui| {
                     self.problems(ui, &[Place::Hair]);
+                    super::styles::ui(ui, project, &mut self.styles, &mut self.layout.styles);
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
                 section(ui, "Layers", false, |ui| {
-                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.selected_layer);
+                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
-                    let scalp = self.session.scene.as_ref().map(|scene| &scene.style.scalp);
+                    let scalp = self.session.scene.as_ref().map(|scene| &*scene.usual_scalp);
                     panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);
                     panels::ties::scissors(ui, &mut project.hair.cut, &mut self.scissors.held);
                 });
@@ -53,6 +54,13 @@ impl Window {
                     let fitted: Vec<_> = fitted.collect();
                     panels::colliders::ui(ui, edits, &fitted, &mut self.colliders);
                 });
+                let unfolded = section(ui, "Scalp", false, |ui| {
+                    let found = self.session.scene.as_ref().is_none_or(|scene| scene.skull.is_some());
+                    panels::scalp::ui(ui, &mut project.body.scalp, &mut self.scalp, found);
+                });
+                if unfolded.is_none() {
+                    self.scalp.painting = false;
+                }
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);
                     let ask = panels::body::ui(ui, project, &self.session.body);

@@ -2,6 +2,9 @@
 
 #![expect(clippy::disallowed_methods, reason = "colours come from here")]
 
+use lovelock_metrics::ColorMap;
+use lovelock_render::ColorScale;
+
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
 
 /// Values that differ from their default, selected items, running work.
@@ -43,6 +46,12 @@ pub(crate) const AXES: [Color32; 4] = [
     Color32::from_rgb(104, 152, 232),
     QUIET,
 ];
+
+/// The colours of a mask on hair and scalp: dark violet for 0, yellow for 1, in steps that look equal.
+pub(crate) fn mask_colors() -> ColorScale {
+    let colors = std::array::from_fn(|k| ColorMap::Viridis.at(k as f32 / 255.0));
+    ColorScale { range: [0.0, 1.0], colors, behind: 1.0, saturation: 1.0, relief: 0.35 }
+}
 
 /// A linear colour on the screen.
 pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {

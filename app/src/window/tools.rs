@@ -1,6 +1,7 @@
 //! Tools of the pointer in the image: moving ties, cutting hair, selecting and editing colliders.
 
 use egui::{PointerButton, Response, Ui};
+use glam::{Affine3A, Vec3};
 use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
 use lovelock_project::Project;
 use lovelock_session::render_thread::RenderedImage;
@@ -25,20 +26,60 @@ impl Window {
         if project.take.file.is_some() {
             return true;
         }
+        let painted_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
         let held = self.scissors.held;
         if let Some(line) = self.scissors.drag(ui, view, response) {
             self.cut(view, painted, line, project);
         }
+        let snapshot = &painted.snapshot;
+        let world_from_head = &snapshot.guides.world_from_head;
         let ties = &mut project.hair.ties;
-        if self.ties_shown && !held {
-            let snapshot = &painted.snapshot;
+        if self.ties_shown && !held && !self.layers.painting {
+            // Ties are placed on a head of the usual size.
+            let scale = Affine3A::from_scale(Vec3::splat(snapshot.scene.hair_scale));
+            let world_from_usual = *world_from_head * scale;
             let head = overlay::head::Head {
-                world_from_head: &snapshot.guides.world_from_head,
-                scalp: &snapshot.scene.style.scalp,
+                world_from_head: &world_from_usual,
+                scalp: &snapshot.scene.usual_scalp,
             };
             overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
         }
-        !(held && response.dragged_by(PointerButton::Primary))
+        let mut free = !((held || painted_mask) && response.dragged_by(PointerButton::Primary));
+        if self.scalp.shown
+            && !held
+            && !self.layers.painting
+            && let Some(skull) = &snapshot.scene.skull
+        {
+            let head = overlay::head::Head { world_from_head, scalp: &snapshot.scene.style.scalp };
+            let edited = (self.scalp, &mut project.body.scalp);
+            free &= !overlay::scalp::edit(ui, response, view, head, skull, edited);
+        }
+        free
+    }
+
+    /// Paints the mask of the selected layer with the pointer. Returns whether the pointer paints.
+    fn paint_mask(
+        &mut self,
+        ui: &Ui,
+        place: (View, &Response),
+        snapshot: &FrameSnapshot,
+        project: &mut Project,
+    ) -> bool {
+        let layer = self.layers.selected.and_then(|id| project.hair.stack.layer_mut(id));
+        let Some(layer) = layer.filter(|_| self.layers.painting && !self.scissors.held) else {
+            self.stroke.end();
+            return false;
+        };
+        let head = overlay::head::Head {
+            world_from_head: &snapshot.guides.world_from_head,
+            scalp: &snapshot.scene.style.scalp,
+        };
+        let done = self.stroke.paint(ui, place, (head, snapshot), &self.layers.brush, layer);
+        if done.begins {
+            // Each stroke is an undo step of its own, however soon it follows the last one.
+            self.gestures.next();
+        }
+        done.holds
     }
 
     /// Cuts the hair beyond a line on the screen, as it is in the image.

@@ -1,6 +1,7 @@
 //! Small parts that several crates need and none owns. Nothing here depends on another crate of the workspace.
 
 pub mod clock;
+pub mod direction_map;
 pub mod glb;
 pub mod numbers;
 pub mod random;

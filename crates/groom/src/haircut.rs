@@ -173,6 +173,10 @@ pub fn trimmed(style: &Hairstyle, cut: &Haircut) -> Hairstyle {
             (out.guides.x[i], out.guides.y[i], out.guides.z[i]) = (last.x, last.y, last.z);
         }
     }
+    // A cut takes away the colours of the tips.
+    let tip = |set: &StrandSet, strand: usize| set.guide_param[set.first_point[strand + 1] as usize - 1];
+    shorter.colours =
+        set.colours.shortened(|strand| tip(&shorter, strand) / tip(set, strand).max(f32::MIN_POSITIVE));
     out.strands = shorter;
     out
 }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{Guides, HairLook, Scalp};
+use crate::{Guides, HairLook, MotionFactors, Scalp, StrandColours};
 
 /// One wisp: three guide strands, and the consecutive strands that follow them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +50,8 @@ pub struct StrandSet {
     pub taper: Vec<f32>,
     /// A shade per strand in 0..=1, by which drawing varies the colour.
     pub shade: Vec<f32>,
+    /// What is different from the look in the colour of each strand.
+    pub colours: StrandColours,
 }
 
 impl StrandSet {
@@ -89,6 +91,8 @@ pub struct Hairstyle {
     /// The largest radius, metres, that the wisp of a guide has at each of its points: where its guides are further apart,
     /// strands are drawn within a section of that radius. Has the layout of [`Guides`]; empty where nothing limits them.
     pub widest: Vec<f32>,
+    /// Factors on how its guides move.
+    pub motion: MotionFactors,
     /// The rendered strands, expressed relative to the guides.
     pub strands: StrandSet,
     /// Colour and width that the style suggests; a project may override them.
@@ -101,9 +105,12 @@ pub enum HairstyleError {
     /// Guides of fewer than 2 points, or arrays that are not a whole number of guides.
     #[error("the guides do not hold whole guides of 2 points or more")]
     Guides,
-    /// An array of the strands or `held` has the wrong length.
+    /// An array of the strands or of the guides has the wrong length.
     #[error("the hairstyle's array `{0}` has the wrong length")]
     Length(&'static str),
+    /// A factor on the motion is not a number, or out of [`MotionFactors::RANGE`].
+    #[error("the hairstyle's array `{0}` has a factor that is not from 0 to {most}", most = MotionFactors::RANGE[1])]
+    Factor(&'static str),
     /// Strands are out of order, or have fewer than 2 points.
     #[error("strand {0} is out of order or has fewer than 2 points")]
     Strand(usize),
@@ -133,6 +140,15 @@ impl Hairstyle {
         if !self.widest.is_empty() && self.widest.len() != n {
             return Err(HairstyleError::Length("widest"));
         }
+        let [low, high] = MotionFactors::RANGE;
+        for (name, factors) in self.motion.lists() {
+            if !factors.is_empty() && factors.len() != n {
+                return Err(HairstyleError::Length(name));
+            }
+            if factors.iter().any(|factor| !(low..=high).contains(factor)) {
+                return Err(HairstyleError::Factor(name));
+            }
+        }
         let missing = |rope: &Rope| rope.guides.iter().any(|(g, _)| *g as usize >= guides.count());
         if let Some(bad) = self.ropes.iter().position(missing) {
             return Err(HairstyleError::Rope(bad));
@@ -151,6 +167,9 @@ impl Hairstyle {
             if found != wanted {
                 return Err(HairstyleError::Length(name));
             }
+        }
+        if !set.colours.is_empty() && set.colours.strands().len() != count {
+            return Err(HairstyleError::Length("colours"));
         }
         if set.first_point[0] != 0 || set.first_point[count] as usize != points {
             return Err(HairstyleError::Length("first_point"));

@@ -288,12 +288,17 @@ impl HairLook {
         let natural = as_vec3(pigment::absorption_of_melanin(self.eumelanin.into(), self.pheomelanin.into()));
         let amount = self.dye_amount.clamp(0.0, 1.0);
         if amount > 0.0 {
-            let dye = self.dye.to_array().map(f64::from);
-            let dyed = as_vec3(pigment::absorption_of_color(dye, self.roughness_around.into()));
-            natural.lerp(dyed, amount)
+            natural.lerp(Self::absorption_of_dye(self.dye, self.roughness_around), amount)
         } else {
             natural
         }
+    }
+
+    /// Absorption of a dye, as [`HairLook::absorption`], of hair with that roughness around the strand; see [`HairLook::dye`].
+    pub fn absorption_of_dye(color: Vec3, roughness_around: f32) -> Vec3 {
+        let color = color.to_array().map(f64::from);
+        let sigma = pigment::absorption_of_color(color, roughness_around.into());
+        Vec3::from(sigma.map(|sigma| sigma as f32))
     }
 
     /// The shape of the fibres.

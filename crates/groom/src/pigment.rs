@@ -38,6 +38,14 @@ impl PigmentVariation {
         Self { variation, tip_lightening, grey, highlights, lightening: highlight_lightening }
     }
 
+    /// The part of [`Self::factor`] by which strands of that shade differ by nature, whatever their colour.
+    ///
+    /// Twin of `varied` in `strand_points.wgsl`.
+    #[inline(always)]
+    pub fn varied(&self, shade: f32) -> f32 {
+        clamp(1.0 + self.variation * (2.0 * shade - 1.0), 0.0, f32::MAX)
+    }
+
     /// The factor at the fraction `along` of a strand from its root. `shade` is that of the strand, 0 to 1, and `lock` the number of its
     /// lock, 0 to 63 (see [`lock_numbers`](crate::fine::lock_numbers)).
     ///
@@ -49,10 +57,7 @@ impl PigmentVariation {
         let fraction = shade * WHITENING - floor(shade * WHITENING);
         let whitened = if fraction < self.grey { UNPIGMENTED } else { 1.0 };
         let painted = if lock < self.highlights { smoothstep(0.0, PAINTED_FROM, along) } else { 0.0 };
-        clamp(1.0 + self.variation * (2.0 * shade - 1.0), 0.0, f32::MAX)
-            * lightened
-            * whitened
-            * (1.0 - self.lightening * painted)
+        self.varied(shade) * lightened * whitened * (1.0 - self.lightening * painted)
     }
 }
 

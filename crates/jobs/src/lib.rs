@@ -5,6 +5,7 @@
 //! - [`farm`]: a recording as a job for many machines.
 //! - [`convert`]: hair files from one format to another.
 //! - [`info`]: what a file holds.
+//! - [`presets`]: the list of hairstyles, contact sheets of them, and thumbnails.
 //! - [`satf`]: the database of hair clusters as a file.
 //! - [`reference`](mod@reference): scenes for a path tracer, beside our images of them.
 
@@ -12,6 +13,7 @@ pub mod bench;
 pub mod convert;
 pub mod farm;
 pub mod info;
+pub mod presets;
 pub mod record;
 pub mod reference;
 pub mod satf;

@@ -10,7 +10,7 @@ const BEHIND: f32 = 0.3;
 pub(super) fn scale(colors: ColorMap, largest: f32) -> ColorScale {
     let (low, high) = colors.range_to(largest).into_inner();
     let table = std::array::from_fn(|k| colors.at(k as f32 / 255.0));
-    ColorScale { range: [low, high], colors: table, behind: BEHIND }
+    ColorScale { range: [low, high], colors: table, behind: BEHIND, saturation: 0.0, relief: 0.0 }
 }
 
 /// Renders `values`, one per strand point, in colour over a dimmed grey image of the same hair. Twin of

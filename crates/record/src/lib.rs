@@ -50,7 +50,7 @@ pub use sequence::{
     FrameLayers, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter, frame_name,
 };
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
-pub use still::write_png;
+pub use still::{jpeg_within, read_jpeg, write_png};
 pub use take::{
     AssetState, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,
     TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport, TakeWriter,

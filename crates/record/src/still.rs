@@ -1,10 +1,11 @@
-//! Writes a single image as a PNG file.
+//! A single image as a PNG file, and small ones as JPEG.
 
 use std::io::Write;
 use std::path::Path;
 
+use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, ImageDecoder, ImageEncoder};
 
 use crate::RecordError;
 use crate::partial::{PartialFile, open_file};
@@ -26,6 +27,33 @@ pub fn write_png(path: &Path, width: u32, height: u32, rgba: &[u8]) -> Result<()
     partial.commit(true).map_err(failed)
 }
 
+/// An image as JPEG in at most `most_bytes`, by the best quality that fits; `None` if none does. Alpha is left out.
+///
+/// `rgba` contains `width * height` pixels, rows from the top, four bytes each, sRGB encoded.
+pub fn jpeg_within(most_bytes: usize, width: u32, height: u32, rgba: &[u8]) -> Option<Vec<u8>> {
+    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    if rgb.len() as u64 != 3 * u64::from(width) * u64::from(height) {
+        return None;
+    }
+    (2..=19).rev().map(|quality| quality * 5).find_map(|quality| {
+        let mut file = Vec::new();
+        let encoder = JpegEncoder::new_with_quality(&mut file, quality);
+        encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8).ok()?;
+        (file.len() <= most_bytes).then_some(file)
+    })
+}
+
+/// Width, height and pixels, as [`jpeg_within`] takes them, of a JPEG image of at most `most_side` pixels a side; `None` if it is none.
+pub fn read_jpeg(file: &[u8], most_side: u32) -> Option<(u32, u32, Vec<u8>)> {
+    let decoder = JpegDecoder::new(std::io::Cursor::new(file)).ok()?;
+    let (width, height) = decoder.dimensions();
+    if width.max(height) > most_side {
+        return None;
+    }
+    let image = image::DynamicImage::from_decoder(decoder).ok()?;
+    Some((width, height, image.into_rgba8().into_raw()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,5 +69,22 @@ mod tests {
         let nowhere = folder.path().join("none").join("x.png");
         let error = write_png(&nowhere, 3, 2, &rgba).expect_err("no folder").to_string();
         assert!(error.contains("x.png"), "{error}");
+    }
+
+    #[test]
+    fn a_jpeg_keeps_its_size_and_is_read_again() {
+        let (width, height) = (64, 80);
+        let noise = |i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as u8;
+        let rgba: Vec<u8> = (0..width * height).flat_map(|i| [noise(i), noise(i + 7), 90, 255]).collect();
+        let large = jpeg_within(usize::MAX, width, height, &rgba).expect("an image");
+        let small = jpeg_within(large.len() / 2, width, height, &rgba).expect("an image");
+        assert!(small.len() <= large.len() / 2);
+        let (w, h, read) = read_jpeg(&large, 100).expect("an image");
+        let error = rgba.iter().zip(&read).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+        assert!((w, h) == (width, height) && error / (read.len() as f64) < 20.0, "{error}");
+        assert_eq!(jpeg_within(100, width, height, &rgba), None, "too small for any quality");
+        assert_eq!(jpeg_within(usize::MAX, width, height + 1, &rgba), None, "not those pixels");
+        assert_eq!(read_jpeg(&large, 79), None, "too large");
+        assert!(read_jpeg(b"no image", 100).is_none() && read_jpeg(&large[..40], 100).is_none());
     }
 }

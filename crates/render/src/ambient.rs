@@ -188,7 +188,7 @@ impl AmbientGrid {
 
     /// The light that arrives in every cell from the six directions.
     fn light(&mut self, input: &FrameInput, around: &Around, tables: &FibreTables) {
-        let absorption = input.look.absorption();
+        let absorption = input.style.strands.colours.mean().absorption(input.look.absorption());
         let eye = CosineStep::new(USUAL_COSINE);
         let rates = absorption.to_array().map(|sigma| tables.many.row(eye, sigma)[6]);
         self.cells.clear();

@@ -27,6 +27,7 @@ mod skin;
 mod strand_count;
 mod strand_details;
 mod strand_portion;
+mod strand_values;
 mod transparency;
 mod uniform;
 

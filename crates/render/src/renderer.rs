@@ -7,8 +7,8 @@ use glam::Vec3;
 use lovelock_gpu::{Gpu, GpuError};
 
 use crate::{
-    Backend, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image, Layers,
-    MOST_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
+    Backend, ColorScale, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image,
+    Layers, MOST_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -21,6 +21,8 @@ pub struct Renderer {
     adapter: String,
     /// The pixels of images that are copied to another device.
     spare: Picture,
+    /// Textures for false colours, if the device is not the window's.
+    images: Option<DeviceImages>,
 }
 
 impl Renderer {
@@ -84,7 +86,14 @@ impl Renderer {
 
     fn on(gpu: &Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
         let adapter = gpu.info.name.clone();
-        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapter, spare: Picture::default() })
+        Ok(Self {
+            choice,
+            gpu: Some(GpuRenderer::new(gpu)?),
+            cpu: None,
+            adapter,
+            spare: Picture::default(),
+            images: None,
+        })
     }
 
     fn on_processor(choice: Backend) -> Self {
@@ -94,6 +103,7 @@ impl Renderer {
             cpu: Some(Box::default()),
             adapter: CpuRenderer::adapter(),
             spare: Picture::default(),
+            images: None,
         }
     }
 
@@ -191,6 +201,37 @@ impl Renderer {
         let image = drawn.is_ok().then(|| Image::on(window, &mut picture));
         self.spare = picture;
         Ok((image.unwrap_or_default(), drawn?))
+    }
+
+    /// Renders `input` with hair in the colours of `scale` by one value per stored strand: into a texture of `window`, or into memory
+    /// without it. Waits for the device.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn strand_colors(
+        &mut self,
+        input: &FrameInput,
+        [width, height]: [u32; 2],
+        colors: (&[f32], &ColorScale),
+        window: Option<&mut DeviceImages>,
+    ) -> Result<(Image, FrameStats), RenderError> {
+        if let Some(gpu) = self.on_device_of(window.as_deref())
+            && let Some(images) = window
+        {
+            let (image, stats) = gpu.strand_colors(input, [width, height], colors, images)?;
+            return Ok((Image::Device(image), stats));
+        }
+        let mut picture = Picture::default();
+        let stats = if let Some(gpu) = &mut self.gpu {
+            let own = self.images.get_or_insert_with(|| DeviceImages::new(gpu.gpu()));
+            let (image, stats) = gpu.strand_colors(input, [width, height], colors, own)?;
+            picture = image.read()?;
+            stats
+        } else {
+            let cpu = self.cpu.get_or_insert_default();
+            cpu.strand_colors(input, [width, height], colors, &mut picture)?
+        };
+        Ok((Image::on(window, &mut picture), stats))
     }
 
     /// The renderer on the GPU, if it draws into the textures of this window without a copy: if they are on one device.

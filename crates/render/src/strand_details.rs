@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use lovelock_groom::Hairstyle;
-use lovelock_groom::fine::{FineStrands, lock_numbers};
+use lovelock_groom::fine::{FineStrand, FineStrands, lock_numbers};
+use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, colour_along};
 
 /// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +13,8 @@ pub(crate) struct StrandDetails {
     fine: usize,
     /// See [`pack_detail`].
     pub words: Vec<u32>,
+    /// The stored strand whose colours each point has, or each fine strand; empty if all have the colour of the look.
+    colour_of: Vec<u32>,
     /// First point of each segment, in the order of strands.
     pub segments: Arc<Vec<u32>>,
 }
@@ -28,6 +30,11 @@ impl StrandDetails {
         self.words.clear();
         self.words.resize(style.strands.points(), 0);
         let locks = lock_numbers(&style.strands);
+        self.colour_of.clear();
+        if !style.strands.colours.is_empty() {
+            let ends = style.strands.first_point.windows(2).enumerate();
+            self.colour_of.extend(ends.flat_map(|(s, ends)| (ends[0]..ends[1]).map(move |_| s as u32)));
+        }
         for (s, ends) in style.strands.first_point.windows(2).enumerate() {
             let (first, end) = (ends[0], ends[1]);
             segments.extend(first..end.saturating_sub(1).max(first));
@@ -62,6 +69,11 @@ impl StrandDetails {
         self.words.clear();
         self.words.reserve(count * points);
         let locks = lock_numbers(&style.strands);
+        self.colour_of.clear();
+        if !set.colours.is_empty() {
+            self.colour_of
+                .extend(fine.strands.iter().enumerate().map(|(i, strand)| colour_parent(i, strand)));
+        }
         for strand in &fine.strands {
             let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
             let own = match ends {
@@ -80,6 +92,54 @@ impl StrandDetails {
         (self.style, self.fine) = (Some(Arc::clone(style)), count);
         true
     }
+
+    /// The colours of strands; `None` if all have the colour of the look.
+    pub fn colours(&self) -> Option<PointColours<'_>> {
+        let samples = self.style.as_ref()?.strands.colours.strands();
+        let known = !samples.is_empty() && !self.colour_of.is_empty();
+        known.then_some(PointColours { of: &self.colour_of, samples })
+    }
+}
+
+/// The colours of strand points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PointColours<'a> {
+    /// Index of the stored strand whose colours it has, for each point of stored strands or for each fine strand.
+    of: &'a [u32],
+    /// The colours of the stored strands.
+    samples: &'a [ColourSamples],
+}
+
+impl PointColours<'_> {
+    /// The colour at the fraction `along` of the strand of point `i`: what is kept of the look's, and the added absorption.
+    /// `points_per_strand` is that of fine strands and 1 for stored ones.
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    pub fn at(&self, i: usize, points_per_strand: usize, along: f32) -> [f32; 4] {
+        let of = self.of.get(i / points_per_strand).map_or(usize::MAX, |&strand| strand as usize);
+        match self.samples.get(of) {
+            Some(samples) => colour_along(samples, along),
+            None => StrandColour::BELOW.to_array(),
+        }
+    }
+
+    /// The colours as words for `strand_points.wgsl`: for each entry of `of` the index of the first word of its samples, and then the
+    /// samples as bits of floats.
+    pub fn words(&self) -> Vec<u32> {
+        let first = self.of.len() as u32;
+        let each = (4 * COLOUR_SAMPLES) as u32;
+        let mut words = Vec::with_capacity(self.of.len() + self.samples.len() * each as usize);
+        words.extend(self.of.iter().map(|strand| first + strand * each));
+        words.extend(self.samples.iter().flatten().flat_map(|colour| colour.to_array().map(f32::to_bits)));
+        words
+    }
+}
+
+/// The stored strand whose colours the fine strand with number `i` has: one of its parents, most often the first. So the colours of
+/// neighbours mix, and no strand of another colour stands for all hair around it.
+fn colour_parent(i: usize, strand: &FineStrand) -> u32 {
+    let random = (i as u32).wrapping_mul(0x9e37_79b9) >> 28;
+    strand.parents[[0, 1, 2][usize::from(random >= 10) + usize::from(random >= 13)]]
 }
 
 /// Taper, position along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first and whether it
@@ -92,4 +152,52 @@ fn pack_detail(taper: f32, along: f32, shade: f32, (first, last): (bool, bool), 
         | u32::from(first) << 24
         | u32::from(last) << 25
         | u32::from(lock) << 26
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_groom::{GroomSettings, PlainHead, StrandColours, grow};
+
+    use super::*;
+
+    #[test]
+    fn fine_strands_keep_the_share_of_coloured_ones_and_mix_with_their_neighbours() {
+        let settings = GroomSettings { wisps: 40, strands_per_wisp: 30, ..GroomSettings::default() };
+        let mut style = grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair");
+        let white = [StrandColour::BELOW.faded(0.0); COLOUR_SAMPLES];
+        let is_white = |strand: usize| strand * 7 % 10 < 3;
+        let of = |strand| if is_white(strand) { white } else { ColourSamples::default() };
+        style.strands.colours = StrandColours::new((0..style.strands.count()).map(of).collect());
+        let style = Arc::new(style);
+        let mut fine = FineStrands::default();
+        fine.follow(&style, 12_000);
+        let mut details = StrandDetails::default();
+        details.follow_fine(&style, &fine, true);
+        let colours = details.colours().expect("colours");
+        let points = fine.points_per_strand;
+        let kept: Vec<f32> =
+            (0..fine.strands.len()).map(|i| colours.at(i * points + points / 2, points, 0.5)[0]).collect();
+        let share = kept.iter().filter(|kept| **kept == 0.0).count() as f32 / kept.len() as f32;
+        // Children of white strands that are not white.
+        let stored = style.strands.count();
+        let children = fine.strands.iter().zip(&kept).skip(stored);
+        let of_white: Vec<f32> = children
+            .filter(|(strand, _)| is_white(strand.parents[0] as usize))
+            .map(|(_, kept)| *kept)
+            .collect();
+        let mixed = of_white.iter().filter(|kept| **kept == 1.0).count() as f32 / of_white.len() as f32;
+        println!("{share} white, {mixed} of the children of white strands are not");
+        assert!((share - 0.3).abs() < 0.03, "{share}");
+        assert!(mixed > 0.15 && mixed < 0.4, "{mixed}");
+        // Stored strands have their own.
+        details.follow(&style);
+        let colours = details.colours().expect("colours");
+        for (strand, ends) in style.strands.first_point.windows(2).enumerate() {
+            let wanted = if is_white(strand) { 0.0 } else { 1.0 };
+            assert_eq!(colours.at(ends[1] as usize - 1, 1, 1.0)[0], wanted);
+        }
+        let words = colours.words();
+        let last = words[style.strands.points() - 1] as usize;
+        assert_eq!(last + 4 * COLOUR_SAMPLES, words.len(), "the samples of the last strand are last");
+    }
 }

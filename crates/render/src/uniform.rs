@@ -32,6 +32,8 @@ pub(crate) struct FrameUniform {
     pub background_top: Vec4,
     pub background_bottom: Vec4,
     pub absorption_variation: Vec4,
+    pub root_absorption: Vec4,
+    pub mean_absorption: Vec4,
     pub width_opacity_tip: Vec4,
     pub highlights: Vec4,
     pub fading: Vec4,
@@ -62,7 +64,7 @@ impl FrameUniform {
         shadow_texels: u32,
     ) -> Self {
         let picture = input.picture.clamped();
-        let look = input.look;
+        let (look, colours) = (input.look, &input.style.strands.colours);
         let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
         let mut lit = 0;
@@ -99,6 +101,8 @@ impl FrameUniform {
             ground_texels: Vec4::new(f32::from(u8::from(picture.ground)), shadow_texels as f32, 0.0, 0.0),
             background_top: picture.background_top.extend(1.0),
             background_bottom: picture.background_bottom.extend(1.0),
+            root_absorption: colours.roots().absorption(look.absorption()).extend(0.0),
+            mean_absorption: colours.mean().absorption(look.absorption()).extend(0.0),
             absorption_variation: look.absorption().extend(look.variation.clamp(0.0, 1.0)),
             width_opacity_tip: Vec4::new(strand_width, opacity, look.tip_lightening.clamp(0.0, 1.0), 0.0),
             highlights: Vec4::new(
@@ -171,6 +175,8 @@ mod tests {
                 offset_of!(FrameUniform, background_top),
                 offset_of!(FrameUniform, background_bottom),
                 offset_of!(FrameUniform, absorption_variation),
+                offset_of!(FrameUniform, root_absorption),
+                offset_of!(FrameUniform, mean_absorption),
                 offset_of!(FrameUniform, width_opacity_tip),
                 offset_of!(FrameUniform, highlights),
                 offset_of!(FrameUniform, fading),

@@ -116,6 +116,7 @@ fn casters_of(style: &Arc<Hairstyle>) -> Arc<Hairstyle> {
     }
     let mut kept = StrandSet { first_point: vec![0], ..StrandSet::default() };
     let mut wisps = Vec::with_capacity(style.wisps.len());
+    let mut chosen = Vec::new();
     for wisp in &style.wisps {
         let count = wisp.strand_count as usize;
         let keep = (count / step).max(FEWEST_CASTERS).min(count);
@@ -123,6 +124,7 @@ fn casters_of(style: &Arc<Hairstyle>) -> Arc<Hairstyle> {
         for k in 0..keep {
             let s = wisp.first_strand as usize + k * count / keep;
             let points = set.first_point[s] as usize..set.first_point[s + 1] as usize;
+            chosen.push(s);
             kept.wisp.push(set.wisp[s]);
             kept.weights.push(set.weights[s]);
             kept.shade.push(set.shade[s]);
@@ -138,6 +140,7 @@ fn casters_of(style: &Arc<Hairstyle>) -> Arc<Hairstyle> {
             kept.first_point.push(kept.guide_param.len() as u32);
         }
     }
+    kept.colours = set.colours.selected(chosen.into_iter());
     Arc::new(Hairstyle { wisps, strands: kept, ..(**style).clone() })
 }
 

@@ -81,7 +81,8 @@ fn direction(rib: usize, around: usize) -> Vec2 {
 }
 
 /// A hairstyle of the ribs of all clusters, with the wisps and guides of `style`. `sections` holds those of each wisp; a wisp without any
-/// has no ribs. `shade` gives the shade of a rib by its wisp and its number among the ribs of the wisp.
+/// has no ribs. `shade` gives the shade of a rib by its wisp and its number among the ribs of the wisp; its colours are those of the strand
+/// nearest to it.
 pub(crate) fn rib_style(
     style: &Hairstyle,
     sections: &[Vec<Section>],
@@ -91,6 +92,8 @@ pub(crate) fn rib_style(
 ) -> Arc<Hairstyle> {
     let mut set = StrandSet { first_point: vec![0], ..StrandSet::default() };
     let mut wisps = Vec::with_capacity(style.wisps.len());
+    // One strand and not the mean of several: the light of mixed strands is the mean of theirs, which no mean of their pigment gives.
+    let mut nearest = Vec::new();
     for (w, (wisp, sections)) in style.wisps.iter().zip(sections).enumerate() {
         let first_strand = set.wisp.len() as u32;
         let strand_count = if sections.is_empty() { 0 } else { 2 * grid.around as u32 };
@@ -99,6 +102,7 @@ pub(crate) fn rib_style(
             continue;
         }
         let curve = WispCurve::at_rest(&style.guides, wisp);
+        let first = wisp.first_strand as usize;
         for (ring, radius) in [core, 1.0].into_iter().enumerate() {
             for rib in 0..grid.around {
                 let at = direction(rib, grid.around) * radius;
@@ -117,9 +121,13 @@ pub(crate) fn rib_style(
                 set.weights.push(weights);
                 set.first_point.push(set.guide_param.len() as u32);
                 set.shade.push(shade(w, ring * grid.around + rib));
+                if !style.strands.colours.is_empty() {
+                    nearest.push(first + nearest_strand(sections, at));
+                }
             }
         }
     }
+    set.colours = style.strands.colours.selected(nearest.into_iter());
     Arc::new(Hairstyle {
         name: style.name.clone(),
         wisps,
@@ -129,4 +137,13 @@ pub(crate) fn rib_style(
         look: style.look,
         ..Hairstyle::default()
     })
+}
+
+/// The strand of a wisp, by its index there, that is nearest to a place of the disk.
+fn nearest_strand(sections: &[Section], at: Vec2) -> usize {
+    // Away from the root, where strands lie as they are seen.
+    let section = &sections[sections.len() / 3];
+    let apart = |place: Vec2| place.distance_squared(at);
+    let nearest = section.crossings.iter().min_by(|a, b| apart(a.at).total_cmp(&apart(b.at)));
+    nearest.map_or(0, |crossing| crossing.strand)
 }

@@ -4,6 +4,7 @@ mod combing;
 mod preroll;
 mod settle;
 mod shown;
+mod styled;
 
 pub use preroll::{Preroll, PrerollProgress};
 pub(crate) use shown::LastSteps;
@@ -23,7 +24,7 @@ use lovelock_record::TakeFrame;
 use lovelock_simulation::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
 use crate::clock::STEP_SECS;
-use crate::scene::Scene;
+use crate::scene::{Scene, Styling};
 use crate::snapshot::SnapshotPool;
 use crate::stats::StageTimes;
 use crate::totals::Totals;
@@ -41,7 +42,12 @@ const JUMP_SECS: f64 = 16.0;
 /// it the shape that it has at that time.
 #[derive(Debug)]
 pub struct Engine {
+    /// The scene with the hairstyle of the current step.
     scene: Arc<Scene>,
+    /// The scene as it was loaded.
+    loaded: Arc<Scene>,
+    /// The tracks of the hairstyle.
+    styling: Option<Styling>,
     settings: SimulationSettings,
     /// The tracks of the settings.
     animation: Option<Animation>,
@@ -92,6 +98,8 @@ impl Engine {
     pub fn at_rest(scene: Arc<Scene>, settings: SimulationSettings, step_secs: f64) -> Self {
         let simulation = Simulation::new(Arc::clone(&scene.style));
         let mut engine = Self {
+            loaded: Arc::clone(&scene),
+            styling: None,
             scene,
             settings: settings.clamped(),
             animation: None,
@@ -120,9 +128,9 @@ impl Engine {
         engine
     }
 
-    /// The scene.
+    /// The scene, with the hairstyle as it was loaded. Snapshots have that of their instant.
     pub fn scene(&self) -> &Arc<Scene> {
-        &self.scene
+        &self.loaded
     }
 
     /// Length of a step, seconds.
@@ -150,11 +158,13 @@ impl Engine {
         self.settings = settings.clamped();
     }
 
-    /// Sets the settings of the next steps, including their tracks.
+    /// Sets the settings of the next steps, including their tracks, and the tracks of the hairstyle.
     pub fn follow(&mut self, project: &Project) {
         self.set_settings(&project.simulation);
         self.animation = Animation::of(project);
         self.preroll_secs = f64::from(project.timeline.preroll_secs);
+        self.styling = Styling::of(project, self.styling.take());
+        self.restyle(f64::NEG_INFINITY);
     }
 
     /// The worst values of all steps since the hair was last settled.
@@ -190,7 +200,22 @@ impl Engine {
     /// Replaces the scene at the same time. Hair of the same layout keeps moving; other hair starts in its rest style. Returns
     /// whether the hair is now in its rest style and should be settled.
     pub fn set_scene(&mut self, scene: Arc<Scene>) -> bool {
-        let before = std::mem::replace(&mut self.scene, scene);
+        let old_secs = self.at_step as f64 * self.step_secs;
+        let before = std::mem::replace(&mut self.loaded, scene);
+        let same_clip = match (&before.clip, &self.loaded.clip) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        // Another speed continues from the same pose; another clip from the same position on the timeline.
+        let time_secs = if same_clip {
+            before.clip_secs(old_secs) / self.loaded.speed
+        } else {
+            before.position_secs(old_secs)
+        };
+        self.at_step = (self.loaded.position_secs(time_secs) / self.step_secs).round() as i64;
+        let styled = self.styled(f64::NEG_INFINITY);
+        let before = std::mem::replace(&mut self.scene, styled);
         let same_layout = before.style.guides.points_per_guide == self.scene.style.guides.points_per_guide
             && before.style.guides.count() == self.scene.style.guides.count();
         if !Arc::ptr_eq(&before.style, &self.scene.style) {
@@ -210,19 +235,6 @@ impl Engine {
             }
         }
         let same_body = Arc::ptr_eq(&before.body, &self.scene.body);
-        let same_clip = match (&before.clip, &self.scene.clip) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        let old_secs = self.at_step as f64 * self.step_secs;
-        // Another speed continues from the same pose; another clip from the same position on the timeline.
-        let time_secs = if same_clip {
-            before.clip_secs(old_secs) / self.scene.speed
-        } else {
-            before.position_secs(old_secs)
-        };
-        self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
         if !Arc::ptr_eq(&before.colliders, &self.scene.colliders) {
             // The same number of colliders may still be different ones.
             self.simulation.invalidate_colliders();
@@ -239,7 +251,7 @@ impl Engine {
     /// One step of a pre-roll.
     pub(super) fn step_preroll(&mut self, lead_in_secs: f64) {
         self.at_step += 1;
-        self.follow_timeline();
+        self.follow_timeline(lead_in_secs);
         self.place_body(lead_in_secs);
         self.simulate();
     }
@@ -264,7 +276,7 @@ impl Engine {
         if !self.scene.loops_smoothly() && self.scene.repetition(self.time_secs()) != before {
             self.simulated_secs += JUMP_SECS;
         }
-        self.follow_timeline();
+        self.follow_timeline(f64::NEG_INFINITY);
         self.place_body(f64::NEG_INFINITY);
         self.times.motion += watch.lap_ms();
         self.simulate();
@@ -305,8 +317,9 @@ impl Engine {
         out.jumped = self.report.jumped || self.cut;
     }
 
-    /// Applies the tracks to the settings of the current step.
-    fn follow_timeline(&mut self) {
+    /// Applies the tracks to the settings and the hairstyle of the current step; see [`Engine::restyle`].
+    fn follow_timeline(&mut self, lead_in_secs: f64) {
+        self.restyle(lead_in_secs);
         if let Some(animation) = &self.animation {
             self.settings = animation.simulation_at(self.position_secs());
         }
@@ -339,6 +352,7 @@ impl Engine {
     /// Moves the hair with the body after a jump.
     fn jump(&mut self) {
         self.jumped_since = true;
+        self.restyle(f64::NEG_INFINITY);
         self.simulated_secs += JUMP_SECS;
         self.place_body(f64::NEG_INFINITY);
         self.simulate();

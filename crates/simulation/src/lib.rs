@@ -15,6 +15,7 @@
 mod block;
 mod colliders;
 mod dispatch;
+mod factors;
 mod grid;
 mod hash;
 mod input;

@@ -14,6 +14,7 @@ use crate::colliders::field::MovingField;
 use crate::colliders::shape::Shape;
 use crate::colliders::{MovingShape, RestColliders, place, transformed};
 use crate::dispatch::step_block;
+use crate::factors::FactorRows;
 use crate::grid::DensityGrid;
 use crate::hash::Hasher;
 use crate::lanes::{Lane, Map, ZERO, at};
@@ -85,6 +86,7 @@ impl Simulation {
             }
             let mut block = Block::new(guides, lanes, first_free);
             block.tie_hold = crate::ties::rows(&style, &lanes.guides);
+            block.factors = FactorRows::of(&style, &lanes.guides);
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }

@@ -7,13 +7,14 @@ use lovelock_groom::{Hairstyle, Obstacle};
 use crate::{HeadBox, Layer, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct StyleCache {
     start: Option<(Arc<Hairstyle>, Arc<dyn Obstacle + Send>)>,
     steps: Vec<Step>,
 }
 
 /// A layer and the hairstyle after it.
+#[derive(Clone)]
 struct Step {
     layer: Layer,
     factor: f32,

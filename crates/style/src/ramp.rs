@@ -53,14 +53,16 @@ impl Ramp {
     }
 
     /// The ramps that editors offer, with their names.
-    pub fn presets() -> [(&'static str, Self); 7] {
+    pub fn presets() -> [(&'static str, Self); 9] {
         [
             ("Constant", Self::constant(1.0)),
-            ("Root to tip", Self::line(0.0, 1.0)),
-            ("Tip to root", Self::line(1.0, 0.0)),
-            ("Ends only", Self::through(&[[0.5, 0.0], [1.0, 1.0]])),
-            ("Roots only", Self::through(&[[0.0, 1.0], [0.5, 0.0]])),
-            ("Middle", Self::through(&[[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]])),
+            ("Linear", Self::line(0.0, 1.0)),
+            ("Linear, falling", Self::line(1.0, 0.0)),
+            ("Ease", Self::through(&[[0.0, 0.0], [1.0, 1.0]])),
+            ("Ease, falling", Self::through(&[[0.0, 1.0], [1.0, 0.0]])),
+            ("Tip", Self::through(&[[0.5, 0.0], [1.0, 1.0]])),
+            ("Root", Self::through(&[[0.0, 1.0], [0.5, 0.0]])),
+            ("Bell", Self::through(&[[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]])),
             ("Both ends", Self::through(&[[0.0, 1.0], [0.5, 0.0], [1.0, 1.0]])),
         ]
     }

@@ -50,18 +50,23 @@ impl Scope<'_> {
 
     /// [`Scope::at`] the root of each strand.
     pub fn strands(&self, style: &Hairstyle) -> Vec<f32> {
-        let set = &style.strands;
-        let root = |strand: usize| -> Vec3 {
-            let guides = style.wisps[set.wisp[strand] as usize].guides;
-            guides.iter().zip(set.weights[strand]).map(|(&g, w)| style.guides.point(g as usize, 0) * w).sum()
-        };
-        (0..set.count()).map(|strand| self.at(root(strand))).collect()
+        strand_roots(style).into_iter().map(|root| self.at(root)).collect()
     }
 
     /// Random numbers of one thing that the layer acts on, such as a wisp; `purpose` keeps two uses apart.
     pub fn random(&self, purpose: u32, thing: usize) -> SplitMix64 {
         SplitMix64::of_stream(self.seed, (u64::from(purpose) << 32) | thing as u64)
     }
+}
+
+/// The root of each stored strand between those of its guides, head space: where masks are read for it.
+pub fn strand_roots(style: &Hairstyle) -> Vec<Vec3> {
+    let set = &style.strands;
+    let root = |strand: usize| -> Vec3 {
+        let guides = style.wisps[set.wisp[strand] as usize].guides;
+        guides.iter().zip(set.weights[strand]).map(|(&g, w)| style.guides.point(g as usize, 0) * w).sum()
+    };
+    (0..set.count()).map(root).collect()
 }
 
 /// The middle of the roots of each wisp, head space.

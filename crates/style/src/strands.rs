@@ -114,6 +114,7 @@ fn divided(set: &StrandSet, parts: &[u32]) -> StrandSet {
     out.wisp.clone_from(&set.wisp);
     out.weights.clone_from(&set.weights);
     out.shade.clone_from(&set.shade);
+    out.colours.clone_from(&set.colours);
     for (strand, &n) in parts.iter().enumerate() {
         let (first, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
         for i in first..end {

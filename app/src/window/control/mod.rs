@@ -6,7 +6,7 @@ mod setting;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, Ui, Vec2};
 
-pub(crate) use curve::curve;
+pub(crate) use curve::{Axis, Curve, CurveModel, curve};
 pub(crate) use number::{Number, is_escaped, typed};
 pub(crate) use setting::{all_settings, entry, setting, settings};
 

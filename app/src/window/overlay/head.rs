@@ -25,6 +25,34 @@ impl Head<'_> {
         self.world_from_head.transform_point3(place)
     }
 
+    /// The point of the surface under a point of the screen and the normal there, head space.
+    pub(super) fn hit(self, view: View, at: Pos2) -> Option<(Vec3, Vec3)> {
+        let ray = self.ray(view, at);
+        let found = under(self.scalp, 0.0, ray, (ray.0, Side::Seen))?;
+        Some((found.place, found.normal))
+    }
+
+    /// The normal of the vertex that is nearest to a point, head space.
+    pub(super) fn normal_near(self, place: Vec3) -> Option<Vec3> {
+        nearest(self.scalp, place).map(|(found, _)| found.normal)
+    }
+
+    /// Size of the head in the world as a multiple of head space.
+    pub(super) fn scale(self) -> f32 {
+        Vec3::from(self.world_from_head.matrix3.x_axis).length()
+    }
+
+    /// The place of the head's visible surface under a point of the screen, head space; `None` beside the head. Of several, the one nearest
+    /// to `near`.
+    pub(super) fn under(self, view: View, at: Pos2, near: Vec3) -> Option<Vec3> {
+        under(self.scalp, 0.0, self.ray(view, at), (near, Side::Seen)).map(|at| at.place)
+    }
+
+    /// The camera's position in head space.
+    pub(super) fn eye(self, view: View) -> Vec3 {
+        self.world_from_head.inverse().transform_point3(view.eye)
+    }
+
     /// The camera's position and the unit vector toward a point of the screen, head space.
     fn ray(self, view: View, at: Pos2) -> (Vec3, Vec3) {
         let head_from_world = self.world_from_head.inverse();

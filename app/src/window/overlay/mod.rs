@@ -1,8 +1,10 @@
 //! Overlays on the image, drawn for the same instant and camera.
 
+pub(crate) mod brush;
 pub(crate) mod colliders;
 pub(crate) mod head;
 pub(crate) mod mark;
+pub(crate) mod scalp;
 pub(crate) mod scissors;
 pub(crate) mod ties;
 

@@ -30,7 +30,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
     for (i, tie) in ties.iter_mut().enumerate() {
         let centre = head.world(tie.at);
         let Some(at) = view.to_screen(centre) else { continue };
-        let axis = head.world_from_head.transform_vector3(tie.axis.normalize_or(Vec3::NEG_Z));
+        let axis = head.world_from_head.transform_vector3(tie.axis).normalize_or(Vec3::NEG_Z);
         let end = view.to_screen(centre + axis * ARROW);
         // The arrow comes before the ring, which receives clicks on both.
         if let Some(end) = end.filter(|_| *selected == i) {
@@ -58,7 +58,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
         }
         let over = ring_handle.hovered() || ring_handle.dragged();
         let color = if *selected == i || over { theme::ACCENT } else { theme::BRIGHT };
-        let ring = ring(view, centre, axis, tie.radius.max(0.012));
+        let ring = ring(view, centre, axis, tie.radius.max(0.012) * head.scale());
         painter.add(Shape::closed_line(ring.clone(), Stroke::new(4.0, theme::PAGE.gamma_multiply(0.6))));
         painter.add(Shape::closed_line(ring, Stroke::new(2.0, color)));
         if let Some(end) = end {
@@ -89,15 +89,16 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
     let middle = head.world(tie.sphere_middle());
     let Some(at) = view.to_screen(middle) else { return };
     let Some(right) = view.right_of(at, middle) else { return };
-    let Some(rim_at) = view.to_screen(middle + right * tie.sphere_radius) else { return };
+    let Some(rim_at) = view.to_screen(middle + right * (tie.sphere_radius * head.scale())) else { return };
     let rim = handle(ui, rim_at, ui.scope_id().with("patch's rim"), "Radius of the patch in the image");
     if let Some(pointer) = dragged_to(ui, &rim, rim_at) {
         let out = (view.at_depth_of(pointer, middle) - middle).dot(right);
         if out.is_finite() {
-            tie.sphere_radius = out.clamp(0.005, 0.6);
+            tie.sphere_radius = (out / head.scale()).clamp(0.005, 0.6);
         }
     }
-    let outline = ring(view, middle, (view.eye - middle).normalize_or(Vec3::Z), tie.sphere_radius);
+    let outline =
+        ring(view, middle, (view.eye - middle).normalize_or(Vec3::Z), tie.sphere_radius * head.scale());
     painter.extend(Shape::dashed_line(&closed(outline), Stroke::new(1.5, theme::ACCENT), 6.0, 4.0));
     dot(painter, rim, rim_at, "Drag to gather more or less hair.");
     if !tie.sphere_at_ring {

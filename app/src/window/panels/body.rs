@@ -39,8 +39,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
             .on_hover_text("Loads the shipped dancer.")
             .clicked()
         {
-            body.source = BodySource::Dancer;
-            body.head_joint = None;
+            body.switch(None);
         }
         let on = body.source == BodySource::File;
         if ui
@@ -49,7 +48,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
             .clicked()
         {
             if body.file.is_some() && !on {
-                body.source = BodySource::File;
+                body.switch(body.file.clone());
             } else {
                 request = Some(BodyRequest::PickBody);
             }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use lovelock_base::settings::Choices;
-use lovelock_groom::{GroomSettings, HAIR_FORMATS, ImportSettings, Preset, Unit};
+use lovelock_groom::{HAIR_FORMATS, ImportSettings, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{HairSection, HairSource};
 
@@ -30,13 +30,6 @@ pub(crate) enum HairRequest {
 pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Option<HairRequest> {
     let mut request = None;
     ui.horizontal_wrapped(|ui| {
-        for preset in Preset::ALL {
-            let on = project.hair.source == HairSource::Grown && project.hair.preset == preset;
-            let response = ui.selectable_label(on, preset.label());
-            if response.on_hover_text("Loads this shipped hairstyle with its colours.").clicked() && !on {
-                project.set_preset(preset);
-            }
-        }
         let on = project.hair.source == HairSource::File;
         let response = ui.selectable_label(on, "From file…");
         if response.on_hover_text(file_tooltip()).clicked() {
@@ -98,7 +91,7 @@ fn file_tooltip() -> String {
 }
 
 fn grown(ui: &mut Ui, hair: &mut HairSection) {
-    let default = GroomSettings::preset(hair.preset);
+    let default = hair.shipped_groom();
     let groom = &mut hair.groom;
     section(ui, "Cut", true, |ui| settings(ui, &CUT, groom, &default));
     section(ui, "Shape", true, |ui| settings(ui, &SHAPE, groom, &default));

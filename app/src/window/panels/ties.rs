@@ -20,6 +20,7 @@ const REACH: RangeInclusive<f64> = -0.6..=0.6;
 /// The controls of the ties of `hair`. `selected` is the one that is edited and whose handle is shown in the image; a new one is
 /// placed on `scalp`.
 pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
+    let shipped = hair.shipped_ties();
     let ties = &mut hair.ties;
     *selected = (*selected).min(ties.len().saturating_sub(1));
     ui.horizontal_wrapped(|ui| {
@@ -59,7 +60,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
         note(ui, "No tie: the hair falls as it grows.");
         return;
     };
-    let shipped = hair.preset.ties().get(*selected).copied().unwrap_or_default();
+    let shipped = shipped.get(*selected).copied().unwrap_or_default();
     let d = HairTie { kind: tie.kind, ..shipped };
     controls(ui, tie, &d);
 }

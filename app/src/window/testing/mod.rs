@@ -5,11 +5,14 @@ mod dialogs;
 mod health;
 mod keyboard;
 mod notices;
+mod painting;
 mod playback;
 mod rows;
+mod styles;
 mod takes;
 mod tools;
 mod tracks;
+mod wall;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};

@@ -5,6 +5,7 @@ use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, po
 use egui_kittest::Harness;
 use lovelock_project::project::{Marker, MotionSection, MotionSource, RecordingSection};
 use lovelock_project::tracks::Track;
+use lovelock_style::StyleStack;
 
 use super::super::command::Command;
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
@@ -39,7 +40,7 @@ fn bar(view: View) -> Harness<'static, Shown<State>> {
 fn with_tracks(state: State) -> Harness<'static, Shown<State>> {
     screen_of(vec2(900.0, timeline::height(state.tracks.len())), state, |ui, state: &mut State| {
         let State { recording, markers, tracks, motion, .. } = state;
-        let mut edited = Edited { recording, markers, tracks, motion };
+        let mut edited = Edited { recording, markers, tracks, motion, stack: &StyleStack::default() };
         state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
     })
 }

@@ -14,7 +14,7 @@ use crate::window::Window;
 use crate::window::overlay::View;
 
 /// The window with an image, paused at the start; `None` if nothing can draw.
-fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
+pub(super) fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut harness = window();
     wait(&mut harness, "an image or the reason that there is none", |window| {
         window.session.painted.is_some() || window.session.draw_error.is_some()
@@ -54,14 +54,14 @@ fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name:
 }
 
 /// The projection of the current image.
-fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
+pub(super) fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
     let window = of(harness);
     let rect = control(harness, Role::Image, "Viewport").rect();
     let painted = window.session.painted.as_ref().expect("a picture");
     View::new(painted, window.viewport.place(rect).expect("a place")).expect("a view")
 }
 
-fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
+pub(super) fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
     harness.hover_at(from);
     harness.run_steps(1);
     press(harness, from, true);
@@ -311,4 +311,44 @@ fn a_collider_is_moved_and_resized_in_the_viewport() {
     assert_eq!(project(&harness), before);
     // The camera has not moved.
     assert_eq!(project(&harness).camera, before.camera);
+}
+
+#[test]
+fn the_hairline_is_dragged_and_the_scalp_painted_in_the_viewport() {
+    let Some(mut harness) = with_picture() else { return };
+    let automatic = project(&harness).body.scalp.clone();
+    unfold(&mut harness, "Scalp");
+    into_view(&mut harness, Role::CheckBox, "Show scalp");
+    control(&harness, Role::CheckBox, "Show scalp").click();
+    go(&mut harness);
+    let name = "Hairline at the front";
+    let at = control(&harness, Role::Button, name).rect().center();
+    let steps = of(&harness).history.undo_len();
+    drag_over(&mut harness, at, at - egui::vec2(0.0, 12.0));
+    let raised = project(&harness).body.scalp.clone();
+    assert!(raised.raise.front > 0.02, "{:?}", raised.raise);
+    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness).body.scalp, automatic);
+    into_view(&mut harness, Role::CheckBox, "Paint scalp");
+    control(&harness, Role::CheckBox, "Paint scalp").click();
+    go(&mut harness);
+    let camera = project(&harness).camera;
+    let painted = of(&harness).session.painted.clone().expect("a picture");
+    let skull = painted.snapshot.scene.skull.expect("a skull");
+    let cheek = skull.place(glam::Vec3::new(0.35, -0.35, 0.87));
+    let cheek = painted.snapshot.guides.world_from_head.transform_point3(cheek);
+    let at = view(&harness).to_screen(cheek).expect("in the picture");
+    drag_over(&mut harness, at, at + egui::vec2(14.0, 6.0));
+    let fit = project(&harness).body.scalp.clone();
+    assert!(fit.is_painted() && !fit.moves_outline(), "{fit:?}");
+    assert_eq!(project(&harness).camera, camera, "the camera stands while it paints");
+    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one stroke is one step");
+    wait(&mut harness, "hair on the cheek", |window| {
+        window.session.frame.as_ref().is_some_and(|frame| frame.scene.style.scalp.hairy_area(0.5) > 0.0)
+            && window.session.scene.as_ref().is_some_and(|scene| {
+                let now = &scene.style.scalp;
+                now.mask.iter().zip(&painted.snapshot.scene.style.scalp.mask).any(|(a, b)| a > b)
+            })
+    });
 }

@@ -77,7 +77,7 @@ pub(super) fn ui(
     }
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
-    let at_track = super::tracks::ui(ui, names, scale, view, edited.tracks);
+    let at_track = super::tracks::ui(ui, names, scale, view, edited);
     of_clip.or(flagged.or(at).or(at_track).map(TimelineRequest::Seek))
 }
 

@@ -14,6 +14,7 @@ pub(crate) use zoom::Zoom;
 use egui::Ui;
 use lovelock_project::project::{Marker, MotionSection, RecordingSection};
 use lovelock_project::tracks::Track;
+use lovelock_style::StyleStack;
 
 use super::command::Command;
 
@@ -102,6 +103,8 @@ pub(crate) struct Edited<'a> {
     pub(crate) tracks: &'a mut Vec<Track>,
     /// The motion.
     pub(crate) motion: &'a mut MotionSection,
+    /// The layers of the hairstyle, which name their tracks.
+    pub(crate) stack: &'a StyleStack,
 }
 
 /// The row of buttons, and the ruler with its lanes.

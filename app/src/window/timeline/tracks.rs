@@ -4,8 +4,8 @@ use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense,
 use egui_material_icons::icons;
 use lovelock_project::tracks::Track;
 
-use super::View;
 use super::scale::Scale;
+use super::{Edited, View};
 use crate::window::theme;
 
 /// Height of a track, points.
@@ -36,7 +36,8 @@ enum Whole {
 }
 
 /// Shows all tracks. Returns a time to seek to.
-pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, tracks: &mut Vec<Track>) -> Option<f64> {
+pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, edited: &mut Edited<'_>) -> Option<f64> {
+    let (tracks, stack) = (&mut *edited.tracks, edited.stack);
     if tracks.is_empty() {
         return None;
     }
@@ -50,8 +51,9 @@ pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, tracks: &mu
             let head = Rect::from_min_max(whole.min, pos2(scale.x_range().min - 4.0, whole.bottom()));
             let lane = Rect::from_x_y_ranges(scale.x_range(), whole.y_range().shrink(1.0));
             let writes = view.writing.targets.contains(&track.target);
-            asked = head_ui(ui, head, i, track, writes).map(|what| (i, what)).or(asked);
-            sought = lane_ui(ui, lane, scale, i, track, writes).or(sought);
+            let label = track.label_in(stack);
+            asked = head_ui(ui, head, i, (track, &label), writes).map(|what| (i, what)).or(asked);
+            sought = lane_ui(ui, lane, scale, i, (track, &label), writes).or(sought);
             if let Some(x) = scale.x_of(view.time_secs) {
                 let line = [pos2(x, lane.top() - 1.0), pos2(x, lane.bottom() + 1.0)];
                 ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::ACCENT));
@@ -70,9 +72,14 @@ pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, tracks: &mu
 }
 
 /// The name of a track, and its buttons.
-fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -> Option<Whole> {
+fn head_ui(
+    ui: &mut Ui,
+    head: Rect,
+    index: usize,
+    (track, label): (&Track, &str),
+    writes: bool,
+) -> Option<Whole> {
     let mut asked = None;
-    let label = track.label();
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let id = ("track head", index);
     ui.scope_builder(egui::UiBuilder::new().id_salt(id).max_rect(head).layout(layout), |ui| {
@@ -111,7 +118,7 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
         } else {
             theme::BRIGHT
         };
-        let text = egui::Label::new(RichText::new(&label).size(10.5).color(color)).truncate();
+        let text = egui::Label::new(RichText::new(label).size(10.5).color(color)).truncate();
         let room = vec2(ui.available_width(), head.height());
         ui.allocate_ui_with_layout(room, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.add(text).on_hover_text(format!("{label}: {} keys", track.keys.len()));
@@ -121,10 +128,17 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
 }
 
 /// Shows the curve of a track and its keys. Returns a time to seek to.
-fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, writes: bool) -> Option<f64> {
+fn lane_ui(
+    ui: &Ui,
+    lane: Rect,
+    scale: Scale,
+    index: usize,
+    (track, label): (&mut Track, &str),
+    writes: bool,
+) -> Option<f64> {
     let id = Id::unique(("track", index));
     let response = ui.interact(lane, id, Sense::click_and_drag());
-    let label = format!("Track {}", track.label());
+    let label = format!("Track {label}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &label));
     let own = range_of(track);
     let dragged = ui.data(|data| data.get_temp::<Dragged>(id));

@@ -28,7 +28,7 @@ mod unit;
 mod value;
 
 pub use info::{Counts, Info, Kind, Options, Range};
-pub use paths::{Entry, SettingError, entries, find, set, set_value};
+pub use paths::{Entry, SettingError, edits, entries, find, set, set_value};
 pub use unit::Unit;
 pub use value::{Choices, SettingValue, Value};
 

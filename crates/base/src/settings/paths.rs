@@ -115,16 +115,16 @@ impl std::error::Error for SettingError {}
 fn nearest(wanted: &str, known: &[String]) -> Option<String> {
     let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
     let same_end = known.iter().filter(|path| last(path) == last(wanted));
-    let by_distance = |path: &&String| (distance(wanted, path), path.len());
+    let by_distance = |path: &&String| (edits(wanted, path), path.len());
     let best = known.iter().min_by_key(by_distance)?;
-    if distance(wanted, best) <= wanted.chars().count() / 3 {
+    if edits(wanted, best) <= wanted.chars().count() / 3 {
         return Some(best.clone());
     }
     same_end.min_by_key(by_distance).cloned()
 }
 
 /// Letters that must be inserted, removed or exchanged to make `b` of `a` (Levenshtein).
-fn distance(a: &str, b: &str) -> usize {
+pub fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.chars().enumerate() {

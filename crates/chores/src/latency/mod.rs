@@ -1,4 +1,4 @@
-//! `cargo xtask latency`: measures the time from an input to the screen, on a virtual screen.
+//! `cargo xtask latency`: measures the time from an input to the screen, on a virtual screen, and from a change of a layer to its image.
 
 mod screen;
 
@@ -34,7 +34,8 @@ const CASES: [Case; 4] = [
 ];
 
 /// Opens the window for each case, moves the pointer on and off a menu at irregular times, and prints the time until the menu
-/// changes. With `beside`, another build of the program, both are measured twice in turn.
+/// changes. With `beside`, another build of the program, both are measured twice in turn. Then changes layers of two styles as often, and
+/// prints the time until an image shows each change.
 pub(crate) fn run(inputs: usize, beside: Option<&Path>) -> anyhow::Result<()> {
     ensure!(inputs > 0, "--inputs: found 0; must be at least 1");
     if let Some(beside) = beside {
@@ -69,7 +70,9 @@ pub(crate) fn run(inputs: usize, beside: Option<&Path>) -> anyhow::Result<()> {
             );
         }
     }
-    Ok(())
+    // From a change of a layer to the image that shows it, without a window.
+    let example = ["run", "--release", "--package", "lovelock-session", "--example", "layer_latency", "--"];
+    tool::run(tool::cargo(&example).arg(inputs.to_string()))
 }
 
 /// Time from each input to the screen, in milliseconds.

@@ -14,7 +14,7 @@ pub const LOCK_NUMBERS: u32 = 64;
 ///
 /// A strand belongs to the nearest of a few strands of its wisp, by its weights, because neighbours in the list may grow far apart.
 pub fn lock_numbers(set: &StrandSet) -> Vec<u8> {
-    let lock = parts_of_wisps(set);
+    let lock = parts_of_wisps(set, LOCKS_OF_WISP);
     let number = |(&wisp, part): (&u32, u8)| {
         let x =
             wisp.wrapping_mul(LOCKS_OF_WISP as u32).wrapping_add(u32::from(part)).wrapping_mul(0x9e37_79b9);
@@ -23,14 +23,27 @@ pub fn lock_numbers(set: &StrandSet) -> Vec<u8> {
     set.wisp.iter().zip(lock).map(number).collect()
 }
 
-/// The lock of each strand among those of its wisp.
-fn parts_of_wisps(set: &StrandSet) -> Vec<u8> {
+/// The lock of each strand where every wisp has about `parts` locks, at most 255: a number that no lock of another wisp has.
+///
+/// Locks are found as in [`lock_numbers`].
+pub fn locks_of_wisps(set: &StrandSet, parts: usize) -> Vec<u32> {
+    let parts = parts.clamp(1, 255);
+    let lock = parts_of_wisps(set, parts);
+    set.wisp
+        .iter()
+        .zip(lock)
+        .map(|(&wisp, part)| wisp.wrapping_mul(parts as u32).wrapping_add(u32::from(part)))
+        .collect()
+}
+
+/// The lock of each strand among the `parts_of_wisp` of its wisp.
+fn parts_of_wisps(set: &StrandSet, parts_of_wisp: usize) -> Vec<u8> {
     let mut parts = vec![0; set.count()];
     let mut first = 0;
     for members in set.wisp.chunk_by(|a, b| a == b) {
         let end = first + members.len();
         let weights = set.weights.get(first..end).unwrap_or(&[]);
-        let step = members.len().div_ceil(LOCKS_OF_WISP).max(1);
+        let step = members.len().div_ceil(parts_of_wisp).max(1);
         let centres: Vec<[f32; 3]> = weights.iter().step_by(step).copied().collect();
         parts[first..end].par_iter_mut().zip(weights).with_min_len(512).for_each(|(part, own)| {
             let apart = |centre: &[f32; 3]| (0..3).map(|g| (centre[g] - own[g]).powi(2)).sum::<f32>();
@@ -76,7 +89,7 @@ mod tests {
             }
             within / whole
         };
-        let parts = parts_of_wisps(set);
+        let parts = parts_of_wisps(set, LOCKS_OF_WISP);
         let by_index: Vec<u8> = (0..set.count())
             .map(|i| {
                 let wisp = style.wisps[set.wisp[i] as usize];

@@ -22,6 +22,6 @@ mod tests;
 
 pub use children::FineStrands;
 pub use grow::{ParentPoints, grow_fine, moved_apart};
-pub use locks::{LOCK_NUMBERS, lock_numbers};
+pub use locks::{LOCK_NUMBERS, lock_numbers, locks_of_wisps};
 pub use portion::Portion;
 pub use strand::FineStrand;

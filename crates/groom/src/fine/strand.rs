@@ -23,6 +23,14 @@ impl FineStrand {
     /// The length of a short hair that has the largest number, metres.
     pub const SHORT_METRES: f32 = 0.1;
 
+    /// What it has of a number that each stored strand has: that at its root, between those of its parents. Parents that do not exist
+    /// count as 0.
+    pub fn blend(&self, of_strands: &[f32]) -> f32 {
+        let of = |k: usize| of_strands.get(self.parents[k] as usize).copied().unwrap_or(0.0);
+        let weight = |k: usize| f32::from(self.weights[k][0]) / 127.0;
+        of(0) + weight(0) * (of(1) - of(0)) + weight(1) * (of(2) - of(0))
+    }
+
     /// Its length as a fraction of its first parent's length, which `parent_length` returns in metres.
     #[inline]
     pub(super) fn fraction(&self, parent_length: impl FnOnce() -> f32) -> f32 {

@@ -21,8 +21,8 @@ use thiserror::Error;
 use crate::frame::widest_radii;
 
 use crate::{
-    Bounded, GroomSettings, Guides, Hairstyle, Obstacle, Preset, Scalp, ScalpError, ScalpIndex, StrandSet,
-    Wisp,
+    Bounded, GroomSettings, Guides, Hairstyle, MotionFactors, Obstacle, Preset, Scalp, ScalpError,
+    ScalpIndex, StrandSet, Wisp,
 };
 
 /// Points of each grown guide: 30 links, as in Bertails et al. 2005.
@@ -95,6 +95,7 @@ pub fn grow(
         guides,
         held: Vec::new(),
         ropes: Vec::new(),
+        motion: MotionFactors::default(),
         strands: set,
         look: settings.look,
     })

@@ -23,7 +23,7 @@ use lovelock_base::settings::Settings;
 use thiserror::Error;
 
 use crate::frame::widest_radii;
-use crate::{HairFile, Hairstyle, Obstacle, Scalp, Wisp};
+use crate::{HairFile, Hairstyle, MotionFactors, Obstacle, Scalp, Wisp};
 
 pub use info::{HairInfo, hair_info};
 pub use place::{PlacedGroom, place};
@@ -112,6 +112,7 @@ fn hairstyle_of(
         guides,
         held: Vec::new(),
         ropes: Vec::new(),
+        motion: MotionFactors::default(),
         strands,
         look: colour::look(file),
     };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{GuideFrame, Guides, Hairstyle, Wisp};
+use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandColours, Wisp};
 
 /// Heads side by side and behind each other.
 const COLUMNS: usize = 5;
@@ -35,10 +35,14 @@ impl Crowd {
             &mut style.strands.taper,
             &mut style.strands.shade,
         ];
-        for values in floats {
+        for values in floats.into_iter().chain(style.motion.lists_mut()) {
             *values = values.repeat(HEADS);
         }
         style.strands.weights = strands.weights.repeat(HEADS);
+        let colours = strands.colours.strands().repeat(HEADS);
+        if !colours.is_empty() {
+            style.strands.colours = StrandColours::new(colours);
+        }
         for head in 1..HEADS as u32 {
             style.wisps.extend(one.wisps.iter().map(|wisp| Wisp {
                 guides: wisp.guides.map(|guide| guide + head * guides),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandSet, Strands, Wisp, interpolate};
+use lovelock_groom::{GuideFrame, Guides, Hairstyle, MotionFactors, StrandSet, Strands, Wisp, interpolate};
 use lovelock_project::Project;
 use lovelock_render::Backend;
 use lovelock_session::clock::STEP_SECS;
@@ -185,11 +185,13 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
             offset_tangent: vec![0.0; of * points],
             taper: vec![1.0; of * points],
             shade: vec![0.5; of],
+            ..StrandSet::default()
         },
         guides,
         held: Vec::new(),
         ropes: Vec::new(),
         widest: Vec::new(),
+        motion: MotionFactors::default(),
         ..style.clone()
     }
 }

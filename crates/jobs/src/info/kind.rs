@@ -7,6 +7,7 @@ use std::path::Path;
 use lovelock_groom::HairFormat;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_project::styles::STYLE_EXTENSION;
 use lovelock_record::TAKE_EXTENSION;
 
 /// A kind of readable file.
@@ -20,6 +21,8 @@ pub enum FileKind {
     Motion,
     /// A project.
     Project,
+    /// A hairstyle as a document of its own.
+    Style,
     /// A take.
     Take,
     /// A picture of the surroundings: Radiance or `OpenEXR`.
@@ -34,8 +37,15 @@ fn readable() -> String {
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 6] =
-        [Self::Hair, Self::Character, Self::Motion, Self::Project, Self::Take, Self::Surroundings];
+    pub const ALL: [Self; 7] = [
+        Self::Hair,
+        Self::Character,
+        Self::Motion,
+        Self::Project,
+        Self::Style,
+        Self::Take,
+        Self::Surroundings,
+    ];
 
     /// The name in sentences.
     pub fn label(self) -> &'static str {
@@ -44,6 +54,7 @@ impl FileKind {
             Self::Character => "character",
             Self::Motion => "motion",
             Self::Project => "project",
+            Self::Style => "style",
             Self::Take => "take",
             Self::Surroundings => "surroundings",
         }
@@ -56,6 +67,7 @@ impl FileKind {
             Self::Character => vec!["glb", "gltf"],
             Self::Motion => vec!["bvh"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
+            Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
             Self::Surroundings => vec!["hdr", "exr"],
         }
@@ -79,7 +91,12 @@ impl FileKind {
         let mut start = Vec::new();
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
         let by_name = Self::by_extension(path);
-        Self::by_content(&start).or(by_name).ok_or_else(|| {
+        // A style is a project with fewer sections: only its name tells it apart.
+        let kind = match (Self::by_content(&start), by_name) {
+            (Some(Self::Project), Some(Self::Style)) => by_name,
+            (by_content, _) => by_content.or(by_name),
+        };
+        kind.ok_or_else(|| {
             let ending = path.extension().map_or_else(
                 || "it has no ending".to_owned(),
                 |ending| format!("`.{}` is not read", ending.to_string_lossy()),

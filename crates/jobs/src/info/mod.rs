@@ -1,11 +1,13 @@
 //! `lovelock info`: describes the contents of a file.
 
 mod kind;
+mod style;
 mod surroundings;
 mod take;
 mod text;
 
 pub use kind::FileKind;
+pub use style::StyleInfo;
 pub use surroundings::SurroundingsInfo;
 pub use take::{RegrownInfo, TakeInfo};
 
@@ -42,6 +44,8 @@ pub enum Content {
     Motion(MotionInfo),
     /// A project.
     Project(ProjectInfo),
+    /// A hairstyle as a document of its own.
+    Style(StyleInfo),
     /// A recorded simulation.
     Take(TakeInfo),
     /// A picture of the surroundings.
@@ -63,7 +67,7 @@ pub struct ProjectInfo {
     pub body: String,
     /// The motion: a clip's name, a file, or `rest`.
     pub motion: String,
-    /// The hairstyle: a preset's id, or a file.
+    /// The hairstyle: a style's id, or a file.
     pub hair: String,
     /// The picture of the surroundings, or `null`.
     pub surroundings: Option<String>,
@@ -81,7 +85,7 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Describes a hair, character, motion, project or take file, a picture of the surroundings, or a database of hair clusters.
+/// Describes a hair, character, motion, project, style or take file, a picture of the surroundings, or a database of hair clusters.
 ///
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
@@ -101,6 +105,7 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
         }
         FileKind::Motion => Content::Motion(load_motion(path).map_err(|error| refuse(&error))?.info()),
         FileKind::Project => Content::Project(project_info(path)?),
+        FileKind::Style => Content::Style(StyleInfo::of(path)?),
         FileKind::Take => Content::Take(TakeInfo::of(path)?),
         FileKind::Surroundings => Content::Surroundings(SurroundingsInfo::of(path)?),
     };
@@ -131,6 +136,7 @@ fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
             MotionSource::Rest => "rest".to_owned(),
         },
         hair: match project.hair.source {
+            HairSource::Grown if !project.hair.style.is_empty() => project.hair.style.clone(),
             HairSource::Grown => project.hair.preset.id().to_owned(),
             HairSource::File => name(&project.hair.file),
         },

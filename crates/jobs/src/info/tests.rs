@@ -6,6 +6,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Character(_) => "character",
         Content::Motion(_) => "motion",
         Content::Project(_) => "project",
+        Content::Style(_) => "style",
         Content::Take(_) => "take",
         Content::Surroundings(_) => "surroundings",
         Content::HairClusters(_) => "hair-clusters",
@@ -92,6 +93,22 @@ fn a_project_tells_what_it_names_and_what_is_missing() {
 }
 
 #[test]
+fn a_style_is_described() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("s.lovelockstyle");
+    let text = "(version: 3, name: \"Mine\", tags: [\"Short\"], sparkle: 1, hair: (groom: (wisps: 100, \
+                strands_per_wisp: 10), stack: (layers: [(operation: (kind: \"curl\"))])))";
+    std::fs::write(&path, text).expect("a file");
+    let json = serde_json::to_value(info(&path).expect("a style")).expect("JSON");
+    assert_eq!(
+        (&json["kind"], &json["name"], &json["strands"]),
+        (&"style".into(), &"Mine".into(), &1000.into())
+    );
+    assert_eq!((&json["tags"][0], &json["dropped"]["unknown_fields"]), (&"short".into(), &1.into()));
+    assert!(info(&path).expect("a style").to_string().contains("Curl"));
+}
+
+#[test]
 fn content_speaks_before_the_ending() {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, content, kind) in [
@@ -99,6 +116,8 @@ fn content_speaks_before_the_ending() {
         ("b.bvh", b"HAIR....", Some(FileKind::Hair)),
         ("c", b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"}}", Some(FileKind::Character)),
         ("d.dat", b"\xef\xbb\xbf(\n version: 1)", Some(FileKind::Project)),
+        ("d.lovelockstyle", b"(version: 3)", Some(FileKind::Style)),
+        ("e.lovelockstyle", b"HAIR....", Some(FileKind::Hair)),
         ("e.HAIR", b"nonsense", Some(FileKind::Hair)),
         ("f.txt", b"nonsense", None),
         ("g", b"", None),

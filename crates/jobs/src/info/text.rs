@@ -74,6 +74,22 @@ impl fmt::Display for Info {
                 )?;
                 remarks(f, &project.dropped, &project.notes)
             }
+            Content::Style(style) => {
+                line(f, "kind", &style.format)?;
+                line(f, "name", &style.name)?;
+                if !style.text.is_empty() {
+                    line(f, "about", &style.text)?;
+                }
+                if !style.tags.is_empty() {
+                    line(f, "tags", style.tags.join(", "))?;
+                }
+                match style.strands {
+                    Some(strands) => line(f, "strands", strands)?,
+                    None => line(f, "strands", "those of a hair file")?,
+                }
+                line(f, "layers", style.layers.join(", "))?;
+                remarks(f, &style.dropped, &style.notes)
+            }
             Content::Surroundings(picture) => {
                 line(f, "kind", format_args!("surroundings, {}", picture.format))?;
                 line(f, "size", format_args!("{} x {} pixels", picture.width, picture.height))?;

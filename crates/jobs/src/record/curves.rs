@@ -9,7 +9,7 @@ use glam::{Affine3A, Vec3};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Settings;
 use lovelock_groom::fine::lock_numbers;
-use lovelock_groom::{HairLook, Hairstyle, PigmentVariation, Strands};
+use lovelock_groom::{ColourSamples, HairLook, Hairstyle, PigmentVariation, Strands, colour_along};
 use lovelock_motion::Body;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
@@ -247,8 +247,10 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             scene.widths = vec![width; count * per];
             // A guide stands for several locks, and has the colour of most of them.
             let look = HairLook { grey: 0.0, highlights: 0.0, ..look };
-            for _ in 0..count {
-                scene.colors.extend((0..per).map(|p| color(&look, p as f32 / (per - 1) as f32, 0.5, 0)));
+            let colours = colours_of_guides(style);
+            for guide in 0..count {
+                let own = colours.get(guide);
+                scene.colors.extend((0..per).map(|p| color(&look, p as f32 / (per - 1) as f32, 0.5, 0, own)));
             }
         }
         CurveSource::Strands => {
@@ -257,10 +259,13 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             scene.first_point.clone_from(&set.first_point);
             scene.widths = set.taper.iter().map(|taper| taper * width).collect();
             let locks = lock_numbers(set);
-            for ((&[start, end], &shade), lock) in set.first_point.array_windows().zip(&set.shade).zip(locks)
-            {
+            let strands = set.first_point.array_windows().zip(&set.shade).zip(locks).enumerate();
+            for (strand, ((&[start, end], &shade), lock)) in strands {
                 let last = (end - start - 1).max(1) as f32;
-                scene.colors.extend((0..end - start).map(|p| color(&look, p as f32 / last, shade, lock)));
+                let own = set.colours.strands().get(strand);
+                scene
+                    .colors
+                    .extend((0..end - start).map(|p| color(&look, p as f32 / last, shade, lock, own)));
             }
         }
     }
@@ -268,9 +273,33 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
 }
 
 /// Colour at the fraction `along` of a strand with that shade, of a lock with that number; linear sRGB, as rendered in uniform light.
-fn color(look: &HairLook, along: f32, shade: f32, lock: u8) -> Vec3 {
-    let pigment = PigmentVariation::of(look).factor(along, shade, i32::from(lock));
-    HairLook::body_color(look.absorption() * pigment)
+/// `own` are the colours that layers gave the strand.
+fn color(look: &HairLook, along: f32, shade: f32, lock: u8, own: Option<&ColourSamples>) -> Vec3 {
+    let variation = PigmentVariation::of(look);
+    let absorption = look.absorption() * variation.factor(along, shade, i32::from(lock));
+    let absorption = own.map_or(absorption, |own| {
+        let [kept, added @ ..] = colour_along(own, along);
+        kept * absorption + Vec3::from(added) * variation.varied(shade)
+    });
+    HairLook::body_color(absorption)
+}
+
+/// For each guide the colours of the strand that follows it most closely; empty if strands have no colours of their own.
+fn colours_of_guides(style: &Hairstyle) -> Vec<ColourSamples> {
+    let set = &style.strands;
+    if set.colours.is_empty() {
+        return Vec::new();
+    }
+    let mut nearest = vec![(f32::NEG_INFINITY, ColourSamples::default()); style.guides.count()];
+    for ((wisp, weights), samples) in set.wisp.iter().zip(&set.weights).zip(set.colours.strands()) {
+        for (guide, weight) in style.wisps[*wisp as usize].guides.into_iter().zip(weights) {
+            let found = &mut nearest[guide as usize];
+            if *weight <= 1.0 && *weight > found.0 {
+                *found = (*weight, *samples);
+            }
+        }
+    }
+    nearest.into_iter().map(|(_, samples)| samples).collect()
 }
 
 fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
@@ -339,9 +368,29 @@ impl Moved {
 
 #[cfg(test)]
 mod tests {
-    use lovelock_groom::{GroomSettings, PlainHead, UNPIGMENTED, grow};
+    use lovelock_groom::{GroomSettings, PlainHead, StrandColour, StrandColours, UNPIGMENTED, grow};
 
     use super::*;
+
+    #[test]
+    fn colours_of_layers_are_written() {
+        let settings = GroomSettings { wisps: 40, strands_per_wisp: 20, ..GroomSettings::default() };
+        let mut style = grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair");
+        let look = HairLook { variation: 0.0, ..HairLook::default() };
+        let before = curves_of(CurveSource::Strands, &style, &look);
+        let red = Vec3::new(0.02, 1.5, 2.0);
+        let mut tips = ColourSamples::default();
+        tips[1..].fill(StrandColour::BELOW.toward(red, 1.0));
+        style.strands.colours = StrandColours::new(vec![tips; style.strands.count()]);
+        for source in [CurveSource::Strands, CurveSource::Guides] {
+            let scene = curves_of(source, &style, &look);
+            for ends in scene.first_point.windows(2) {
+                let of = &scene.colors[ends[0] as usize..ends[1] as usize];
+                assert!(of[of.len() - 1].abs_diff_eq(HairLook::body_color(red), 1e-6));
+                assert_eq!(of[0], before.colors[0], "roots stay");
+            }
+        }
+    }
 
     #[test]
     fn strands_have_the_colours_that_they_are_rendered_with() {

@@ -58,6 +58,11 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     };
     let (skeleton, joint_of_node) = tree.skeleton(file, document, wanted, &mut dropped)?;
 
+    let worn = worn_hair(document, &tree.order);
+    if !worn.is_empty() {
+        let names: Vec<String> = worn.iter().map(|&n| format!("`{}`", name_of(document, n))).collect();
+        notes.push(format!("left out, because it is hair: {}", names.join(", ")));
+    }
     let mut palette = Palette::default();
     let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
     let mut surface = Surface::default();
@@ -65,6 +70,9 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     for &n in &tree.order {
         let node = &document.nodes[n];
         let Some(mesh) = node.mesh.map(|m| &document.meshes[m]) else { continue };
+        if worn.contains(&n) {
+            continue;
+        }
         let count = mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
         let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or_default();
         let first_morph = surface.add_morphs(&morph_names(mesh), weights, count);
@@ -136,6 +144,43 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         skins: document.skins.len(),
         unit_metres,
     })
+}
+
+/// The name of a node with a mesh: its own, or that of the mesh.
+fn name_of(document: &Document, node: usize) -> &str {
+    let node = &document.nodes[node];
+    let of_mesh = node.mesh.and_then(|m| document.meshes[m].name.as_deref());
+    node.name.as_deref().or(of_mesh).unwrap_or_default()
+}
+
+/// The nodes whose mesh is the hair that a character was made with, by the names of node and mesh: other hair grows in its place. None
+/// if that would leave nothing.
+fn worn_hair(document: &Document, order: &[usize]) -> Vec<usize> {
+    let with_mesh: Vec<usize> = order.iter().copied().filter(|&n| document.nodes[n].mesh.is_some()).collect();
+    let hair = |n: &usize| {
+        let node = &document.nodes[*n];
+        let of_mesh = node.mesh.and_then(|m| document.meshes[m].name.as_deref());
+        node.name.as_deref().is_some_and(names_hair) || of_mesh.is_some_and(names_hair)
+    };
+    let worn: Vec<usize> = with_mesh.iter().copied().filter(hair).collect();
+    if worn.len() == with_mesh.len() { Vec::new() } else { worn }
+}
+
+/// Whether one of the words of a name says hair. Words end at signs, digits and before capitals.
+fn names_hair(name: &str) -> bool {
+    const HAIR: [&str; 7] = ["hair", "hairs", "wig", "ponytail", "hairstyle", "haircut", "bangs"];
+    let mut words = vec![String::new()];
+    let mut was_small = false;
+    for c in name.chars() {
+        if !c.is_alphabetic() || (c.is_uppercase() && was_small) {
+            words.push(String::new());
+        }
+        if let (true, Some(word)) = (c.is_alphabetic(), words.last_mut()) {
+            word.extend(c.to_lowercase());
+        }
+        was_small = c.is_lowercase();
+    }
+    words.iter().any(|word| HAIR.contains(&word.as_str()))
 }
 
 fn describe_contents(document: &Document, dropped: &BTreeMap<String, u64>) -> String {
@@ -233,5 +278,20 @@ fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
     update_rest_surface(body);
     for track in clips.iter_mut().flat_map(|c| &mut c.joints).filter_map(|j| j.translation.as_mut()) {
         track.values.iter_mut().for_each(|v| *v *= scale);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names_hair;
+
+    #[test]
+    fn hair_is_known_by_its_name() {
+        for name in ["Hair", "hair_01", "Mesh.Hair", "LongHair", "FemaleWig2", "head-hair"] {
+            assert!(names_hair(name), "{name}");
+        }
+        for name in ["Chair", "Body", "Hairy", "wiggle", ""] {
+            assert!(!names_hair(name), "{name}");
+        }
     }
 }

@@ -48,6 +48,7 @@ pub(super) struct Node {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Mesh {
+    pub(super) name: Option<String>,
     pub(super) primitives: Vec<Primitive>,
     pub(super) weights: Option<Vec<f32>>,
     pub(super) extras: Option<Value>,

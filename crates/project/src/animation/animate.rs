@@ -7,7 +7,7 @@ use lovelock_simulation::SimulationSettings;
 
 use super::leaf::{set_all, set_numbers};
 use crate::project::Project;
-use crate::tracks::Track;
+use crate::tracks::{STACK_TARGET, Track};
 
 impl Project {
     /// Whether any track has an effect.
@@ -26,6 +26,14 @@ impl Project {
         }
         set_all(&mut project, values);
         // Only sections that tracks can change.
+        if self
+            .timeline
+            .tracks
+            .iter()
+            .any(|track| track.is_active() && track.target.starts_with(STACK_TARGET))
+        {
+            AnySettings::clamp(&mut project.hair.stack);
+        }
         let Self { look, simulation, shadow, lights, camera, picture, .. } = &mut project;
         let sections: [&mut dyn AnySettings; 5] = [look, simulation, shadow, camera, picture];
         sections.into_iter().for_each(AnySettings::clamp);

@@ -7,13 +7,20 @@ use lovelock_base::settings::{AnySettings, entries, find, set_value};
 
 use crate::project::Project;
 
-/// Parts of the project whose numbers may follow the timeline: what is rendered or simulated without loading anything.
-const SECTIONS: [&str; 6] = ["look", "simulation", "shadow", "lights", "camera", "picture"];
+/// Parts of the project whose numbers may follow the timeline: what is rendered or simulated without loading anything. Of the section
+/// `hair` these are only the layers, see [`is_keyable`].
+const SECTIONS: [&str; 7] = ["hair", "look", "simulation", "shadow", "lights", "camera", "picture"];
+
+/// Whether the number at a path may follow the timeline. Growing, importing, cutting and tying load the hair again.
+fn is_keyable(path: &str) -> bool {
+    let section = path.split('.').next().unwrap_or_default();
+    SECTIONS.contains(&section) && (section != "hair" || path.starts_with("hair.stack."))
+}
 
 /// The path of a track's target among the project's settings: tracks divide names by slashes.
 fn path_of(target: &str) -> Option<String> {
-    let (section, _) = target.split_once('/')?;
-    SECTIONS.contains(&section).then(|| target.replace('/', "."))
+    let path = target.replace('/', ".");
+    is_keyable(&path).then_some(path)
 }
 
 /// The path of a vector and the index of one of its numbers, of a target such as `lights/0/direction/1`.
@@ -69,12 +76,26 @@ pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64
         entries(before).into_iter().map(|entry| (entry.path, entry.value.numbers())).collect();
     // A list of another length has other parts, and no number of it has moved.
     let same_lights = before.lights.len() == after.lights.len();
+    let masks = |project: &Project, id: &str| {
+        let layer = id.parse().ok().and_then(|id| project.hair.stack.layer(id));
+        layer.map(|layer| layer.mask.parts.len())
+    };
+    let same_mask = |path: &str| {
+        let mut names = path.split('.').skip(2);
+        let (id, part) = (names.next().unwrap_or_default(), names.next().unwrap_or_default());
+        !part.starts_with("mask") || masks(before, id) == masks(after, id)
+    };
     let moved = entries(after).into_iter().filter_map(|entry| {
         let section = entry.path.split('.').next()?;
-        let at = SECTIONS.iter().position(|name| *name == section)?;
+        let at = SECTIONS.iter().position(|name| *name == section).filter(|_| is_keyable(&entry.path))?;
         let (old, new) = (old.get(&entry.path)?, entry.value.numbers());
         let finite = old.iter().chain(&new).all(|number| number.is_finite());
-        let moved = *old != new && finite && (same_lights || section != "lights");
+        let same_list = match section {
+            "lights" => same_lights,
+            "hair" => same_mask(&entry.path),
+            _ => true,
+        };
+        let moved = *old != new && finite && same_list;
         moved.then(|| (at, entry.path.replace('.', "/"), new))
     });
     let mut moved: Vec<_> = moved.collect();
@@ -84,7 +105,8 @@ pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64
 
 /// Whether any of [`SECTIONS`] differs.
 fn sections_differ(a: &Project, b: &Project) -> bool {
-    a.look != b.look
+    a.hair.stack != b.hair.stack
+        || a.look != b.look
         || a.simulation != b.simulation
         || a.shadow != b.shadow
         || a.lights != b.lights

@@ -6,11 +6,15 @@
 mod animate;
 mod leaf;
 mod overdub;
+mod style;
 
 pub use animate::Animation;
 pub use overdub::{Moment, Overdub};
+pub use style::StyleTracks;
 
 #[cfg(test)]
 mod ride_tests;
+#[cfg(test)]
+mod style_tests;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use super::leaf::{changed, numbers_at, set_all};
 use crate::project::Project;
-use crate::tracks::{Key, Track, curve};
+use crate::tracks::{Key, STACK_TARGET, Track, curve};
 
 /// Distance between the written part of a track and the keys that keep the rest of the track unchanged, seconds.
 const EDGE_SECS: f64 = 1.0 / 60.0;
@@ -103,6 +103,7 @@ impl Overdub {
     /// The project after a pass of the interface in which `shown` became `edited`. Changes of written tracks become keys, and the
     /// project's own values of all tracked targets are restored.
     pub fn edit(&mut self, base: &Project, shown: &Project, mut edited: Project, now: Moment) -> Project {
+        drop_tracks_of_removed(shown, &mut edited);
         if !self.armed && self.touches.is_empty() && !base.is_animated() {
             return edited;
         }
@@ -132,7 +133,7 @@ impl Overdub {
                     track.put(now.secs, value);
                 }
             } else if is_tracked {
-                let label = Track::new(target).label();
+                let label = Track::new(target).label_in(&edited.hair.stack);
                 self.refused.get_or_insert(label);
             }
         }
@@ -145,6 +146,23 @@ impl Overdub {
         let own: Vec<_> = own.collect();
         set_all(&mut edited, own);
         edited
+    }
+}
+
+/// Removes the tracks of layers and groups that an edit has removed: a later layer may get the number of one of them.
+fn drop_tracks_of_removed(before: &Project, edited: &mut Project) {
+    let (before, after) = (&before.hair.stack, &edited.hair.stack);
+    if !edited.timeline.tracks.iter().any(|track| track.target.starts_with(STACK_TARGET)) {
+        return;
+    }
+    let layers = before.layers.iter().filter(|layer| after.layer(layer.id).is_none());
+    let groups = before.groups.iter().filter(|group| after.group(group.id).is_none());
+    let gone: Vec<String> = layers
+        .map(|layer| format!("{STACK_TARGET}{}/", layer.id))
+        .chain(groups.map(|group| format!("{STACK_TARGET}group{}/", group.id)))
+        .collect();
+    if !gone.is_empty() {
+        edited.timeline.tracks.retain(|track| !gone.iter().any(|of| track.target.starts_with(of)));
     }
 }
 

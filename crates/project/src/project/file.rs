@@ -39,30 +39,38 @@ pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), ProjectError
 /// # Errors
 /// As [`load_project`].
 pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, Vec<Problem>), ProjectError> {
-    let name = path.display();
-    let cannot_read =
-        |error: std::io::Error| ProjectError::input(path, format!("{name}: cannot be read: {error}"));
-    let file = File::open(path).map_err(cannot_read)?;
-    let data = file.metadata().map_err(cannot_read)?;
-    if data.is_dir() {
-        return Err(ProjectError::input(path, format!("{name}: is a folder; must be a project file")));
-    }
-    let mut bytes = Vec::new();
-    file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
-    if bytes.len() as u64 > LARGEST_BYTES {
-        let message = format!("{name}: larger than {LARGEST_BYTES} bytes, the largest size of a project");
-        return Err(ProjectError::input(path, message));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        ProjectError::input(path, format!("{name}: byte {at}: not valid UTF-8; must be a project (text)"))
-    })?;
+    let text = read_text(path, "project")?;
     let (project, mut problems) = project_of_text(path, &text)?;
     access.set_project(Some(path));
     for (place, file) in project.files() {
         problems.extend(access.read(place, file).err());
     }
     Ok((project, problems))
+}
+
+/// The text of a file that should be a `what`, such as a project.
+///
+/// # Errors
+/// A file that cannot be read, is a folder, is larger than a project can be, or is not text.
+pub(crate) fn read_text(path: &Path, what: &str) -> Result<String, ProjectError> {
+    let name = path.display();
+    let cannot_read =
+        |error: std::io::Error| ProjectError::input(path, format!("{name}: cannot be read: {error}"));
+    let file = File::open(path).map_err(cannot_read)?;
+    let data = file.metadata().map_err(cannot_read)?;
+    if data.is_dir() {
+        return Err(ProjectError::input(path, format!("{name}: is a folder; must be a {what} file")));
+    }
+    let mut bytes = Vec::new();
+    file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
+    if bytes.len() as u64 > LARGEST_BYTES {
+        let message = format!("{name}: larger than {LARGEST_BYTES} bytes, the largest size of a {what}");
+        return Err(ProjectError::input(path, message));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        ProjectError::input(path, format!("{name}: byte {at}: not valid UTF-8; must be a {what} (text)"))
+    })
 }
 
 /// As [`parse_project`], for a file at `path`: relative paths are resolved against its folder.
@@ -83,6 +91,23 @@ pub fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>
 /// # Errors
 /// Text that is not a project, with line and column, or a project of a newer version.
 pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), ProjectError> {
+    parse_text(path, text, "project", &[])
+}
+
+/// How project files are read.
+pub(crate) fn text_options() -> ron::Options {
+    ron::Options::default()
+        .with_recursion_limit(DEEPEST)
+        .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+}
+
+/// As [`parse_project`], for text that should be a `what`, with fields besides those of a project.
+pub(crate) fn parse_text(
+    path: &Path,
+    text: &str,
+    what: &str,
+    more_fields: &[&str],
+) -> Result<(Project, Vec<Problem>), ProjectError> {
     #[derive(Deserialize)]
     struct Header {
         version: u32,
@@ -91,19 +116,17 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
     let refuse = |error: ron::error::SpannedError| {
         ProjectError::input(
             path,
-            format!("{name}: line {}: {}; wanted a project", error.span.start, error.code),
+            format!("{name}: line {}: {}; wanted a {what}", error.span.start, error.code),
         )
     };
-    let options = ron::Options::default()
-        .with_recursion_limit(DEEPEST)
-        .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    let options = text_options();
     // The version first, because the contents of a newer one may not be readable.
     let header: Header = options.from_str(text).map_err(refuse)?;
     if header.version > PROJECT_VERSION {
         return Err(ProjectError::input(
             path,
             format!(
-                "{name}: made by a newer Lovelock (project version {}); this one reads up to version {PROJECT_VERSION}",
+                "{name}: made by a newer Lovelock ({what} version {}); this one reads up to version {PROJECT_VERSION}",
                 header.version
             ),
         ));
@@ -122,7 +145,10 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
         .and_then(|text| options.from_str::<ron::Value>(&text).map_err(|error| error.code));
     if let (Ok(found), Ok(known)) = (options.from_str::<ron::Value>(text), known) {
         let unknown = unknown_fields(&found, &known).into_iter();
-        problems.extend(unknown.filter(|field| !(is_version_1 && Version1::knows(field))).map(|field| {
+        let known = |field: &String| {
+            more_fields.contains(&field.as_str()) || (is_version_1 && Version1::knows(field))
+        };
+        problems.extend(unknown.filter(|field| !known(field)).map(|field| {
             let message = format!("the field `{field}` is not known to this version and was left out");
             Problem::new(Place::Project, ProblemKind::Ignored, message)
         }));

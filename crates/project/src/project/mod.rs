@@ -20,14 +20,15 @@ pub use file::{
     PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, save_project,
     text_of_project,
 };
+pub(crate) use file::{parse_text, read_text, text_options};
 pub use sections::{
-    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
-    MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, KeptScalp,
+    Marker, MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
 };
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
-use lovelock_groom::{GroomSettings, HairLook, Haircut, Preset};
+use lovelock_groom::{GroomSettings, HairLook, Preset};
 use lovelock_render::{Light, PictureSettings, ShadowSettings, StrandCount};
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
@@ -106,40 +107,15 @@ impl Project {
         project
     }
 
-    /// Switches to a shipped hairstyle with its colours and ties, and with its stiffness unless the user has changed that.
-    pub fn set_preset(&mut self, preset: Preset) {
-        self.change_hair(HairSource::Grown, preset);
-        self.hair.groom = GroomSettings::preset(preset);
-        // How much light hair blocks stays, whatever its colour.
-        self.look = HairLook { extinction_scale: self.look.extinction_scale, ..self.hair.groom.look };
-        self.hair.ties = preset.ties().to_vec();
-        // A cut belongs to the hair that it was made on.
-        self.hair.cut = Haircut::default();
-    }
-
-    /// Switches between the grown hairstyle and the hair file that was picked before.
-    pub fn set_hair_source(&mut self, source: HairSource) {
-        self.change_hair(source, self.hair.preset);
-    }
-
-    /// Changes the hair. Simulation settings that still have the defaults of the old hair get those of the new hair.
-    fn change_hair(&mut self, source: HairSource, preset: Preset) {
-        let before = self.hair.simulation();
-        (self.hair.source, self.hair.preset) = (source, preset);
-        self.simulation = self.simulation.restyled(&before, &self.hair.simulation());
-    }
-
     /// Switches to a hair file that the user picked.
     pub fn set_hair_file(&mut self, path: impl Into<std::path::PathBuf>) {
         self.set_hair_source(HairSource::File);
         self.hair.file = Some(FileRef::new(path));
     }
 
-    /// Switches to a character file that the user picked, with its first clip.
+    /// Switches to a character file that the user picked, with its first clip. Hair and style stay, on the scalp of the new head.
     pub fn set_body_file(&mut self, path: impl Into<std::path::PathBuf>) {
-        self.body.source = BodySource::File;
-        self.body.file = Some(FileRef::new(path));
-        self.body.head_joint = None;
+        self.body.switch(Some(FileRef::new(path)));
         if self.motion.source == MotionSource::Clip {
             self.motion.clip.clear();
         }
@@ -189,7 +165,9 @@ impl Project {
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
         let own = [&mut body.file, &mut motion.file, &mut hair.file, &mut surroundings.file];
+        let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
+            .chain(scalps)
             .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairShading, HairTie, Haircut, ImportSettings, Preset};
-use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
+use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings, ScalpFit};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_simulation::SimulationSettings;
@@ -38,6 +38,49 @@ pub struct BodySection {
     pub head_joint: Option<String>,
     /// What is changed about the shapes that hair collides with.
     pub colliders: ColliderEdits,
+    /// What is changed about the scalp that was fitted to this body.
+    pub scalp: ScalpFit,
+    /// The corrected scalps of other bodies of this project: each returns with its body.
+    pub other_scalps: Vec<KeptScalp>,
+}
+
+/// The corrected scalp of a body that is not shown.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KeptScalp {
+    /// The file of that body; none for the shipped dancer.
+    pub file: Option<FileRef>,
+    /// What was changed.
+    pub scalp: ScalpFit,
+}
+
+impl BodySection {
+    /// The most bodies whose scalps are kept.
+    pub const MOST_SCALPS: usize = 16;
+
+    /// Switches to another body: to a file, or to the shipped dancer. The head joint is guessed again. The corrections of the scalp are
+    /// kept for the body that they were made for, and those that the new body had before return.
+    pub fn switch(&mut self, file: Option<FileRef>) {
+        let of = (self.source == BodySource::File).then(|| self.file.clone()).flatten();
+        let path = |file: &Option<FileRef>| file.as_ref().map(|file| file.path.clone());
+        if path(&of) != path(&file) {
+            let left = KeptScalp { file: of, scalp: std::mem::take(&mut self.scalp) };
+            self.other_scalps.retain(|kept| path(&kept.file) != path(&left.file));
+            if let Some(i) = self.other_scalps.iter().position(|kept| path(&kept.file) == path(&file)) {
+                self.scalp = self.other_scalps.remove(i).scalp;
+            }
+            if !left.scalp.is_automatic() {
+                self.other_scalps.push(left);
+                let surplus = self.other_scalps.len().saturating_sub(Self::MOST_SCALPS);
+                self.other_scalps.drain(..surplus);
+            }
+        }
+        self.head_joint = None;
+        self.source = if file.is_some() { BodySource::File } else { BodySource::Dancer };
+        if file.is_some() {
+            self.file = file;
+        }
+    }
 }
 
 /// Where the motion comes from.
@@ -108,8 +151,13 @@ pub enum HairSource {
 pub struct HairSection {
     /// Where it comes from.
     pub source: HairSource,
-    /// The shipped style that `groom` began as: where its controls return to.
+    /// The shipped style that `groom` began as, where `style` names none: where its controls return to.
     pub preset: Preset,
+    /// The style that was applied last: the id of a shipped one, or `own/NAME` of one of the user's; empty where only `preset` was.
+    /// Controls return to the style's values if it is shipped.
+    pub style: String,
+    /// How the style that was applied moves, where it is none of the shipped ones: where the controls of the simulation return to.
+    pub moves: Option<SimulationSettings>,
     /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
     pub groom: GroomSettings,
     /// A hair file, in one of [`lovelock_groom::HAIR_FORMATS`].
@@ -129,6 +177,8 @@ impl Default for HairSection {
         Self {
             source: HairSource::Grown,
             preset: Preset::Smooth,
+            style: String::new(),
+            moves: None,
             groom: GroomSettings::preset(Preset::Smooth),
             file: None,
             import: ImportSettings::default(),
@@ -140,6 +190,9 @@ impl Default for HairSection {
 }
 
 impl HairSection {
+    /// The longest name of a style, characters.
+    pub const LONGEST_STYLE: usize = 100;
+
     /// The cut and the ties as layers, which act before those of [`HairSection::stack`].
     pub fn cut_and_ties(&self) -> StyleStack {
         let mut layers = Vec::new();
@@ -148,14 +201,6 @@ impl HairSection {
         }
         layers.extend(self.ties.iter().map(|tie| Layer::of(*tie)));
         StyleStack { layers, ..StyleStack::default() }
-    }
-
-    /// How this hair moves unless it is changed: where the controls of the simulation return to.
-    pub fn simulation(&self) -> SimulationSettings {
-        match self.source {
-            HairSource::Grown => SimulationSettings::preset(self.preset),
-            HairSource::File => SimulationSettings::default(),
-        }
     }
 }
 

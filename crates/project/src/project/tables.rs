@@ -105,17 +105,27 @@ impl Settings for BodySection {
     )];
 
     fn parts(&self) -> Vec<Part<'_>> {
-        vec![("settings".into(), &self.settings), ("colliders".into(), &self.colliders)]
+        vec![
+            ("settings".into(), &self.settings),
+            ("colliders".into(), &self.colliders),
+            ("scalp".into(), &self.scalp),
+        ]
     }
 
     fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
-        vec![("settings".into(), &mut self.settings), ("colliders".into(), &mut self.colliders)]
+        vec![
+            ("settings".into(), &mut self.settings),
+            ("colliders".into(), &mut self.colliders),
+            ("scalp".into(), &mut self.scalp),
+        ]
     }
 
     fn reconcile(&mut self) {
         let shapes = std::mem::take(&mut self.colliders.shapes);
         let named = shapes.into_iter().filter(|(name, _)| name.chars().count() <= LONGEST_COLLIDER);
         self.colliders.shapes = named.take(MOST_COLLIDERS).collect();
+        self.other_scalps.truncate(Self::MOST_SCALPS);
+        self.other_scalps.iter_mut().for_each(|kept| kept.scalp = kept.scalp.clamped());
     }
 }
 
@@ -224,6 +234,8 @@ impl Settings for HairSection {
     fn reconcile(&mut self) {
         self.ties.truncate(HairTie::MOST);
         self.cut = self.cut.clamped();
+        self.style = self.style.chars().filter(|c| !c.is_control()).take(Self::LONGEST_STYLE).collect();
+        self.moves = self.moves.map(|moves| moves.clamped());
     }
 }
 

@@ -400,3 +400,25 @@ proptest! {
         let _ = parse_project(Path::new("p"), &text);
     }
 }
+
+#[test]
+fn hair_moves_from_one_character_to_another_and_each_keeps_its_scalp() {
+    let mut project = Project::default();
+    project.hair.groom.length = 0.21;
+    project.body.scalp.up = 0.1;
+    let hair = project.hair.clone();
+    project.set_body_file("/a/one.glb");
+    assert_eq!((project.body.scalp.up, project.hair == hair), (0.0, true));
+    project.body.scalp.nod = 0.2;
+    project.body.switch(None);
+    assert_eq!(
+        (project.body.scalp.up, project.body.scalp.nod, project.body.source),
+        (0.1, 0.0, crate::project::BodySource::Dancer)
+    );
+    project.body.switch(Some(crate::files::FileRef::new("/a/one.glb")));
+    assert_eq!((project.body.scalp.up, project.body.scalp.nod), (0.0, 0.2));
+    assert_eq!(project.body.other_scalps.len(), 1);
+    let text = ron::to_string(&project.body).expect("text");
+    let read: crate::project::BodySection = ron::from_str(&text).expect("a section");
+    assert_eq!(read, project.body);
+}

@@ -5,4 +5,4 @@
 pub(crate) mod curve;
 mod section;
 
-pub use section::{Key, Track};
+pub use section::{Key, STACK_TARGET, Track};

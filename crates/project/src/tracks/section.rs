@@ -1,8 +1,12 @@
 //! A track as the project stores it.
 
+use lovelock_style::StyleStack;
 use serde::{Deserialize, Serialize};
 
 use super::curve;
+
+/// What targets of tracks begin with that are numbers of layers of the hairstyle.
+pub const STACK_TARGET: &str = "hair/stack/";
 
 /// The value of a track at a time. A track is linear between keys and constant before the first and after the last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -58,6 +62,27 @@ impl Track {
         let text = words.join(" ");
         let mut letters = text.chars();
         letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
+    /// The label in the interface, with the name of the layer where it is a number of one: `Curl radius` for `hair/stack/3/curl/radius`.
+    pub fn label_in(&self, stack: &StyleStack) -> String {
+        let Some(below) = self.target.strip_prefix(STACK_TARGET) else { return self.label() };
+        let mut parts: Vec<&str> = below.split('/').collect();
+        let of = parts.remove(0);
+        let layer = of.parse().ok().and_then(|id| stack.layer(id));
+        let group = of.strip_prefix("group").and_then(|id| stack.group(id.parse().ok()?));
+        let name = match (layer, group) {
+            (Some(layer), _) => {
+                // The name of the operation says no more than that of the layer.
+                if parts.first() == Some(&layer.operation.id()) {
+                    parts.remove(0);
+                }
+                layer.label().to_owned()
+            }
+            (None, Some(group)) => group.name.clone(),
+            (None, None) => format!("Layer {of}"),
+        };
+        parts.iter().fold(name, |text, part| format!("{text} {}", part.replace('_', " ")))
     }
 
     /// Whether the track has an effect.

@@ -1,12 +1,13 @@
 //! The strands of a picture on the CPU: the stored ones, or fine ones that are made from them.
 
-use lovelock_groom::Strands;
 use lovelock_groom::fine::{FineStrands, ParentPoints, Portion, grow_fine};
 use lovelock_groom::simd::Width;
+use lovelock_groom::{Hairstyle, Strands};
 
 use crate::FrameInput;
 use crate::strand_details::StrandDetails;
 use crate::strand_portion::portion_of;
+use crate::strand_values::at_points;
 
 /// The width of a strand that is aimed at, pixels: thinner ones cost as much and can hardly be told apart.
 const TARGET_PIXELS: f32 = 0.7;
@@ -92,6 +93,14 @@ impl DrawnStrands {
     /// The strands that are drawn.
     pub fn strands<'a>(&'a self, stored: &'a Strands) -> &'a Strands {
         if self.portion.is_some() { &self.strands } else { stored }
+    }
+
+    /// One number per drawn point from one per stored strand of `style`.
+    pub fn at_points(&self, style: &Hairstyle, of_strands: &[f32]) -> Vec<f32> {
+        let fine = self.portion.map(|portion| {
+            (&self.fine.strands[..portion.drawn.min(self.fine.strands.len())], self.fine.points_per_strand)
+        });
+        at_points(&style.strands, fine, of_strands)
     }
 
     /// The part of the fine strands that is drawn, with the points of each; `None` for stored strands.

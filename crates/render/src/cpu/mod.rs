@@ -20,6 +20,7 @@ mod bins;
 mod body_depth;
 mod clusters;
 mod drawn;
+mod false_colors;
 mod finish;
 mod hair;
 mod kept;

@@ -86,7 +86,7 @@ impl PlacedScene {
         transmittance: &[u32],
         is_draft: bool,
     ) {
-        let from = PointsIn { strands, details: &details.words, transmittance };
+        let from = PointsIn { strands, details: &details.words, transmittance, colours: details.colours() };
         shade_all(self.width, view, &from, is_draft, &mut self.points);
         self.all_segments = Arc::clone(&details.segments);
         self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::backdrop::{Ground, ground_simd};
 use super::body_depth::{self, DepthMap};
 use super::drawn::DrawnStrands;
+use super::false_colors::paint_values;
 use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
 use super::kept::{KeptInputs, Unchanged};
 use super::layers::{LayerTiles, finish_light};
@@ -27,7 +28,9 @@ use crate::picture::check_size;
 use crate::scene_light::SceneLight;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{ClusterStats, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError};
+use crate::{
+    ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError,
+};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -65,6 +68,8 @@ struct Hair<'a> {
 /// The output.
 enum Target<'a> {
     Picture(&'a mut Picture),
+    /// A picture whose hair is coloured by one value per stored strand.
+    FalseColors(&'a mut Picture, &'a [f32], &'a ColorScale),
     /// Layers, with or without the background.
     Layers(&'a mut Layers, bool),
 }
@@ -153,6 +158,21 @@ impl CpuRenderer {
         layers: &mut Layers,
     ) -> Result<FrameStats, RenderError> {
         self.draw_to(input, width, height, Target::Layers(layers, over_background))
+    }
+
+    /// As [`CpuRenderer::picture`], with hair in the colours of `scale` by one value per stored strand; fine strands have what lies between
+    /// their parents. A value that is not finite is missing: it hides what is behind it but has no colour.
+    ///
+    /// # Errors
+    /// As [`CpuRenderer::picture`].
+    pub fn strand_colors(
+        &mut self,
+        input: &FrameInput,
+        [width, height]: [u32; 2],
+        (of_strands, scale): (&[f32], &ColorScale),
+        picture: &mut Picture,
+    ) -> Result<FrameStats, RenderError> {
+        self.draw_to(input, width, height, Target::FalseColors(picture, of_strands, scale))
     }
 
     fn draw_to(
@@ -265,8 +285,9 @@ impl CpuRenderer {
         self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
         passed("draw/sort", &part);
 
-        let picture = match target {
-            Target::Picture(picture) => picture,
+        let (picture, colors) = match target {
+            Target::Picture(picture) => (picture, None),
+            Target::FalseColors(picture, of_strands, scale) => (picture, Some((of_strands, scale))),
             Target::Layers(layers, over_background) => {
                 let part = Stopwatch::start();
                 let mut held = std::mem::take(&mut self.layers);
@@ -326,6 +347,10 @@ impl CpuRenderer {
                 },
             );
         self.plain = plain;
+        if let Some((of_strands, scale)) = colors {
+            let values = hair.drawn.at_points(input.style, of_strands);
+            paint_values(&view, &grid, input, &mut self.placed, (&values, scale), &mut tiles);
+        }
         (picture.width, picture.height) = (width, height);
         copy_rows(&tiles, 4, &grid, &mut picture.rgba);
         self.tiles = tiles;

@@ -12,8 +12,19 @@ pub struct ColorScale {
     pub range: [f32; 2],
     /// Red, green and blue (sRGB-encoded), evenly spaced over the range.
     pub colors: [[u8; 3]; 256],
-    /// Brightness of the grey picture under the colours, 0 to 1.
+    /// Brightness of the picture under the colours, 0 to 1.
     pub behind: f32,
+    /// How much of its colour that picture keeps: 0 is grey, 1 is as it is.
+    pub saturation: f32,
+    /// How strongly light and shadow of the hair show in its colours: 0 is not at all, so that each value has exactly its colour.
+    pub relief: f32,
+}
+
+impl ColorScale {
+    /// The factor on colours over hair of this brightness, sRGB-encoded, 0 to 1: twin of `relief` in `false_colors.wgsl`.
+    pub(crate) fn light_on(&self, luminance: f32) -> f32 {
+        1.0 - self.relief + self.relief * (2.0 * luminance).clamp(0.0, 1.0).sqrt()
+    }
 }
 
 /// Twin of `FalseColors` in `false_colors.wgsl`.
@@ -21,7 +32,9 @@ pub struct ColorScale {
 #[repr(C)]
 struct ScaleUniform {
     behind: f32,
-    pad: [u32; 3],
+    saturation: f32,
+    relief: f32,
+    pad: u32,
     table: [u32; 256],
 }
 
@@ -117,8 +130,9 @@ impl FalseColors {
     ) {
         let Some(kernels) = &self.kernels else { return };
         let table = scale.colors.map(|[r, g, b]| u32::from_le_bytes([r, g, b, 255]));
-        let scale = commands
-            .constants("colours of values", &ScaleUniform { behind: scale.behind, pad: [0; 3], table });
+        let ColorScale { behind, saturation, relief, .. } = *scale;
+        let uniform = ScaleUniform { behind, saturation, relief, pad: 0, table };
+        let scale = commands.constants("colours of values", &uniform);
         let area = commands.constants("hair area", &input.area);
         let own = [
             (0, input.uniform.as_entire_binding()),

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
 use lovelock_groom::fine::{FineStrands, Portion};
-use lovelock_groom::{HairShading, StrandBounds};
+use lovelock_groom::{HairShading, Hairstyle, StrandBounds};
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
@@ -15,6 +15,7 @@ use super::light_kernels::LightKernels;
 use crate::shadow_stage::soft_reach;
 use crate::strand_details::StrandDetails;
 use crate::strand_portion::portion_of;
+use crate::strand_values::at_points;
 use crate::{FrameInput, HairPose};
 
 /// Twin of `ShadedPoint` in the shaders; never read on the CPU.
@@ -42,6 +43,8 @@ pub(super) struct HairBuffers {
     interpolation: Interpolation,
     points: GrowBuffer<[f32; 4]>,
     details: GrowBuffer<u32>,
+    /// See `PointColours::words`.
+    colors: GrowBuffer<u32>,
     segments: GrowBuffer<u32>,
     transmittance: GrowBuffer<u32>,
     shaded: GrowBuffer<ShadedPoint>,
@@ -62,6 +65,7 @@ impl HairBuffers {
             interpolation: Interpolation::new(gpu)?,
             points: GrowBuffer::new(gpu, "strand points", storage),
             details: GrowBuffer::new(gpu, "strand details", storage),
+            colors: GrowBuffer::new(gpu, "strand colours", storage),
             segments: GrowBuffer::new(gpu, "segments", storage),
             transmittance: GrowBuffer::new(gpu, "transmittance", storage),
             shaded: GrowBuffer::new(gpu, "shaded points", storage),
@@ -88,13 +92,13 @@ impl HairBuffers {
         self.portion = portion_of(input, height, target, (points, most)).map(|portion| (portion, points));
         let Some((portion, _)) = self.portion else {
             if self.drawn.follow(input.style) {
-                self.details.write(gpu, &self.drawn.words);
+                self.write_details(gpu);
             }
             return Ok(());
         };
         let longer = self.list.follow(input.style, portion.drawn);
         if self.drawn.follow_fine(input.style, &self.list, longer) {
-            self.details.write(gpu, &self.drawn.words);
+            self.write_details(gpu);
             self.drawn_segments.write(gpu, &self.drawn.segments);
             self.fine.follow(gpu, input.style, &self.list);
         }
@@ -104,6 +108,13 @@ impl HairBuffers {
         let reach = soft_reach(input.lights);
         self.fine.run(gpu, commands, (portion.drawn, points), reach, self.points.raw());
         Ok(())
+    }
+
+    fn write_details(&mut self, gpu: &Gpu) {
+        self.details.write(gpu, &self.drawn.words);
+        if let Some(colours) = self.drawn.colours() {
+            self.colors.write(gpu, &colours.words());
+        }
     }
 
     /// Uploads or interpolates the stored strands.
@@ -173,6 +184,14 @@ impl HairBuffers {
         self.portion
     }
 
+    /// One number per drawn point of `style`, that of the last frame, from one per stored strand.
+    pub fn at_points(&self, style: &Hairstyle, of_strands: &[f32]) -> Vec<f32> {
+        let fine = self.portion.map(|(portion, points)| {
+            (&self.list.strands[..portion.drawn.min(self.list.strands.len())], points)
+        });
+        at_points(&style.strands, fine, of_strands)
+    }
+
     /// The strands that are drawn.
     pub fn drawn(&self) -> GpuStrands<'_> {
         let Some((portion, points)) = self.portion else { return self.strands() };
@@ -201,7 +220,8 @@ impl HairBuffers {
 
     /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let own = [&self.details, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
+        let own = [&self.details, &self.colors, &self.segments, &self.transmittance]
+            .map(|buffer| buffer.raw().size());
         let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
         own + self.drawn_segments.raw().size() + self.fine.bytes() + self.interpolation.bytes()
     }
@@ -222,6 +242,9 @@ impl HairBuffers {
     }
 
     /// Projects and shades every point, in the pass `name`.
+    ///
+    /// # Errors
+    /// The driver cannot compile a kernel.
     pub fn shade(
         &self,
         gpu: &Gpu,
@@ -229,9 +252,12 @@ impl HairBuffers {
         (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
         commands: &mut Commands,
         frame: &FrameResources,
-    ) {
-        let kernel = &kernels.shade_points[usize::from(shading == HairShading::Fibre)];
-        self.run_over_points(gpu, kernel, name, commands, frame, [(8, tables.as_entire_binding())]);
+    ) -> Result<(), GpuError> {
+        let is_colored = self.drawn.colours().is_some();
+        let kernel = kernels.shade_points(gpu, shading == HairShading::Fibre, is_colored)?;
+        let more = [(8, tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
+        self.run_over_points(gpu, kernel, name, commands, frame, more);
+        Ok(())
     }
 
     /// Runs a kernel of strand points over every point, with `more` bindings.

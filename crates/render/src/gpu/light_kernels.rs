@@ -1,5 +1,7 @@
 //! The kernels that evaluate lights, compiled for the number of lights.
 
+use std::sync::{Arc, OnceLock};
+
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
 
 use crate::MAX_LIGHTS;
@@ -10,8 +12,12 @@ pub(super) const LISTS: usize = 4;
 /// The kernels for one number of lights.
 #[derive(Debug)]
 pub(super) struct LightKernels {
+    shaders: Arc<LightShaders>,
+    lights: usize,
     /// By whether hair scatters as fibres do.
-    pub shade_points: [Kernel; 2],
+    shade_points: [Kernel; 2],
+    /// The same for hair whose strands have colours of their own, compiled for the first such hair.
+    shade_colored: [OnceLock<Kernel>; 2],
     pub ground: Kernel,
     /// The kernels that draw the pixels of each list.
     pub picture_lit: [Kernel; LISTS],
@@ -28,30 +34,61 @@ pub(super) struct LightShaders {
 /// The kernels for each number of lights that has been used.
 #[derive(Debug)]
 pub(super) struct LightVariants {
-    shaders: LightShaders,
+    shaders: Arc<LightShaders>,
     made: [Option<LightKernels>; MAX_LIGHTS + 1],
 }
 
 impl LightShaders {
-    fn compile(&self, gpu: &Gpu, lights: usize) -> Result<LightKernels, GpuError> {
+    fn shade_points(
+        &self,
+        gpu: &Gpu,
+        lights: usize,
+        [fibre, colored]: [bool; 2],
+    ) -> Result<Kernel, GpuError> {
+        let flag = |of: bool| f64::from(u8::from(of));
+        let constants = [("LIGHTS", lights as f64), ("FIBRE", flag(fibre)), ("COLORED", flag(colored))];
+        Kernel::specialised(gpu, "strand points", &self.points, "shade_points", &constants)
+    }
+
+    fn compile(self: &Arc<Self>, gpu: &Gpu, lights: usize) -> Result<LightKernels, GpuError> {
         let count = ("LIGHTS", lights as f64);
         let kernel = |label, source, entry, constants: &[Constant]| {
             Kernel::specialised(gpu, label, source, entry, constants)
         };
         let lit = |list: f64| kernel("picture lit", &self.picture, "picture_lit", &[count, ("LIST", list)]);
-        let shade_points =
-            |fibre: f64| kernel("strand points", &self.points, "shade_points", &[count, ("FIBRE", fibre)]);
+        let shade_points = |fibre: bool| self.shade_points(gpu, lights, [fibre, false]);
         Ok(LightKernels {
-            shade_points: [shade_points(0.0)?, shade_points(1.0)?],
+            shaders: Arc::clone(self),
+            lights,
+            shade_points: [shade_points(false)?, shade_points(true)?],
+            shade_colored: [const { OnceLock::new() }; 2],
             ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
             picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
         })
     }
 }
 
+impl LightKernels {
+    /// The kernel that shades strand points, by whether hair scatters as fibres do and whether strands have colours of their own.
+    ///
+    /// # Errors
+    /// The driver cannot compile it.
+    pub fn shade_points(&self, gpu: &Gpu, fibre: bool, colored: bool) -> Result<&Kernel, GpuError> {
+        if !colored {
+            return Ok(&self.shade_points[usize::from(fibre)]);
+        }
+        let made = &self.shade_colored[usize::from(fibre)];
+        if let Some(kernel) = made.get() {
+            return Ok(kernel);
+        }
+        let kernel = self.shaders.shade_points(gpu, self.lights, [fibre, true])?;
+        Ok(made.get_or_init(|| kernel))
+    }
+}
+
 impl LightVariants {
     pub fn new(shaders: LightShaders) -> Self {
-        Self { shaders, made: [const { None }; MAX_LIGHTS + 1] }
+        Self { shaders: Arc::new(shaders), made: [const { None }; MAX_LIGHTS + 1] }
     }
 
     /// The kernels for a number of lights.

@@ -268,7 +268,7 @@ impl GpuRenderer {
         let lit = self.pipelines.lit.of(gpu, maps.len())?;
         let shading = (lit, input.look.shading, self.light.tables());
         if seen.has_strands {
-            self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame);
+            self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame)?;
         }
         let lighting = RibLighting {
             shading,

@@ -150,6 +150,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
         offset_tangent: vec![0.0; points],
         taper: vec![1.0; points],
         shade: vec![0.5; lines.len()],
+        ..StrandSet::default()
     };
     Scene {
         style: Arc::new(Hairstyle { strands: set, ..Hairstyle::default() }),

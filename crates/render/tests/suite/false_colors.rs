@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_render::{
-    ColorScale, DeviceImages, GpuRenderer, Picture, RenderError, ShadowMethod, Traffic, Transparency,
-    ValueRenderer,
+    ColorScale, CpuRenderer, DeviceImages, GpuRenderer, Picture, RenderError, ShadowMethod, StrandCount,
+    Traffic, Transparency, ValueRenderer,
 };
 
 use crate::common::{Scene, grid, on_device, scene, tuft};
@@ -37,7 +37,13 @@ impl Rig {
 
 /// Green rises, red falls, and blue is in no picture here.
 fn scale(range: [f32; 2]) -> ColorScale {
-    ColorScale { range, colors: std::array::from_fn(|k| [255 - k as u8, k as u8, 77]), behind: BEHIND }
+    ColorScale {
+        range,
+        colors: std::array::from_fn(|k| [255 - k as u8, k as u8, 77]),
+        behind: BEHIND,
+        saturation: 0.0,
+        relief: 0.0,
+    }
 }
 
 /// The false colours of a picture, by the values of the CPU backend.
@@ -160,4 +166,40 @@ fn wrong_numbers_of_values_and_missing_pictures_are_refused() {
     (bald.style, bald.strands) = (Arc::default(), Strands::default());
     let [plain, found] = rig.colored(&bald, &[], &scale);
     assert!(off(&found, &expected(&bald, &[], &scale, &plain)).1 == 0.0);
+}
+
+#[test]
+fn both_backends_colour_strands_by_their_values() {
+    let Some(mut rig) = Rig::new() else { return };
+    for strands in [StrandCount::Stored, StrandCount::Fixed] {
+        let mut scene = lit(Transparency::Sorted);
+        (scene.picture.strands, scene.picture.strand_number) = (strands, 500.0);
+        let count = scene.style.strands.count();
+        let values: Vec<f32> = (0..count).map(|i| i as f32 / count as f32).collect();
+        let scale = ColorScale { behind: 1.0, saturation: 1.0, relief: 0.4, ..scale([0.0, 1.0]) };
+        let mut on_cpu = CpuRenderer::default();
+        let [mut plain, mut again] = [Picture::default(), Picture::default()];
+        on_cpu.picture(&scene.input(), SIZE[0], SIZE[1], &mut plain).expect("a picture");
+        let mut drawn = |values: &[f32]| {
+            let mut picture = Picture::default();
+            on_cpu.strand_colors(&scene.input(), SIZE, (values, &scale), &mut picture).expect("colours");
+            picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]].map(f32::from)).collect::<Vec<_>>()
+        };
+        let (expected, reversed) =
+            (drawn(&values), values.iter().map(|value| 1.0 - value).collect::<Vec<_>>());
+        let other = drawn(&reversed);
+        let (image, _) = rig
+            .renderer
+            .strand_colors(&scene.input(), SIZE, (&values, &scale), &mut rig.images)
+            .expect("colours");
+        let found = image.read().expect("pixels");
+        let ((mean, _), (control, _)) = (off(&found, &expected), off(&found, &other));
+        println!("{strands:?}: {mean:.3}; control {control:.3}");
+        assert!(mean < 0.8 && control > 4.0 * mean, "{strands:?}: {mean} {control}");
+        // Where there is no hair the picture is as it was, and so is a later one.
+        let bare = plain.rgba[..4] == [expected[0] as u8, expected[1] as u8, expected[2] as u8, 255];
+        assert!(bare, "the corner has changed");
+        on_cpu.picture(&scene.input(), SIZE[0], SIZE[1], &mut again).expect("a picture");
+        assert!(again == plain);
+    }
 }

@@ -6,6 +6,7 @@ mod common;
 mod agreement;
 mod cluster_agreement;
 mod clusters;
+mod colours;
 mod false_colors;
 mod fibre;
 mod fine;

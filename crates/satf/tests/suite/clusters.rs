@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{GuideFrame, Hairstyle, Strands, interpolate};
+use lovelock_groom::{
+    COLOUR_SAMPLES, GroomSettings, GuideFrame, Hairstyle, PlainHead, StrandColour, StrandColours, Strands,
+    grow, interpolate,
+};
 use lovelock_satf::{Cell, ClusterHair, ClusterSettings};
 
 use super::hair::{LINKS, Made, at_rest, corners, guides, lively, random_weights, style};
@@ -262,4 +265,30 @@ fn grown_hair_becomes_clusters_of_all_its_wisps() {
     let total: f32 = (0..hair.clusters()).map(|c| strands_at(&hair, c, 1)).sum();
     let count = style.strands.count() as f32;
     assert!((total - count).abs() < 0.02 * count, "{total} of {count}");
+}
+
+#[test]
+fn ribs_and_casters_have_the_colours_of_their_strands() {
+    let settings = GroomSettings { wisps: 24, strands_per_wisp: 200, ..GroomSettings::default() };
+    let mut style = grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("hair");
+    let number = |strand: usize| StrandColour { kept: strand as f32, added: [1.0; 3] };
+    let plain = ClusterHair::new(&Arc::new(style.clone()), &ClusterSettings::default(), 0.001);
+    assert!(plain.ribs.strands.colours.is_empty() && plain.casters.strands.colours.is_empty());
+    let count = style.strands.count();
+    style.strands.colours = StrandColours::new((0..count).map(|s| [number(s); COLOUR_SAMPLES]).collect());
+    let hair = ClusterHair::new(&Arc::new(style.clone()), &ClusterSettings::default(), 0.001);
+    for (name, made) in [("ribs", &hair.ribs), ("casters", &hair.casters)] {
+        made.check().expect("sound");
+        let strands = made.strands.colours.strands();
+        let mut seen: Vec<u32> = Vec::new();
+        for (wisp, samples) in made.strands.wisp.iter().zip(strands) {
+            let of = samples[0].kept as u32;
+            assert_eq!(style.strands.wisp[of as usize], *wisp, "{name}: a strand of the same wisp");
+            seen.push(of);
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        println!("{name}: {} of {count} strands", seen.len());
+        assert!(seen.len() > 10 * made.wisps.len(), "{name} vary inside of a wisp: {}", seen.len());
+    }
 }

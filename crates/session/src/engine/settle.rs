@@ -40,6 +40,8 @@ impl Engine {
     pub fn copy(&self) -> Self {
         Self {
             scene: Arc::clone(&self.scene),
+            loaded: Arc::clone(&self.loaded),
+            styling: self.styling.clone(),
             animation: self.animation.clone(),
             simulation: self.simulation.clone(),
             combing: None,
@@ -55,11 +57,12 @@ impl Engine {
     /// Takes the hair of a finished pre-roll if it leads to the current instant. Returns whether it was taken.
     pub fn take_settled(&mut self, preroll: Preroll) -> bool {
         let aside = preroll.into_engine();
-        if !Arc::ptr_eq(&aside.scene, &self.scene) || aside.at_step != self.at_step {
+        if !Arc::ptr_eq(&aside.loaded, &self.loaded) || aside.at_step != self.at_step {
             return false;
         }
         self.jumped_since = true;
         self.combing = None;
+        (self.scene, self.styling) = (aside.scene, aside.styling);
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
         (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
         self.sheltering = aside.sheltering;
@@ -81,6 +84,7 @@ impl Engine {
         self.combing = None;
         self.at_step = step;
         self.simulated_secs += JUMP_SECS;
+        self.restyle(lead_in_secs);
         self.place_body(lead_in_secs);
         let placed = [&self.colliders[..], &self.sheltering];
         let input = body_at(self.simulated_secs, &self.scene, &self.pose, placed, &self.field);

@@ -1,5 +1,6 @@
 //! The render thread: takes the newest request when it is free, renders it and publishes the image.
 
+mod mask_view;
 mod samples;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,14 +12,16 @@ use std::time::Duration;
 use lovelock_project::Project;
 use lovelock_project::project::backend_label;
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, Image, Picture, RenderError,
-    Renderer,
+    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, HairDrawing, Image, Picture,
+    PictureSettings, RenderError, Renderer, Transparency,
 };
 
 use crate::latest::{Latest, LatestJob};
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
 use crate::window_device::WindowDevice;
+use mask_view::MaskView;
+pub use mask_view::ShownMask;
 use samples::{Samples, jitter};
 
 /// What to render.
@@ -36,6 +39,8 @@ pub struct RenderRequest {
     pub moving: bool,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
+    /// A mask that is shown on hair and scalp in place of their colours.
+    pub mask: Option<Arc<ShownMask>>,
 }
 
 /// A finished image with its cost.
@@ -138,6 +143,7 @@ impl RenderThread {
             textures: None,
             last: None,
             samples: Samples::default(),
+            mask: MaskView::default(),
             picture: Picture::default(),
             cost: None,
             transmittance: 1.0,
@@ -214,6 +220,7 @@ struct Worker {
     /// The request that was rendered last, and its samples so far.
     last: Option<RenderRequest>,
     samples: Samples,
+    mask: MaskView,
     picture: Picture,
     /// The image that a device finished last: its size, and its time in milliseconds.
     cost: Option<([u32; 2], f64)>,
@@ -423,7 +430,23 @@ impl Worker {
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
         let textures = self.window.images(&mut self.textures);
-        let (image, mut stats) = if request.still && renderer.backend() == Backend::Cpu {
+        let (image, mut stats) = if let Some(shown) = &request.mask {
+            self.samples.forget();
+            let body = self.mask.follow(shown, &snapshot.scene);
+            // Values belong to strands, and those in front show theirs.
+            let picture = PictureSettings {
+                draw: HairDrawing::Strands,
+                transparency: Transparency::Sorted,
+                ..project.picture
+            };
+            let input = FrameInput {
+                body: Some((&body, &snapshot.skin)),
+                picture: &picture,
+                is_draft: request.moving,
+                ..snapshot.frame_input(project, &camera)
+            };
+            renderer.strand_colors(&input, *size, (&self.mask.values, &shown.scale), textures)?
+        } else if request.still && renderer.backend() == Backend::Cpu {
             let index = if is_sample { self.samples.taken() } else { 0 };
             let jittered = camera.moved_by_pixels(jitter(index), size[1]);
             let picture = &mut self.picture;

@@ -59,6 +59,7 @@ impl Rig {
             still: false,
             moving: false,
             measured: false,
+            mask: None,
         });
         while self.thread.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
@@ -248,6 +249,7 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         still,
         moving: false,
         measured: false,
+        mask: None,
     };
     let wait = |samples: u32| loop {
         rig.finished.recv_timeout(Duration::from_secs(100)).expect("an image");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use lovelock_motion::{Collider, ColliderEdits};
+use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -11,7 +11,8 @@ use lovelock_style::StyleCache;
 
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
-use super::{Scene, SurroundingsLoader};
+use super::scalp_part::{Enlarged, ScalpPart};
+use super::{Scene, StyleSource, SurroundingsLoader};
 
 /// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
@@ -33,10 +34,10 @@ impl LoadControl<'_> {
 
 /// A part and its sources.
 #[derive(Debug)]
-struct Kept<K, T> {
+struct Kept<K, T, B = BodyPart> {
     key: K,
-    /// The body that a motion or a hairstyle was made for.
-    body: Option<Arc<BodyPart>>,
+    /// The body that a motion, or the scalp that a hairstyle was made for.
+    body: Option<Arc<B>>,
     part: Arc<T>,
 }
 
@@ -48,7 +49,9 @@ type ColliderLists = [Arc<[Collider]>; 2];
 pub struct SceneLoader {
     body: Option<Kept<BodyKey, BodyPart>>,
     motion: Option<Kept<MotionKey, MotionPart>>,
-    hair: Option<Kept<HairKey, HairPart>>,
+    scalp: Option<Kept<ScalpFit, ScalpPart>>,
+    hair: Option<Kept<HairKey, HairPart, ScalpPart>>,
+    enlarged: Enlarged,
     hair_file: HairFileCache,
     cut_and_ties: StyleCache,
     layers: StyleCache,
@@ -95,10 +98,13 @@ impl SceneLoader {
         control.at("loading the motion", 0.3)?;
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("creating the hair", 0.5)?;
-        let hair = self.hair(&project, access, &body, &mut problems);
-        let obstacle = Arc::clone(&body.obstacle);
+        let scalp = self.scalp(&body, &project.body.scalp);
+        let hair = self.hair(&project, access, &scalp, &mut problems);
+        let obstacle = Arc::clone(&scalp.obstacle);
         let tied = self.cut_and_ties.apply(&hair.style, &project.hair.cut_and_ties(), obstacle.clone());
-        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle);
+        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle.clone());
+        let source =
+            StyleSource { base: tied.style, stack: project.hair.stack.clone(), obstacle, scale: scalp.scale };
         let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
             format!(
                 "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
@@ -116,11 +122,11 @@ impl SceneLoader {
         let head_path = self.head_path(&body, &motion, looping);
         control.at("done", 1.0)?;
 
-        let of_parts = [&body.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned();
+        let of_parts = [&body.notes, &scalp.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned();
         let notes: Vec<Problem> = of_parts.chain(self.surroundings.notes()).collect();
         let [colliders, sheltering] = self.colliders(&body, &project.body.colliders);
         let scene = Scene {
-            body: Arc::clone(&body.body),
+            body: Arc::clone(&scalp.body),
             clips: Arc::clone(&body.clips),
             clip: motion.clip.clone(),
             speed: f64::from(project.motion.speed),
@@ -130,7 +136,11 @@ impl SceneLoader {
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
-            style: styled.style,
+            style: self.enlarged.of(&styled.style, scalp.scale),
+            source: Arc::new(source),
+            hair_scale: scalp.scale,
+            usual_scalp: Arc::clone(&scalp.scalp),
+            skull: scalp.skull,
             head_path,
             surroundings,
             notes: notes.into(),
@@ -205,11 +215,24 @@ impl SceneLoader {
         Ok(part)
     }
 
+    /// The scalp of a body. Changes of the fit keep the body.
+    fn scalp(&mut self, body: &Arc<BodyPart>, fit: &ScalpFit) -> Arc<ScalpPart> {
+        if let Some(kept) = &self.scalp
+            && kept.key == *fit
+            && kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body))
+        {
+            return Arc::clone(&kept.part);
+        }
+        let part = Arc::new(ScalpPart::new(body, fit));
+        self.scalp = Some(Kept { key: fit.clone(), body: Some(Arc::clone(body)), part: Arc::clone(&part) });
+        part
+    }
+
     fn hair(
         &mut self,
         project: &Project,
         access: &Access,
-        body: &Arc<BodyPart>,
+        body: &Arc<ScalpPart>,
         problems: &mut Vec<Problem>,
     ) -> Arc<HairPart> {
         let wanted = HairKey::of(&project.hair, access);

@@ -5,29 +5,40 @@ mod dancer;
 mod head_path;
 mod loader;
 mod parts;
+mod scalp_part;
+mod styling;
 mod surroundings;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
+pub use styling::StyleSource;
+pub(crate) use styling::Styling;
 pub(crate) use surroundings::SurroundingsLoader;
 
 use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_appearance::environment::Panorama;
-use lovelock_groom::{Hairstyle, Obstacle};
-use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance};
+use lovelock_groom::{Hairstyle, Obstacle, Scalp};
+use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance, Skull};
 use lovelock_simulation::BodyPart;
 
 /// The body at rest as the obstacle around which hair is combed.
 #[derive(Debug)]
-pub struct BodyObstacle(pub RestDistance);
+pub struct BodyObstacle {
+    /// The resting body, head space.
+    pub rest: Arc<RestDistance>,
+    /// Size of the head as a multiple of that of the shipped dancer. Hair is combed in the size of her head.
+    pub scale: f32,
+}
 
 impl Obstacle for BodyObstacle {
     fn distance(&self, p: Vec3) -> (f32, Vec3) {
-        self.0.distance(p)
+        // A scale of 1 changes no bit.
+        let (distance, normal) = self.rest.distance(p * self.scale);
+        (distance / self.scale, normal)
     }
 }
 
@@ -56,6 +67,14 @@ pub struct Scene {
     pub field_lift_m: f32,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
+    /// What the hairstyle is made of, for tracks of layers.
+    pub source: Arc<StyleSource>,
+    /// Size of the hair as a multiple of that on the shipped dancer: lengths of the project's settings are those on her head.
+    pub hair_scale: f32,
+    /// The scalp in the size of the shipped dancer's head, in which the project's settings are.
+    pub usual_scalp: Arc<Scalp>,
+    /// The skull to which the scalp was fitted, head space; `None` for a body without a surface.
+    pub skull: Option<Skull>,
     /// The path of the head.
     pub head_path: Arc<HeadPath>,
     /// The picture of the surroundings that gives light from all directions, if there is one.
@@ -142,7 +161,11 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 #[cfg(test)]
 mod collider_tests;
 #[cfg(test)]
+mod head_tests;
+#[cfg(test)]
 mod operation_tests;
+#[cfg(test)]
+mod styling_tests;
 #[cfg(test)]
 mod surroundings_tests;
 #[cfg(test)]

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use lovelock_groom::{
-    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, Scalp, StrandSet, grow,
-    import_around, load_hair,
+    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_around,
+    load_hair,
 };
 use lovelock_motion::{
     Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
-    fit_colliders, head_mesh, joint_paths, load_character_with, load_motion_with, retarget,
+    fit_colliders, joint_paths, load_character_with, load_motion_with, retarget,
 };
 use lovelock_project::error::{Place, Problem, ProblemKind};
 use lovelock_project::files::Access;
@@ -19,7 +19,8 @@ use lovelock_project::project::{
     BodySection, BodySource, HairSection, HairSource, MotionSection, MotionSource,
 };
 
-use super::{BodyObstacle, dancer};
+use super::dancer;
+use super::scalp_part::ScalpPart;
 
 /// Identity of a file's contents when it was read. The file is read again if this changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,8 +54,7 @@ pub(super) struct BodyPart {
     pub(super) body: Arc<Body>,
     pub(super) clips: Arc<[Arc<Clip>]>,
     pub(super) colliders: Arc<[Collider]>,
-    pub(super) scalp: Arc<Scalp>,
-    pub(super) obstacle: Arc<BodyObstacle>,
+    pub(super) rest: Arc<RestDistance>,
     /// The distance field of head and shoulders, if the body has them.
     pub(super) field: Option<Arc<BodyField>>,
     pub(super) notes: Vec<Problem>,
@@ -102,23 +102,11 @@ impl BodyKey {
                 )),
             }
         }
-        let head = head_mesh(&body);
-        if head.scalp_is_guessed && !head.triangles.is_empty() {
-            let message = "the file contains no hairline; it was guessed from the shape of the head";
-            notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
-        }
-        let scalp = Scalp {
-            positions: head.positions,
-            normals: head.normals,
-            triangles: head.triangles,
-            mask: head.scalp,
-        };
         let rest = RestDistance::new(&body);
         Ok(BodyPart {
             colliders: fit_colliders(&body).into(),
             field: BodyField::new(&body, &rest).map(Arc::new),
-            obstacle: Arc::new(BodyObstacle(rest)),
-            scalp: Arc::new(scalp),
+            rest: Arc::new(rest),
             clips: clips.into(),
             body,
             notes,
@@ -267,7 +255,7 @@ pub(super) struct HairPart {
 
 impl HairPart {
     /// No hair, for heads on which none can grow.
-    pub(super) fn bald(part: &BodyPart) -> Self {
+    pub(super) fn bald(part: &ScalpPart) -> Self {
         let style = Hairstyle {
             name: "none".to_owned(),
             scalp: (*part.scalp).clone(),
@@ -300,7 +288,8 @@ impl HairKey {
         Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
     }
 
-    pub(super) fn load(&self, part: &BodyPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
+    /// The hairstyle in the size of the shipped dancer's head.
+    pub(super) fn load(&self, part: &ScalpPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
         let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
         if part.scalp.triangles.is_empty() {
             let body = &part.body;
@@ -323,8 +312,10 @@ impl HairKey {
                     _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
                 };
                 *cache = Some((stamp.clone(), Arc::clone(&file)));
-                let style = import_around(&file, import, &part.scalp, Some(&*part.obstacle))
+                // Files have a size of their own.
+                let style = import_around(&file, import, &part.placed_scalp, Some(&part.placed_obstacle()))
                     .map_err(|error| refuse(&error))?;
+                let style = if part.scale == 1.0 { style } else { style.scaled(1.0 / part.scale) };
                 // The file's notes describe what was ignored.
                 (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
             }
@@ -346,7 +337,8 @@ mod tests {
 
     #[test]
     fn a_head_without_a_surface_stays_bald_and_says_why() {
-        let mut part = BodyKey::dancer().load().expect("the dancer");
+        let body = BodyKey::dancer().load().expect("the dancer");
+        let mut part = ScalpPart::new(&body, &lovelock_motion::ScalpFit::default());
         part.scalp = Arc::default();
         let key = HairKey::grown(&small_project().hair);
         let problem = key.load(&part, &mut None).expect_err("nothing to grow on");

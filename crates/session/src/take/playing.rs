@@ -16,7 +16,7 @@ use lovelock_record::{
 };
 use lovelock_simulation::StepReport;
 
-use crate::scene::{Scene, SceneLoader};
+use crate::scene::{Scene, SceneLoader, Styling};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
 use crate::totals::Totals;
@@ -34,6 +34,8 @@ pub struct TakePlayer {
     /// The text of the project of the current scene.
     text: Arc<str>,
     scene: Arc<Scene>,
+    /// The tracks of the hairstyle in that project, and the scene with the hairstyle of the last snapshot.
+    styling: Option<Styling>,
     /// Scenes with the projects that they were loaded from, the most recently used last.
     scenes: Vec<(Project, Arc<Scene>)>,
     /// The picture that gives light, and notes about it.
@@ -84,6 +86,7 @@ impl TakePlayer {
             loader,
             first: project.clone(),
             text,
+            styling: Styling::of(&project, None),
             scene: Arc::clone(&scene),
             scenes: vec![(made_of(&project), scene)],
             surroundings: (None, Vec::new()),
@@ -195,10 +198,11 @@ impl TakePlayer {
                 Err(error) => shown = self.play_over(shown, error)?,
             }
         }
+        let styled = self.styled();
         pose_at(&self.scene.body, self.scene.clip.as_deref(), self.frame.clip_secs, &mut self.pose);
         self.shown += 1;
         let duration_secs = self.duration_secs();
-        let (scene, frame, pose, shown) = (&self.scene, &self.frame, &self.pose, self.shown);
+        let (scene, frame, pose, shown) = (&styled, &self.frame, &self.pose, self.shown);
         let report = StepReport { substeps: frame.substeps, jumped: frame.jumped, ..StepReport::default() };
         let new = || FrameSnapshot {
             scene: Arc::clone(scene),
@@ -254,6 +258,16 @@ impl TakePlayer {
         std::mem::take(&mut self.notices)
     }
 
+    /// The scene with the hairstyle of the current frame: that of the step at it or after it, as the simulation drew it.
+    fn styled(&mut self) -> Arc<Scene> {
+        let frame_secs = self.frame_secs();
+        let Some(styling) = &mut self.styling else { return Arc::clone(&self.scene) };
+        let secs = self.frame.guides.time_secs;
+        let steps = secs / frame_secs;
+        let secs = if (steps - steps.round()).abs() < 1e-3 { secs } else { steps.ceil() * frame_secs };
+        styling.scene_at(&self.scene, self.scene.position_secs(secs))
+    }
+
     /// Switches to the scene of the project `text`, which the current frame belongs to.
     fn follow(&mut self, text: Arc<str>) -> Result<(), ProjectError> {
         if Arc::ptr_eq(&text, &self.text) || text == self.text {
@@ -276,6 +290,7 @@ impl TakePlayer {
         if let Some((_, scene)) = self.scenes.last() {
             self.scene = Arc::clone(scene);
         }
+        self.styling = Styling::of(&project, self.styling.take());
         self.text = text;
         self.check_guides()
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::project::text_of_project;
+use lovelock_project::tracks::STACK_TARGET;
 use lovelock_record::{
     FrameRate, TakeAsset, TakeFrame, TakeHeader, TakeReport, TakeWriter, hairstyle_fingerprint,
 };
@@ -140,14 +141,14 @@ impl TakeRecording {
 }
 
 /// Whether two projects are equal except for their tracks, which change at every frame while they are written and do not affect
-/// a recorded simulation.
+/// a recorded simulation; those of layers change the strands that follow its guides.
 fn same_but_tracks(a: &Project, b: &Project) -> bool {
     if a.timeline.tracks == b.timeline.tracks {
         return a == b;
     }
     let without = |project: &Project| {
         let mut project = project.clone();
-        project.timeline.tracks.clear();
+        project.timeline.tracks.retain(|track| track.target.starts_with(STACK_TARGET));
         project
     };
     without(a) == without(b)

@@ -12,6 +12,7 @@
 //! (Euler-Bernoulli beam).
 
 use crate::SimulationSettings;
+use crate::factors::FactorRows;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put};
 
 /// The largest `c (1 + gamma)`. Beyond it single precision loses the solution, and the hair is as stiff as
@@ -75,7 +76,7 @@ impl BendingKey {
     }
 
     /// Ratio of damping to stiffness in one substep.
-    pub(crate) fn gamma(&self) -> f32 {
+    fn gamma(&self) -> f32 {
         self.damping_secs / self.h
     }
 }
@@ -88,6 +89,10 @@ pub(crate) struct Bending {
     stiffness: Vec<Lane>,
     /// Weight of the pull toward the style: `(h omega)^2`.
     hold: Vec<Lane>,
+    /// Ratio of damping to stiffness in one substep, at the bend around each point.
+    gamma: Vec<Lane>,
+    /// `c (1 + gamma)`.
+    damped: Vec<Lane>,
     /// How far the rest bend around each point rotates with the head, 0 to 1; the remainder rotates with the
     /// guide.
     ///
@@ -110,6 +115,8 @@ impl Bending {
             key: None,
             stiffness: vec![ZERO; points],
             hold: vec![ZERO; points],
+            gamma: vec![ZERO; points],
+            damped: vec![ZERO; points],
             head_share: vec![ZERO; points],
             inv_pivot: vec![ZERO; points],
             below: vec![ZERO; points],
@@ -127,6 +134,10 @@ impl Bending {
         &self.hold[point]
     }
 
+    pub(crate) fn gamma(&self, point: usize) -> &Lane {
+        &self.gamma[point]
+    }
+
     pub(crate) fn head_share(&self, point: usize) -> &Lane {
         &self.head_share[point]
     }
@@ -134,7 +145,8 @@ impl Bending {
     /// Factorises the matrix if the settings or the time step have changed, and returns whether it did.
     /// `link` is the mean link of each guide, `inv_length` the inverse length of every link (0 beyond a
     /// guide's end), `rest_bend` the rest bends, and `tie_hold` the strength of ties at each point (negative
-    /// where there is none).
+    /// where there is none). `factors` are those of the hairstyle; after a change of them, call
+    /// [`Bending::invalidate`].
     #[inline(always)]
     pub(crate) fn prepare(
         &mut self,
@@ -143,36 +155,51 @@ impl Bending {
         inv_length: &[Lane],
         rest_bend: &[Lane3],
         tie_hold: &[Lane],
+        factors: Option<&FactorRows>,
     ) -> bool {
         if self.key == Some(key) {
             return false;
         }
         self.key = Some(key);
         let count = self.stiffness.len();
-        let gain = 1.0 + key.gamma();
+        let gamma = key.gamma();
+        let one = Lane::splat(1.0);
         for i in 0..count {
+            let (stiffer, held, damper) = match factors {
+                Some(factors) => (factors.stiffness[i], factors.hold[i], factors.damping[i]),
+                None => (one, one, one),
+            };
             let along = i as f32 / (count - 1).max(1) as f32;
             let [omega, hold] = key.frequencies_at(along);
             let root_b = omega * REFERENCE_LENGTH * REFERENCE_LENGTH / CANTILEVER;
             let bends = i > 0 && i + 1 < count;
             for k in 0..LANES {
-                let c = key.h * root_b / (link[k] * link[k] + 1e-12);
+                let c = key.h * root_b / (link[k] * link[k] + 1e-12) * stiffer[k];
+                let gamma = gamma * damper[k];
+                let gain = 1.0 + gamma;
                 // The end of a guide that was cut is a tip.
                 let bends = bends && inv_length[i + 1][k] > 0.0;
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
                 let reach = lesser(key.hold_reach, link[k] * (count - 1) as f32) + 1e-6;
                 let fades = greater(1.0 - link[k] * i as f32 / reach, 0.0);
-                let pull = key.h * hold * fades * fades;
+                let pull = key.h * hold * fades * fades * held[k];
                 let pull = if tie_hold[i][k] >= 0.0 { key.h * tie_hold[i][k] } else { pull };
                 self.hold[i][k] = pull * pull;
                 let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
                 let sharpness = self.stiffness[i][k] * gain * bend;
+                self.gamma[i][k] = gamma;
+                self.damped[i][k] = gain * self.stiffness[i][k];
                 self.head_share[i][k] = sharpness / (sharpness + HALF_SHARPNESS);
             }
         }
-        self.factorise(key.first_free, gain);
-        self.factorise_from_tip(key.first_free, gain);
+        self.factorise(key.first_free);
+        self.factorise_from_tip(key.first_free);
         true
+    }
+
+    /// Lets the next [`Bending::prepare`] factorise the matrix again.
+    pub(crate) fn invalidate(&mut self) {
+        self.key = None;
     }
 
     /// Whether nothing resists bending, so that the matrix is the identity.
@@ -207,14 +234,14 @@ impl Bending {
         }
     }
 
-    /// `L D L^T` of `1 + hold + gain * D2^T c D2` on the free points.
+    /// `L D L^T` of `1 + hold + D2^T c (1 + gamma) D2` on the free points.
     #[inline(always)]
-    fn factorise(&mut self, first_free: usize, gain: f32) {
+    fn factorise(&mut self, first_free: usize) {
         let count = self.stiffness.len();
-        let e = |c: &[Lane], i: usize, k: usize| if i < count { gain * c[i][k] } else { 0.0 };
+        let e = |c: &[Lane], i: usize, k: usize| if i < count { c[i][k] } else { 0.0 };
         for i in first_free..count {
             for k in 0..LANES {
-                let c = &self.stiffness;
+                let c = &self.damped;
                 let left = if i > 0 { e(c, i - 1, k) } else { 0.0 };
                 let diagonal = 1.0 + self.hold[i][k] + left + 4.0 * e(c, i, k) + e(c, i + 1, k);
                 let (mut l1, mut l2) = (0.0, 0.0);
@@ -241,11 +268,11 @@ impl Bending {
     /// `U D U^T` of the same matrix, from the tip to the root. Row `i` of `follow` is the coefficient of
     /// point `i` for point `i + 1`, and row `i` of `follow2` that for point `i + 2`.
     #[inline(always)]
-    fn factorise_from_tip(&mut self, first_free: usize, gain: f32) {
+    fn factorise_from_tip(&mut self, first_free: usize) {
         let count = self.stiffness.len();
         let (mut inv, mut inv2, mut beyond) = (ZERO, ZERO, ZERO);
         for i in (first_free.saturating_sub(1)..count).rev() {
-            let c = |i: usize, k: usize| if i < count { gain * self.stiffness[i][k] } else { 0.0 };
+            let c = |i: usize, k: usize| if i < count { self.damped[i][k] } else { 0.0 };
             let (mut one, mut two) = (ZERO, ZERO);
             for k in 0..LANES {
                 let left = if i > 0 { c(i - 1, k) } else { 0.0 };
@@ -382,6 +409,7 @@ mod tests {
                 &[Lane::splat(100.0); 9],
                 &[ZERO3; 9],
                 &[Lane::splat(-1.0); 9],
+                None,
             );
             let mut x: Vec<Vec3> =
                 (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
@@ -410,6 +438,7 @@ mod tests {
             &[Lane::splat(100.0); 12],
             &[ZERO3; 12],
             &[Lane::splat(-1.0); 12],
+            None,
         );
         let splat = |v: Vec3| crate::lanes::splat3(v);
         let mut rows = vec![ZERO3; 12];
@@ -431,7 +460,14 @@ mod tests {
     fn zero_stiffness_gives_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
-        b.prepare(soft, &Lane::splat(0.01), &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
+        b.prepare(
+            soft,
+            &Lane::splat(0.01),
+            &[Lane::splat(100.0); 5],
+            &[ZERO3; 5],
+            &[Lane::splat(-1.0); 5],
+            None,
+        );
         let mut rows = vec![[Lane::splat(0.25); 3]; 5];
         b.solve(1, &mut rows);
         assert!(rows[1..].iter().all(|r| *r == [Lane::splat(0.25); 3]));
@@ -440,7 +476,7 @@ mod tests {
     #[test]
     fn zero_length_links_give_finite_factors() {
         let mut b = Bending::new(5);
-        b.prepare(key(1), &ZERO, &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
+        b.prepare(key(1), &ZERO, &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5], None);
         assert!(b.inv_pivot[1..].iter().flat_map(|row| row.iter()).all(|v| v.is_finite()));
     }
 }

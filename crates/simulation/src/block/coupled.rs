@@ -364,6 +364,7 @@ mod tests {
             &[Lane::splat(1.0 / LINK); POINTS],
             &[ZERO3; POINTS],
             &[Lane::splat(-1.0); POINTS],
+            None,
         );
         b
     }

@@ -10,6 +10,7 @@ use lovelock_groom::Guides;
 
 use crate::colliders::boxes::Boxes;
 use crate::colliders::field::{PlaneRow, Search};
+use crate::factors::FactorRows;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::packing::Lanes;
 use crate::rest::RestShape;
@@ -38,6 +39,8 @@ pub(crate) struct Block {
 
     /// Strength with which ties hold each point, 1/s; negative where no tie holds it.
     pub(crate) tie_hold: Vec<Lane>,
+    /// The factors of the hairstyle on its guides, if any differs from 1.
+    pub(crate) factors: Option<Box<FactorRows>>,
     /// The ropes that its guides belong to, if any.
     pub(crate) in_rope: Option<Box<InRope>>,
 
@@ -159,6 +162,7 @@ impl Block {
             rest: RestShape::new(guides, lanes, first_free),
             rest_distance: Vec::new(),
             tie_hold: vec![Lane::splat(-1.0); points],
+            factors: None,
             in_rope: None,
             field_distance: Vec::new(),
             skin: vec![PlaneRow::NO_SKIN; points],

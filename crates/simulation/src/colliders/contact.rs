@@ -109,6 +109,8 @@ pub(crate) struct Near<'a> {
     pub(crate) root_penetration: &'a [Lane],
     /// Mean link length of each guide, metres.
     pub(crate) link: &'a Lane,
+    /// Factors on the friction of each point; empty where all are 1.
+    pub(crate) friction: &'a [Lane],
     /// The field of head and shoulders.
     pub(crate) field: Option<NearField<'a>>,
 }
@@ -172,6 +174,12 @@ pub(crate) fn root_penetration(carried: &Lane3, mover: &MovingShape, rest: &Lane
 }
 
 impl Near<'_> {
+    /// The factors on the friction of a point.
+    #[inline(always)]
+    fn friction(&self, point: usize) -> Lane {
+        if self.friction.is_empty() { Lane::splat(1.0) } else { self.friction[point] }
+    }
+
     fn rest(&self, collider: u32, point: usize) -> &Lane {
         &self.rest_distance[collider as usize * self.points + point]
     }
@@ -267,11 +275,13 @@ pub(crate) fn place_point(
             }
             pushed = true;
             let friction = rules.friction(if mover.on_head { 1.0 } else { 0.0 }, iteration);
+            let rub = near.friction(point);
             for k in 0..LANES {
                 let depth = allowed[k] - nearest.distance[k];
                 let (p, from, l) = (at(&placed, k), at(before, k), length[k]);
                 let centre = at(&nearest.centre, k);
-                let slid = slide(p, at(was, k), centre, depth, friction, mover.velocity_at.apply(p), rules.h);
+                let (friction, moving) = (friction * rub[k], mover.velocity_at.apply(p));
+                let slid = slide(p, at(was, k), centre, depth, friction, moving, rules.h);
                 let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
                 let touching = depth > 0.0;
                 put(&mut placed, k, choose(touching, out, p));
@@ -315,8 +325,9 @@ fn push_out_of_field(
     if !any_deeper(&allowed, &row.distance, enough) {
         return false;
     }
+    let rub = near.friction(point);
     for k in 0..LANES {
-        let friction = rules.friction(row.head[k], iteration);
+        let friction = rules.friction(row.head[k], iteration) * rub[k];
         let depth = allowed[k] - row.distance[k];
         let (p, from, l) = (at(placed, k), at(before, k), length[k]);
         // The sphere that approximates the surface.

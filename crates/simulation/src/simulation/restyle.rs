@@ -7,10 +7,12 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use lovelock_groom::Hairstyle;
 
 use super::{Simulation, first_free};
 use crate::block::{Bending, Block};
+use crate::factors::FactorRows;
 use crate::lanes::{LANES, Lane3, Map, ZERO3, at, direction_or, put};
 use crate::rest::RestShape;
 
@@ -21,6 +23,9 @@ const INITIAL_HOLD: f32 = 6.0;
 /// A point stays held at full strength if its new rest position is closer to the old one than this, metres.
 /// This is the case while a tie is dragged.
 const NEARBY: f32 = 0.03;
+
+/// Gathered hair whose points move no further than this keeps its ties as they are, metres.
+const NUDGE: f32 = 0.002;
 
 /// Ties that grow to their full strength.
 #[derive(Clone, Debug)]
@@ -53,10 +58,14 @@ impl TieBlend {
 type TieBlendState<'a> = (f32, bool, &'a [f32], &'a [Vec<Lane3>]);
 
 impl Simulation {
-    /// Changes the hairstyle. If the numbers of guides and points are unchanged, the motion continues: every
-    /// guide keeps its rotations and velocities or, if ties gather it in another way, its place. Otherwise
-    /// the new style starts at rest.
+    /// Changes the hairstyle. If the guides are the same, so is the state. If only the numbers of guides and
+    /// points are unchanged, the motion continues: every guide keeps its rotations and velocities or, if ties
+    /// gather it in another way, its place. Otherwise the new style starts at rest.
     pub fn set_style(&mut self, style: Arc<Hairstyle>) {
+        if self.moves_alike(&style) {
+            self.set_factors(style);
+            return;
+        }
         let same = style.guides.points_per_guide == self.style.guides.points_per_guide
             && style.guides.count() == self.style.guides.count();
         let retied = same && self.is_retied(&style);
@@ -99,6 +108,27 @@ impl Simulation {
         next.measure_rest_distances();
         next.measure_field_distances();
         *self = next;
+    }
+
+    /// Whether `style` differs from the current style at most in its strands and in its factors on the motion.
+    fn moves_alike(&self, style: &Hairstyle) -> bool {
+        let now = &self.style;
+        now.guides == style.guides
+            && now.held == style.held
+            && now.ropes == style.ropes
+            && now.wisps.len() == style.wisps.len()
+            && now.wisps.iter().zip(&style.wisps).all(|(a, b)| a.guides == b.guides)
+    }
+
+    /// Takes the strands of a style with the same guides, and its factors. The state stays, bit for bit.
+    fn set_factors(&mut self, style: Arc<Hairstyle>) {
+        if self.style.motion != style.motion {
+            for block in &mut self.blocks {
+                block.factors = FactorRows::of(&style, &block.guides);
+                block.bending.invalidate();
+            }
+        }
+        self.style = style;
     }
 
     /// Prepares the blocks for another number of clamped links.
@@ -154,11 +184,19 @@ impl Simulation {
         }
     }
 
-    /// Whether `style` or the current style has ties, and the two tie the hair differently.
+    /// Whether `style` or the current style has ties, and the two tie the hair differently. Both have the same numbers of guides and
+    /// points. Gathered hair whose shape changes a little, as from step to step of an animation, takes the new shape at once.
     fn is_retied(&self, style: &Hairstyle) -> bool {
         let loose = |style: &Hairstyle| style.held.iter().all(|hold| *hold < 0.0);
-        !(loose(&self.style) && loose(style))
-            && (self.style.held != style.held || self.style.guides != style.guides)
+        if loose(&self.style) && loose(style) {
+            return false;
+        }
+        let (old, new) = (&self.style.guides, &style.guides);
+        let moved = |i: usize| {
+            let by = Vec3::new(new.x[i] - old.x[i], new.y[i] - old.y[i], new.z[i] - old.z[i]);
+            by.length_squared() > NUDGE * NUDGE || !by.is_finite()
+        };
+        self.style.held != style.held || (0..new.x.len()).any(|i| style.held[i] >= 0.0 && moved(i))
     }
 
     /// Initial strengths of the ties of `next`.

@@ -37,7 +37,12 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let substeps = plan.substeps.len() as f32;
     let cohesion = 1.0 - (-settings.repulsion.cohesion * plan.h * substeps).exp();
     let rest = &block.rest;
-    if block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.tie_hold) {
+    if let Some(factors) = &mut block.factors {
+        factors.prepare(settings.settle, plan.h);
+    }
+    let factors = block.factors.as_deref();
+    let (link, inv_length, tie_hold) = (&rest.mean_link, &rest.inv_length, &block.tie_hold);
+    if block.bending.prepare(plan.bending, link, inv_length, &rest.bend, tie_hold, factors) {
         block.coupled.prepare(&block.bending, plan.first_free, block.position.len());
     }
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);

@@ -100,7 +100,7 @@ fn lengths(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn forces(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, h, inv_h) = (&plan.substeps[s], plan.h, 1.0 / plan.h);
-    let settle = 1.0 - (-plan.settings.settle * h).exp();
+    let even = Lane::splat(1.0 - (-plan.settings.settle * h).exp());
     for i in 0..plan.first_free {
         let (rest, x) = (&block.rest.position[i], &block.position[i]);
         let mut v = ZERO3;
@@ -111,6 +111,10 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
     }
     for i in plan.first_free..block.points() {
         let (x, push, keep) = (&block.position[i], &block.work.push[i], &block.work.keep[i]);
+        let settle = match &block.factors {
+            Some(factors) => factors.settle[i],
+            None => even,
+        };
         let (carried, friction) = (&block.work.carried[i], plan.rows[i].hair_friction);
         let mut v = block.velocity[i];
         for k in 0..LANES {
@@ -118,7 +122,7 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
             // Friction acts on the velocity before the forces: what these add is partly balanced by the tension of the
             // links, and hair would drift if friction took some of it away first.
             let relative = head - was;
-            let settled = was + relative * greater(settle, rubbed(friction * carried[k], relative));
+            let settled = was + relative * greater(settle[k], rubbed(friction * carried[k], relative));
             put(&mut v, k, settled * keep[k] + at(push, k));
         }
         if block.locks > 0 {
@@ -188,7 +192,7 @@ fn carry_frames(block: &mut Block, substep: &Substep) {
 /// Pulls `next` toward the rest bends in the frames carried along it, and toward the style near the roots.
 #[inline(always)]
 fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
-    let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
+    let (substep, count) = (&plan.substeps[s], block.points());
     carry_frames(block, substep);
     // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
     for i in 1..count.saturating_sub(1) {
@@ -198,6 +202,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             (&block.work.links[i], &block.work.next_bend[i], &block.rest.bend[i]);
         let (length, next_length) = (&block.rest.length[i], &block.rest.length[i + 1]);
         let (old, c, head_share) = (&block.bend[i], block.bending.stiffness(i), block.bending.head_share(i));
+        let gamma = block.bending.gamma(i);
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
             // The rest bend is the next link minus this one, both at rest length.
@@ -206,7 +211,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             let wanted = with_lock + (with_head - with_lock) * head_share[k];
             let now = at(p0, k) - 2.0 * at(p1, k) + at(p2, k);
             let before = at(x0, k) - 2.0 * at(x1, k) + at(x2, k);
-            let r = (now - wanted) * (1.0 + gamma) - (before - at(old, k)) * gamma;
+            let r = (now - wanted) * (1.0 + gamma[k]) - (before - at(old, k)) * gamma[k];
             put(&mut bend, k, wanted);
             put(&mut residual, k, r * c[k]);
         }
@@ -344,6 +349,10 @@ fn place_points(block: &mut Block, plan: &Plan, s: usize, link_length: LinkLengt
         carried,
         root_penetration: &block.work.root_penetration,
         link: &block.rest.mean_link,
+        friction: match &block.factors {
+            Some(factors) => &factors.friction,
+            None => &[],
+        },
         field,
     };
     let last = s + 1 == plan.substeps.len();

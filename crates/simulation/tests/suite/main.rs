@@ -11,6 +11,7 @@ mod body;
 mod chains;
 mod dance;
 mod drives;
+mod factors;
 mod imported;
 mod integrators;
 mod kinks;

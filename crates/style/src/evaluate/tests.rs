@@ -151,6 +151,13 @@ fn every_operation_leaves_hair_outside_its_mask_as_it_is() {
                     );
                 }
             }
+            for g in wisp.guides {
+                let points = base.guides.points_per_guide;
+                for (name, list) in made.motion.lists() {
+                    let own = list.get(g as usize * points..(g as usize + 1) * points).unwrap_or(&[]);
+                    assert!(own.iter().all(|factor| *factor == 1.0), "{kind}, {name}, wisp {w}");
+                }
+            }
             for strand in strands {
                 let of = |style: &Hairstyle| {
                     let set = &style.strands;

@@ -1,15 +1,16 @@
 //! Masks: how much of an operation the hair at each place of the scalp gets.
 
-mod map;
+mod brush;
 mod region;
 #[cfg(test)]
 mod tests;
 
 use glam::Vec3;
+pub use lovelock_base::direction_map::DirectionMap as MaskMap;
 use lovelock_groom::Scalp;
 use serde::{Deserialize, Serialize};
 
-pub use map::MaskMap;
+pub use brush::{BrushMode, MaskBrush};
 pub use region::{MaskMix, MaskPart, MaskRegion};
 
 /// How much of an operation the hair at each place gets: parts that are combined one after another.
@@ -29,6 +30,23 @@ impl Mask {
     /// A mask of one part.
     pub fn of(part: MaskPart) -> Self {
         Self { parts: vec![part], inverted: false }
+    }
+
+    /// Its part that is painted, which is added where there is none: as its only one, or so that it adds to those before it. `None` if
+    /// there are too many parts.
+    pub fn painted_mut(&mut self) -> Option<&mut MaskPart> {
+        let painted = self.parts.iter().position(|part| part.region == MaskRegion::Painted);
+        if painted.is_none() && self.parts.len() < Self::MOST_PARTS {
+            self.parts.push(MaskPart { mix: MaskMix::Add, ..MaskPart::region(MaskRegion::Painted) });
+        }
+        self.parts.iter_mut().find(|part| part.region == MaskRegion::Painted)
+    }
+
+    /// Its part that is painted, if any, and whether what is painted there lowers the mask.
+    pub fn painted(&self) -> Option<(&MaskPart, bool)> {
+        let (i, part) = self.parts.iter().enumerate().find(|(_, part)| part.region == MaskRegion::Painted)?;
+        let lowers = part.inverted ^ self.inverted ^ (i > 0 && part.mix == MaskMix::Subtract);
+        Some((part, lowers))
     }
 
     /// Whether the mask is 1 everywhere.

@@ -68,6 +68,29 @@ impl StyleStack {
         self.drop_empty_groups();
     }
 
+    /// Removes a group with its layers.
+    pub fn remove_group(&mut self, id: u32) {
+        let removed = |layer: &Layer| layer.group == Some(id);
+        self.solo = self.solo.filter(|solo| !self.layers.iter().any(|l| l.id == *solo && removed(l)));
+        self.layers.retain(|layer| !removed(layer));
+        self.drop_empty_groups();
+    }
+
+    /// Moves a group so that its layers stand before the layer that is at `to` now; not into another group.
+    pub fn move_group(&mut self, id: u32, to: usize) {
+        let in_group = |layer: &Layer| layer.group == Some(id);
+        let to = to.min(self.layers.len());
+        // Another group is not divided.
+        let inside = self.layers.get(to).and_then(|layer| layer.group).filter(|group| *group != id);
+        let to =
+            inside.and_then(|group| self.layers.iter().position(|l| l.group == Some(group))).unwrap_or(to);
+        let before = self.layers[..to].iter().filter(|layer| !in_group(layer)).count();
+        let (moved, mut rest): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.layers).into_iter().partition(|layer| in_group(layer));
+        rest.splice(before..before, moved);
+        self.layers = rest;
+    }
+
     /// Gives each layer and group a number of its own; those that have one keep it.
     pub(super) fn number(&mut self) {
         let mut taken = std::collections::BTreeSet::new();
@@ -86,6 +109,8 @@ impl StyleStack {
             layer.group = layer.group.filter(|id| taken.contains(id));
         }
         self.solo = self.solo.filter(|id| self.layers.iter().any(|layer| layer.id == *id));
+        self.solo_group =
+            self.solo_group.filter(|id| self.layers.iter().any(|layer| layer.group == Some(*id)));
     }
 
     /// Brings the layers of each group together, at the place of the first of them.
@@ -104,5 +129,6 @@ impl StyleStack {
     fn drop_empty_groups(&mut self) {
         let Self { layers, groups, .. } = self;
         groups.retain(|group| layers.iter().any(|layer| layer.group == Some(group.id)));
+        self.solo_group = self.solo_group.filter(|solo| self.groups.iter().any(|group| group.id == *solo));
     }
 }

@@ -21,6 +21,9 @@ pub struct StyleStack {
     /// The only layer that acts, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solo: Option<u32>,
+    /// The only group whose layers act, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solo_group: Option<u32>,
 }
 
 impl StyleStack {
@@ -47,7 +50,8 @@ impl StyleStack {
     /// The factor that a layer's group and the solo layer put on its weight: 0 where it does not act.
     pub fn factor(&self, layer: &Layer) -> f32 {
         let group = layer.group.and_then(|id| self.group(id));
-        let heard = self.solo.is_none_or(|solo| solo == layer.id);
+        let heard = self.solo.is_none_or(|solo| solo == layer.id)
+            && self.solo_group.is_none_or(|solo| layer.group == Some(solo));
         let on = layer.on && heard && group.is_none_or(|group| group.on);
         if on { group.map_or(1.0, |group| group.weight) } else { 0.0 }
     }

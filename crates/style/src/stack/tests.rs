@@ -55,6 +55,28 @@ fn groups_stay_together_and_switch_their_layers() {
 }
 
 #[test]
+fn a_group_is_moved_heard_alone_and_removed_as_one() {
+    let mut stack = stack();
+    let ids: Vec<u32> = stack.layers.iter().map(|layer| layer.id).collect();
+    stack.push(Layer::of(crate::operations::Frizz::default()));
+    let group = stack.make_group(&ids[..2], "Volume").expect("a group");
+    assert_eq!(kinds(&stack), ["length", "wave", "curl", "frizz"]);
+    stack.move_group(group, 4);
+    assert_eq!(kinds(&stack), ["curl", "frizz", "length", "wave"]);
+    stack.move_group(group, 1);
+    assert_eq!(kinds(&stack), ["curl", "length", "wave", "frizz"]);
+    let other = stack.make_group(&[stack.layers[3].id], "Other").expect("a group");
+    stack.move_group(other, 2);
+    assert_eq!(kinds(&stack), ["curl", "frizz", "length", "wave"], "before the group and not into it");
+    stack.solo_group = Some(group);
+    let factors: Vec<f32> = stack.layers.iter().map(|layer| stack.factor(layer)).collect();
+    assert_eq!(factors, [0.0, 0.0, 1.0, 1.0]);
+    stack.remove_group(group);
+    assert_eq!(kinds(&stack), ["curl", "frizz"]);
+    assert_eq!((stack.solo_group, stack.groups.len()), (None, 1));
+}
+
+#[test]
 fn a_stack_survives_text_and_keeps_what_it_does_not_know() {
     let mut stack = stack();
     stack.layers[1].mask = Mask::of(MaskPart::region(MaskRegion::Left));

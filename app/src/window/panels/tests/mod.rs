@@ -3,6 +3,7 @@ mod layers;
 mod one_by_one;
 mod reasons;
 mod recording;
+mod scalp;
 mod surroundings;
 mod ties;
 mod undo;
@@ -20,9 +21,12 @@ use lovelock_project::Project;
 use lovelock_project::project::HairSource;
 use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PassTime, StrandCount, VoxelDeposit};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
+use lovelock_style::operations::{Curl, Lift, Wave};
+use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation};
 
 use super::recording::State;
 use crate::window::control::section;
+use crate::window::overlay::scalp::ScalpTool;
 use crate::window::testing::{Shown, screen, unfold};
 
 /// A project and the other data that the panels show.
@@ -38,8 +42,11 @@ pub(super) struct Bench {
     pub(super) clip_frames: u64,
     pub(super) colliders: super::colliders::Shown,
     pub(super) selected_tie: usize,
-    pub(super) selected_layer: Option<u32>,
+    pub(super) layers: super::layers::LayersView,
     pub(super) scissors: bool,
+    pub(super) scalp: ScalpTool,
+    pub(super) styles: crate::window::styles::Browser,
+    pub(super) kept: crate::window::styles::Kept,
 }
 
 impl Bench {
@@ -78,8 +85,11 @@ impl Bench {
             clip_frames: 480,
             colliders: super::colliders::Shown::default(),
             selected_tie: 0,
-            selected_layer: None,
+            layers: super::layers::LayersView::default(),
             scissors: false,
+            scalp: ScalpTool::default(),
+            styles: crate::window::styles::Browser::default(),
+            kept: crate::window::styles::Kept::default(),
         }
     }
 }
@@ -94,8 +104,9 @@ pub(super) fn surroundings() -> Arc<Panorama> {
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
 /// Every panel, inside a section as in the window.
-pub(super) const PANELS: [(&str, Show); 12] = [
+pub(super) const PANELS: [(&str, Show); 13] = [
     ("Hairstyle", |ui, b| {
+        crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
     ("Simulation", |ui, b| {
@@ -110,6 +121,7 @@ pub(super) const PANELS: [(&str, Show); 12] = [
     ("Body and motion", |ui, b| {
         super::body::ui(ui, &mut b.project, &b.body);
     }),
+    ("Scalp", |ui, b| super::scalp::ui(ui, &mut b.project.body.scalp, &mut b.scalp, true)),
     ("Colliders", |ui, b| {
         let edits = &mut b.project.body.colliders;
         // The skin replaces the skull's shape until that shape is edited.
@@ -119,7 +131,7 @@ pub(super) const PANELS: [(&str, Show); 12] = [
         super::colliders::ui(ui, edits, &fitted, &mut b.colliders);
     }),
     ("Layers", |ui, b| {
-        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.selected_layer);
+        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.layers);
     }),
     ("Ties and scissors", |ui, b| {
         super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
@@ -167,6 +179,13 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
             (preset.id(), project)
         })
         .collect();
+    // A stack with everything that a list of layers shows.
+    let tied = &mut projects[3].1.hair.stack;
+    for operation in [Operation::from(Wave::default()), Lift::default().into(), Curl::default().into()] {
+        tied.push(Layer::of(operation));
+    }
+    tied.layers[1].mask = Mask::of(MaskPart::region(MaskRegion::Crown));
+    tied.make_group(&[2, 3], "A group");
     let mut files = Project::default();
     files.set_hair_file("/a/b c/straight.hair");
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");

@@ -25,10 +25,12 @@ fn leaves(path: &str, tree: &Json, out: &mut BTreeMap<String, Json>) {
 }
 
 /// Parts of a file that are not settings: names, files, what was drawn and cut, and the look inside a groom, which is not used.
-const NO_SETTINGS: [&str; 11] = [
+const NO_SETTINGS: [&str; 13] = [
     "version",
     "hair.groom.look.",
     "hair.cut.",
+    "hair.moves",
+    "hair.style",
     "timeline.markers",
     "timeline.tracks",
     "motion.clip",

@@ -104,6 +104,7 @@ impl PlacedClusters {
             strands: &self.ribs,
             details: &self.details.words,
             transmittance: &self.transmittance,
+            colours: self.details.colours(),
         };
         shade_all(width, view, &from, false, &mut self.shaded);
         vertices::place(hair, &self.ribs, &self.shaded, input, &mut self.vertices);

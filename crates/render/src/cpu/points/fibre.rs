@@ -17,18 +17,16 @@ use crate::fibre::{
 #[inline(always)]
 pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane; 3] {
     let uniform = view.uniform;
-    let ShadedFrom { here, tangent, to_eye, pigment, turn, packed, .. } = from;
+    let ShadedFrom { here, tangent, to_eye, absorption, turn, packed, .. } = from;
     let (mut sin_v, mut cos_v) = (from.sin_v, from.cos_v);
     for lane in 0..LANES {
         sin_v[lane] = sin_v[lane].clamp(-MOST_INCLINED, MOST_INCLINED);
         cos_v[lane] = max(cos_v[lane], LEAST_COSINE);
     }
-    let absorption = uniform.absorption_variation.to_array();
     let strength = uniform.colors.w;
     let mut points = [PointScatter::default(); LANES];
     for (lane, point) in points.iter_mut().enumerate() {
-        let p = pigment[lane];
-        let sigma = [absorption[0] * p, absorption[1] * p, absorption[2] * p];
+        let sigma = [absorption[0][lane], absorption[1][lane], absorption[2][lane]];
         *point = PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma);
     }
     let mut sum = [[0.0; LANES]; 3];

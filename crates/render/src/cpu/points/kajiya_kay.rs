@@ -27,7 +27,10 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
     for c in 0..3 {
         let sigma = pow(max(absorption[c], 0.0), HairLook::STRETCH);
         for lane in 0..LANES {
-            let s = sigma * stretched[lane];
+            // The same for hair of the look's colour, whatever that of other hair.
+            let own = from.absorption[c][lane];
+            let is_own = from.has_colours & (own != absorption[c] * pigment[lane]);
+            let s = if is_own { pow(max(own, 0.0), HairLook::STRETCH) } else { sigma * stretched[lane] };
             body[c][lane] = exp(-HairLook::BODY_PATH * s) + HairLook::SURFACE_SHARE;
             body_log[c][lane] = log2(body[c][lane]);
             second[c][lane] = exp(-4.1 * s) + 0.02;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};
 use super::view::View;
 use crate::light::MOST_LIGHT;
+use crate::strand_details::PointColours;
 
 mod fibre;
 mod kajiya_kay;
@@ -47,6 +48,8 @@ pub(super) struct PointsIn<'a> {
     pub details: &'a [u32],
     /// Four 8-bit transmittances per point.
     pub transmittance: &'a [u32],
+    /// Colours of single strands, if any has another than that of the look.
+    pub colours: Option<PointColours<'a>>,
 }
 
 /// Shades all points, in parallel.
@@ -86,8 +89,12 @@ struct ShadedFrom<'a> {
     /// Sine and cosine of the eye's inclination to the plane across the strand.
     sin_v: Lane,
     cos_v: Lane,
-    /// Factor on the absorption.
+    /// Factor on the absorption of the look.
     pigment: Lane,
+    /// The absorption.
+    absorption: &'a [Lane; 3],
+    /// Whether strands have colours of their own: then the absorption is not that factor times that of the look.
+    has_colours: bool,
     /// See [`turn_variance`].
     turn: Lane,
     /// Four 8-bit transmittances.
@@ -283,6 +290,17 @@ fn shade_group<const COLORED: bool>(
 
     let sum = if COLORED {
         let pigment = pigment_of(view, &detail);
+        let mut absorption = [[0.0; LANES]; 3];
+        let look = uniform.absorption_variation.to_array();
+        for c in 0..3 {
+            for lane in 0..LANES {
+                absorption[c][lane] = look[c] * pigment[lane];
+            }
+        }
+        if let Some(colours) = &input.colours {
+            let points = view.points_per_strand();
+            color(view, colours, (indices, points), &detail, &mut absorption);
+        }
         let from = ShadedFrom {
             here: &here,
             tangent: &tangent,
@@ -290,6 +308,8 @@ fn shade_group<const COLORED: bool>(
             sin_v,
             cos_v,
             pigment,
+            absorption: &absorption,
+            has_colours: input.colours.is_some(),
             turn,
             packed,
         };
@@ -335,6 +355,30 @@ fn shade_group<const COLORED: bool>(
         };
     }
     out
+}
+
+/// Changes the `absorption` that points have by the look to that of their strands.
+///
+/// The variation between strands acts on all pigment; what else varies in the look acts on its own alone.
+#[inline(always)]
+fn color(
+    view: &View,
+    colours: &PointColours,
+    (indices, points_per_strand): (&[usize; LANES], usize),
+    detail: &[i32; LANES],
+    absorption: &mut [Lane; 3],
+) {
+    let variation = view.uniform.absorption_variation.w;
+    let of = PigmentVariation { variation, ..PigmentVariation::default() };
+    for lane in 0..LANES {
+        let along = (detail[lane] >> 8 & 0xff) as f32 * (1.0 / 255.0);
+        let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
+        let [kept, added @ ..] = colours.at(indices[lane], points_per_strand, along);
+        let varied = of.varied(shade);
+        for c in 0..3 {
+            absorption[c][lane] = absorption[c][lane] * kept + added[c] * varied;
+        }
+    }
 }
 
 /// Pigment of strands at points, as a factor on that of the hair.

@@ -47,7 +47,7 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     let uniform = view.uniform;
     let eye = uniform.eye_lights.to_array();
     // Skin under hair has the colour of the roots, so that gaps do not look bald.
-    let absorption = uniform.absorption_variation.to_array();
+    let absorption = uniform.root_absorption.to_array();
     let mut paint = [0.0; LANES];
     for lane in 0..LANES {
         paint[lane] = 0.88 * smoothstep(0.15, 0.75, batch.scalp[lane]);

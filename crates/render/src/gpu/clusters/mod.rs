@@ -179,7 +179,7 @@ impl Clusters {
     ) -> Result<(), GpuError> {
         let Some((parts, frame)) = self.placed() else { return Ok(()) };
         let of_ribs = FrameResources { uniform: &parts.frame_uniform, ..*resources };
-        parts.ribs.shade(gpu, "draw/ribs", lighting.shading, commands, &of_ribs);
+        parts.ribs.shade(gpu, "draw/ribs", lighting.shading, commands, &of_ribs)?;
         frame.uniform.lanes =
             lanes(parts.constant.largest, frame, lighting.area, lighting.scale / lighting.nearest.max(0.05));
         frame.uniform.area = lighting.area;

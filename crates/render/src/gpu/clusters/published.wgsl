@@ -37,7 +37,7 @@ fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let tangent = tangent_at(i - section, section);
     let p = points[i].xyz;
     let v = unit_or_zero(clusters.eye_depth.xyz - p);
-    let color = strand_color(frame.absorption_variation.xyz).body;
+    let color = strand_color(frame.mean_absorption.xyz).body;
     var sum = ambient(vec3f(0.0, 0.3, 0.0)) * color * 0.22;
     for (var k = 0u; k < LIGHTS; k++) {
         let light = frame.lights[k];

@@ -199,6 +199,7 @@ fn small(guide: &[Vec3]) -> Hairstyle {
             offset_tangent: vec![-0.01; n],
             taper: vec![1.0; n],
             shade: vec![0.5],
+            ..StrandSet::default()
         },
         ..Hairstyle::default()
     }

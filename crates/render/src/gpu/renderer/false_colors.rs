@@ -60,6 +60,23 @@ impl GpuRenderer {
         Err(unsettled())
     }
 
+    /// [`GpuRenderer::picture_on_device`], then [`GpuRenderer::false_colors`] by one value per stored strand; fine strands have what
+    /// lies between their parents.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn strand_colors(
+        &mut self,
+        input: &FrameInput,
+        size: [u32; 2],
+        (of_strands, scale): (&[f32], &ColorScale),
+        images: &mut DeviceImages,
+    ) -> Result<(Arc<DeviceImage>, FrameStats), RenderError> {
+        let stats = self.picture_on_device(input, size)?;
+        let values = self.hair.at_points(input.style, of_strands);
+        Ok((self.false_colors(&values, scale, images)?, stats))
+    }
+
     /// Draws them once. Returns whether the list of fragments was long enough.
     fn draw_false_colors(&mut self, scale: &ColorScale, shown: &DeviceImage) -> Result<bool, RenderError> {
         let gpu = Arc::clone(&self.gpu);

@@ -109,7 +109,7 @@ impl GpuRenderer {
         let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
         // Values replace their light.
         let shading = (lit, HairShading::KajiyaKay, self.light.tables());
-        self.hair.shade(gpu, "draw/points", shading, commands, &frame);
+        self.hair.shade(gpu, "draw/points", shading, commands, &frame)?;
         Ok(())
     }
 }

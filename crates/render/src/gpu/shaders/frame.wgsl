@@ -26,6 +26,9 @@ struct FrameUniform {
     background_bottom: vec4f,
     // Absorption of the hair; w: variation between strands.
     absorption_variation: vec4f,
+    // Absorption of the hair with the colours of its strands: the mean at the roots, and over the whole length.
+    root_absorption: vec4f,
+    mean_absorption: vec4f,
     // Full width of a drawn strand in metres, opacity, tip lightening.
     width_opacity_tip: vec4f,
     // Strength of the first and second highlight, their exponents.

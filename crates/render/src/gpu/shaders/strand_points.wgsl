@@ -16,6 +16,9 @@ struct ShadedPoint {
 @group(0) @binding(6) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
 @group(0) @binding(7) var<storage, read_write> shaded: array<ShadedPoint>;
 
+// Colours of single strands: see `PointColours::words` in strand_details.rs.
+@group(0) @binding(23) var<storage, read> strand_colors: array<u32>;
+
 // The number of points that are drawn; the buffers may hold more.
 fn drawn_points() -> u32 {
     return u32(frame.fading.w);
@@ -47,6 +50,9 @@ fn project(p: vec3f) -> Projected {
 // Whether hair scatters as fibres do; otherwise it is shaded by Kajiya-Kay.
 override FIBRE: bool = true;
 
+// Whether strands have colours of their own.
+override COLORED: bool = false;
+
 // The largest half float. See cpu/points/mod.rs.
 const MOST_LIGHT: f32 = 65504.0;
 
@@ -58,14 +64,31 @@ const PAINTED_FROM: f32 = 0.2;
 // A point to shade: its position, the unit tangent, the unit vector toward the eye, and the colours or the scattering of the strand there.
 struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatter, turn: f32 }
 
+// The part of `pigment_of` by which strands differ by nature.
+fn varied(shade: f32) -> f32 {
+    return max(1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0), 0.0);
+}
+
+// What is kept of the look's absorption at the fraction `along` of the strand of point `i`, and what is added to it. Twin of
+// `colour_along` in groom.
+const COLOR_SAMPLES: u32 = 8u;
+
+fn color_at(i: u32, along: f32) -> vec4f {
+    let place = along * f32(COLOR_SAMPLES - 1u);
+    let sample = min(u32(place), COLOR_SAMPLES - 2u);
+    let first = strand_colors[i / max(u32(frame.fading.z), 1u)] + 4u * sample;
+    let a = vec4u(strand_colors[first], strand_colors[first + 1u], strand_colors[first + 2u], strand_colors[first + 3u]);
+    let b = vec4u(strand_colors[first + 4u], strand_colors[first + 5u], strand_colors[first + 6u], strand_colors[first + 7u]);
+    return mix(bitcast<vec4f>(a), bitcast<vec4f>(b), place - f32(sample));
+}
+
 // Factor on the absorption of a point.
 fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
     let lock = f32(detail >> 26u) / 64.0;
     let lightened = 1.0 - frame.width_opacity_tip.z * smoothstep(0.2, 1.0, along);
     let whitened = select(1.0, UNPIGMENTED, fract(shade * WHITENING) < frame.colors.x);
     let painted = select(0.0, smoothstep(0.0, PAINTED_FROM, along), lock < frame.colors.y);
-    let varied = max(1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0), 0.0);
-    return varied * lightened * whitened * (1.0 - frame.colors.z * painted);
+    return varied(shade) * lightened * whitened * (1.0 - frame.colors.z * painted);
 }
 
 // Like `body_light` for points without a surface: three taps on a disc perpendicular to the light.
@@ -136,7 +159,11 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let to_eye = frame.eye_lights.xyz - p;
     let distance = max(length(to_eye), 1e-3);
     let v = to_eye / distance;
-    let absorption = frame.absorption_variation.xyz * pigment_of(detail, along, shade);
+    var absorption = frame.absorption_variation.xyz * pigment_of(detail, along, shade);
+    if (COLORED) {
+        let own = color_at(i, along);
+        absorption = absorption * own.x + own.yzw * varied(shade);
+    }
     var color: StrandColor;
     var scatter: Scatter;
     if (FIBRE) {

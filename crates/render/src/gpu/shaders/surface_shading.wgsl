@@ -41,7 +41,7 @@ fn shade_surface(in: Surface) -> vec3f {
     let v = normalize(frame.eye_lights.xyz - in.world);
     let n = normalize(in.normal);
     // Skin under hair has the colour of the roots, so that gaps do not look bald.
-    let stretched = pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(STRETCH));
+    let stretched = pow(max(frame.root_absorption.xyz, vec3f(0.0)), vec3f(STRETCH));
     let root = 0.3 * (exp(-BODY_PATH * stretched) + SURFACE_SHARE);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);

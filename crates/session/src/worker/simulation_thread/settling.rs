@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::animation::Animation;
+use lovelock_project::animation::{Animation, StyleTracks};
 
 use super::SimulationThread;
 use crate::engine::{Preroll, PrerollProgress};
@@ -22,6 +22,7 @@ pub(super) fn preroll_differs(a: &Project, b: &Project) -> bool {
     a.simulation != b.simulation
         || a.timeline.preroll_secs.to_bits() != b.timeline.preroll_secs.to_bits()
         || Animation::of(a) != Animation::of(b)
+        || StyleTracks::of(a) != StyleTracks::of(b)
 }
 
 /// A pre-roll in progress.

@@ -36,6 +36,7 @@ fn place(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         carried: 0,
         root_penetration: &[ZERO],
         link: &ZERO,
+        friction: &[],
         field: None,
     };
     let placed = place_point(
@@ -138,6 +139,7 @@ fn a_point_inside_at_rest_stays_inside() {
         carried: 0,
         root_penetration: &[ZERO],
         link: &ZERO,
+        friction: &[],
         field: None,
     };
     let rules = ContactRules { margin: 0.003, ..RULES };
@@ -184,6 +186,7 @@ fn hair_with_an_enclosed_root_leaves_along_a_slope() {
         carried: 0,
         root_penetration: &deep,
         link: &length,
+        friction: &[],
         field: None,
     };
     let mut before = root;

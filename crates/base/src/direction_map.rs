@@ -1,4 +1,4 @@
-//! A painted mask: a square image over all directions from the middle of the head.
+//! Values over all directions from a middle, as a square image: painted masks.
 
 use std::sync::Arc;
 
@@ -12,15 +12,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 ///
 /// The directions are unfolded onto a square as an octahedron. Values are bytes, 255 for 1, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MaskMap(Arc<[u8]>);
+pub struct DirectionMap(Arc<[u8]>);
 
-impl Default for MaskMap {
+impl Default for DirectionMap {
     fn default() -> Self {
         Self(Arc::new([]))
     }
 }
 
-impl MaskMap {
+impl DirectionMap {
     /// Texels along each side.
     pub const SIDE: usize = 128;
     const TEXELS: usize = Self::SIDE * Self::SIDE;
@@ -56,7 +56,7 @@ impl MaskMap {
 
 /// The texel at a place that may lie one texel outside: the octahedron goes on there, mirrored about the middle of the side.
 fn texel_index(x: i32, y: i32) -> usize {
-    let side = MaskMap::SIDE as i32;
+    let side = DirectionMap::SIDE as i32;
     let (mut x, mut y) = (x, y);
     if !(0..side).contains(&x) {
         (x, y) = (x.clamp(0, side - 1), side - 1 - y);
@@ -93,7 +93,7 @@ fn sign(v: Vec2) -> Vec2 {
 
 use glam::Vec2Swizzles as _;
 
-impl Serialize for MaskMap {
+impl Serialize for DirectionMap {
     /// LZ4, then base 64: a painted mask is a few kilobytes of text.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let packed = if self.0.is_empty() { Vec::new() } else { lz4_flex::compress(&self.0) };
@@ -101,7 +101,7 @@ impl Serialize for MaskMap {
     }
 }
 
-impl<'de> Deserialize<'de> for MaskMap {
+impl<'de> Deserialize<'de> for DirectionMap {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
         if text.is_empty() {

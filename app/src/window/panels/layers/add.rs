@@ -1,0 +1,87 @@
+//! The menu of new layers.
+
+use egui::Ui;
+use lovelock_style::{Kind, Layer, Operation, StyleStack, Subject};
+
+use super::LayersView;
+
+/// Menus of new layers.
+const MENUS: [(Subject, &str); 4] = [
+    (Subject::Shape, "Shape"),
+    (Subject::Strands, "Strands"),
+    (Subject::Colour, "Colour"),
+    (Subject::Motion, "Motion"),
+];
+
+/// The button that adds a layer.
+pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
+    let full = stack.layers.len() >= StyleStack::MOST_LAYERS;
+    ui.add_enabled_ui(!full, |ui| {
+        let menu = ui.menu_button("Add layer", |ui| {
+            if let Some(kind) = choose(ui, &mut view.search)
+                && let Some(operation) = Operation::new(kind.id)
+            {
+                add(stack, view, operation);
+                view.search.clear();
+                ui.close();
+            }
+        });
+        if menu.inner.is_none() {
+            view.search.clear();
+        }
+        let tip = "Adds a change of the hair after the selected layer.";
+        let full = format!("There are {} layers, the most.", StyleStack::MOST_LAYERS);
+        menu.response.on_hover_text(tip).on_disabled_hover_text(full);
+    });
+}
+
+/// Adds a layer after the selected one, in its group, and selects it.
+fn add(stack: &mut StyleStack, view: &mut LayersView, operation: Operation) {
+    let after = view.selected.and_then(|id| stack.layers.iter().position(|layer| layer.id == id));
+    let group = after.and_then(|i| stack.layers[i].group);
+    let at = after.map_or(stack.layers.len(), |i| i + 1);
+    if let Some(id) = stack.insert(at, Layer { group, ..Layer::of(operation) }) {
+        view.select(Some(id));
+    }
+}
+
+/// The kinds of layers by their subject, or those that fit what is searched. Returns the chosen one.
+fn choose(ui: &mut Ui, search: &mut String) -> Option<&'static Kind> {
+    ui.set_min_width(170.0);
+    let field = egui::TextEdit::singleline(search).hint_text("Search").char_limit(40);
+    let field = ui.add(field.desired_width(f32::INFINITY));
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search layers"));
+    let wanted = search.trim().to_lowercase();
+    let mut chosen = None;
+    let mut entry = |ui: &mut Ui, kind: &'static Kind| {
+        if ui.button(kind.label).on_hover_text(kind.text).clicked() {
+            chosen = Some(kind);
+        }
+    };
+    // Scissors make their own layers.
+    let kinds = || Operation::KINDS.iter().filter(|kind| kind.id != "scissors");
+    if wanted.is_empty() {
+        for (subject, name) in MENUS {
+            if kinds().any(|kind| kind.subject == subject) {
+                ui.menu_button(name, |ui| {
+                    kinds().filter(|kind| kind.subject == subject).for_each(|kind| entry(ui, kind));
+                });
+            }
+        }
+        return chosen;
+    }
+    let fits = |kind: &&Kind| {
+        [kind.label, kind.text].iter().any(|text| text.to_lowercase().contains(wanted.as_str()))
+    };
+    let found: Vec<_> = kinds().filter(fits).collect();
+    for kind in &found {
+        entry(ui, kind);
+    }
+    if found.is_empty() {
+        ui.weak("No layer has that name.");
+    }
+    if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+        chosen = chosen.or(found.first().copied());
+    }
+    chosen
+}

@@ -1,0 +1,77 @@
+//! Keys of the list of layers.
+
+use egui::{Key, Modifiers, Ui};
+use lovelock_style::StyleStack;
+
+use super::LayersView;
+use super::list::Row;
+
+/// Carries out the keys that were pressed while the list has them.
+pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
+    if !view.has_keys || !ui.is_enabled() || ui.ctx().text_edit_focused() || view.renamed.is_some() {
+        return;
+    }
+    let pressed = |modifiers: Modifiers, key: Key| {
+        let is_pressed = ui.input_mut(|input| input.consume_key(modifiers, key));
+        if is_pressed {
+            // An arrow key also moves the keyboard focus.
+            ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
+        }
+        is_pressed
+    };
+    if pressed(Modifiers::COMMAND, Key::D) {
+        duplicate(stack, view);
+    }
+    if pressed(Modifiers::COMMAND, Key::G) {
+        stack.make_group(&view.picked(stack), "Group");
+    }
+    if pressed(Modifiers::NONE, Key::Delete) {
+        remove(stack, view);
+    }
+    if pressed(Modifiers::NONE, Key::F2)
+        && let Some(layer) = view.selected.and_then(|id| stack.layer(id))
+    {
+        view.renamed = Some((Row::Layer(layer.id), layer.label().to_owned()));
+    }
+    for (key, down) in [(Key::ArrowUp, false), (Key::ArrowDown, true)] {
+        if pressed(Modifiers::NONE, key) {
+            step(stack, view, down);
+        }
+    }
+}
+
+/// Duplicates the picked layers and picks the copies.
+pub(super) fn duplicate(stack: &mut StyleStack, view: &mut LayersView) {
+    let copies: Vec<u32> = view.picked(stack).into_iter().filter_map(|id| stack.duplicate(id)).collect();
+    if let Some((&last, others)) = copies.split_last() {
+        view.select(Some(last));
+        view.also.extend(others);
+    }
+}
+
+/// Removes the picked layers and selects the one that takes their place.
+pub(super) fn remove(stack: &mut StyleStack, view: &mut LayersView) {
+    let picked = view.picked(stack);
+    let first = stack.layers.iter().position(|layer| picked.contains(&layer.id));
+    for id in picked {
+        stack.remove(id);
+    }
+    let next = first.map(|i| i.min(stack.layers.len().saturating_sub(1)));
+    view.select(next.and_then(|i| stack.layers.get(i)).map(|layer| layer.id));
+}
+
+/// Selects the next layer that is shown.
+fn step(stack: &StyleStack, view: &mut LayersView, down: bool) {
+    let hidden = |group: Option<u32>| group.is_some_and(|id| view.folded.contains(&id));
+    let shown: Vec<u32> =
+        stack.layers.iter().filter(|layer| !hidden(layer.group)).map(|layer| layer.id).collect();
+    let at = view.selected.and_then(|id| shown.iter().position(|shown| *shown == id));
+    let next = match at {
+        Some(i) if down => (i + 1).min(shown.len() - 1),
+        Some(i) => i.saturating_sub(1),
+        None => 0,
+    };
+    if let Some(&id) = shown.get(next) {
+        view.select(Some(id));
+    }
+}

@@ -1,0 +1,131 @@
+//! The layers of the style: the list, and the controls of the layer that is selected.
+
+mod add;
+mod keyboard;
+mod list;
+mod mask;
+mod row;
+mod thumbnail;
+
+use std::collections::BTreeSet;
+
+use egui::Ui;
+use lovelock_style::{Layer, Mask, MaskBrush, Operation, StyleStack};
+
+use super::pigments::pigments;
+use crate::window::control::{all_settings, curve, note, section, settings};
+use list::Row;
+use thumbnail::Thumbnails;
+
+/// What the panel shows of the layers, besides the stack itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LayersView {
+    /// The layer whose controls are shown.
+    pub(crate) selected: Option<u32>,
+    /// Further layers that are picked with it.
+    also: BTreeSet<u32>,
+    /// Whether the image shows the mask of the selected layer.
+    pub(crate) show_mask: bool,
+    /// Whether the pointer paints the mask of the selected layer.
+    pub(crate) painting: bool,
+    /// The brush that paints it.
+    pub(crate) brush: MaskBrush,
+    /// The row that is being renamed, and the text so far.
+    renamed: Option<(Row, String)>,
+    /// Groups whose layers are hidden.
+    folded: BTreeSet<u32>,
+    /// Whether keys go to the list, because it was clicked last.
+    has_keys: bool,
+    /// What is searched in the menu of new layers.
+    search: String,
+    thumbnails: Thumbnails,
+}
+
+impl LayersView {
+    /// Shows or hides the mask of the selected layer in the image.
+    pub(crate) fn toggle_mask(&mut self) {
+        self.show_mask = !self.show_mask;
+    }
+
+    /// Starts or ends painting; the mask is shown while it is painted.
+    pub(crate) fn toggle_painting(&mut self) {
+        self.painting = !self.painting;
+        self.show_mask |= self.painting;
+    }
+
+    /// Makes the brush smaller or larger.
+    pub(crate) fn resize_brush(&mut self, factor: f32) {
+        let radius = self.brush.radius * factor;
+        self.brush = lovelock_base::settings::Settings::clamped(&MaskBrush { radius, ..self.brush });
+    }
+
+    /// The mask that the image shows, if any.
+    pub(crate) fn shown_mask<'a>(&self, stack: &'a StyleStack) -> Option<&'a Mask> {
+        let layer = self.selected.and_then(|id| stack.layer(id));
+        layer.filter(|_| self.show_mask).map(|layer| &layer.mask)
+    }
+
+    /// The layers that are picked, in their order.
+    fn picked(&self, stack: &StyleStack) -> Vec<u32> {
+        let is_picked = |layer: &&Layer| self.selected == Some(layer.id) || self.also.contains(&layer.id);
+        stack.layers.iter().filter(is_picked).map(|layer| layer.id).collect()
+    }
+
+    fn select(&mut self, id: Option<u32>) {
+        self.selected = id;
+        self.also.clear();
+    }
+
+    /// Forgets layers that are no longer there.
+    fn follow(&mut self, stack: &StyleStack) {
+        self.selected = self.selected.filter(|id| stack.layer(*id).is_some());
+        self.also.retain(|id| stack.layer(*id).is_some());
+        self.folded.retain(|id| stack.group(*id).is_some());
+    }
+}
+
+/// The list of layers and the controls of the one that is selected.
+pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
+    view.follow(stack);
+    add::menu(ui, stack, view);
+    if stack.layers.is_empty() {
+        note(ui, "No layers: the hair is as it grows. A layer changes it, wholly or where its mask is.");
+        return;
+    }
+    keyboard::run(ui, stack, view);
+    list::show(ui, stack, view);
+    view.follow(stack);
+    let Some(id) = view.selected else {
+        note(ui, "Click a layer to change it.");
+        return;
+    };
+    if let Some(layer) = stack.layer_mut(id) {
+        ui.separator();
+        ui.push_id(id, |ui| controls(ui, layer, view));
+    }
+}
+
+/// The controls of one layer.
+fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView) {
+    let fresh = Operation::new(layer.operation.id());
+    match (layer.operation.known_mut(), fresh.as_ref().and_then(Operation::known)) {
+        (Some(operation), Some(default)) => {
+            note(ui, operation.kind().text);
+            pigments(ui, operation.settings_mut());
+            all_settings(ui, operation.settings_mut(), default.settings());
+            for (i, info) in operation.ramps().iter().enumerate() {
+                ui.push_id(info.name, |ui| {
+                    curve(ui, info.label, info.text, operation.ramp_mut(i), default.ramp(i));
+                });
+            }
+        }
+        _ => note(ui, "This version does not know the operation. It is kept and does nothing."),
+    }
+    let default = Layer::default();
+    settings(ui, &["weight", "seed"], layer, &default);
+    section(ui, "Along the hair", false, |ui| {
+        let tip = "How much the layer acts from the root to the tip.";
+        curve(ui, "Strength along the hair", tip, &mut layer.ramp, &default.ramp);
+    });
+    section(ui, "Mask", view.painting || view.show_mask, |ui| mask::ui(ui, &mut layer.mask, view));
+}

@@ -1,0 +1,64 @@
+//! The scalp: how it is shown, and what is corrected.
+
+use egui::Ui;
+use lovelock_base::settings::Unit;
+use lovelock_motion::ScalpFit;
+
+use crate::window::control::{Number, note, settings};
+use crate::window::overlay::scalp::ScalpTool;
+
+/// The controls of the scalp of a body. `found` is whether the body has one.
+pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: bool) {
+    if !found {
+        note(ui, "This body has no surface on which hair can grow.");
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.checkbox(&mut tool.shown, "Show scalp").on_hover_text(
+            "Shows where hair grows. Drag the handles of its outline in the image; double-click one to restore it.",
+        );
+        let before = tool.painting;
+        ui.checkbox(&mut tool.painting, "Paint scalp")
+            .on_hover_text("Dragging over the head adds hair. With Ctrl held it removes hair.");
+        tool.shown |= tool.painting && !before;
+        tool.painting &= tool.shown;
+    });
+    if tool.painting {
+        Number::new(
+            "Brush",
+            0.03..=0.8,
+            Unit::RADIANS,
+            "Size of the brush, seen from the middle of the head.",
+        )
+        .show(ui, &mut tool.brush, ScalpTool::default().brush);
+        ui.checkbox(&mut tool.mirrored, "Both sides").on_hover_text("Paints the other side alike.");
+    }
+    let default = ScalpFit::default();
+    settings(ui, &["forward", "up", "nod", "width", "size"], fit, &default);
+    settings(
+        ui,
+        &[
+            "raise.front",
+            "raise.corner",
+            "raise.temple",
+            "raise.before_ear",
+            "raise.above_ear",
+            "raise.behind_ear",
+            "raise.nape",
+        ],
+        fit,
+        &default,
+    );
+    ui.horizontal_wrapped(|ui| {
+        let painted = ui.add_enabled(fit.is_painted(), egui::Button::new("Clear paint"));
+        let painted = painted.on_disabled_hover_text("Nothing is painted on the scalp.");
+        if painted.on_hover_text("Removes what was painted on the scalp.").clicked() {
+            fit.added = default.added.clone();
+            fit.removed = default.removed.clone();
+        }
+        let reset = ui.add_enabled(!fit.is_automatic(), egui::Button::new("Fit again"));
+        let reset = reset.on_disabled_hover_text("The scalp is as it was found.");
+        if reset.on_hover_text("Restores the scalp that was found.").clicked() {
+            *fit = default.clone();
+        }
+    });
+}

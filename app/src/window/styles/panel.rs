@@ -1,0 +1,248 @@
+//! The browser in the panel of the hairstyle.
+
+use egui::{Button, ScrollArea, TextEdit, Ui, vec2};
+use egui_material_icons::icons::ICON_STAR;
+use lovelock_project::Project;
+use lovelock_project::styles::{Style, StyleParts};
+
+use super::dialogs::{self, Dialog};
+use super::tile::{GAP, Tile, height, tile};
+use super::{Browser, Entry, Hover, Kept, Request, current};
+use crate::window::control::note;
+use crate::window::theme;
+
+/// Time for which the pointer rests on a tile before the hair is shown in that style, seconds.
+const REST_SECS: f64 = 0.3;
+/// Tiles side by side.
+const COLUMNS: usize = 3;
+/// Height of the grid, points.
+const TALL: f32 = 330.0;
+
+/// What is done to a style from its tile.
+enum Action {
+    Apply(StyleParts),
+    Favourite,
+    Export,
+    Rename,
+    Delete,
+}
+
+/// The browser: what is applied to `project`, and the user's own styles.
+pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+    browser.update(ui.ctx());
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut browser.search).hint_text("Search styles");
+        let field = ui.add(field.desired_width(ui.available_width() - 104.0));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search styles"));
+        field.on_hover_text("Shows styles with these words in their name, description or tags.");
+        let save = ui.add_enabled(browser.own.is_some(), Button::new("Save as style…"));
+        let tip = "Keeps this hairstyle with its colours and motion among your own.";
+        if save.on_hover_text(tip).on_disabled_hover_text("The system has no folder for your data.").clicked()
+        {
+            let style = Style::of_project(project);
+            browser.dialog = Some(Dialog::Save { style: Box::new(style), name: String::new() });
+        }
+    });
+    parts(ui, &mut browser.parts);
+    chips(ui, browser);
+    grid(ui, project, browser, kept);
+    for why in &browser.broken {
+        ui.label(egui::RichText::new(why).small().color(theme::WRONG));
+    }
+    dialogs::show(ui.ctx(), browser);
+}
+
+/// The three parts that a click applies.
+fn parts(ui: &mut Ui, parts: &mut StyleParts) {
+    ui.horizontal(|ui| {
+        ui.label("Apply");
+        let toggles = [
+            (&mut parts.shape, "Shape", "A click takes the cut, the form and the layers that change them."),
+            (&mut parts.colour, "Colour", "A click takes the colours."),
+            (&mut parts.motion, "Motion", "A click takes how the hair moves."),
+        ];
+        for (on, name, tip) in toggles {
+            if ui.selectable_label(*on, name).on_hover_text(tip).clicked() {
+                *on = !*on;
+            }
+        }
+    });
+}
+
+/// Filters: favourites, and tags.
+fn chips(ui: &mut Ui, browser: &mut Browser) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
+        let star = ui.selectable_label(browser.only_favourites, ICON_STAR);
+        star.widget_info(|| {
+            egui::WidgetInfo::selected(egui::Role::Button, true, browser.only_favourites, "Favourites only")
+        });
+        if star.on_hover_text("Shows favourites only.").clicked() {
+            browser.only_favourites = !browser.only_favourites;
+        }
+        for tag in browser.all_tags() {
+            let on = browser.tags.contains(&tag);
+            let text = egui::RichText::new(&tag).small();
+            let chip =
+                ui.selectable_label(on, text).on_hover_text(format!("Shows only styles that are {tag}."));
+            if chip.clicked() && !browser.tags.remove(&tag) {
+                browser.tags.insert(tag);
+            }
+        }
+        // A tag that no style has any more would hide everything.
+        let known = browser.all_tags();
+        browser.tags.retain(|tag| known.contains(tag));
+    });
+}
+
+fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+    let shown = browser.shown(kept);
+    if shown.is_empty() {
+        note(ui, "No style has all of this. Clear the search and the filters to see every style.");
+    }
+    let mut action = None;
+    let mut hovered = None;
+    let area = ScrollArea::vertical().id_salt("styles").max_height(TALL).auto_shrink([false, true]);
+    area.show(ui, |ui| {
+        let wide = ui.available_width() - ui.spacing().scroll.allocated_width();
+        let width = ((wide - GAP * (COLUMNS - 1) as f32) / COLUMNS as f32).floor().max(16.0);
+        ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+        for row in shown.chunks(COLUMNS) {
+            ui.horizontal(|ui| {
+                for entry in row {
+                    let (asked, over) = one(ui, width, entry, project, browser, kept);
+                    action = action.take().or(asked.map(|asked| (entry.clone(), asked)));
+                    if over {
+                        hovered = Some(entry.id.clone());
+                    }
+                }
+            });
+        }
+    });
+    preview(ui, browser, hovered);
+    if let Some((entry, action)) = action {
+        act(&entry, action, project, browser, kept);
+    }
+}
+
+/// One tile; what is done to its style, and whether the pointer is over it.
+fn one(
+    ui: &mut Ui,
+    width: f32,
+    entry: &Entry,
+    project: &Project,
+    browser: &mut Browser,
+    kept: &Kept,
+) -> (Option<Action>, bool) {
+    let style = &entry.style;
+    let favourite = kept.favourites.contains(&entry.id);
+    let place = egui::Rect::from_min_size(ui.cursor().min, vec2(width, height(width)));
+    // Pictures are read when their tiles are first seen.
+    let picture = if ui.is_rect_visible(place) { browser.picture(ui.ctx(), &entry.id) } else { None };
+    let look = Tile {
+        name: &style.name,
+        text: if style.text.is_empty() { style.name.clone() } else { style.text.clone() },
+        picture,
+        current: current(project) == Some(entry.id.as_str()),
+        favourite,
+    };
+    let (response, starred) = tile(ui, width, &look);
+    let mut action = None;
+    if starred {
+        action = Some(Action::Favourite);
+    } else if response.clicked() {
+        action = Some(Action::Apply(browser.parts));
+    }
+    let over = response.hovered();
+    let tip = format!("{}\n\nA click applies it. More by a right click.", look.text);
+    response.on_hover_text(tip).context_menu(|ui| {
+        let name = if favourite { "No favourite" } else { "Favourite" };
+        let mut entries = vec![
+            ("Apply shape", Action::Apply(StyleParts::SHAPE)),
+            ("Apply colour", Action::Apply(StyleParts::COLOUR)),
+            ("Apply motion", Action::Apply(StyleParts::MOTION)),
+            (name, Action::Favourite),
+            ("Export…", Action::Export),
+        ];
+        if entry.file.is_some() {
+            entries.push(("Rename…", Action::Rename));
+            entries.push(("Delete…", Action::Delete));
+        }
+        for (label, wanted) in entries {
+            if ui.button(label).clicked() {
+                action = Some(wanted);
+                ui.close();
+            }
+        }
+        if let Some(own) = &browser.own
+            && ui.button("Show folder").on_hover_text(own.folder().display().to_string()).clicked()
+        {
+            if let Err(why) = show_folder(own.folder()) {
+                browser.requests.push(Request::Failed(why));
+            }
+            ui.close();
+        }
+    });
+    (action, over)
+}
+
+/// Decides which style is shown without being applied: the one on whose tile the pointer rests.
+fn preview(ui: &Ui, browser: &mut Browser, hovered: Option<String>) {
+    if browser.clicked.is_some() && browser.clicked != hovered {
+        browser.clicked = None;
+    }
+    let menu_or_drag = ui.ctx().any_popup_open() || ui.input(|input| input.pointer.any_down());
+    let hovered = hovered.filter(|id| !menu_or_drag && browser.clicked.as_ref() != Some(id));
+    let Some(id) = hovered else {
+        (browser.hover, browser.preview) = (None, None);
+        return;
+    };
+    let now = ui.input(|input| input.time);
+    if browser.hover.as_ref().is_none_or(|hover| hover.id != id) {
+        browser.hover = Some(Hover { id: id.clone(), since_secs: now });
+    }
+    let rested = browser.hover.as_ref().map_or(0.0, |hover| now - hover.since_secs);
+    if rested >= REST_SECS {
+        browser.preview = Some(id);
+    } else {
+        browser.preview = None;
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(REST_SECS - rested));
+    }
+}
+
+fn act(entry: &Entry, action: Action, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+    let file = || entry.file.clone().unwrap_or_default();
+    match action {
+        Action::Apply(parts) => {
+            project.apply_style(&entry.style, parts);
+            browser.clicked = Some(entry.id.clone());
+            browser.preview = None;
+        }
+        Action::Favourite => {
+            if !kept.favourites.remove(&entry.id) {
+                kept.favourites.insert(entry.id.clone());
+            }
+        }
+        Action::Export => browser.requests.push(Request::Export(Box::new((*entry.style).clone()))),
+        Action::Rename => {
+            browser.dialog = Some(Dialog::Rename { path: file(), name: entry.style.name.clone() });
+        }
+        Action::Delete => {
+            browser.dialog = Some(Dialog::Delete { path: file(), name: entry.style.name.clone() });
+        }
+    }
+}
+
+/// Shows a folder in the system's program for files.
+fn show_folder(folder: &std::path::Path) -> Result<(), String> {
+    let program = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    // It need not be there before the first style is saved.
+    let made = std::fs::create_dir_all(folder);
+    made.and_then(|()| std::process::Command::new(program).arg(folder).spawn()).map(drop).map_err(|error| {
+        format!("The folder of your styles, {}, could not be shown: {error}", folder.display())
+    })
+}

@@ -1,0 +1,238 @@
+use egui::accesskit::Role;
+use egui::{Modifiers, PointerButton};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_base::clock::Stopwatch;
+use lovelock_project::Project;
+use lovelock_project::history::History;
+use lovelock_project::styles::{OwnStyles, Style, StyleParts, shipped};
+
+use super::{Browser, Kept, Request};
+use crate::window::gesture::Gestures;
+use crate::window::testing::{Shown, click, control, screen, tooltip_at};
+
+/// The browser with the window's handling of edits.
+struct Edited {
+    history: History,
+    gestures: Gestures,
+    browser: Browser,
+    kept: Kept,
+}
+
+type Shelf = Harness<'static, Shown<Edited>>;
+
+fn shelf(own: Option<(OwnStyles, std::path::PathBuf)>) -> Shelf {
+    let state = Edited {
+        history: History::new(Project::default()),
+        gestures: Gestures::default(),
+        browser: Browser::default(),
+        kept: Kept::default(),
+    };
+    let mut own = own;
+    screen(state, move |ui, edited: &mut Edited| {
+        if let Some((own, cache)) = own.take() {
+            edited.browser = Browser::new(Some(own), Some(cache), ui.ctx());
+        }
+        edited.gestures.begin_pass(ui.ctx(), false);
+        let mut project = (**edited.history.project()).clone();
+        super::ui(ui, &mut project, &mut edited.browser, &mut edited.kept);
+        edited.history.edit("style", Some(edited.gestures.id()), project);
+    })
+}
+
+fn names(harness: &Shelf) -> Vec<String> {
+    let tiles = crate::window::testing::controls(harness, Role::RadioButton);
+    tiles.into_iter().map(|(name, _)| name).collect()
+}
+
+fn tile(harness: &Shelf, name: &str) -> egui::Pos2 {
+    control(harness, Role::RadioButton, name).rect().center()
+}
+
+fn project(harness: &Shelf) -> Project {
+    (**harness.state().state.history.project()).clone()
+}
+
+#[test]
+fn the_search_and_the_filters_find_styles() {
+    let mut harness = shelf(None);
+    assert_eq!(names(&harness).len(), shipped().len());
+    control(&harness, Role::TextInput, "Search styles").click();
+    harness.run();
+    harness.event(egui::Event::Text("red cur".to_owned()));
+    harness.run();
+    assert_eq!(names(&harness), ["Red curls"]);
+    harness.state_mut().state.browser.search = "no such style".to_owned();
+    harness.run();
+    assert!(names(&harness).is_empty());
+    assert!(harness.query_by_label_contains("Clear the search").is_some());
+    harness.state_mut().state.browser.search.clear();
+    harness.run();
+    control(&harness, Role::Button, "tied").click();
+    harness.run();
+    let tied = names(&harness);
+    assert!(tied.contains(&"Ponytail".to_owned()) && !tied.contains(&"Red curls".to_owned()), "{tied:?}");
+    control(&harness, Role::Button, "tied").click();
+    harness.run();
+    assert_eq!(names(&harness).len(), shipped().len());
+}
+
+#[test]
+fn a_click_applies_a_style_in_one_undo_step() {
+    let mut harness = shelf(None);
+    let before = project(&harness);
+    let at = tile(&harness, "Red curls");
+    click(&mut harness, at);
+    harness.remove_cursor();
+    harness.run();
+    let style = &shipped::by_id("curly").expect("shipped").style;
+    let mut wanted = before.clone();
+    wanted.apply_style(style, StyleParts::ALL);
+    assert_eq!(project(&harness), wanted);
+    let history = &mut harness.state_mut().state.history;
+    assert_eq!(history.undo_len(), 1);
+    history.undo();
+    assert_eq!(project(&harness), before);
+}
+
+#[test]
+fn colour_alone_leaves_the_shape() {
+    let mut harness = shelf(None);
+    let before = project(&harness);
+    for part in ["Shape", "Motion"] {
+        control(&harness, Role::Button, part).click();
+        harness.run();
+    }
+    let at = tile(&harness, "Red curls");
+    click(&mut harness, at);
+    let after = project(&harness);
+    assert_eq!((&after.hair, after.simulation), (&before.hair, before.simulation));
+    assert_ne!(after.look, before.look);
+    // The menu of a tile applies a part whatever the toggles are.
+    let event = |pressed| egui::Event::PointerButton {
+        pos: at,
+        button: PointerButton::Secondary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(event(true));
+    harness.event(event(false));
+    harness.run();
+    control(&harness, Role::Button, "Apply motion").click();
+    harness.run();
+    let moved = project(&harness);
+    assert_eq!(moved.hair, before.hair);
+    assert_ne!(moved.simulation, before.simulation);
+}
+
+#[test]
+fn a_style_is_previewed_after_a_rest_of_the_pointer() {
+    let mut harness = shelf(None);
+    let before = project(&harness);
+    let preview = |harness: &Shelf| harness.state().state.browser.preview.clone();
+    let at = tile(&harness, "Red curls");
+    harness.hover_at(at);
+    harness.step();
+    assert_eq!(preview(&harness), None, "not while the pointer passes over");
+    harness.run_steps(20);
+    assert_eq!(preview(&harness).as_deref(), Some("curly"));
+    assert_eq!((project(&harness), harness.state().state.history.undo_len()), (before, 0));
+    click(&mut harness, at);
+    harness.run_steps(20);
+    assert_eq!(preview(&harness), None, "it is applied");
+    harness.remove_cursor();
+    harness.run_steps(4);
+    harness.hover_at(at);
+    harness.run_steps(20);
+    assert_eq!(preview(&harness).as_deref(), Some("curly"), "again");
+    harness.remove_cursor();
+    harness.run_steps(4);
+    assert_eq!(preview(&harness), None);
+}
+
+#[test]
+fn favourites_are_kept_and_shown_alone() {
+    let mut harness = shelf(None);
+    let at = tile(&harness, "Red curls");
+    harness.hover_at(at);
+    harness.run_steps(2);
+    let star = control(&harness, Role::CheckBox, "Favourite Red curls").rect().center();
+    click(&mut harness, star);
+    assert_eq!(harness.state().state.history.undo_len(), 0, "a star applies nothing");
+    control(&harness, Role::Button, "Favourites only").click();
+    harness.run();
+    assert_eq!(names(&harness), ["Red curls"]);
+    let kept = harness.state().state.kept.clone();
+    let text = serde_json::to_string(&kept).expect("text");
+    assert_eq!(serde_json::from_str::<Kept>(&text).expect("what is kept"), kept);
+    assert_eq!(serde_json::from_str::<Kept>("{}").expect("nothing"), Kept::default());
+}
+
+/// Runs passes until a condition holds.
+fn wait(harness: &mut Shelf, what: &str, is_so: impl Fn(&Shelf) -> bool) {
+    let watch = Stopwatch::start();
+    while !is_so(harness) {
+        assert!(watch.secs() < 60.0, "waited too long for {what}");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    harness.run_steps(2);
+}
+
+#[test]
+fn own_styles_are_saved_renamed_and_deleted() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let own = OwnStyles::new(dir.path().join("styles"));
+    std::fs::create_dir(own.folder()).expect("a folder");
+    std::fs::write(own.folder().join("cut.lovelockstyle"), "(version: 3, hair: (").expect("a file");
+    let mut harness = shelf(Some((own.clone(), dir.path().join("cache"))));
+    wait(&mut harness, "the broken file", |harness| !harness.state().state.browser.broken.is_empty());
+    assert!(harness.query_by_label_contains("cut.lovelockstyle: line 1").is_some());
+    let mut project = Project::default();
+    (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (20, 3);
+    harness.state_mut().state.history.edit("few", None, project.clone());
+    harness.run_steps(2);
+    control(&harness, Role::Button, "Save as style…").click();
+    harness.run_steps(3);
+    harness.event(egui::Event::Text("Few hairs".to_owned()));
+    harness.run_steps(2);
+    control(&harness, Role::Button, "Save style").click();
+    harness.run_steps(3);
+    let requests = harness.state_mut().state.browser.requests();
+    assert!(matches!(&requests[..], [Request::Done(_)]), "{requests:?}");
+    wait(&mut harness, "the style", |harness| names(harness).contains(&"Few hairs".to_owned()));
+    let path = own.folder().join("Few hairs.lovelockstyle");
+    let style = Style::load(&path).expect("a style").0;
+    assert_eq!(style, Style { name: "Few hairs".to_owned(), ..Style::of_project(&project) });
+    // Its picture is drawn and kept.
+    wait(&mut harness, "the picture", |harness| {
+        harness.state().state.browser.pictures.contains_key("own/Few hairs")
+    });
+    assert_eq!(std::fs::read_dir(dir.path().join("cache")).expect("a folder").count(), 1);
+    harness.state_mut().state.browser.dialog =
+        Some(super::Dialog::Delete { path: path.clone(), name: "Few hairs".to_owned() });
+    harness.run_steps(3);
+    control(&harness, Role::Button, "Cancel").click();
+    harness.run_steps(3);
+    assert!(path.exists(), "it asks first");
+    harness.state_mut().state.browser.dialog =
+        Some(super::Dialog::Rename { path: path.clone(), name: "Bald".to_owned() });
+    harness.run_steps(3);
+    control(&harness, Role::Button, "Rename style").click();
+    wait(&mut harness, "the new name", |harness| names(harness).contains(&"Bald".to_owned()));
+    let path = own.folder().join("Bald.lovelockstyle");
+    harness.state_mut().state.browser.dialog =
+        Some(super::Dialog::Delete { path: path.clone(), name: "Bald".to_owned() });
+    harness.run_steps(3);
+    control(&harness, Role::Button, "Delete style").click();
+    wait(&mut harness, "the end of it", |harness| !names(harness).contains(&"Bald".to_owned()));
+    assert!(!path.exists());
+}
+
+#[test]
+fn tiles_say_what_they_are() {
+    let mut harness = shelf(None);
+    let at = tile(&harness, "Red curls");
+    let said = tooltip_at(&mut harness, at).expect("a tooltip");
+    assert!(said.contains("Red curls to the shoulders."), "{said}");
+}

@@ -1,0 +1,145 @@
+//! Painting masks in the viewport of the whole window, and showing them.
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+use glam::Vec3;
+use lovelock_style::operations::Lift;
+use lovelock_style::{HeadBox, Layer};
+
+use super::Shown;
+use super::tools::{drag_over, view, with_picture};
+use super::whole::{CTRL, go, key, of, project, wait};
+use crate::window::Window;
+
+type Whole = Harness<'static, Shown<Option<Window>>>;
+
+/// The window with a layer that is selected, and its mask being painted.
+fn painting() -> Option<Whole> {
+    let mut harness = with_picture()?;
+    let mut changed = (*project(&harness)).clone();
+    let id = changed.hair.stack.push(Layer::of(Lift::default()));
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.history.edit("layer", None, changed);
+    window.layers.selected = id;
+    go(&mut harness);
+    key(&mut harness, Modifiers::SHIFT, Key::K);
+    assert!(of(&harness).layers.painting && of(&harness).shown_mask.is_some());
+    Some(harness)
+}
+
+/// The mask of the layer at a place of the head, relative to its box.
+fn mask_at(harness: &Whole, relative: Vec3) -> f32 {
+    let scene = of(harness).session.scene.clone().expect("a scene");
+    let head = HeadBox::of(&scene.style.scalp);
+    project(harness).hair.stack.layers[0].mask.at(&head, head.place(relative))
+}
+
+/// The place in the image of a place of the head, relative to its box.
+fn on_screen(harness: &Whole, relative: Vec3) -> Pos2 {
+    let painted = of(harness).session.painted.clone().expect("an image");
+    let head = HeadBox::of(&painted.snapshot.scene.style.scalp);
+    let world = painted.snapshot.guides.world_from_head.transform_point3(head.place(relative));
+    view(harness).to_screen(world).expect("before the camera")
+}
+
+const FOREHEAD: Vec3 = Vec3::new(0.0, 0.55, 0.85);
+
+fn set_brush(harness: &mut Whole, change: impl FnOnce(&mut lovelock_style::MaskBrush)) {
+    change(&mut harness.state_mut().state.as_mut().expect("a window").layers.brush);
+}
+
+#[test]
+fn a_stroke_paints_the_mask_in_one_undo_step() {
+    let Some(mut harness) = painting() else { return };
+    let before = project(&harness);
+    let steps = of(&harness).history.undo_len();
+    set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.03, 1.0));
+    let middle = on_screen(&harness, FOREHEAD);
+    drag_over(&mut harness, middle - egui::vec2(6.0, 0.0), middle + egui::vec2(6.0, 0.0));
+    let part = project(&harness).hair.stack.layers[0].mask.parts[0].clone();
+    assert!(!part.map.is_empty(), "nothing is painted");
+    assert!(mask_at(&harness, FOREHEAD) > 0.9, "{}", mask_at(&harness, FOREHEAD));
+    assert_eq!(mask_at(&harness, -FOREHEAD), 0.0);
+    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one stroke is one step");
+    assert_eq!(project(&harness).camera, before.camera, "the camera stands while it paints");
+    // Hair and image follow.
+    let shown = of(&harness).shown_mask.clone().expect("a mask");
+    assert_eq!(shown.mask, project(&harness).hair.stack.layers[0].mask);
+    // A second stroke at once is a step of its own; Ctrl erases.
+    harness.event_modifiers(Event::PointerMoved(middle), CTRL);
+    for pressed in [true, false] {
+        let button = PointerButton::Primary;
+        harness.event_modifiers(Event::PointerButton { pos: middle, button, pressed, modifiers: CTRL }, CTRL);
+        harness.run_steps(2);
+    }
+    go(&mut harness);
+    assert_eq!(of(&harness).history.undo_len(), steps + 2);
+    assert!(mask_at(&harness, FOREHEAD) < 0.1, "{}", mask_at(&harness, FOREHEAD));
+    key(&mut harness, CTRL, Key::Z);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    // Keys change the radius.
+    let radius = of(&harness).layers.brush.radius;
+    key(&mut harness, Modifiers::NONE, Key::CloseBracket);
+    assert!(of(&harness).layers.brush.radius > 1.1 * radius);
+    key(&mut harness, Modifiers::NONE, Key::OpenBracket);
+    assert!((of(&harness).layers.brush.radius - radius).abs() < 1e-6);
+    // The image of the mask arrives, and another after it is hidden.
+    wait(&mut harness, "the image of the mask", |window| {
+        window.session.drawn.as_ref().is_some_and(|drawn| drawn.mask.is_some())
+            && window.session.draw_error.is_none()
+    });
+    key(&mut harness, Modifiers::NONE, Key::K);
+    assert!(of(&harness).session.drawn.as_ref().is_some_and(|drawn| drawn.mask.is_none()));
+}
+
+#[test]
+fn the_other_side_is_painted_with_it_if_the_brush_mirrors() {
+    let Some(mut harness) = painting() else { return };
+    let side = Vec3::new(0.35, 0.5, 0.78);
+    let other = Vec3::new(-0.35, 0.5, 0.78);
+    let at = on_screen(&harness, side);
+    set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.015, 1.0));
+    drag_over(&mut harness, at, at);
+    let [own, far] = [side, other].map(|place| mask_at(&harness, place));
+    assert!(own > 0.5 && far == 0.0, "{own} {far}");
+    set_brush(&mut harness, |brush| brush.mirror = true);
+    drag_over(&mut harness, at, at);
+    let [own, far] = [side, other].map(|place| mask_at(&harness, place));
+    assert!(own > 0.5 && (own - far).abs() < 0.3, "{own} {far}");
+}
+
+#[test]
+fn strange_strokes_are_safe() {
+    let Some(mut harness) = painting() else { return };
+    let before = project(&harness);
+    let middle = on_screen(&harness, FOREHEAD);
+    // A stroke that is undone while it goes on ends there.
+    harness.hover_at(middle);
+    harness.run_steps(1);
+    super::press(&harness, middle, true);
+    harness.run_steps(2);
+    assert_ne!(project(&harness), before);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    for i in 0..4_u8 {
+        harness.hover_at(middle + egui::vec2(f32::from(i), 0.0));
+        harness.run_steps(1);
+    }
+    super::press(&harness, middle, false);
+    go(&mut harness);
+    assert_eq!(project(&harness), before, "it paints no further");
+    // Out of the image and back, with the smallest and the largest brush.
+    for radius in [0.0, 0.002, 0.2, 1e6] {
+        set_brush(&mut harness, |brush| brush.radius = radius);
+        drag_over(&mut harness, middle, Pos2::new(-4000.0, 1e6));
+        drag_over(&mut harness, middle, middle);
+    }
+    assert_eq!(project(&harness).camera, before.camera);
+    // Beside the head a drag moves the camera.
+    let steps = of(&harness).history.undo_len();
+    let corner = super::control(&harness, egui::accesskit::Role::Image, "Viewport").rect().left_bottom();
+    drag_over(&mut harness, corner + egui::vec2(30.0, -40.0), corner + egui::vec2(60.0, -60.0));
+    assert_ne!(project(&harness).camera, before.camera);
+    assert_eq!(of(&harness).history.undo_len(), steps + 1);
+}

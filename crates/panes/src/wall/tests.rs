@@ -1,0 +1,95 @@
+use std::time::{Duration, Instant};
+
+use lovelock_project::variants::{Locks, vary};
+use lovelock_render::{Backend, Picture};
+
+use super::*;
+
+fn small() -> Project {
+    let mut project = Project::default();
+    project.picture.backend = Backend::Cpu;
+    project.hair.groom.wisps = 24;
+    project.hair.groom.strands_per_wisp = 6;
+    project
+}
+
+fn request(project: &Arc<Project>, variants: &[Arc<Project>], time_secs: f64) -> WallRequest {
+    WallRequest {
+        project: Arc::clone(project),
+        variants: variants.to_vec(),
+        access: Access::new(),
+        time_secs,
+        playing: true,
+        size: [48, 40],
+    }
+}
+
+/// The images of all variants after the next round.
+fn drawn(wall: &Wall, request: WallRequest) -> Vec<Picture> {
+    let (cells, mut seen) = (request.variants.len(), wall.rounds().number());
+    let before = Instant::now();
+    wall.request(request);
+    while wall.rounds().newer_than(&mut seen).is_none() {
+        assert!(before.elapsed() < Duration::from_secs(60), "the wall does not answer");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let picture = |cell: &Latest<WallCell>| {
+        let cell = cell.latest().expect("a cell");
+        assert_eq!(cell.problem, None);
+        match &cell.image {
+            Image::Memory(picture) => (**picture).clone(),
+            Image::Device(_) => panic!("an image of the processor is in memory"),
+        }
+    };
+    wall.cells.iter().take(cells).map(picture).collect()
+}
+
+fn hair_pixels(a: &Picture, b: &Picture) -> usize {
+    a.rgba.chunks(4).zip(b.rgba.chunks(4)).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn each_cell_shows_its_own_variant_and_moves() {
+    let project = Arc::new(small());
+    let variants: Vec<_> = [0, 1, 2]
+        .map(|seed| {
+            if seed == 0 {
+                Arc::clone(&project)
+            } else {
+                Arc::new(vary(&project, seed, 1.0, &Locks::default()))
+            }
+        })
+        .to_vec();
+    let wall = Wall::start(WindowDevice::default(), || {}).expect("a thread");
+    let first = drawn(&wall, request(&project, &variants, 0.0));
+    assert_eq!(first.len(), 3);
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        assert!(hair_pixels(&first[a], &first[b]) > 60, "cells {a} and {b} show the same");
+    }
+    let later = drawn(&wall, request(&project, &variants, 0.4));
+    assert!(hair_pixels(&first[0], &later[0]) > 60, "time passes");
+    // The same variant twice gives the same image: what differs above is the hair.
+    let twice = drawn(&wall, request(&project, &[Arc::clone(&project), Arc::clone(&project)], 0.4));
+    assert!(hair_pixels(&twice[0], &twice[1]) < 120);
+}
+
+#[test]
+fn an_unreadable_hairstyle_is_a_sentence_in_its_cell() {
+    let project = Arc::new(small());
+    let mut broken = small();
+    broken.set_hair_file("/nowhere/at all.hair");
+    let variants = [Arc::clone(&project), Arc::new(broken)];
+    let wall = Wall::start(WindowDevice::default(), || {}).expect("a thread");
+    let pictures = drawn(&wall, request(&project, &variants, 0.0));
+    assert_eq!(pictures.len(), 2, "the grown hair stands in for it, as in the window");
+}
+
+#[test]
+fn a_far_time_a_huge_one_and_no_variants_are_no_panic() {
+    let project = Arc::new(small());
+    let wall = Wall::start(WindowDevice::default(), || {}).expect("a thread");
+    for time_secs in [0.0, 5.0, 1e6, -3.0] {
+        drawn(&wall, request(&project, &[Arc::clone(&project)], time_secs));
+    }
+    assert!(drawn(&wall, request(&project, &[], 0.0)).is_empty());
+}

@@ -1,0 +1,132 @@
+//! The thread: takes the newest request when it is free, simulates its variants side by side and renders them in turn.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use lovelock_base::clock::Stopwatch;
+use lovelock_project::Project;
+use lovelock_project::variants::adopt;
+use lovelock_render::Image;
+use lovelock_session::latest::{Latest, LatestJob};
+use lovelock_session::scene::{Scene, SceneLoader};
+use lovelock_session::threads::lower_priority;
+use lovelock_session::window_device::WindowDevice;
+use rayon::prelude::*;
+
+use super::cell::Cell;
+use super::{Wall, WallCell, WallRequest};
+
+/// What the thread publishes.
+type Outputs = ([Latest<WallCell>; Wall::CELLS], Latest<f64>);
+
+pub(super) struct Worker {
+    jobs: LatestJob<WallRequest>,
+    outputs: Outputs,
+    on_drawn: Box<dyn Fn() + Send>,
+    window: WindowDevice,
+    loader: SceneLoader,
+    cells: Vec<Cell>,
+    /// The project without hair whose scene the cells have.
+    loaded: Option<Arc<Project>>,
+}
+
+impl Worker {
+    pub(super) fn new(
+        jobs: LatestJob<WallRequest>,
+        outputs: Outputs,
+        on_drawn: Box<dyn Fn() + Send>,
+        window: WindowDevice,
+    ) -> Self {
+        Self { jobs, outputs, on_drawn, window, loader: SceneLoader::new(), cells: Vec::new(), loaded: None }
+    }
+
+    /// Runs until the window is closed, on background workers of low priority, so that the window keeps running.
+    pub(super) fn run(self) {
+        lower_priority();
+        let workers = rayon::ThreadPoolBuilder::new()
+            .thread_name(|i| format!("wall worker {i}"))
+            .start_handler(|_| lower_priority())
+            .build();
+        match workers {
+            Ok(workers) => workers.install(|| self.serve()),
+            Err(error) => {
+                tracing::warn!(%error, "the wall shares the global workers");
+                self.serve();
+            }
+        }
+    }
+
+    fn serve(mut self) {
+        while let Some(request) = self.jobs.next() {
+            // A panic costs the simulations and one round, but not the window.
+            let drawn = catch_unwind(AssertUnwindSafe(|| self.round(&request)));
+            if drawn.is_err() {
+                tracing::error!("the wall failed and was restarted");
+                (self.cells, self.loaded) = (Vec::new(), None);
+                self.loader = SceneLoader::new();
+            }
+            self.jobs.done(None);
+            (self.on_drawn)();
+        }
+    }
+
+    fn round(&mut self, request: &WallRequest) {
+        let watch = Stopwatch::start();
+        self.load(request);
+        let shown = request.variants.len().min(Wall::CELLS);
+        self.cells.truncate(shown);
+        // A simulation divides its own work only coarsely, so several run beside each other.
+        self.cells.par_iter_mut().for_each(|cell| cell.advance(request));
+        for (cell, slot) in self.cells.iter_mut().zip(&self.outputs.0) {
+            if self.jobs.is_closed() {
+                return;
+            }
+            slot.put(Arc::new(cell.draw(request, &self.window)));
+        }
+        self.outputs.1.put(Arc::new(watch.ms()));
+    }
+
+    /// Loads the scenes of variants that are new, and of all if the body or the motion has changed.
+    fn load(&mut self, request: &WallRequest) {
+        let same_scene = self.loaded.as_ref().is_some_and(|loaded| {
+            Arc::ptr_eq(loaded, &request.project)
+                || (loaded.body == request.project.body
+                    && loaded.motion == request.project.motion
+                    && loaded.surroundings == request.project.surroundings)
+        });
+        self.loaded = Some(Arc::clone(&request.project));
+        for (index, variant) in request.variants.iter().take(Wall::CELLS).enumerate() {
+            let cell = self.cells.get_mut(index);
+            let is_current = |cell: &&mut Cell| same_scene && Arc::ptr_eq(cell.variant(), variant);
+            if cell.as_ref().is_some_and(is_current) {
+                continue;
+            }
+            let mut project = (*request.project).clone();
+            adopt(&mut project, variant);
+            match self.loader.load_now(&project, &request.access) {
+                Ok((scene, _)) => self.take(index, variant, scene),
+                Err(error) => {
+                    let problem = Some(error.to_string());
+                    let (variant, image) = (Arc::clone(variant), Image::default());
+                    let failed = WallCell { variant, image, time_secs: request.time_secs, problem };
+                    if let Some(slot) = self.outputs.0.get(index) {
+                        slot.put(Arc::new(failed));
+                    }
+                    // Cells stand in the order of variants, so nothing may be left out before the next one.
+                    self.cells.truncate(index);
+                    return;
+                }
+            }
+            if self.jobs.is_closed() {
+                return;
+            }
+        }
+    }
+
+    fn take(&mut self, index: usize, variant: &Arc<Project>, scene: Arc<Scene>) {
+        match self.cells.get_mut(index) {
+            Some(cell) => cell.set(Arc::clone(variant), scene),
+            None => self.cells.push(Cell::new(Arc::clone(variant), scene)),
+        }
+    }
+}

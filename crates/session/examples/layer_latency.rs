@@ -1,0 +1,186 @@
+//! The time from a change of a layer to the image that shows it, while the dance plays:
+//! `cargo run --release -p lovelock-session --example layer_latency -- [CHANGES] [WIDTHxHEIGHT]`.
+//!
+//! The threads are those of the window: the loader evaluates the stack, the simulation takes the new hair, and the render thread draws
+//! on the CPU. It prints the spread for the smooth style and for one of 20,000 strands, and how many images were drawn per second.
+
+use std::error::Error;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+use lovelock_base::clock::Stopwatch;
+use lovelock_groom::Preset;
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_render::Backend;
+use lovelock_session::render_thread::{RenderRequest, RenderThread};
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::window_device::WindowDevice;
+use lovelock_session::worker::Worker;
+use lovelock_style::operations::{Curl, Frizz, Lift};
+use lovelock_style::{Layer, Operation, Ramp};
+
+/// No change takes longer, seconds.
+const PATIENCE: f64 = 30.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let changes: usize = arguments.next().map_or(Ok(40), |text| text.parse())?;
+    let size = arguments.next().unwrap_or_else(|| "1280x720".to_owned());
+    let (width, height) = size.split_once('x').ok_or("the size is WIDTHxHEIGHT")?;
+    let size = [width.parse()?, height.parse()?];
+    for (name, wisps, strands) in [("smooth", None, None), ("20,000 strands", Some(400), Some(50))] {
+        let mut project = Project::default();
+        project.set_preset(Preset::Smooth);
+        project.picture.backend = Backend::Cpu;
+        let groom = &mut project.hair.groom;
+        groom.wisps = wisps.unwrap_or(groom.wisps);
+        groom.strands_per_wisp = strands.unwrap_or(groom.strands_per_wisp);
+        for operation in [Operation::from(Lift::default()), Curl::default().into(), Frizz::default().into()] {
+            project.hair.stack.push(Layer { ramp: Ramp::line(0.2, 1.0), ..Layer::of(operation) });
+        }
+        for (layer, what) in [(0, "the first of three layers"), (2, "the last of three layers")] {
+            let measured = measure(&project, layer, changes, size)?;
+            println!("{name}, {} strands, {what}: {measured}", measured.strands);
+        }
+    }
+    Ok(())
+}
+
+/// What was measured of one project.
+struct Measured {
+    strands: usize,
+    /// Times to the loaded scene, the frame and the image, milliseconds.
+    times_ms: [Vec<f64>; 3],
+    images_per_sec: f64,
+}
+
+impl std::fmt::Display for Measured {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names = ["scene", "frame", "image"];
+        for (name, times) in names.iter().zip(&self.times_ms) {
+            let at = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+            write!(f, "{name} {:.0} ms ({:.0} to {:.0}), ", at(0.5), at(0.1), at(0.9))?;
+        }
+        write!(f, "{:.0} images per second", self.images_per_sec)
+    }
+}
+
+/// The threads, and what they report.
+struct Threads {
+    worker: Worker,
+    painter: RenderThread,
+    woken: Receiver<()>,
+    project: Arc<Project>,
+    size: [u32; 2],
+    drawn: Option<Arc<FrameSnapshot>>,
+    seen: u64,
+    images: usize,
+}
+
+impl Threads {
+    /// Waits for something new and hands frames on to the render thread, as the window does. Returns the style of the newest image.
+    fn turn(&mut self) -> Result<Option<Arc<FrameSnapshot>>, Box<dyn Error>> {
+        match self.woken.recv_timeout(Duration::from_millis(200)) {
+            Ok(()) | Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Err("the threads ended".into()),
+        }
+        while self.woken.try_recv().is_ok() {}
+        while self.worker.poll_event().is_some() {}
+        if let Some(frame) = self.worker.frame()
+            && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
+        {
+            self.painter.request(RenderRequest {
+                project: Arc::clone(&self.project),
+                snapshot: Arc::clone(&frame),
+                size: self.size,
+                still: false,
+                moving: true,
+                measured: false,
+                mask: None,
+            });
+            self.drawn = Some(frame);
+        }
+        let image = self.painter.images().newer_than(&mut self.seen);
+        self.images += usize::from(image.is_some());
+        Ok(image.map(|image| Arc::clone(&image.snapshot)))
+    }
+}
+
+fn measure(
+    project: &Project,
+    layer: usize,
+    changes: usize,
+    size: [u32; 2],
+) -> Result<Measured, Box<dyn Error>> {
+    let (send, woken) = sync_channel(1);
+    // One that waits is enough.
+    let wake = move || drop(send.try_send(()));
+    let project = Arc::new(project.clone());
+    let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
+    let worker = Worker::start(Arc::clone(&project), Access::new(), Arc::new(wake))?;
+    let mut threads = Threads { worker, painter, woken, project, size, drawn: None, seen: 0, images: 0 };
+    let watch = Stopwatch::start();
+    let mut shown = loop {
+        if let Some(shown) = threads.turn()? {
+            break shown;
+        }
+        if watch.secs() > 4.0 * PATIENCE {
+            return Err("no image".into());
+        }
+    };
+    // The dance runs for a while first.
+    let watch = Stopwatch::start();
+    while watch.secs() < 3.0 {
+        shown = threads.turn()?.unwrap_or(shown);
+    }
+    let strands = shown.scene.style.strands.count();
+    let mut times_ms = [Vec::new(), Vec::new(), Vec::new()];
+    let (images, whole) = (threads.images, Stopwatch::start());
+    for change in 0..changes {
+        let mut changed = (*threads.project).clone();
+        changed.hair.stack.layers[layer].weight = 0.5 + 0.01 * (change % 50) as f32;
+        let before = Arc::clone(&shown.scene.style);
+        threads.project = Arc::new(changed);
+        let watch = Stopwatch::start();
+        threads.worker.set_project(Arc::clone(&threads.project), Access::new());
+        let (mut loaded, mut framed) = (None, None);
+        loop {
+            let image = threads.turn()?;
+            if loaded.is_none() && threads.worker.load_progress().is_none() {
+                loaded = Some(watch.ms());
+            }
+            let is_new = |frame: &Arc<FrameSnapshot>| !Arc::ptr_eq(&frame.scene.style, &before);
+            if framed.is_none() && threads.drawn.as_ref().is_some_and(is_new) {
+                framed = Some(watch.ms());
+            }
+            if let Some(image) = image {
+                let done = is_new(&image);
+                shown = image;
+                if done {
+                    break;
+                }
+            }
+            if watch.secs() > PATIENCE {
+                return Err(format!("nothing changed for {PATIENCE} s").into());
+            }
+        }
+        let image = watch.ms();
+        for (times, ms) in times_ms.iter_mut().zip([loaded.unwrap_or(image), framed.unwrap_or(image), image])
+        {
+            times.push(ms);
+        }
+        // Irregular, so that changes do not synchronise with the frames.
+        let pause = 0.15 + 0.001 * ((change * 97) % 150) as f64;
+        let watch = Stopwatch::start();
+        while watch.secs() < pause {
+            shown = threads.turn()?.unwrap_or(shown);
+        }
+    }
+    let images_per_sec = (threads.images - images) as f64 / whole.secs();
+    for times in &mut times_ms {
+        times.sort_unstable_by(f64::total_cmp);
+    }
+    Ok(Measured { strands, times_ms, images_per_sec })
+}

@@ -1,0 +1,78 @@
+//! The hairstyle of a scene at a time of the timeline.
+
+use std::sync::Arc;
+
+use lovelock_groom::{Hairstyle, Obstacle};
+use lovelock_project::Project;
+use lovelock_project::animation::StyleTracks;
+use lovelock_style::{StyleCache, StyleStack};
+
+use super::Scene;
+use super::scalp_part::Enlarged;
+
+/// What the hairstyle of a scene is made of.
+pub struct StyleSource {
+    /// The hair below the layers: grown or imported, cut and tied.
+    pub base: Arc<Hairstyle>,
+    /// The layers.
+    pub stack: StyleStack,
+    /// The body without hair, in the size of the head that the hair is styled on.
+    pub obstacle: Arc<dyn Obstacle + Send>,
+    /// Size of the head that wears the hair as a multiple of the one that it is styled on.
+    pub scale: f32,
+}
+
+impl std::fmt::Debug for StyleSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("StyleSource").field("stack", &self.stack).finish_non_exhaustive()
+    }
+}
+
+/// Applies the tracks of layers. A scene is the same allocation as long as the numbers of the tracks are, and a changed number evaluates
+/// only its layer and those after it.
+#[derive(Clone, Debug)]
+pub(crate) struct Styling {
+    tracks: StyleTracks,
+    cache: StyleCache,
+    enlarged: Enlarged,
+    /// The scene as it was loaded, the numbers of the tracks, and the scene with them.
+    last: Option<(Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>)>,
+}
+
+impl Styling {
+    /// The styling by the tracks of a project, with what `before` has evaluated; `None` if no track changes the hairstyle.
+    pub(crate) fn of(project: &Project, before: Option<Self>) -> Option<Self> {
+        let tracks = StyleTracks::of(project)?;
+        match before {
+            Some(before) if before.tracks == tracks => Some(before),
+            before => {
+                let (cache, enlarged) = before.map(|of| (of.cache, of.enlarged)).unwrap_or_default();
+                Some(Self { tracks, cache, enlarged, last: None })
+            }
+        }
+    }
+
+    /// `loaded` with its hairstyle at a time of the timeline, seconds.
+    pub(crate) fn scene_at(&mut self, loaded: &Arc<Scene>, secs: f64) -> Arc<Scene> {
+        let values = self.tracks.values_at(secs);
+        if let Some((of, known, scene)) = &self.last
+            && Arc::ptr_eq(of, loaded)
+            && *known == values
+        {
+            return Arc::clone(scene);
+        }
+        let source = &loaded.source;
+        let stack = self.tracks.stack_with(&source.stack, &values);
+        let style = self.cache.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
+        let style = self.enlarged.of(&style, source.scale);
+        let scene = match &self.last {
+            // Other numbers of layers that are off.
+            Some((of, _, scene)) if Arc::ptr_eq(of, loaded) && Arc::ptr_eq(&scene.style, &style) => {
+                Arc::clone(scene)
+            }
+            _ => Arc::new(Scene { style, ..(**loaded).clone() }),
+        };
+        self.last = Some((Arc::clone(loaded), values, Arc::clone(&scene)));
+        scene
+    }
+}

@@ -1,0 +1,46 @@
+//! Makes hair cling to the body more or less than the simulation's settings say.
+
+use lovelock_base::field;
+use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_groom::Hairstyle;
+
+use crate::Scope;
+use crate::motion::scale;
+use crate::operate::{Kind, Operate, Subject};
+
+/// Makes hair cling to the body more or less than the simulation's settings say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    /// Factor on the friction with the body.
+    pub factor: f32,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self { factor: 2.0 }
+    }
+}
+
+impl Settings for Friction {
+    const TABLE: &'static [Setting<Self>] = &[Setting::number(
+        field!(Self, factor),
+        [0.0, 8.0],
+        "Factor",
+        "Factor on the friction with skin and clothes. Higher values let hair cling to the body, lower ones let it slide off.",
+    )
+    .unit(Unit::TIMES)
+    .soft([0.0, 4.0])];
+}
+
+impl Operate for Friction {
+    const KIND: Kind = Kind {
+        id: "friction",
+        label: "Friction",
+        text: "Makes hair cling to the body more or less than the simulation's settings say.",
+        subject: Subject::Motion,
+    };
+
+    fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
+        scale(style, scope, self.factor, |motion| &mut motion.friction);
+    }
+}
