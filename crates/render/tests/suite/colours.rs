@@ -145,9 +145,10 @@ fn coloured_strands_look_the_same_on_both() {
         let plain = draw(&scene, Backend::Cpu).expect("a picture");
         let Some(plain_gpu) = draw(&scene, Backend::Gpu) else { return };
         let usual = flip(&plain_gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
-        for (colours, of, more) in
-            [("a gradient", gradient as fn(usize, Vec3) -> ColourSamples, MORE), ("strands", salon, MORE_MIXED)]
-        {
+        for (colours, of, more) in [
+            ("a gradient", gradient as fn(usize, Vec3) -> ColourSamples, MORE),
+            ("strands", salon, MORE_MIXED),
+        ] {
             coloured(&mut scene, of);
             let gpu = draw(&scene, Backend::Gpu).expect("a picture");
             let against = |cpu: &[u8]| flip(&gpu.rgba, cpu, SIZE[0], SIZE[1]);
