@@ -73,8 +73,13 @@ fn tie(style: &mut Hairstyle, cords: &[Cord], how: &Gathering) {
                 let near = (first - member.start) * member.link;
                 let p = style.guides.point(g as usize, first as usize);
                 let metres = cord.line.nearest(p, near - 0.03, near + 0.03);
-                rope.guides.push((g, first as u32));
-                rope.ahead.push((metres - 0.5 * how.join).max(0.0));
+                // A guide that comes from further away reaches the line later.
+                let late = ((how.join - metres) / member.link).ceil().max(0.0);
+                if first + late >= member.links {
+                    continue;
+                }
+                rope.guides.push((g, (first + late) as u32));
+                rope.ahead.push((metres + late * member.link - how.join).max(0.0));
                 taken[g as usize] = true;
             }
         }

@@ -13,12 +13,16 @@ use crate::strands::refine_where;
 const ROWS: f32 = 6.0;
 /// Distance over which a strand's root blends into the curve of its guides, metres.
 const ROOT_JOIN: f32 = 0.02;
+/// The share of strands that reaches the end of a cord.
+const REACHES_END: f32 = 0.2;
 
 /// A strand of a cord.
 #[derive(Clone, Copy, Debug)]
 pub struct CordStrand {
     /// Its rank by the angle of its root around the line, as a fraction of all strands of the cord.
     pub rank: f32,
+    /// Where all but a fifth of the strands of its cord have ended, metres from the start.
+    pub end: f32,
     /// A place in the unit disc, by chance.
     pub disc: Vec2,
     /// Numbers by chance, 0 to 1.
@@ -55,7 +59,11 @@ pub fn lay(
     refine_where(style, |strand| {
         of[wisp_of[strand] as usize].map(|(_, member)| (member.start - 1.0, segment))
     });
-    let strands = strands_of(style, scope, cords);
+    let tables: Vec<Option<Table>> = members
+        .par_iter()
+        .map(|member| member.as_ref().map(|(c, member)| Table::new(style, &cords[*c], member)))
+        .collect();
+    let strands = strands_of(style, scope, cords, &tables);
     let even = scope.is_even();
     let style_now = &*style;
     let laid: Vec<(usize, Vec<Vec3>)> = (0..style.wisps.len())
@@ -63,7 +71,7 @@ pub fn lay(
         .filter_map(|w| Some((w, members[w]?)))
         .map(|(w, (c, member))| {
             let (cord, wisp, set) = (&cords[c], &style_now.wisps[w], &style_now.strands);
-            let table = Table::new(style_now, cord, &member);
+            let Some(table) = &tables[w] else { return (0, Vec::new()) };
             let old_curve = WispCurve::at_rest(&before.guides, wisp);
             let range = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
             let first = set.first_point[range.start] as usize;
@@ -127,18 +135,26 @@ pub fn lay(
 }
 
 /// The strands of cords; those of others are empty.
-fn strands_of(style: &Hairstyle, scope: &Scope<'_>, cords: &[Cord]) -> Vec<CordStrand> {
+fn strands_of(
+    style: &Hairstyle,
+    scope: &Scope<'_>,
+    cords: &[Cord],
+    tables: &[Option<Table>],
+) -> Vec<CordStrand> {
     let set = &style.strands;
-    let none = CordStrand { rank: 0.0, disc: Vec2::ZERO, chance: [0.0; 4] };
+    let none = CordStrand { rank: 0.0, end: 0.0, disc: Vec2::ZERO, chance: [0.0; 4] };
     let mut out = vec![none; set.count()];
     for cord in cords {
         let middle = cord.line.at(0.0);
         let (side, deep) = cord.line.frame(0.0);
         let mut angles: Vec<(f32, usize)> = Vec::new();
+        let mut ends: Vec<f32> = Vec::new();
         for member in &cord.members {
             let wisp = &style.wisps[member.wisp];
             let roots = wisp.guides.map(|g| style.guides.point(g as usize, 0));
             for strand in wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize {
+                let last = set.guide_param[set.first_point[strand + 1] as usize - 1];
+                ends.extend(tables[member.wisp].as_ref().map(|table| table.at(last).metres.max(0.0)));
                 let w = set.weights[strand];
                 let from = roots[0] * w[0] + roots[1] * w[1] + roots[2] * w[2] - middle;
                 angles.push((from.dot(side).atan2(from.dot(deep)), strand));
@@ -146,12 +162,18 @@ fn strands_of(style: &Hairstyle, scope: &Scope<'_>, cords: &[Cord]) -> Vec<CordS
         }
         angles.sort_by(|a, b| a.0.total_cmp(&b.0));
         let count = angles.len() as f32;
+        let end = if ends.is_empty() {
+            0.0
+        } else {
+            let rank = (((1.0 - REACHES_END) * count) as usize).min(ends.len() - 1);
+            *ends.select_nth_unstable_by(rank, f32::total_cmp).1
+        };
         for (n, (_, strand)) in angles.into_iter().enumerate() {
             let mut random = scope.random(0, strand);
             let (angle, radius) = (random.angle(), random.unit().sqrt());
             let disc = Vec2::from_angle(angle) * radius;
             let chance = [(); 4].map(|()| random.unit());
-            out[strand] = CordStrand { rank: n as f32 / count, disc, chance };
+            out[strand] = CordStrand { rank: n as f32 / count, end, disc, chance };
         }
     }
     out

@@ -65,11 +65,6 @@ impl Line {
         Self { points, frames }
     }
 
-    /// Its length, metres.
-    pub fn length(&self) -> f32 {
-        (self.points.len() - 1) as f32 * STEP
-    }
-
     /// The point at a distance from the start, metres; the ends are extended.
     pub fn at(&self, metres: f32) -> Vec3 {
         if metres < 0.0 {

@@ -39,8 +39,6 @@ pub struct Cord {
     pub members: Vec<Member>,
     /// Its middle.
     pub line: Line,
-    /// Where all but a fifth of its strands have ended, metres along the line.
-    pub end: f32,
 }
 
 /// A wisp of a cord.
@@ -62,8 +60,6 @@ pub struct Member {
 const SHORTEST: f32 = 0.015;
 /// Loose hair cannot gather in less than this multiple of the distance of its roots from their middle.
 const SLANT: f32 = 1.2;
-/// The share of strands that reaches the end of a cord.
-const REACHES_END: f32 = 0.2;
 
 /// The cords of the hair on which a layer acts.
 pub fn cords(style: &Hairstyle, scope: &Scope<'_>, plan: &Plan) -> Vec<Cord> {
@@ -126,22 +122,7 @@ fn cord(
         return None;
     }
     let line = Line::of(&members, means, scope, plan.clear);
-    let set = &style.strands;
-    let mut ends: Vec<f32> = Vec::new();
-    for member in &members {
-        let wisp = &style.wisps[member.wisp];
-        let strands = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
-        let end = |s: usize| set.guide_param[set.first_point[s + 1] as usize - 1].min(member.links);
-        ends.extend(strands.map(|s| ((end(s) - member.start) * member.link).max(0.0)));
-    }
-    let rank = ((1.0 - REACHES_END) * ends.len() as f32) as usize;
-    let end = if ends.is_empty() {
-        line.length()
-    } else {
-        let rank = rank.min(ends.len() - 1);
-        *ends.select_nth_unstable_by(rank, f32::total_cmp).1
-    };
-    Some(Cord { members, end: end.min(line.length()), line })
+    Some(Cord { members, line })
 }
 
 /// The rope of each wisp, and where it passes the tie, in links; none of wisps that no tie holds.

@@ -127,8 +127,8 @@ impl Operate for Braid {
         let tightness = 0.5 + 0.5 * self.tightness;
         gather(style, scope, &cords, &Gathering { join, amount: 1.0, tightness });
         let segment = self.pitch / SEGMENTS;
-        lay(style, &before, scope, &cords, (join, segment), |cord, strand, metres| {
-            let weave = Weave::new(self, cord.end);
+        lay(style, &before, scope, &cords, (join, segment), |_, strand, metres| {
+            let weave = Weave::new(self, strand.end);
             Laid { place: weave.place(strand, metres), own: 0.0 }
         });
     }

@@ -113,7 +113,8 @@ mod tests {
         for (w, wisp) in after.wisps.iter().enumerate() {
             let points = places(&after, wisp.first_strand as usize);
             // Beyond the onset: the middle of whole turns is the axis.
-            let low = points[0].y - 0.31 + 0.01;
+
+            let low = points[points.len() - 1].y + 0.01;
             let turns: Vec<Vec3> =
                 points.iter().copied().filter(|p| p.y > low && p.y < low + 4.0 * coil.pitch).collect();
             assert!(turns.len() >= 4 * 10, "{} points", turns.len());

@@ -8,7 +8,7 @@ use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::cord::{Cord, CordStrand, Gathering, Laid, Plan, cords, gather, lay};
+use crate::cord::{CordStrand, Gathering, Laid, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
 /// Felts hair into locks of even thickness with rounded ends.
@@ -87,11 +87,11 @@ const SWAY: f32 = 0.08;
 
 impl Dreadlock {
     /// Where a strand runs across its lock at a distance from the start; `phase` belongs to the lock.
-    fn place(&self, cord: &Cord, strand: &CordStrand, phase: [f32; 4], metres: f32) -> Vec2 {
+    fn place(&self, strand: &CordStrand, phase: [f32; 4], metres: f32) -> Vec2 {
         let [a, b, c, stands] = strand.chance;
         let half = 0.5 * self.thickness;
         // Rounded at the end, as a half sphere.
-        let left = ((cord.end - metres) / half).clamp(0.0, 1.0);
+        let left = ((strand.end - metres) / half).clamp(0.0, 1.0);
         let round = (1.0 - (1.0 - left) * (1.0 - left)).sqrt().max(0.15);
         let turn = TAU * metres / LUMP;
         let lump = 0.6 * (turn + phase[0]).sin() + 0.4 * (2.3 * turn + phase[1]).sin();
@@ -130,7 +130,7 @@ impl Operate for Dreadlock {
         lay(style, &before, scope, &cords, (join, segment), |cord, strand, metres| {
             let mut random = scope.random(1, cord.members[0].wisp);
             let phase = [(); 4].map(|()| random.angle());
-            Laid { place: self.place(cord, strand, phase, metres), own: 0.0 }
+            Laid { place: self.place(strand, phase, metres), own: 0.0 }
         });
     }
 }
@@ -154,12 +154,15 @@ mod tests {
             // The wisp hangs straight down: its middle has one x and z beyond the start.
             let guide =
                 |i: usize| wisp.guides.map(|g| after.guides.point(g as usize, i)).iter().sum::<Vec3>() / 3.0;
-            let (top, bottom) = (guide(0).y, guide(30).y);
             let middle = guide(20);
             let off = |p: &Vec3| (*p - middle).with_y(0.0).length();
-            for p in all.iter().flatten().filter(|p| p.y < top - 0.15) {
-                assert!(off(p) < 0.5 * lock.thickness * 1.05, "{} at {}", off(p), p.y - bottom);
+            let lowest = all.iter().flatten().map(|p| p.y).fold(f32::MAX, f32::min);
+            for p in all.iter().flatten().filter(|p| p.y < middle.y) {
+                assert!(off(p) < 0.5 * lock.thickness * 1.05, "{} at {}", off(p), p.y);
+                assert!(p.y > lowest + 1e-4 || off(p) < 0.2 * lock.thickness, "{} at the end", off(p));
             }
+            let widest = all.iter().flatten().filter(|p| p.y < middle.y).map(off).fold(0.0, f32::max);
+            assert!(widest > 0.3 * lock.thickness, "{widest}");
         }
     }
 }

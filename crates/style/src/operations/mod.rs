@@ -21,7 +21,7 @@ mod strays;
 mod sweep;
 mod taper;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod tie;
