@@ -81,11 +81,20 @@ pub fn turn_links(shape: &mut GuideShape, mut turn: impl FnMut(usize, Vec3, Vec3
 }
 
 /// Combs a guide over the body: its links turn toward `toward`, along the surface where they are near it, by the part `amount` of the
-/// way. That fades to nothing at a distance of `metres` from the root.
-pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: f32, metres: f32) {
+/// way. That fades to nothing at a distance of `metres` from the root. `means` are [`wisp_means`]: the guides of a wisp turn to the same
+/// side.
+pub fn comb(
+    shape: &mut GuideShape,
+    scope: &Scope<'_>,
+    means: &[Vec<Vec3>],
+    toward: Vec3,
+    amount: f32,
+    metres: f32,
+) {
     let obstacle = Bounded(scope.obstacle);
     let (link, strength, last) = (shape.link, shape.strength, (shape.points.len() - 1) as f32);
     let mut moved = false;
+    let mean = shape.wisp.map(|wisp| &means[wisp]);
     turn_links(shape, |i, at, direction| {
         let (distance, normal) = obstacle.distance(at);
         let near = 1.0 - (distance / NEAR).clamp(0.0, 1.0);
@@ -97,7 +106,8 @@ pub fn comb(shape: &mut GuideShape, scope: &Scope<'_>, toward: Vec3, amount: f32
             // Hair that is combed the other way turns around on the surface: it neither stands up nor dives into the body.
             Some(along) if amount > 0.0 => {
                 let side = normal.cross(along).normalize_or_zero();
-                let side = if direction.dot(side) < 0.0 { -side } else { side };
+                let common = mean.map_or(direction, |mean| mean[i + 1] - mean[i]);
+                let side = if common.dot(side) < 0.0 { -side } else { side };
                 let from = (direction + side * (ASIDE * near)).normalize_or(direction);
                 turned(from, along, amount * from.angle_between(along), false)
             }
@@ -143,6 +153,17 @@ pub fn reshape(
     change: impl Fn(&mut GuideShape) + Sync,
 ) {
     let strengths = scope.guides(style);
+    reshape_where(style, scope, &strengths, lengths, change);
+}
+
+/// As [`reshape`], of the guides whose strength is not 0.
+pub fn reshape_where(
+    style: &mut Hairstyle,
+    scope: &Scope<'_>,
+    strengths: &[f32],
+    lengths: Lengths,
+    change: impl Fn(&mut GuideShape) + Sync,
+) {
     let wisps = wisp_of_guide(style);
     let guides = &style.guides;
     let obstacle = Bounded(scope.obstacle);

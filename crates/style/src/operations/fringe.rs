@@ -1,14 +1,14 @@
 //! Brings front hair forward over the forehead and shortens it.
 
-use crate::guides::{Lengths, reshape, shorten, turn_links};
+use crate::guides::{Lengths, reshape, shorten, turn_links, wisp_of_guide};
 use glam::Vec3;
 use lovelock_base::field;
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::{Bounded, Hairstyle, Obstacle};
 
-use crate::Scope;
 use crate::operate::{Kind, Operate, Subject};
+use crate::scope::{Scope, wisp_roots};
 
 /// Brings front hair forward over the forehead and shortens it.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,8 +69,13 @@ impl Operate for Fringe {
             (1.0 - smoothstep(0.8 * self.depth, self.depth, back))
                 * (1.0 - smoothstep(0.9 * half, half, aside))
         };
+        // A wisp belongs to the fringe as a whole; its strands would hang between two courses.
+        let of_wisp: Vec<f32> = wisp_roots(style).into_iter().map(part).collect();
+        let wisp_of = wisp_of_guide(style);
+        let belongs =
+            |guide: usize, root: Vec3| wisp_of[guide].map_or_else(|| part(root), |wisp| of_wisp[wisp]);
         reshape(style, scope, Lengths::Keep, |shape| {
-            let belongs = part(shape.points[0]);
+            let belongs = belongs(shape.index, shape.points[0]);
             if belongs == 0.0 {
                 return;
             }
@@ -90,7 +95,7 @@ impl Operate for Fringe {
             });
         });
         shorten(style, scope, |shape| {
-            let amount = (part(shape.points[0]) * shape.strength).clamp(0.0, 1.0);
+            let amount = (belongs(shape.index, shape.points[0]) * shape.strength).clamp(0.0, 1.0);
             1.0 + ((self.length / shape.length()).min(1.0) - 1.0) * amount
         });
     }

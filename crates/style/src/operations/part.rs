@@ -6,7 +6,7 @@ use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
-use crate::guides::{Lengths, comb, reshape};
+use crate::guides::{Lengths, comb, reshape, wisp_means};
 use crate::operate::{Kind, Operate, Subject};
 use crate::scope::{Scope, wisp_roots};
 
@@ -72,7 +72,7 @@ impl Operate for Part {
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         // A wisp stays on one side; its strands would hang between two.
-        let roots = wisp_roots(style);
+        let (roots, means) = (wisp_roots(style), wisp_means(style));
         reshape(style, scope, Lengths::Keep, |shape| {
             let root = shape.wisp.map_or(shape.points[0], |wisp| roots[wisp]);
             let aside = root.x - scope.head.middle.x - self.position;
@@ -81,7 +81,7 @@ impl Operate for Part {
                 return;
             }
             let toward = Vec3::new(1f32.copysign(aside), -0.4, 0.0).normalize_or(Vec3::NEG_Y);
-            comb(shape, scope, toward, self.amount * near, self.length);
+            comb(shape, scope, &means, toward, self.amount * near, self.length);
         });
     }
 }
