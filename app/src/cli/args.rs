@@ -31,6 +31,9 @@ pub(crate) struct Arguments {
     /// Open the window with the comparison of the project's panes, like key C.
     #[arg(long)]
     pub(crate) panes: bool,
+    /// Open the window with the mask of a layer shown, by its place in the list from 1.
+    #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) mask: Option<u32>,
     /// Seconds between the first hair on the screen and the screenshot.
     #[arg(long, value_name = "SECONDS", default_value_t = 6.0, requires = "screenshot")]
     pub(crate) after: f64,

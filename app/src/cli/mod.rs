@@ -47,7 +47,8 @@ pub(crate) fn run() -> ExitCode {
     let result = match arguments.task {
         None => {
             let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
-            crate::window::open(arguments.project.as_deref(), &arguments.set, arguments.panes, screenshot)
+            let shows = crate::window::Shows { panes: arguments.panes, mask: arguments.mask };
+            crate::window::open(arguments.project.as_deref(), &arguments.set, shows, screenshot)
         }
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Compare(task)) => compare::run(&task, output),

@@ -161,18 +161,39 @@ pub(crate) struct Window {
     display: Display,
 }
 
-/// Opens the window with the file at `path`, if there is one; with the panes of a comparison if `panes`.
+/// What the window shows when it opens.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shows {
+    /// The panes of a comparison.
+    pub(crate) panes: bool,
+    /// The mask of a layer, by its place in the list from 1.
+    pub(crate) mask: Option<u32>,
+}
+
+/// Opens the window with the file at `path`, if there is one.
 pub(crate) fn open(
     path: Option<&Path>,
     set: &[Assignment],
-    panes: bool,
+    shows: Shows,
     screenshot: Option<(PathBuf, f64)>,
 ) -> Result<(), ProjectError> {
     // A file that cannot be opened is an error of the command line, reported without opening the window.
     let opened = actions::open_for_start(path, set)?;
+    let layers = &opened.project.hair.stack.layers;
+    let shown = shows.mask.map(|place| {
+        let layer = layers.get(place as usize - 1);
+        layer.map(|layer| layer.id).ok_or_else(|| {
+            ProjectError::option(format!(
+                "--mask {place}: found {} layers; must be one of them",
+                layers.len()
+            ))
+        })
+    });
+    let shown = shown.transpose()?;
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
-        window.layout.compare.shown |= panes;
+        window.layout.compare.shown |= shows.panes;
+        window.layers.reveal(shown);
         // Nine simulations are not what a program should start with.
         window.layout.wall.shown = false;
         Ok(window)

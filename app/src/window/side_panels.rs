@@ -28,7 +28,7 @@ impl Window {
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
-                section(ui, "Layers", false, |ui| {
+                section(ui, "Layers", self.layers.is_revealed(), |ui| {
                     panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {

@@ -16,12 +16,22 @@ pub struct Wisp {
 }
 
 /// Guides that a tie gathers, which stay together beyond it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Rope {
     /// Each guide with the index of its first point beyond the tie.
     pub guides: Vec<(u32, u32)>,
+    /// How far along the rope that first point is, metres, for each guide; 0 for all where empty.
+    pub ahead: Vec<f32>,
     /// How firmly they stay together: 0 loose, 1 tight.
     pub tightness: f32,
+    /// A rope that is thinner at rest counts as this thick: its guides are free up to this distance from its middle, metres.
+    pub least_radius: f32,
+}
+
+impl Default for Rope {
+    fn default() -> Self {
+        Self { guides: Vec::new(), ahead: Vec::new(), tightness: 0.0, least_radius: 0.006 }
+    }
 }
 
 /// How each rendered strand follows the guides of its wisp. Structure of arrays.

@@ -18,11 +18,8 @@ const SPACING: f32 = 0.02;
 const LONGEST: f32 = 1000.0;
 
 /// A guide is free up to this multiple of its distance from the line at rest, which counts as at least
-/// [`LEAST_RADIUS`].
+/// [`Rope::least_radius`].
 const FREE: f32 = 1.25;
-
-/// A rope is at least this wide, metres.
-const LEAST_RADIUS: f32 = 0.006;
 
 /// Rate at which guides of a tight rope return into it, 1/s.
 const COHESION: f32 = 60.0;
@@ -52,6 +49,8 @@ pub(crate) struct MiddleLine {
     cohesion: f32,
     /// Fraction of the velocity relative to the line that vanishes in a step.
     friction: f32,
+    /// [`Rope::least_radius`].
+    least_radius: f32,
 }
 
 impl MiddleLine {
@@ -70,7 +69,9 @@ impl MiddleLine {
 pub(crate) fn assign(ropes: &[Rope], blocks: &mut [Block]) {
     let mut of_guide = std::collections::HashMap::new();
     for (r, rope) in ropes.iter().enumerate() {
-        of_guide.extend(rope.guides.iter().map(|&(guide, beyond)| (guide, (r as u32, beyond as usize))));
+        let ahead = |n: usize| rope.ahead.get(n).copied().filter(|v| *v > 0.0).unwrap_or(0.0);
+        let places = rope.guides.iter().enumerate();
+        of_guide.extend(places.map(|(n, &(guide, beyond))| (guide, (r as u32, beyond as usize, ahead(n)))));
     }
     for block in blocks.iter_mut() {
         let mut found = InRope {
@@ -79,9 +80,9 @@ pub(crate) fn assign(ropes: &[Rope], blocks: &mut [Block]) {
             radius: vec![ZERO; block.points()],
         };
         for k in 0..block.used {
-            let Some(&(rope, beyond)) = of_guide.get(&block.guides[k]) else { continue };
+            let Some(&(rope, beyond, ahead)) = of_guide.get(&block.guides[k]) else { continue };
             found.rope[k] = rope;
-            let mut place = 0.0;
+            let mut place = ahead / SPACING;
             for i in beyond.max(1)..block.points() {
                 // The end of a guide that was cut.
                 if block.rest.inv_length[i][k] <= 0.0 {
@@ -134,6 +135,7 @@ pub(crate) fn current(
     for (line, rope) in lines.iter_mut().zip(ropes) {
         let taken = |rate: f32| 1.0 - (-rate * rope.tightness.clamp(0.0, 1.0) * grown * h).exp();
         (line.cohesion, line.friction) = (taken(COHESION), taken(FRICTION * substeps as f32));
+        line.least_radius = rope.least_radius;
     }
     lines
 }
@@ -214,7 +216,7 @@ pub(crate) fn hold(
             let (middle, velocity) = line.at(place);
             let p = at(row, k);
             let (out, distance) = direction_or(p - (middle + velocity * passed), Vec3::ZERO);
-            let bound = FREE * greater(found.radius[i][k], LEAST_RADIUS);
+            let bound = FREE * greater(found.radius[i][k], line.least_radius);
             let back = greater((bound - distance) * line.cohesion, -FASTEST * h);
             // False for NaN.
             put(row, k, choose(distance > bound, p + out * back, p));
@@ -257,7 +259,7 @@ mod tests {
             let points: Vec<Vec3> = (0..=links).map(|i| Vec3::new(link * i as f32, 0.0, z)).collect();
             guides.push(&points);
         }
-        let ropes = vec![Rope { guides: vec![(0, 1), (1, 1)], tightness: 1.0 }];
+        let ropes = vec![Rope { guides: vec![(0, 1), (1, 1)], tightness: 1.0, ..Rope::default() }];
         let mut blocks: Vec<Block> =
             pack(&guides, &[]).iter().map(|lanes| Block::new(&guides, lanes, 1)).collect();
         for block in &mut blocks {

@@ -153,6 +153,17 @@ pub fn reshape(
     change: impl Fn(&mut GuideShape) + Sync,
 ) {
     let strengths = scope.guides(style);
+    reshape_where(style, scope, &strengths, lengths, change);
+}
+
+/// As [`reshape`], of the guides whose strength is not 0.
+pub fn reshape_where(
+    style: &mut Hairstyle,
+    scope: &Scope<'_>,
+    strengths: &[f32],
+    lengths: Lengths,
+    change: impl Fn(&mut GuideShape) + Sync,
+) {
     let wisps = wisp_of_guide(style);
     let guides = &style.guides;
     let obstacle = Bounded(scope.obstacle);

@@ -5,6 +5,7 @@
 //!
 //! A new operation is a file in `operations` and a name in the table of [`operation`].
 
+mod cord;
 mod evaluate;
 mod guides;
 mod mask;

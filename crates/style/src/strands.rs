@@ -80,45 +80,58 @@ pub fn links_of_strands(style: &Hairstyle) -> Vec<f32> {
 /// hairstyle may have.
 pub fn refine(style: &mut Hairstyle, scope: &Scope<'_>, segment: f32) {
     let strengths = scope.strands(style);
+    refine_where(style, |strand| (strengths[strand] != 0.0).then_some((0.0, segment)));
+}
+
+/// Adds points to strands until no segment is longer than `segment` metres that ends at or beyond a place along the guides, in links;
+/// `of` returns both for a strand, or none where it stays as it is. Stays within the most points that a hairstyle may have.
+pub fn refine_where(style: &mut Hairstyle, of: impl Fn(usize) -> Option<(f32, f32)>) {
     let links = links_of_strands(style);
     let set = &style.strands;
-    // How many parts each segment is divided into.
-    let parts = |strand: usize| -> u32 {
-        let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
-        let metres = (set.guide_param[range.end - 1] - set.guide_param[range.start]) * links[strand];
-        let now = (range.len() - 1) as f32;
-        if strengths[strand] == 0.0 { 1 } else { (metres / (now * segment)).ceil().clamp(1.0, 16.0) as u32 }
+    let range = |strand: usize| set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+    // From where on segments are divided, and into how many parts.
+    let parts = |strand: usize| -> (f32, u32) {
+        let Some((from, segment)) = of(strand) else { return (0.0, 1) };
+        let params = &set.guide_param[range(strand)];
+        let metres = (params[params.len() - 1] - params[0]) * links[strand];
+        let now = (params.len() - 1) as f32;
+        (from, (metres / (now * segment)).ceil().clamp(1.0, 16.0) as u32)
     };
-    let mut parts: Vec<u32> = (0..set.count()).map(parts).collect();
-    let points = |parts: &[u32]| -> u64 {
-        let of = |(strand, n): (usize, &u32)| {
-            let segments = set.first_point[strand + 1] - set.first_point[strand] - 1;
-            u64::from(segments) * u64::from(*n) + 1
-        };
-        parts.iter().enumerate().map(of).sum()
+    let mut parts: Vec<(f32, u32)> = (0..set.count()).map(parts).collect();
+    let divided_segments = |strand: usize, from: f32| -> u64 {
+        let params = &set.guide_param[range(strand)];
+        params[1..].iter().filter(|u| **u >= from).count() as u64
     };
-    while points(&parts) > u64::from(MOST_POINTS) && parts.iter().any(|n| *n > 1) {
-        for n in &mut parts {
+    let reach: Vec<u64> =
+        parts.iter().enumerate().map(|(strand, (from, _))| divided_segments(strand, *from)).collect();
+    let points = |parts: &[(f32, u32)]| -> u64 {
+        let added = |(reach, (_, n)): (&u64, &(f32, u32))| reach * u64::from(n - 1);
+        set.points() as u64 + reach.iter().zip(parts).map(added).sum::<u64>()
+    };
+    while points(&parts) > u64::from(MOST_POINTS) && parts.iter().any(|(_, n)| *n > 1) {
+        for (_, n) in &mut parts {
             *n = (*n - 1).max(1);
         }
     }
-    if parts.iter().all(|n| *n == 1) {
+    if parts.iter().all(|(_, n)| *n == 1) {
         return;
     }
     style.strands = divided(set, &parts);
 }
 
-/// The strands with each segment of strand `i` divided into `parts[i]` equal ones.
-fn divided(set: &StrandSet, parts: &[u32]) -> StrandSet {
+/// The strands with each segment that ends at or beyond a place divided into equal parts; `parts` has both for each strand.
+fn divided(set: &StrandSet, parts: &[(f32, u32)]) -> StrandSet {
     let mut out = StrandSet { first_point: vec![0], ..StrandSet::default() };
     out.wisp.clone_from(&set.wisp);
     out.weights.clone_from(&set.weights);
     out.shade.clone_from(&set.shade);
     out.colours.clone_from(&set.colours);
-    for (strand, &n) in parts.iter().enumerate() {
+    for (strand, &(from, n)) in parts.iter().enumerate() {
         let (first, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
         for i in first..end {
-            for k in 0..if i + 1 < end { n } else { 1 } {
+            let last = i + 1 == end;
+            let n = if last || set.guide_param[i + 1] < from { 1 } else { n };
+            for k in 0..n {
                 let t = k as f32 / n as f32;
                 let mix = |values: &[f32]| {
                     if k == 0 { values[i] } else { values[i] + (values[i + 1] - values[i]) * t }

@@ -82,7 +82,7 @@ pub fn tied_where(
     let mut caught = Vec::new();
     out.held.resize(style.guides.x.len(), -1.0);
     let first_rope = out.ropes.len();
-    out.ropes.extend(rings.iter().map(|ring| Rope { guides: Vec::new(), tightness: ring.tie.tightness }));
+    out.ropes.extend(rings.iter().map(|ring| Rope { tightness: ring.tie.tightness, ..Rope::default() }));
     for (of, laid) in gathered.iter().zip(laid) {
         let Some(laid) = laid else { continue };
         let tie = &rings[of.ring].tie;

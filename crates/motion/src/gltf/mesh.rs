@@ -83,7 +83,7 @@ impl Surface {
             )),
         };
         let attribute = |name: &str| primitive.attributes.get(name).map(|&a| same_count(a)).transpose();
-        let base = self.mesh.positions.len();
+        let base = self.skin.positions.len();
         if base + count > VERTEX_LIMIT {
             let problem = format!("more than {VERTEX_LIMIT} vertices");
             return Err(MotionError::malformed(accessors.file, "the meshes", problem));

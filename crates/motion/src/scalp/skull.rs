@@ -51,7 +51,8 @@ impl Skull {
         let step = size / SAMPLES;
         let counts = ((high - low) / step).ceil().as_uvec3().max(UVec3::ONE);
         let depth = |p: Vec3| {
-            let depth = -distance(p);
+            // Within the head, so that it lies in no neck behind it.
+            let depth = (-distance(p)).min(1.05 * (p - low).min(high - p).min_element());
             // A figure without joints: the head is what is near its top.
             let too_low = alone && high.y - p.y > BELOW_TOP * depth;
             if too_low || !depth.is_finite() { f32::NEG_INFINITY } else { depth }

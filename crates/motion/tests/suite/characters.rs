@@ -196,3 +196,24 @@ fn counts_are_checked_before_allocation() {
         assert!(error.to_string().contains("accessor 0"), "{error}");
     }
 }
+
+#[test]
+fn triangles_of_every_primitive_name_their_own_vertices() {
+    // Two triangles of their own vertices, one above the other, as two primitives with the same indices.
+    let floats = |values: [f32; 9]| values.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<u8>>();
+    let mut bytes = floats([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+    bytes.extend(floats([0.0, 2.0, 0.0, 1.0, 2.0, 0.0, 0.0, 2.0, -1.0]));
+    let file = std::env::temp_dir().join(format!("lovelock-primitives-{}", std::process::id()));
+    std::fs::create_dir_all(&file).expect("a folder");
+    std::fs::write(file.join("a.bin"), &bytes).expect("written");
+    let text = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":1}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+            {"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":72}],"buffers":[{"byteLength":72,"uri":"a.bin"}]}"#;
+    let body = load_character_bytes("x.gltf", text.as_bytes(), Some(&file)).expect("two triangles").body;
+    std::fs::remove_dir_all(&file).expect("removed");
+    let heights: Vec<f32> =
+        body.mesh.triangles.iter().map(|t| body.mesh.positions[t[2] as usize].y).collect();
+    assert_eq!(heights, [0.0, 2.0]);
+}

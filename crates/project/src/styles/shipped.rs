@@ -51,6 +51,12 @@ pub(super) const FILES: &[(&str, &str)] = &[
     file!("afro"),
     file!("undercut"),
     file!("side-part"),
+    file!("dreadlocks"),
+    file!("mohawk"),
+    file!("pigtails"),
+    file!("two-braids"),
+    file!("long-braid"),
+    file!("box-braids"),
 ];
 
 /// Every shipped style, in the order of menus: those of `groom`, then those in files.

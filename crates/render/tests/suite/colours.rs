@@ -10,12 +10,13 @@ use lovelock_render::{Backend, Picture, StrandCount};
 use lovelock_testkit::flip;
 
 use crate::cluster_agreement;
-use crate::common::{self, Scene, wig};
+use crate::common::{Scene, wig};
 
 const SIZE: [u32; 2] = [240, 200];
-/// FLIP between the pictures of the two backends, as in `agreement`: the colours add nothing to the difference of plain hair.
-const MEAN: f32 = 0.005;
-const P99: f32 = 0.06;
+/// By how much more the pictures of the two backends may differ, in mean and 99th percentile of FLIP, than those of plain hair.
+const MORE: [f32; 2] = [0.0005, 0.02];
+/// The same where neighbours have different colours: there the order of strands at one depth, which may differ, is seen in single pixels.
+const MORE_MIXED: [f32; 2] = [0.001, 0.2];
 
 fn root(style: &Hairstyle, strand: usize) -> Vec3 {
     let set = &style.strands;
@@ -46,6 +47,13 @@ fn salon(strand: usize, root: Vec3) -> ColourSamples {
             StrandColour::BELOW.faded(if strand.is_multiple_of(3) { 0.1 } else { 1.0 })
         }
     })
+}
+
+/// A dye that grows over the head and along the hair.
+fn gradient(_: usize, root: Vec3) -> ColourSamples {
+    let teal = HairLook::absorption_of_dye(Vec3::new(0.05, 0.45, 0.5), 0.3);
+    let side = (0.5 + 4.0 * root.x).clamp(0.0, 1.0);
+    std::array::from_fn(|k| StrandColour::BELOW.toward(teal, side * StrandColours::place(k)))
 }
 
 fn draw(scene: &Scene, backend: Backend) -> Option<Picture> {
@@ -87,7 +95,6 @@ fn colours_that_change_nothing_change_no_byte() {
 #[test]
 fn a_dye_over_all_hair_looks_as_the_same_dye_of_the_look() {
     for (name, mut scene) in scenes() {
-        scene.body = Some(common::grid(-0.16, 0.3, 24, Vec3::splat(0.6)));
         scene.look.tip_lightening = 0.0;
         let plain = cpu(&scene);
         let own = HairLook { dye: Vec3::new(0.5, 0.05, 0.2), dye_amount: 1.0, ..scene.look };
@@ -136,17 +143,31 @@ fn hair_of_the_other_side_keeps_every_byte() {
 fn coloured_strands_look_the_same_on_both() {
     for (name, mut scene) in scenes() {
         let plain = draw(&scene, Backend::Cpu).expect("a picture");
-        coloured(&mut scene, salon);
-        let Some(gpu) = draw(&scene, Backend::Gpu) else { return };
-        let cpu = draw(&scene, Backend::Cpu).expect("a picture");
-        let difference = flip(&gpu.rgba, &cpu.rgba, SIZE[0], SIZE[1]);
-        let control = flip(&gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
-        // Another colour of a third of the strands.
-        coloured(&mut scene, |strand, root| salon(strand + 1, root));
-        let shifted = flip(&gpu.rgba, &self::cpu(&scene), SIZE[0], SIZE[1]);
-        println!("{name}: {difference:?}; without colours {control:?}; other strands {shifted:?}");
-        assert!(difference.mean < MEAN && difference.p99 < P99, "{name}: {difference:?}");
-        assert!(control.mean > 2.0 * MEAN && control.p99 > 2.0 * P99, "{name}: {control:?}");
-        assert!(shifted.mean > difference.mean && shifted.p99 > P99, "{name}: {shifted:?}");
+        let Some(plain_gpu) = draw(&scene, Backend::Gpu) else { return };
+        let usual = flip(&plain_gpu.rgba, &plain.rgba, SIZE[0], SIZE[1]);
+        for (colours, of, more) in [
+            ("a gradient", gradient as fn(usize, Vec3) -> ColourSamples, MORE),
+            ("strands", salon, MORE_MIXED),
+        ] {
+            coloured(&mut scene, of);
+            let gpu = draw(&scene, Backend::Gpu).expect("a picture");
+            let against = |cpu: &[u8]| flip(&gpu.rgba, cpu, SIZE[0], SIZE[1]);
+            let difference = against(&cpu(&scene));
+            let without = against(&plain.rgba);
+            coloured(&mut scene, |strand, root| of(strand + 1, root + Vec3::X * 0.02));
+            let shifted = against(&cpu(&scene));
+            println!(
+                "{name}, {colours}: {difference:?}; both plain {usual:?}; without {without:?}; shifted {shifted:?}"
+            );
+            let [mean, p99] = more;
+            assert!(
+                difference.mean < usual.mean + mean && difference.p99 < usual.p99 + p99,
+                "{name}, {colours}: {difference:?}"
+            );
+            for control in [without, shifted] {
+                let found = control.mean > usual.mean + 4.0 * mean && control.p99 > usual.p99 + p99;
+                assert!(found, "{name}, {colours}: {control:?}");
+            }
+        }
     }
 }

@@ -293,16 +293,16 @@ impl Morph {
             }
         }
         let scale = self.scale(side);
-        let rope = |rope: &Rope| Rope {
-            tightness: rope.tightness,
-            guides: rope
-                .guides
-                .iter()
-                .flat_map(|&(guide, first)| {
-                    let first = (first as f32 * scale).round() as u32;
-                    copies[guide as usize].iter().map(move |&copy| (copy, first))
-                })
-                .collect(),
+        let rope = |rope: &Rope| {
+            let mut out = Rope { guides: Vec::new(), ahead: Vec::new(), ..rope.clone() };
+            for (i, &(guide, first)) in rope.guides.iter().enumerate() {
+                let first = (first as f32 * scale).round() as u32;
+                for &copy in &copies[guide as usize] {
+                    out.guides.push((copy, first));
+                    out.ahead.extend(rope.ahead.get(i));
+                }
+            }
+            out
         };
         style.ropes.iter().map(rope).collect()
     }

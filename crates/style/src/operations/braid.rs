@@ -1,198 +1,138 @@
-//! Gathers hair beyond a distance into three bundles that weave.
+//! Plaits of three strands: one for each tie, or one for each patch of the scalp.
 
-use crate::guides::{GuideShape, Lengths, frames, reshape, shape_of, wisp_means, wisp_of_guide};
-use glam::Vec3;
+mod weave;
+
 use lovelock_base::field;
-use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
-use lovelock_groom::polyline::sample;
-use std::f32::consts::TAU;
 
 use crate::Scope;
+use crate::cord::{Gathering, Laid, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
+use weave::{THICKNESS, Weave};
 
-/// Gathers hair beyond a distance into three bundles that weave.
+/// Plaits hair in three bundles that cross over and under.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Braid {
-    /// Distance from the root at which the braid begins, metres.
+    /// Number of braids of loose hair. Hair that ties hold makes one for each tie.
+    pub count: u32,
+    /// Length of hair before the braid begins, from the tie or the root, metres.
     pub start: f32,
-    /// How far bundles swing to each side, metres.
+    /// Width of the braid, metres.
     pub width: f32,
-    /// Length over which a bundle crosses and returns, metres.
+    /// Distance between two crossings on one side, metres.
     pub pitch: f32,
-    /// How thin bundles are, as a fraction.
+    /// How tightly the bundles are gathered, as a fraction.
     pub tightness: f32,
+    /// How much narrower the braid is at its end, as a fraction.
+    pub taper: f32,
+    /// Length of loose hair below the end of the braid, metres.
+    pub tassel: f32,
+    /// Share of strands that leave their bundle.
+    pub flyaways: f32,
 }
 
 impl Default for Braid {
     fn default() -> Self {
-        Self { start: 0.15, width: 0.018, pitch: 0.1, tightness: 0.6 }
+        Self {
+            count: 1,
+            start: 0.02,
+            width: 0.03,
+            pitch: 0.022,
+            tightness: 0.7,
+            taper: 0.4,
+            tassel: 0.05,
+            flyaways: 0.03,
+        }
     }
 }
 
 impl Settings for Braid {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::number(field!(Self, start), [0.01, 1.0], "Start", "Length of hair before the braid begins.")
-            .unit(Unit::METRES_AS_CM),
-        Setting::number(field!(Self, width), [0.003, 0.06], "Width", "How far bundles swing to each side.")
-            .unit(Unit::METRES_AS_MM),
+        Setting::count(
+            field!(Self, count),
+            [1, 1000],
+            "Braids",
+            "Number of braids of loose hair, each of one patch of the scalp. Hair that ties hold makes one braid for each tie.",
+        ),
+        Setting::number(
+            field!(Self, start),
+            [0.0, 1.0],
+            "Start",
+            "Length of hair before the braid begins, from the tie or from the root.",
+        )
+        .unit(Unit::METRES_AS_CM)
+        .soft([0.0, 0.3]),
+        Setting::number(field!(Self, width), [0.002, 0.12], "Width", "Width of the braid at its start.")
+            .unit(Unit::METRES_AS_MM)
+            .soft([0.004, 0.06]),
         Setting::number(
             field!(Self, pitch),
-            [0.03, 0.4],
+            [0.002, 0.2],
             "Pitch",
-            "Length over which a bundle crosses and returns.",
+            "Distance between two crossings on one side. Two thirds of the width make a firm plait.",
         )
-        .unit(Unit::METRES_AS_CM),
+        .unit(Unit::METRES_AS_MM)
+        .soft([0.003, 0.06]),
         Setting::number(
             field!(Self, tightness),
             [0.0, 1.0],
             "Tightness",
-            "How tightly bundles are gathered.",
+            "How tightly the bundles are gathered. Low values are soft and uneven.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, taper),
+            [0.0, 0.9],
+            "Taper",
+            "How much narrower the braid is at its end.",
+        )
+        .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, tassel),
+            [0.0, 0.5],
+            "Tassel",
+            "Length of loose hair below the end of the braid.",
+        )
+        .unit(Unit::METRES_AS_CM)
+        .soft([0.0, 0.2]),
+        Setting::number(
+            field!(Self, flyaways),
+            [0.0, 0.5],
+            "Flyaways",
+            "Share of strands that leave their bundle a little.",
         )
         .unit(Unit::FRACTION),
     ];
 }
 
-/// Distance between points of the axis, metres.
-const STEP: f32 = 0.01;
-
-/// The middle of a braid.
-struct Axis {
-    /// Points [`STEP`] apart.
-    middle: Vec<Vec3>,
-    /// Directions to the side and in depth at each.
-    frames: Vec<(Vec3, Vec3)>,
-    /// The bundle of each wisp; none for those without a braid.
-    bundle: Vec<Option<usize>>,
-}
-
-impl Axis {
-    /// The middle and its two directions at a distance from the start.
-    fn at(&self, metres: f32) -> (Vec3, Vec3, Vec3) {
-        let at = metres / STEP;
-        let frame = self.frames[(at as usize).min(self.frames.len() - 1)];
-        (sample(&self.middle, at), frame.0, frame.1)
-    }
-}
-
-impl Braid {
-    /// The axis of the braid; `None` if no hair is long enough.
-    fn axis(&self, style: &Hairstyle, scope: &Scope<'_>) -> Option<Axis> {
-        let wisp_of = wisp_of_guide(style);
-        let strengths = scope.guides(style);
-        let long: Vec<GuideShape> = (0..style.guides.count())
-            .filter(|&g| strengths[g] > 0.0 && wisp_of[g].is_some())
-            .filter_map(|g| shape_of(&style.guides, g, strengths[g], wisp_of[g]))
-            .filter(|shape| shape.length() > self.start)
-            .collect();
-        let point = |shape: &GuideShape, metres: f32| sample(&shape.points, metres / shape.link);
-        let longest = long.iter().map(GuideShape::length).reduce(f32::max)?;
-        let start = long.iter().map(|shape| point(shape, self.start)).sum::<Vec3>() / long.len() as f32;
-        let root = long.iter().map(|shape| shape.points[0]).sum::<Vec3>() / long.len() as f32;
-        let mut middle = vec![start];
-        let mut direction = Vec3::NEG_Y;
-        for i in 0..((longest - self.start) / STEP).ceil() as usize {
-            let from = self.start + i as f32 * STEP;
-            let there = long.iter().filter(|shape| shape.length() >= from + STEP);
-            let sum: Vec3 = there.map(|shape| point(shape, from + STEP) - point(shape, from)).sum();
-            direction = sum.normalize_or(direction);
-            middle.push(middle[i] + direction * STEP);
-        }
-        let frames = frames(&middle, start - scope.head.middle);
-        // Roots by their angle about the axis, a third in each bundle.
-        let means = wisp_means(style);
-        let mut wisps: Vec<usize> = long.iter().filter_map(|shape| shape.wisp).collect();
-        wisps.sort_unstable();
-        wisps.dedup();
-        let angle = |wisp: usize| {
-            let from = means[wisp][0] - root;
-            from.dot(frames[0].1).atan2(from.dot(frames[0].0))
-        };
-        wisps.sort_by(|a, b| angle(*a).total_cmp(&angle(*b)));
-        let mut bundle = vec![None; style.wisps.len()];
-        for (rank, wisp) in wisps.iter().enumerate() {
-            bundle[*wisp] = Some(rank * 3 / wisps.len());
-        }
-        Some(Axis { middle, frames, bundle })
-    }
-}
+/// Segments of a strand between two crossings on one side.
+const SEGMENTS: f32 = 7.0;
+/// The share of a braid's thickness by which its middle stays away from the body.
+const CLEAR: f32 = 0.35;
 
 impl Operate for Braid {
     const KIND: Kind = Kind {
         id: "braid",
         label: "Braid",
-        text: "Gathers hair beyond a distance into three bundles that weave.",
+        text: "Plaits hair in three bundles that cross over and under: one braid for each tie, or many.",
         subject: Subject::Shape,
     };
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
-        let Some(braid) = self.axis(style, scope) else { return };
-        reshape(style, scope, Lengths::Keep, |shape| {
-            let Some(bundle) = shape.wisp.and_then(|wisp| braid.bundle[wisp]) else { return };
-            if shape.length() <= self.start {
-                return;
-            }
-            let phase = TAU * bundle as f32 / 3.0;
-            let mut random = scope.random(0, shape.index);
-            let (angle, radius) = (random.angle(), random.unit().sqrt());
-            // Bundles are as thick as the braid has room for.
-            let thick = self.width * (0.6 - 0.5 * self.tightness) * radius;
-            for i in 1..shape.points.len() {
-                let beyond = i as f32 * shape.link - self.start;
-                if beyond <= 0.0 {
-                    continue;
-                }
-                let (middle, across, deep) = braid.at(beyond);
-                let turn = TAU * beyond / self.pitch.max(6.0 * shape.link) + phase;
-                let x = self.width * turn.sin() + thick * angle.cos();
-                let y = 0.5 * self.width * (2.0 * turn).sin() + thick * angle.sin();
-                let target = middle + across * x + deep * y;
-                let strength = shape.strength * scope.along(shape.place(i));
-                let amount = smoothstep(0.0, 0.5 * self.pitch, beyond) * strength;
-                shape.points[i] = shape.points[i].lerp(target, amount.clamp(0.0, 1.0));
-            }
+        let clear = (CLEAR * THICKNESS * self.width).max(0.003);
+        let cords = cords(style, scope, &Plan { count: self.count, start: self.start, clear });
+        let before = style.clone();
+        let join = self.pitch;
+        let tightness = 0.5 + 0.5 * self.tightness;
+        gather(style, scope, &cords, &Gathering { join, amount: 1.0, tightness });
+        let segment = self.pitch / SEGMENTS;
+        lay(style, &before, scope, &cords, (join, segment), |_, strand, metres| {
+            let weave = Weave::new(self, strand.end);
+            Laid { place: weave.place(strand, metres), own: 0.0 }
         });
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::operations::testing::{acted, straight};
-
-    #[test]
-    fn hair_gathers_in_three_bundles_that_change_sides() {
-        let before = straight(Vec3::NEG_Y);
-        let braid = Braid { start: 0.05, tightness: 1.0, ..Braid::default() };
-        let after = acted(braid.clone(), &before);
-        let guides = &after.guides;
-        let tall = |i: usize| {
-            let points: Vec<Vec3> = (0..guides.count()).map(|g| guides.point(g, i)).collect();
-            points.iter().map(|p| (*p * Vec3::new(1.0, 0.0, 1.0)).length()).fold(0.0, f32::max)
-        };
-        assert!(tall(guides.points_per_guide - 1) < 0.9 * tall(0));
-        let scope = Scope {
-            obstacle: &lovelock_groom::NoObstacle,
-            head: crate::HeadBox::of(&before.scalp),
-            weight: 1.0,
-            mask: &crate::Mask::default(),
-            ramp: &crate::Ramp::default(),
-            seed: 0,
-        };
-        let axis = braid.axis(&before, &scope).expect("an axis");
-        let mut counts = [0; 3];
-        axis.bundle.iter().flatten().for_each(|&b| counts[b] += 1);
-        assert_eq!(counts, [4, 4, 4]);
-        // Each guide crosses the middle of the braid.
-        let across = axis.at(0.0).1;
-        for g in 0..guides.count() {
-            let sides = (12..guides.points_per_guide).map(|i| {
-                let p = guides.point(g, i);
-                (p - axis.middle[0]).dot(across)
-            });
-            let (low, high) = sides.fold((f32::MAX, f32::MIN), |(l, h), x| (l.min(x), h.max(x)));
-            assert!(low < -0.005 && high > 0.005 && high - low < 0.12, "{low} {high}");
-        }
-    }
-}
+mod tests;

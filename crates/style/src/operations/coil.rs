@@ -1,31 +1,35 @@
-//! Gathers each lock and winds it in a helix, as dreadlocks.
+//! Gathers each lock and winds it in a helix.
 
-use crate::guides::{Lengths, frames, reshape, wisp_means};
+use std::f32::consts::TAU;
+
+use glam::Vec2;
 use lovelock_base::field;
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
-use std::f32::consts::TAU;
 
 use crate::Scope;
+use crate::cord::{Gathering, Laid, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
-/// Gathers each lock and winds it in a helix, as dreadlocks.
+/// Gathers each lock and winds it in a helix, as corkscrew curls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coil {
     /// Radius of the helix, metres.
     pub radius: f32,
     /// Length of one turn, metres.
     pub pitch: f32,
-    /// How far the guides of a lock come together, as a fraction.
+    /// How far the hair of a lock comes together, as a fraction.
     pub gather: f32,
-    /// Distance from the root over which locks gather, metres.
+    /// Distance from the root over which locks gather and wind, metres.
     pub onset: f32,
+    /// How much radius and pitch vary along a lock and between locks, as a fraction.
+    pub variation: f32,
 }
 
 impl Default for Coil {
     fn default() -> Self {
-        Self { radius: 0.006, pitch: 0.06, gather: 0.8, onset: 0.04 }
+        Self { radius: 0.006, pitch: 0.03, gather: 0.8, onset: 0.04, variation: 0.3 }
     }
 }
 
@@ -33,13 +37,9 @@ impl Settings for Coil {
     const TABLE: &'static [Setting<Self>] = &[
         Setting::number(field!(Self, radius), [0.0, 0.04], "Radius", "Radius of the coils.")
             .unit(Unit::METRES_AS_MM),
-        Setting::number(
-            field!(Self, pitch),
-            [0.02, 0.4],
-            "Pitch",
-            "Length of one turn. Hair with few control points coils less tightly.",
-        )
-        .unit(Unit::METRES_AS_MM),
+        Setting::number(field!(Self, pitch), [0.004, 0.4], "Pitch", "Length of one turn.")
+            .unit(Unit::METRES_AS_MM)
+            .soft([0.004, 0.1]),
         Setting::number(
             field!(Self, gather),
             [0.0, 1.0],
@@ -51,66 +51,81 @@ impl Settings for Coil {
             field!(Self, onset),
             [0.0, 0.3],
             "Onset",
-            "Length of hair from the root over which locks gather.",
+            "Length of hair from the root over which locks gather and wind.",
         )
         .unit(Unit::METRES_AS_CM),
+        Setting::number(
+            field!(Self, variation),
+            [0.0, 1.0],
+            "Variation",
+            "How much radius and pitch vary along a lock and between locks.",
+        )
+        .unit(Unit::FRACTION),
     ];
 }
+
+/// Segments of a strand in one turn.
+const SEGMENTS: f32 = 12.0;
+/// Turns after which radius and phase have varied once.
+const VARIES: [f32; 2] = [3.1, 4.3];
 
 impl Operate for Coil {
     const KIND: Kind = Kind {
         id: "coil",
         label: "Coil",
-        text: "Gathers each lock and winds it in a helix, as dreadlocks.",
+        text: "Gathers each lock and winds it in a helix, as corkscrew curls.",
         subject: Subject::Shape,
     };
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
-        let means = wisp_means(style);
-        reshape(style, scope, Lengths::Keep, |shape| {
-            let Some((wisp, mean)) = shape.wisp.map(|wisp| (wisp, &means[wisp])) else { return };
-            let frames = frames(mean, shape.points[0] - scope.head.middle);
-            let phase = scope.random(0, wisp).angle();
-            // A turn has three links at least.
-            let pitch = self.pitch.max(3.0 * shape.link);
-            for i in 1..shape.points.len() {
-                let metres = i as f32 * shape.link;
-                let onset = smoothstep(0.0, self.onset.max(1e-3), metres);
-                let strength = shape.strength * scope.along(shape.place(i));
-                let angle = TAU * metres / pitch + phase;
-                let helix = (frames[i].0 * angle.cos() + frames[i].1 * angle.sin()) * self.radius;
-                let target = mean[i] + (shape.points[i] - mean[i]) * (1.0 - self.gather) + helix;
-                shape.points[i] = shape.points[i].lerp(target, (onset * strength).clamp(0.0, 1.0));
-            }
+        let plan = Plan { count: u32::MAX, start: 0.0, clear: self.radius.max(0.003) };
+        let cords = cords(style, scope, &plan);
+        let before = style.clone();
+        let onset = self.onset.max(1e-3);
+        gather(style, scope, &cords, &Gathering { join: onset, amount: self.gather, tightness: 0.0 });
+        // Random numbers of a lock, by its first wisp.
+        let segment = self.pitch / SEGMENTS;
+        lay(style, &before, scope, &cords, (onset, segment), |cord, _, metres| {
+            let mut random = scope.random(1, cord.members[0].wisp);
+            let (phase, varies) = (random.angle(), [random.angle(), random.angle()]);
+            let hand = if random.unit() < 0.5 { -1.0 } else { 1.0 };
+            let turns = metres / self.pitch;
+            let wave = |n: usize| (TAU * turns / VARIES[n] + varies[n]).sin() * self.variation;
+            let radius = self.radius * (1.0 + 0.3 * wave(0)) * smoothstep(0.0, onset, metres);
+            let angle = hand * (TAU * turns + wave(1)) + phase;
+            Laid { place: Vec2::from_angle(angle) * radius, own: 1.0 - self.gather }
         });
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+    use crate::operations::testing::{acted, places, straight};
     use glam::Vec3;
 
-    use super::*;
-    use crate::operations::testing::{acted, straight};
-
     #[test]
-    fn a_lock_gathers_and_keeps_the_radius_of_the_helix() {
+    fn a_lock_winds_once_in_each_pitch_at_the_radius() {
         let before = straight(Vec3::NEG_Y);
-        let coil = Coil { gather: 1.0, ..Coil::default() };
+        let coil = Coil { pitch: 0.02, gather: 1.0, variation: 0.0, ..Coil::default() };
         let after = acted(coil.clone(), &before);
-        let means = wisp_means(&before);
-        for (w, wisp) in before.wisps.iter().enumerate() {
-            let tip = |g: u32| after.guides.point(g as usize, 20);
-            let apart = tip(wisp.guides[0]).distance(tip(wisp.guides[1]));
-            let was = before
-                .guides
-                .point(wisp.guides[0] as usize, 20)
-                .distance(before.guides.point(wisp.guides[1] as usize, 20));
-            assert!(apart < was, "{apart} {was}");
-            for g in wisp.guides {
-                let away = (tip(g) - means[w][20]) * Vec3::new(1.0, 0.0, 1.0);
-                assert!((0.5..1.3).contains(&(away.length() / coil.radius)), "{away}");
+        after.check().expect("sound");
+        for (w, wisp) in after.wisps.iter().enumerate() {
+            let points = places(&after, wisp.first_strand as usize);
+            // Beyond the onset: the middle of whole turns is the axis.
+
+            let low = points[points.len() - 1].y + 0.01;
+            let turns: Vec<Vec3> =
+                points.iter().copied().filter(|p| p.y > low && p.y < low + 4.0 * coil.pitch).collect();
+            assert!(turns.len() >= 4 * 10, "{} points", turns.len());
+            let axis = turns.iter().sum::<Vec3>() / turns.len() as f32;
+            let mut angle = 0.0;
+            for pair in turns.windows(2) {
+                let [a, b] = [0, 1].map(|k| Vec2::new(pair[k].x - axis.x, pair[k].z - axis.z));
+                assert!((0.85..1.15).contains(&(a.length() / coil.radius)), "wisp {w}: {a}");
+                angle += a.angle_to(b);
             }
+            assert!((angle.abs() / TAU - 4.0).abs() < 0.25, "wisp {w}: {} turns", angle / TAU);
         }
     }
 }

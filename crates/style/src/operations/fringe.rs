@@ -7,8 +7,8 @@ use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::{Bounded, Hairstyle, Obstacle};
 
-use crate::scope::{Scope, wisp_roots};
 use crate::operate::{Kind, Operate, Subject};
+use crate::scope::{Scope, wisp_roots};
 
 /// Brings front hair forward over the forehead and shortens it.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,8 @@ impl Operate for Fringe {
         // A wisp belongs to the fringe as a whole; its strands would hang between two courses.
         let of_wisp: Vec<f32> = wisp_roots(style).into_iter().map(part).collect();
         let wisp_of = wisp_of_guide(style);
-        let belongs = |guide: usize, root: Vec3| wisp_of[guide].map_or_else(|| part(root), |wisp| of_wisp[wisp]);
+        let belongs =
+            |guide: usize, root: Vec3| wisp_of[guide].map_or_else(|| part(root), |wisp| of_wisp[wisp]);
         reshape(style, scope, Lengths::Keep, |shape| {
             let belongs = belongs(shape.index, shape.points[0]);
             if belongs == 0.0 {

@@ -6,6 +6,7 @@ mod clump;
 mod coil;
 mod colour;
 mod curl;
+mod dreadlock;
 mod fringe;
 mod frizz;
 mod length;
@@ -20,7 +21,7 @@ mod strays;
 mod sweep;
 mod taper;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod tie;
@@ -35,6 +36,7 @@ pub use clump::Clump;
 pub use coil::Coil;
 pub use colour::{Dye, Gradient, GradientPigment, Grey, Highlights, Melanin, Streak};
 pub use curl::Curl;
+pub use dreadlock::Dreadlock;
 pub use fringe::Fringe;
 pub use frizz::Frizz;
 pub use length::{Length, LengthBy};

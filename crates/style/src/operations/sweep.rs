@@ -80,8 +80,8 @@ mod tests {
     use lovelock_groom::{GroomSettings, PlainHead, Wisp, grow};
 
     use super::*;
-    use crate::{Layer, apply_layer};
     use crate::operations::testing::{acted, straight};
+    use crate::{Layer, apply_layer};
 
     #[test]
     fn hair_turns_to_the_direction() {

@@ -1,7 +1,7 @@
 //! Hair of known geometry.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, Hairstyle, NoObstacle, PlainHead, grow};
+use lovelock_groom::{GroomSettings, Hairstyle, NoObstacle, PlainHead, WispCurve, grow};
 
 use crate::{Layer, Operation, apply_layer};
 
@@ -35,4 +35,13 @@ pub fn direction(style: &Hairstyle, guide: usize, link: usize) -> Vec3 {
 pub fn turn_between(style: &Hairstyle, guide: usize) -> f32 {
     let last = style.guides.points_per_guide - 2;
     direction(style, guide, 0).angle_between(direction(style, guide, last))
+}
+
+/// The points of a strand at rest.
+pub fn places(style: &Hairstyle, strand: usize) -> Vec<Vec3> {
+    let set = &style.strands;
+    let curve = WispCurve::at_rest(&style.guides, &style.wisps[set.wisp[strand] as usize]);
+    let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+    let offset = |i: usize| Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
+    range.map(|i| curve.point(set.weights[strand], set.guide_param[i], offset(i))).collect()
 }

@@ -39,9 +39,27 @@ pub(crate) struct LayersView {
     /// What is searched in the menu of new layers.
     search: String,
     thumbnails: Thumbnails,
+    /// Passes in which the panel is scrolled to the list, while sections unfold.
+    revealed: u8,
 }
 
+/// The passes after which every section is unfolded.
+const UNFOLDING: u8 = 60;
+
 impl LayersView {
+    /// Selects a layer, shows its mask and scrolls to the list.
+    pub(crate) fn reveal(&mut self, layer: Option<u32>) {
+        if layer.is_some() {
+            self.select(layer);
+            (self.show_mask, self.revealed) = (true, UNFOLDING);
+        }
+    }
+
+    /// Whether the list is to be unfolded.
+    pub(crate) fn is_revealed(&self) -> bool {
+        self.revealed > 0
+    }
+
     /// Shows or hides the mask of the selected layer in the image.
     pub(crate) fn toggle_mask(&mut self) {
         self.show_mask = !self.show_mask;
@@ -86,6 +104,10 @@ impl LayersView {
 
 /// The list of layers and the controls of the one that is selected.
 pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
+    if view.revealed > 0 {
+        view.revealed -= 1;
+        ui.scroll_to_cursor(Some(egui::Align::TOP));
+    }
     view.follow(stack);
     add::menu(ui, stack, view);
     if stack.layers.is_empty() {
