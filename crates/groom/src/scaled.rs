@@ -30,9 +30,7 @@ impl Hairstyle {
         out.guides.scale(scale);
         out.widest.iter_mut().for_each(|v| *v = (*v * scale).min(f32::MAX));
         let set = &mut out.strands;
-        for lengths in
-            [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent]
-        {
+        for lengths in [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent] {
             lengths.iter_mut().for_each(|v| *v *= scale);
         }
         out

@@ -35,6 +35,9 @@ const NO_SETTINGS: [&str; 13] = [
     "timeline.tracks",
     "motion.clip",
     "body.head_joint",
+    // Painted over directions.
+    "body.scalp.added",
+    "body.scalp.removed",
     ".file",
     ".name",
     ".take",
