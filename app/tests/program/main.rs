@@ -5,6 +5,7 @@ mod clusters;
 mod compare;
 mod films;
 mod info;
+mod presets;
 mod projects;
 mod record;
 mod refusals;
