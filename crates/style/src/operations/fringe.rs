@@ -136,4 +136,20 @@ mod tests {
         }
         assert!(front > 0 && rest > 0);
     }
+
+    #[test]
+    fn a_wisp_belongs_to_the_fringe_as_a_whole() {
+        let before = straight(Vec3::NEG_Z);
+        let after = acted(Fringe { depth: 0.08, width: 0.14, ..Fringe::default() }, &before);
+        let last = before.guides.points_per_guide - 1;
+        let mut changed = 0;
+        for wisp in &before.wisps {
+            let moved =
+                |g: u32| after.guides.point(g as usize, last) != before.guides.point(g as usize, last);
+            let of_wisp = wisp.guides.map(moved);
+            assert!(of_wisp == [true; 3] || of_wisp == [false; 3], "{of_wisp:?}");
+            changed += usize::from(of_wisp[0]);
+        }
+        assert!(changed > 0 && changed < before.wisps.len());
+    }
 }
