@@ -148,7 +148,8 @@ pub(super) fn on_body(body: &Body, skull: &Skull, net: &HeadMesh) -> Vec<f32> {
         .collect();
     let mask = |p: &Vec3| {
         let p = *p - origin;
-        if !(skull.relative(p).length() < REACH) {
+        let reach = skull.relative(p).length();
+        if reach.is_nan() || reach >= REACH {
             return 0.0;
         }
         let nearest = hairy.iter().min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)));

@@ -79,7 +79,7 @@ impl Skull {
                 None => by *= 0.5,
             }
         }
-        if !(radius > SMALLEST * size) {
+        if radius.is_nan() || radius <= SMALLEST * size {
             return None;
         }
         let mut skull = Self { middle, half: Vec3::splat(radius) };
@@ -131,7 +131,7 @@ pub(super) fn surface(from: Vec3, direction: Vec3, reach: f32, distance: Distanc
             return (step > 0).then_some(t);
         }
         t -= d;
-        if !(t > 0.0) {
+        if t.is_nan() || t <= 0.0 {
             break;
         }
     }
@@ -156,7 +156,8 @@ fn ellipsoid(points: &[Vec3]) -> Option<(Vec3, Vec3)> {
         return None;
     }
     let q = normal.inverse() * right;
-    if !(q.truncate().min_element() > 1e-3) {
+    let least = q.truncate().min_element();
+    if least.is_nan() || least <= 1e-3 {
         return None;
     }
     let z = -0.5 * q.w / q.z;
