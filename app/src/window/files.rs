@@ -30,7 +30,7 @@ impl Window {
                 FileKind::Character => project.set_body_file(path),
                 FileKind::Surroundings => project.set_surroundings_file(path),
                 FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
-                    project.set_motion_file(path)
+                    project.set_motion_file(path);
                 }
             }),
             Err(error) => self.warn([error.to_string()]),

@@ -15,7 +15,9 @@ impl Scalp {
 impl Guides {
     fn scale(&mut self, scale: f32) {
         for axis in [&mut self.x, &mut self.y, &mut self.z] {
-            axis.iter_mut().for_each(|v| *v *= scale);
+            for v in axis {
+                *v *= scale;
+            }
         }
     }
 }
@@ -31,7 +33,9 @@ impl Hairstyle {
         out.widest.iter_mut().for_each(|v| *v = (*v * scale).min(f32::MAX));
         let set = &mut out.strands;
         for lengths in [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent] {
-            lengths.iter_mut().for_each(|v| *v *= scale);
+            for v in lengths {
+                *v *= scale;
+            }
         }
         out
     }

@@ -116,7 +116,9 @@ fn measure(
 ) -> Result<Measured, Box<dyn Error>> {
     let (send, woken) = sync_channel(1);
     // One that waits is enough.
-    let wake = move || drop(send.try_send(()));
+    let wake = move || {
+        let _ = send.try_send(());
+    };
     let project = Arc::new(project.clone());
     let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
     let worker = Worker::start(Arc::clone(&project), Access::new(), Arc::new(wake))?;

@@ -129,6 +129,10 @@ impl Engine {
     }
 
     /// The scene, with the hairstyle as it was loaded. Snapshots have that of their instant.
+    #[expect(
+        clippy::misnamed_getters,
+        reason = "`scene` is the one of the current step, which is the engine's own"
+    )]
     pub fn scene(&self) -> &Arc<Scene> {
         &self.loaded
     }

@@ -67,7 +67,7 @@ fn the_default_project_looks_the_same_on_both() {
         let camera = snapshot.camera(&project.camera);
         let settings = PictureSettings { strands: StrandCount::Fixed, strand_number, ..project.picture };
         let mut picture = Picture::default();
-        let input = FrameInput { picture: &settings, look, ..snapshot.frame_input(&project, &camera) };
+        let input = FrameInput { picture: &settings, look: *look, ..snapshot.frame_input(&project, &camera) };
         cpu.picture(&input, width, height, &mut picture).expect("a picture");
         picture.rgba
     };

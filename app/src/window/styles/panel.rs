@@ -121,7 +121,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
     });
     preview(ui, browser, hovered);
     if let Some((entry, action)) = action {
-        act(&entry, action, project, browser, kept);
+        act(&entry, &action, project, browser, kept);
     }
 }
 
@@ -210,9 +210,9 @@ fn preview(ui: &Ui, browser: &mut Browser, hovered: Option<String>) {
     }
 }
 
-fn act(entry: &Entry, action: Action, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
     let file = || entry.file.clone().unwrap_or_default();
-    match action {
+    match *action {
         Action::Apply(parts) => {
             project.apply_style(&entry.style, parts);
             browser.clicked = Some(entry.id.clone());

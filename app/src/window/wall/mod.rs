@@ -120,7 +120,7 @@ impl Window {
             let page = ui.available_rect_before_wrap();
             ui.painter().rect_filled(page, 0.0, theme::PAGE);
             let choice = self.cells(ui, page, project);
-            self.choose(choice, project);
+            self.choose(choice.as_ref(), project);
             self.running(ui, page);
         });
     }
@@ -224,16 +224,16 @@ impl Window {
     }
 
     /// Adopts a variant, or makes a child of two.
-    fn choose(&mut self, choice: Option<Choice>, project: &mut Project) {
+    fn choose(&mut self, choice: Option<&Choice>, project: &mut Project) {
         let variant = |page: &WallPage, index: usize| page.rounds.variants().get(index).cloned();
         match choice {
-            Some(Choice::Adopt(index)) => {
+            Some(&Choice::Adopt(index)) => {
                 self.wall.marked = None;
                 if let Some(variant) = variant(&self.wall, index).filter(|_| index != PRESENT) {
                     adopt(project, &variant);
                 }
             }
-            Some(Choice::Parent(index)) => match self.wall.marked.take() {
+            Some(&Choice::Parent(index)) => match self.wall.marked.take() {
                 Some(first) if first == index => {}
                 Some(first) => {
                     if let (Some(a), Some(b)) = (variant(&self.wall, first), variant(&self.wall, index)) {

@@ -1,5 +1,6 @@
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::variants::{Locks, vary};
 use lovelock_render::{Backend, Picture};
 
@@ -27,10 +28,10 @@ fn request(project: &Arc<Project>, variants: &[Arc<Project>], time_secs: f64) ->
 /// The images of all variants after the next round.
 fn drawn(wall: &Wall, request: WallRequest) -> Vec<Picture> {
     let (cells, mut seen) = (request.variants.len(), wall.rounds().number());
-    let before = Instant::now();
+    let watch = Stopwatch::start();
     wall.request(request);
     while wall.rounds().newer_than(&mut seen).is_none() {
-        assert!(before.elapsed() < Duration::from_secs(60), "the wall does not answer");
+        assert!(watch.secs() < 60.0, "the wall does not answer");
         std::thread::sleep(Duration::from_millis(2));
     }
     let picture = |cell: &Latest<WallCell>| {

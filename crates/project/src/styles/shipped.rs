@@ -77,7 +77,7 @@ static SHIPPED: LazyLock<Vec<Shipped>> = LazyLock::new(|| {
     let files = FILES.iter().filter_map(|(id, text)| {
         // A test opens each of them.
         let (mut style, _) = Style::parse(Path::new(id), text).ok()?;
-        style.hair.style = (*id).to_owned();
+        (*id).clone_into(&mut style.hair.style);
         Some(Shipped { id, style })
     });
     presets.chain(files).collect()

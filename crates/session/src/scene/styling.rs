@@ -28,6 +28,9 @@ impl std::fmt::Debug for StyleSource {
     }
 }
 
+/// The scene as it was loaded, the numbers of the tracks, and the scene with them.
+type Evaluated = (Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>);
+
 /// Applies the tracks of layers. A scene is the same allocation as long as the numbers of the tracks are, and a changed number evaluates
 /// only its layer and those after it.
 #[derive(Clone, Debug)]
@@ -35,8 +38,7 @@ pub(crate) struct Styling {
     tracks: StyleTracks,
     cache: StyleCache,
     enlarged: Enlarged,
-    /// The scene as it was loaded, the numbers of the tracks, and the scene with them.
-    last: Option<(Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>)>,
+    last: Option<Evaluated>,
 }
 
 impl Styling {

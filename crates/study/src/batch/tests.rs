@@ -240,7 +240,7 @@ fn wrong_requests_are_refused_before_any_work() {
     let good = request(&dir.path().join("report"), &[ShadowMethod::None]);
     let mut dark = little_hair();
     dark.lights.iter_mut().for_each(|light| light.enabled = false);
-    let wrong = [
+    let wrong = vec![
         ("no name", little_hair(), CompareRequest { out: "".into(), ..good.clone() }, 2),
         ("a file", little_hair(), CompareRequest { out: file.clone(), ..good.clone() }, 2),
         ("in a file", little_hair(), CompareRequest { out: file.join("x"), ..good.clone() }, 1),

@@ -126,7 +126,9 @@ impl Morph {
         };
         let all: Vec<Vec<Vec3>> = a.par_chunks(n).zip(b.par_chunks(n)).map(of).collect();
         let mut out = Guides { points_per_guide: n, ..Guides::default() };
-        all.iter().for_each(|points| out.push(points));
+        for points in &all {
+            out.push(points);
+        }
         out
     }
 

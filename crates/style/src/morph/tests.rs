@@ -125,7 +125,7 @@ fn a_guide_keeps_its_length_while_it_turns() {
         [Vec3::Y, Vec3::X].map(|direction| (0..4).map(|i| direction * i as f32).collect::<Vec<_>>());
     let half = between(&up, &aside, 0.5, &NoObstacle);
     assert!((length_of(&half) - 3.0).abs() < 1e-5);
-    let diagonal = Vec3::new(1.0, 1.0, 0.0).normalize();
+    let diagonal = Vec3::new(1.0, 1.0, 0.0).normalize_or_zero();
     assert!(half[3].distance(3.0 * diagonal) < 1e-5, "{half:?}");
 }
 

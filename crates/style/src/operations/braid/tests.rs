@@ -146,7 +146,7 @@ fn tied_hair_makes_one_braid_for_each_tie_and_loose_hair_stays() {
             let away = |p: Vec3| {
                 let last = line.len() - 2;
                 let to = |(k, pair): (usize, &[Vec3])| {
-                    let along = (pair[1] - pair[0]).normalize();
+                    let along = (pair[1] - pair[0]).normalize_or_zero();
                     let past = if k == last { 0.1 } else { 0.0 };
                     let before = if k == 0 { 0.03 } else { 0.0 };
                     let at = (p - pair[0]).dot(along).clamp(-before, pair[0].distance(pair[1]) + past);
