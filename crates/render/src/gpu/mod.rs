@@ -21,7 +21,6 @@ mod skin_shadow;
 mod surface;
 mod targets;
 
-pub use false_colors::ColorScale;
 pub use pipelines::all_shaders;
 pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;

@@ -9,8 +9,9 @@ use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_style::StyleCache;
 
+use super::hair_part::{HairFileCache, HairKey, HairPart};
 use super::head_path::HeadPath;
-use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
+use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
 use super::{Scene, StyleSource, SurroundingsLoader};
 

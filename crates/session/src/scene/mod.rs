@@ -2,6 +2,7 @@
 
 mod camera;
 mod dancer;
+mod hair_part;
 mod head_path;
 mod loader;
 mod parts;

@@ -5,27 +5,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
 
-use lovelock_groom::{
-    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_around,
-    load_hair,
-};
 use lovelock_motion::{
     Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
     fit_colliders, joint_paths, load_character_with, load_motion_with, retarget,
 };
 use lovelock_project::error::{Place, Problem, ProblemKind};
 use lovelock_project::files::Access;
-use lovelock_project::project::{
-    BodySection, BodySource, HairSection, HairSource, MotionSection, MotionSource,
-};
+use lovelock_project::project::{BodySection, BodySource, MotionSection, MotionSource};
 
 use super::dancer;
-use super::scalp_part::ScalpPart;
 
 /// Identity of a file's contents when it was read. The file is read again if this changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     bytes: u64,
     modified: Option<SystemTime>,
 }
@@ -123,7 +116,7 @@ fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
 }
 
 /// Problems for ignored contents of a file and for its notes.
-fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -> Vec<Problem> {
+pub(super) fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -> Vec<Problem> {
     let dropped = dropped.iter().map(|(what, count)| {
         Problem::new(
             place,
@@ -236,120 +229,5 @@ impl MotionKey {
                 })
             }
         }
-    }
-}
-
-/// The sources of a hairstyle, besides the body.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum HairKey {
-    Grown(Box<GroomSettings>),
-    File { stamp: Stamp, import: ImportSettings },
-}
-
-/// A hairstyle on one head.
-#[derive(Debug)]
-pub(super) struct HairPart {
-    pub(super) style: Arc<Hairstyle>,
-    pub(super) notes: Vec<Problem>,
-}
-
-impl HairPart {
-    /// No hair, for heads on which none can grow.
-    pub(super) fn bald(part: &ScalpPart) -> Self {
-        let style = Hairstyle {
-            name: "none".to_owned(),
-            scalp: (*part.scalp).clone(),
-            guides: Guides { points_per_guide: 2, ..Guides::default() },
-            strands: StrandSet { first_point: vec![0], ..StrandSet::default() },
-            ..Hairstyle::default()
-        };
-        Self { style: Arc::new(style), notes: Vec::new() }
-    }
-}
-
-/// The hair file that was read last, so that changes of the import settings do not read it again.
-pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
-
-impl HairKey {
-    pub(super) fn of(section: &HairSection, access: &Access) -> Result<Self, Problem> {
-        match (section.source, &section.file) {
-            (HairSource::Grown, _) => Ok(Self::grown(section)),
-            (HairSource::File, Some(file)) => {
-                Ok(Self::File { stamp: Stamp::of(&access.read(Place::Hair, file)?), import: section.import })
-            }
-            (HairSource::File, None) => {
-                Err(Problem::not_loaded(Place::Hair, "no hair file is set; pick one"))
-            }
-        }
-    }
-
-    /// The grown style of a project, whatever its hair source is. The look does not affect growing.
-    pub(super) fn grown(section: &HairSection) -> Self {
-        Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
-    }
-
-    /// The hairstyle in the size of the shipped dancer's head.
-    pub(super) fn load(&self, part: &ScalpPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
-        let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
-        if part.scalp.triangles.is_empty() {
-            let body = &part.body;
-            let joint = body.skeleton.joints.get(body.head_joint).map_or("none", |joint| &joint.name);
-            let message = format!(
-                "the head joint (`{joint}`) moves no surface of {}, so no hair can grow there; pick another joint",
-                body.name
-            );
-            return Err(refuse(&message));
-        }
-        let (style, notes) = match self {
-            Self::Grown(settings) => {
-                let style = grow(settings, &part.scalp, &*part.obstacle)
-                    .map_err(|error| refuse(&format!("{}: {error}", part.body.name)))?;
-                (style, Vec::new())
-            }
-            Self::File { stamp, import } => {
-                let file = match cache {
-                    Some((kept, file)) if kept == stamp => Arc::clone(file),
-                    _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
-                };
-                *cache = Some((stamp.clone(), Arc::clone(&file)));
-                // Files have a size of their own.
-                let style = import_around(&file, import, &part.placed_scalp, Some(&part.placed_obstacle()))
-                    .map_err(|error| refuse(&error))?;
-                let style = if part.scale == 1.0 { style } else { style.scaled(1.0 / part.scale) };
-                // The file's notes describe what was ignored.
-                (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
-            }
-        };
-        // All later code relies on valid indices.
-        style.check().map_err(|error| refuse(&error))?;
-        Ok(HairPart { style: Arc::new(style), notes })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use lovelock_simulation::SimulationSettings;
-
-    use super::*;
-    use crate::engine::Engine;
-    use crate::scene::Scene;
-    use crate::testing::{scene, small_project};
-
-    #[test]
-    fn a_head_without_a_surface_stays_bald_and_says_why() {
-        let body = BodyKey::dancer().load().expect("the dancer");
-        let mut part = ScalpPart::new(&body, &lovelock_motion::ScalpFit::default());
-        part.scalp = Arc::default();
-        let key = HairKey::grown(&small_project().hair);
-        let problem = key.load(&part, &mut None).expect_err("nothing to grow on");
-        assert!(problem.message.contains("moves no surface"), "{problem}");
-        let style = HairPart::bald(&part).style;
-        style.check().expect("whole");
-        let scene = Arc::new(Scene { style, ..(*scene()).clone() });
-        let mut engine = Engine::new(scene, SimulationSettings::default());
-        engine.advance_to_step(3);
-        let mut strands = lovelock_groom::Strands::default();
-        engine.snapshot().interpolate(&mut strands);
-        assert_eq!((strands.count(), strands.points()), (0, 0));
     }
 }

@@ -5,6 +5,7 @@ use lovelock_style::StyleStack;
 
 use super::LayersView;
 use super::list::Row;
+use super::picked::{duplicate, remove};
 
 /// Carries out the keys that were pressed while the list has them.
 pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
@@ -38,26 +39,6 @@ pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
             step(stack, view, down);
         }
     }
-}
-
-/// Duplicates the picked layers and picks the copies.
-pub(super) fn duplicate(stack: &mut StyleStack, view: &mut LayersView) {
-    let copies: Vec<u32> = view.picked(stack).into_iter().filter_map(|id| stack.duplicate(id)).collect();
-    if let Some((&last, others)) = copies.split_last() {
-        view.select(Some(last));
-        view.also.extend(others);
-    }
-}
-
-/// Removes the picked layers and selects the one that takes their place.
-pub(super) fn remove(stack: &mut StyleStack, view: &mut LayersView) {
-    let picked = view.picked(stack);
-    let first = stack.layers.iter().position(|layer| picked.contains(&layer.id));
-    for id in picked {
-        stack.remove(id);
-    }
-    let next = first.map(|i| i.min(stack.layers.len().saturating_sub(1)));
-    view.select(next.and_then(|i| stack.layers.get(i)).map(|layer| layer.id));
 }
 
 /// Selects the next layer that is shown.

@@ -5,7 +5,7 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CHEVRON_RIGHT, ICON_EXPAND_MORE};
 use lovelock_style::{Layer, StyleStack};
 
-use super::{LayersView, keyboard, row};
+use super::{LayersView, picked, row};
 use crate::window::theme;
 
 /// A row of the list, by the number of its layer or group.
@@ -85,8 +85,8 @@ fn run(action: Action, stack: &mut StyleStack, view: &mut LayersView) {
             };
             view.renamed = name.map(|name| (row, name));
         }
-        Action::Duplicate => keyboard::duplicate(stack, view),
-        Action::Remove => keyboard::remove(stack, view),
+        Action::Duplicate => picked::duplicate(stack, view),
+        Action::Remove => picked::remove(stack, view),
         Action::Group => {
             stack.make_group(&view.picked(stack), "Group");
         }

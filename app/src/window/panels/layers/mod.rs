@@ -4,6 +4,7 @@ mod add;
 mod keyboard;
 mod list;
 mod mask;
+mod picked;
 mod row;
 mod thumbnail;
 

@@ -6,8 +6,9 @@ use lovelock_gpu::PassTimer;
 
 use super::picture::unsettled;
 use super::{GpuRenderer, MOST_ATTEMPTS, eye_input};
+use crate::color_scale::ColorScale;
 use crate::gpu::eye::HairOutput;
-use crate::gpu::false_colors::{ColorScale, PaintInput};
+use crate::gpu::false_colors::PaintInput;
 use crate::image::{DeviceImage, DeviceImages};
 use crate::{FrameInput, FrameStats, Picture, RenderError, Transparency};
 
