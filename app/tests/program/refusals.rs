@@ -20,7 +20,7 @@ fn wrong_options_are_rejected_in_one_line() {
         (with(&["--preset", "no such.lovelockstyle"]), "no such.lovelockstyle"),
         (vec!["presets", "--preset", "curley"], "`curly`"),
         (vec!["presets", "--dance", "3"], "--sheet"),
-        (vec!["presets", "--sheet", "a.png", "--size", "9000x9000"], "18000"),
+        (vec!["presets", "--sheet", "a.png", "--size", "9000x9000"], "32768"),
         (with(&["--frames", "5..5"]), "5..5"),
         (with(&["--frames", "9..3"]), "9..3"),
         (with(&["--frames", "ten"]), "ten"),

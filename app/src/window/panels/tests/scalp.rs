@@ -16,7 +16,7 @@ fn the_scalp_is_shown_corrected_and_fitted_again() {
     harness.run();
     let tool = harness.state().state.scalp;
     assert!(tool.shown && tool.painting, "what is painted is shown");
-    assert!(harness.query_by_label("Brush").is_some());
+    assert!(harness.query_all_by_label("Brush").next().is_some());
     control(&harness, Role::CheckBox, "Show scalp").click();
     harness.run();
     let tool = harness.state().state.scalp;
