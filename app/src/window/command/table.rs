@@ -310,7 +310,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::Wall,
             "wall",
             "Wall of variants",
-            "Shows nine variants of the hairstyle that dance beside each other, to adopt one or breed two.",
+            "Shows nine dancing variants of the hairstyle, to adopt or breed.",
             &["N"],
             G::Hair,
         ),
