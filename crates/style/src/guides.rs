@@ -3,7 +3,9 @@
 use glam::{Quat, Vec3};
 use lovelock_base::numbers::smoothstep;
 use lovelock_groom::polyline::{Reach, next_at, sample};
-use lovelock_groom::{Bounded, Guides, Haircut, Hairstyle, Obstacle, transport, trimmed, widest_radii};
+use lovelock_groom::{
+    Bounded, Guides, Haircut, Hairstyle, Obstacle, WispCurve, transport, trimmed, widest_radii,
+};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -186,10 +188,42 @@ pub fn reshape_where(
             Some((index, laid(&shape.points, &before, link, &obstacle)))
         })
         .collect();
+    let frames = |guides: &Guides| -> Vec<[Vec3; 3]> {
+        style.wisps.iter().map(|wisp| WispCurve::root_frame(guides, wisp)).collect()
+    };
+    let before = frames(&style.guides);
+    let mut guides = std::mem::take(&mut style.guides);
     for (index, points) in changed {
-        put(&mut style.guides, index, &points);
+        put(&mut guides, index, &points);
     }
+    let after = frames(&guides);
+    style.guides = guides;
+    carry_offsets(style, &before, &after);
     widen(style);
+}
+
+/// The angle about the root from the frame `to` to the frame `from` of a wisp, carried by the smallest rotation between their directions.
+pub fn turn_between(from: &[Vec3; 3], to: &[Vec3; 3]) -> f32 {
+    let normal = Vec3::from(transport(from[0].into(), from[2].into(), to[2].into()));
+    normal.dot(to[1]).atan2(normal.dot(to[0]))
+}
+
+/// Turns the offsets of strands with the directions of their roots. The axis that a frame is made from changes abruptly with that direction,
+/// and strands would jump with it.
+fn carry_offsets(style: &mut Hairstyle, before: &[[Vec3; 3]], after: &[[Vec3; 3]]) {
+    let set = &mut style.strands;
+    for (wisp, (from, to)) in style.wisps.iter().zip(before.iter().zip(after)) {
+        if from == to {
+            continue;
+        }
+        let (sin, cos) = turn_between(from, to).sin_cos();
+        let first = set.first_point[wisp.first_strand as usize] as usize;
+        let end = set.first_point[(wisp.first_strand + wisp.strand_count) as usize] as usize;
+        let normals = set.offset_normal[first..end].iter_mut();
+        for (x, y) in normals.zip(&mut set.offset_binormal[first..end]) {
+            (*x, *y) = (*x * cos - *y * sin, *x * sin + *y * cos);
+        }
+    }
 }
 
 /// Shortens every guide on which the layer acts to a part of its length, 0 to 1; parts of 1 and more change nothing. What remains keeps

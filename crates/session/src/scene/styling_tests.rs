@@ -110,7 +110,7 @@ fn strands_that_follow_keys_do_not_touch_the_simulation() {
 #[test]
 fn hair_that_is_cut_in_the_middle_is_shorter_from_there_and_whole_again_in_the_next_round() {
     let cut = Length { factor: 0.4, ..Length::default() };
-    let project = keyed(cut, &[(1.0, 0.0), (1.0 + STEP_SECS, 1.0)]);
+    let project = keyed(cut, &[(1.0, 0.0), (1.0 + 0.5 * STEP_SECS, 1.0)]);
     let mut engine = engine_of(&project);
     let [whole, short] = [0.0, 1.0].map(|weight| length(&load(&weighted(&project, weight)).0));
     assert!(short < 0.6 * whole);

@@ -10,12 +10,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::{
-    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, transport,
-    widest_radii,
+    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, widest_radii,
 };
 use rayon::prelude::*;
 
-use crate::guides::turned;
+use crate::guides::{turn_between, turned};
 use matching::{WispMatch, matched};
 
 /// The part of itself that is left of a strand which the hairstyle does not have.
@@ -159,16 +158,12 @@ impl Morph {
             let style = &self.styles[side];
             self.wisps[w].of[side].map(|of| WispCurve::root_frame(&style.guides, &style.wisps[of as usize]))
         });
-        let carried = |[normal, _, tangent]: &[Vec3; 3], to: &[Vec3; 3]| -> f32 {
-            let normal = Vec3::from(transport((*normal).into(), (*tangent).into(), to[2].into()));
-            normal.dot(to[1]).atan2(normal.dot(to[0]))
-        };
         match &frames {
             [Some(a), Some(b)] => {
-                let a_now = carried(a, now);
-                [a_now, a_now - carried(a, b)]
+                let a_now = turn_between(a, now);
+                [a_now, a_now - turn_between(a, b)]
             }
-            [Some(one), None] | [None, Some(one)] => [carried(one, now); 2],
+            [Some(one), None] | [None, Some(one)] => [turn_between(one, now); 2],
             [None, None] => [0.0; 2],
         }
     }
