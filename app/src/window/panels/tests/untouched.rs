@@ -65,7 +65,7 @@ fn showing_a_panel_changes_nothing() {
         }
     };
     let mut harness = screen(Bench::new(Project::default()), all);
-    harness.set_size(egui::vec2(300.0, 6000.0));
+    harness.set_size(egui::vec2(300.0, 14000.0));
     for (i, (name, project)) in shown.iter().enumerate() {
         assert!(project.sanitised().1.is_empty(), "{name} {i} is no valid project");
         harness.state_mut().state = Bench::new(project.clone());
