@@ -1,6 +1,7 @@
 //! The menu of new layers.
 
-use egui::Ui;
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{PopupCloseBehavior, Ui};
 use lovelock_style::{Kind, Layer, Operation, StyleStack, Subject};
 
 use super::LayersView;
@@ -17,7 +18,9 @@ const MENUS: [(Subject, &str); 4] = [
 pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     let full = stack.layers.len() >= StyleStack::MOST_LAYERS;
     ui.add_enabled_ui(!full, |ui| {
-        let menu = ui.menu_button("Add layer", |ui| {
+        // A click on the search does not close the menu.
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let (button, menu) = MenuButton::new("Add layer").config(config).ui(ui, |ui| {
             if let Some(kind) = choose(ui, &mut view.search)
                 && let Some(operation) = Operation::new(kind.id)
             {
@@ -26,12 +29,12 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
                 ui.close();
             }
         });
-        if menu.inner.is_none() {
+        if menu.is_none() {
             view.search.clear();
         }
         let tip = "Adds a change of the hair after the selected layer.";
         let full = format!("There are {} layers, the most.", StyleStack::MOST_LAYERS);
-        menu.response.on_hover_text(tip).on_disabled_hover_text(full);
+        button.on_hover_text(tip).on_disabled_hover_text(full);
     });
 }
 
@@ -51,6 +54,9 @@ fn choose(ui: &mut Ui, search: &mut String) -> Option<&'static Kind> {
     let field = egui::TextEdit::singleline(search).hint_text("Search").char_limit(40);
     let field = ui.add(field.desired_width(f32::INFINITY));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search layers"));
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
     let wanted = search.trim().to_lowercase();
     let mut chosen = None;
     let mut entry = |ui: &mut Ui, kind: &'static Kind| {

@@ -61,6 +61,11 @@ fn write(harness: &mut Panel, text: &str) {
     harness.run();
 }
 
+/// Waits until a click is not part of a double-click with the one before.
+fn calm(harness: &mut Panel) {
+    harness.run_steps(20);
+}
+
 /// Opens the context menu of a row and chooses an entry.
 fn choose(harness: &mut Panel, row: &str, entry: &str) {
     harness.get_all_by_label(row).next().expect("the row").click_secondary();
@@ -236,6 +241,7 @@ fn groups_are_renamed_folded_heard_alone_and_removed() {
     let mut harness = with_layers();
     choose(&mut harness, "Wave", "Group");
     let group = stack(&harness).layers[1].group.expect("a group");
+    calm(&mut harness);
     let at = control(&harness, Role::Button, "Group").rect().center();
     double_click(&mut harness, at);
     write(&mut harness, "Texture");
@@ -308,6 +314,7 @@ fn points_of_a_ramp_are_added_dragged_and_removed() {
     assert_eq!(kinds(&harness).len(), 3, "the layer stays");
     // A double-click restores the default, also where its first click adds a point.
     click_at(&mut harness, at);
+    calm(&mut harness);
     double_click(&mut harness, rect.lerp_inside(egui::vec2(0.3, 0.6)));
     assert_eq!(ramp(&harness), Ramp::default());
     assert!(!is_marked(&harness, "Strength along the hair"));
