@@ -18,7 +18,8 @@ fn styles_are_listed_for_people_and_for_other_programs() {
         assert!(preset["label"].is_string() && preset["strands"].as_u64() > Some(300), "{preset}");
         assert!(preset.get("thumbnail").is_some(), "{preset}");
     }
-    let text = &run(dir.path(), ["presets", "--preset", "curly"]).done().stdout;
+    let listed = run(dir.path(), ["presets", "--preset", "curly"]);
+    let text = &listed.done().stdout;
     assert!(text.starts_with("curly  Red curls") && text.lines().count() == 1, "{text}");
 }
 
@@ -48,8 +49,20 @@ fn a_style_of_ones_own_is_listed_drawn_and_recorded() {
     let described = own(&["info", file, "--json"]).done().json();
     assert_eq!((described["kind"].as_str(), described["name"].as_str()), (Some("style"), Some("Few")));
     let recorded = own(&[
-        "record", "--preset", file, "-o", "out", "--frames", "0..1", "--size", "32x32", "--backend", "cpu",
-        "--set", "timeline.preroll_secs=0", "--json",
+        "record",
+        "--preset",
+        file,
+        "-o",
+        "out",
+        "--frames",
+        "0..1",
+        "--size",
+        "32x32",
+        "--backend",
+        "cpu",
+        "--set",
+        "timeline.preroll_secs=0",
+        "--json",
     ]);
     assert_eq!(recorded.done().json()["strands"].as_u64(), Some(120));
 }

@@ -192,7 +192,7 @@ impl Drawn {
             style: &self.style,
             hair: HairPose::Strands(&self.strands),
             guides: None,
-            look: &self.look,
+            look: self.look,
             body: None,
             world_from_head: Affine3A::IDENTITY,
             lights: &self.lights,

@@ -21,7 +21,8 @@ impl Guides {
 }
 
 impl Hairstyle {
-    /// The hairstyle on a head that is `scale` times as large: every length is multiplied, also the width of strands.
+    /// The hairstyle on a head that is `scale` times as large: every length is multiplied. The width of strands is that of a
+    /// [`crate::HairLook`], which is not a part of it.
     #[must_use]
     pub fn scaled(&self, scale: f32) -> Self {
         let mut out = self.clone();
@@ -29,9 +30,7 @@ impl Hairstyle {
         out.guides.scale(scale);
         out.widest.iter_mut().for_each(|v| *v = (*v * scale).min(f32::MAX));
         let set = &mut out.strands;
-        for lengths in
-            [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent, &mut set.taper]
-        {
+        for lengths in [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent] {
             lengths.iter_mut().for_each(|v| *v *= scale);
         }
         out
@@ -64,6 +63,5 @@ mod tests {
             })
             .fold(0.0, f32::max);
         assert!(farthest < 1e-4, "{farthest}");
-        assert!(style.strands.taper[0] * 2.0 < larger.strands.taper[0], "strands are as much wider");
     }
 }

@@ -75,7 +75,7 @@ impl ClusterStage {
     /// The clusters of the hairstyle of `input`.
     pub fn follow(&mut self, input: &FrameInput) -> Arc<ClusterHair> {
         let settings = input.picture.clusters.of_shape();
-        let width = nominal_width(input.look, input.style.strands.count());
+        let width = nominal_width(&input.look, input.style.strands.count());
         let same = self.of.as_ref().is_some_and(|(style, of, wide)| {
             Arc::ptr_eq(style, input.style) && *of == settings && *wide == width
         });

@@ -22,7 +22,7 @@ pub struct FrameInput<'a> {
     /// on how strands are given.
     pub guides: Option<&'a GuideFrame>,
     /// Colour and width of the hair.
-    pub look: &'a HairLook,
+    pub look: HairLook,
     /// The body and its skinned surface. Without it only hair is drawn.
     pub body: Option<(&'a Arc<Body>, &'a Skin)>,
     /// The transform of the head, which is the anchor of the shadow map's lattice.

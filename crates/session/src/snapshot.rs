@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_groom::{GuideFrame, Strands, interpolate};
+use lovelock_groom::{GuideFrame, HairLook, Strands, interpolate};
 use lovelock_motion::{Pose, Skin};
 use lovelock_project::Project;
 use lovelock_project::project::CameraSection;
@@ -53,13 +53,18 @@ impl FrameSnapshot {
         camera_at(section, &self.scene, self.time_secs)
     }
 
+    /// Colour and width of the hair on this head: settings are those on the shipped dancer's.
+    pub fn look(&self, project: &Project) -> HairLook {
+        HairLook { diameter: project.look.diameter * self.scene.hair_scale, ..project.look }
+    }
+
     /// The input of a renderer for this instant, with the settings of `project`.
     pub fn frame_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
         FrameInput {
             style: &self.scene.style,
             hair: HairPose::Guides(&self.guides),
             guides: Some(&self.guides),
-            look: &project.look,
+            look: self.look(project),
             body: Some((&self.scene.body, &self.skin)),
             world_from_head: self.guides.world_from_head,
             lights: &project.lights,

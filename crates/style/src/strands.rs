@@ -126,24 +126,48 @@ fn divided(set: &StrandSet, parts: &[(f32, u32)]) -> StrandSet {
     out.weights.clone_from(&set.weights);
     out.shade.clone_from(&set.shade);
     out.colours.clone_from(&set.colours);
+    let range = |strand: usize| set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+    let mut total = 0;
     for (strand, &(from, n)) in parts.iter().enumerate() {
-        let (first, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
-        for i in first..end {
-            let last = i + 1 == end;
-            let n = if last || set.guide_param[i + 1] < from { 1 } else { n };
-            for k in 0..n {
-                let t = k as f32 / n as f32;
-                let mix = |values: &[f32]| {
-                    if k == 0 { values[i] } else { values[i] + (values[i + 1] - values[i]) * t }
-                };
-                out.guide_param.push(mix(&set.guide_param));
-                out.offset_normal.push(mix(&set.offset_normal));
-                out.offset_binormal.push(mix(&set.offset_binormal));
-                out.offset_tangent.push(mix(&set.offset_tangent));
-                out.taper.push(mix(&set.taper));
+        let params = &set.guide_param[range(strand)];
+        let divided = params[1..].iter().filter(|u| **u >= from).count() as u32;
+        total += params.len() as u32 + divided * (n - 1);
+        out.first_point.push(total);
+    }
+    let spread = |values: &[f32]| -> Vec<f32> {
+        let mut new = vec![0.0; total as usize];
+        slices(&mut new, &out.first_point).into_par_iter().enumerate().for_each(|(strand, new)| {
+            let (from, n) = parts[strand];
+            let (values, params) = (&values[range(strand)], &set.guide_param[range(strand)]);
+            let mut at = 0;
+            for (pair, end) in values.windows(2).zip(&params[1..]) {
+                let n = if *end < from { 1 } else { n };
+                for k in 0..n {
+                    let t = k as f32 / n as f32;
+                    new[at] = if k == 0 { pair[0] } else { pair[0] + (pair[1] - pair[0]) * t };
+                    at += 1;
+                }
             }
-        }
-        out.first_point.push(out.guide_param.len() as u32);
+            new[at] = values[values.len() - 1];
+        });
+        new
+    };
+    out.guide_param = spread(&set.guide_param);
+    out.offset_normal = spread(&set.offset_normal);
+    out.offset_binormal = spread(&set.offset_binormal);
+    out.offset_tangent = spread(&set.offset_tangent);
+    out.taper = spread(&set.taper);
+    out
+}
+
+/// The parts of a list that begin at `firsts`; the last of those is its length.
+pub fn slices<'a>(values: &'a mut [f32], firsts: &[u32]) -> Vec<&'a mut [f32]> {
+    let mut rest = values;
+    let mut out = Vec::with_capacity(firsts.len() - 1);
+    for pair in firsts.windows(2) {
+        let (part, after) = rest.split_at_mut((pair[1] - pair[0]) as usize);
+        out.push(part);
+        rest = after;
     }
     out
 }

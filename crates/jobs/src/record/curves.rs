@@ -129,7 +129,7 @@ pub fn record_curves(
     let watch = Stopwatch::start();
     let first = dance.snapshot(frames.start)?;
     let body = (!request.no_body).then(|| body_of(&first));
-    let mut scene = curves_of(source, &first.scene.style, &project.look);
+    let mut scene = curves_of(source, &first.scene.style, &first.look(&project));
     (scene.rate, scene.first_frame, scene.frames) = (rate, frames.start, frames.end - frames.start);
     scene.body = body;
     let (strands, points) = (scene.curves() as u64, scene.points() as u64);

@@ -240,7 +240,7 @@ fn kept(
     let drawn = project.compare.panes.get(pane).cloned().unwrap_or_default().applied_to(project);
     let input = ShadowInput {
         strands,
-        strand_width: project.look.shadow_width(strands.count()),
+        strand_width: snapshot.look(project).shadow_width(strands.count()),
         extinction_scale: project.look.extinction_scale,
         light: LightFrame::new(direction(light)),
         anchor: snapshot.guides.world_from_head.translation.into(),

@@ -59,7 +59,8 @@ impl OwnStyles {
         };
         let mut paths: Vec<PathBuf> =
             entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_style).collect();
-        paths.sort_by_key(|path| path.to_string_lossy().to_lowercase());
+        // By the name without the extension: a space comes before the dot.
+        paths.sort_by_key(|path| path.with_extension("").to_string_lossy().to_lowercase());
         paths.truncate(Self::MOST);
         paths.into_iter().map(|path| OwnStyle { style: read(&path), path }).collect()
     }

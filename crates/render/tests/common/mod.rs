@@ -80,7 +80,7 @@ impl Scene {
             style: &self.style,
             hair: self.guides.as_ref().map_or(HairPose::Strands(&self.strands), HairPose::Guides),
             guides: None,
-            look: &self.look,
+            look: self.look,
             body: self.body.as_ref().map(|(body, skin)| (body, skin)),
             world_from_head: Affine3A::IDENTITY,
             lights: &self.lights,

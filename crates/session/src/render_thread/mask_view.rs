@@ -60,12 +60,18 @@ fn painted(body: &Body, vertices: &[u32], scalp: &Scalp, shown: &ShownMask) -> B
     let mut body = body.clone();
     let mesh = &mut body.mesh;
     // The roots of hair would colour the skin as well.
-    mesh.scalp.clear();
-    if vertices.len() != scalp.positions.len() {
-        return body;
-    }
+    let hairy_skin = std::mem::take(&mut mesh.scalp);
     mesh.colors.resize(mesh.positions.len(), Vec3::splat(0.5));
     let head = HeadBox::of(scalp);
+    if vertices.len() != scalp.positions.len() {
+        // A scalp that was fitted has a net of its own; the body has its mask.
+        let origin = body.skeleton.rest_position(body.head_joint);
+        for ((p, color), hairy) in mesh.positions.iter().zip(&mut mesh.colors).zip(hairy_skin) {
+            let value = shown.mask.at(&head, *p - origin);
+            *color = color.lerp(color_of(&shown.scale, value), hairy.clamp(0.0, 1.0));
+        }
+        return body;
+    }
     for (i, &vertex) in vertices.iter().enumerate() {
         let hairy = scalp.mask.get(i).copied().unwrap_or(0.0).clamp(0.0, 1.0);
         if let Some(color) = mesh.colors.get_mut(vertex as usize).filter(|_| hairy > 0.0) {

@@ -37,7 +37,7 @@ impl Hair {
     pub(super) fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
         ShadowInput {
             strands: &self.strands,
-            strand_width: project.look.shadow_width(self.snapshot.scene.style.strands.count()),
+            strand_width: self.snapshot.look(project).shadow_width(self.snapshot.scene.style.strands.count()),
             extinction_scale: project.look.extinction_scale,
             light: LightFrame::new(light.direction),
             anchor: self.snapshot.guides.world_from_head.translation.into(),

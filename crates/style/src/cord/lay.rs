@@ -2,12 +2,12 @@
 
 use glam::{Vec2, Vec3};
 use lovelock_base::numbers::smoothstep;
-use lovelock_groom::{Hairstyle, WispCurve};
+use lovelock_groom::{Guides, Hairstyle, WispCurve};
 use rayon::prelude::*;
 
 use super::{Cord, Member};
 use crate::Scope;
-use crate::strands::refine_where;
+use crate::strands::{refine_where, slices};
 
 /// Rows of a wisp's table for each link.
 const ROWS: f32 = 6.0;
@@ -38,11 +38,11 @@ pub struct Laid {
     pub own: f32,
 }
 
-/// Lays the strands of cords: `place` returns where a strand runs at a distance from the start of its cord, metres. They take that place
+/// Lays the strands of cords, whose guides were `before` until they gathered: `place` returns where a strand runs at a distance from the start of its cord, metres. They take that place
 /// over `join` metres, and no segment of theirs is longer than `segment` beyond the start.
 pub fn lay(
     style: &mut Hairstyle,
-    before: &Hairstyle,
+    before: &Guides,
     scope: &Scope<'_>,
     cords: &[Cord],
     (join, segment): (f32, f32),
@@ -65,68 +65,64 @@ pub fn lay(
         .collect();
     let strands = strands_of(style, scope, cords, &tables);
     let even = scope.is_even();
-    let style_now = &*style;
-    let laid: Vec<(usize, Vec<Vec3>)> = (0..style.wisps.len())
-        .into_par_iter()
-        .filter_map(|w| Some((w, members[w]?)))
-        .map(|(w, (c, member))| {
-            let (cord, wisp, set) = (&cords[c], &style_now.wisps[w], &style_now.strands);
-            let Some(table) = &tables[w] else { return (0, Vec::new()) };
-            let old_curve = WispCurve::at_rest(&before.guides, wisp);
-            let range = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
-            let first = set.first_point[range.start] as usize;
-            let mut out = Vec::with_capacity(set.first_point[range.end] as usize - first);
-            for strand in range {
-                let points = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
-                let weights = set.weights[strand];
-                let own = &strands[strand];
-                let end = set.guide_param[points.end - 1].max(1e-6);
-                let offset =
-                    |i: usize| Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
-                let u0 = set.guide_param[points.start];
-                let root = old_curve.point(weights, u0, offset(points.start));
-                let row = table.at(u0);
-                let moved = table.curve.offset_to([1.0 / 3.0; 3], u0, root)
-                    - (row.apart(weights) + offset(points.start));
-                for i in points {
-                    let u = set.guide_param[i];
-                    let row = table.at(u);
-                    let back = (1.0 - u * member.link / ROOT_JOIN).max(0.0);
-                    let along = if even { 1.0 } else { scope.along(u / end) };
-                    let amount =
-                        (smoothstep(0.0, join, row.metres) * member.strength * along).clamp(0.0, 1.0);
-                    let start = if amount < 1.0 || back > 0.0 {
-                        row.apart(weights) + offset(i) + moved * (back * back)
+    let set = &mut style.strands;
+    let firsts: Vec<u32> = style
+        .wisps
+        .iter()
+        .map(|wisp| set.first_point[wisp.first_strand as usize])
+        .chain([set.guide_param.len() as u32])
+        .collect();
+    let normals = slices(&mut set.offset_normal, &firsts);
+    let binormals = slices(&mut set.offset_binormal, &firsts);
+    let tangents = slices(&mut set.offset_tangent, &firsts);
+    let (params, first_point, all_weights) = (&set.guide_param, &set.first_point, &set.weights);
+    let wisps = &style.wisps;
+    let offsets = normals.into_par_iter().zip(binormals).zip(tangents).enumerate();
+    offsets.for_each(|(w, ((normal, binormal), tangent))| {
+        let (Some((c, member)), Some(table)) = (members[w], &tables[w]) else { return };
+        let (cord, wisp) = (&cords[c], &wisps[w]);
+        let old_curve = WispCurve::at_rest(before, wisp);
+        let first = firsts[w] as usize;
+        for strand in wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize {
+            let points = first_point[strand] as usize..first_point[strand + 1] as usize;
+            let weights = all_weights[strand];
+            let of_strand = &strands[strand];
+            let end = params[points.end - 1].max(1e-6);
+            let u0 = params[points.start];
+            let k = points.start - first;
+            let offset = Vec3::new(normal[k], binormal[k], tangent[k]);
+            let root = old_curve.point(weights, u0, offset);
+            let moved =
+                table.curve.offset_to([1.0 / 3.0; 3], u0, root) - (table.at(u0).apart(weights) + offset);
+            for i in points {
+                let k = i - first;
+                let offset = Vec3::new(normal[k], binormal[k], tangent[k]);
+                let u = params[i];
+                let row = table.at(u);
+                let back = (1.0 - u * member.link / ROOT_JOIN).max(0.0);
+                let along = if even { 1.0 } else { scope.along(u / end) };
+                let amount = (smoothstep(0.0, join, row.metres) * member.strength * along).clamp(0.0, 1.0);
+                let own_place = || row.apart(weights) + offset;
+                let new = if amount > 0.0 {
+                    let Laid { place, own } = place(cord, of_strand, row.metres);
+                    let mut target = row.to_line + row.side * place.x + row.deep * place.y;
+                    if own > 0.0 {
+                        target += (own_place() - row.to_line) * own;
+                    }
+                    if amount < 1.0 {
+                        (own_place() + moved * (back * back)).lerp(target, amount)
                     } else {
-                        offset(i)
-                    };
-                    out.push(if amount > 0.0 {
-                        let Laid { place, own } = place(cord, own, row.metres);
-                        let kept = if own > 0.0 {
-                            (row.apart(weights) + offset(i) - row.to_line) * own
-                        } else {
-                            Vec3::ZERO
-                        };
-                        let target = row.to_line + row.side * place.x + row.deep * place.y + kept;
-                        start.lerp(target, amount)
-                    } else {
-                        start
-                    });
+                        target
+                    }
+                } else {
+                    own_place() + moved * (back * back)
+                };
+                if new.is_finite() {
+                    (normal[k], binormal[k], tangent[k]) = (new.x, new.y, new.z);
                 }
             }
-            (first, out)
-        })
-        .collect();
-    let set = &mut style.strands;
-    for (first, offsets) in laid {
-        for (k, offset) in offsets.into_iter().enumerate() {
-            if offset.is_finite() {
-                set.offset_normal[first + k] = offset.x;
-                set.offset_binormal[first + k] = offset.y;
-                set.offset_tangent[first + k] = offset.z;
-            }
         }
-    }
+    });
     for (strand, wisp) in wisp_of.iter().enumerate() {
         if members[*wisp as usize].is_some() {
             set.weights[strand] = [1.0 / 3.0; 3];

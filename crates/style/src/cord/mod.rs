@@ -59,7 +59,7 @@ pub struct Member {
 /// Hair shorter than this beyond the start of a cord does not belong to it, metres.
 const SHORTEST: f32 = 0.015;
 /// Loose hair cannot gather in less than this multiple of the distance of its roots from their middle.
-const SLANT: f32 = 1.2;
+const SLANT: f32 = 0.9;
 
 /// The cords of the hair on which a layer acts.
 pub fn cords(style: &Hairstyle, scope: &Scope<'_>, plan: &Plan) -> Vec<Cord> {

@@ -107,7 +107,7 @@ impl Settings for Braid {
 }
 
 /// Segments of a strand between two crossings on one side.
-const SEGMENTS: f32 = 7.0;
+const SEGMENTS: f32 = 5.0;
 /// The share of a braid's thickness by which its middle stays away from the body.
 const CLEAR: f32 = 0.35;
 
@@ -122,7 +122,7 @@ impl Operate for Braid {
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         let clear = (CLEAR * THICKNESS * self.width).max(0.003);
         let cords = cords(style, scope, &Plan { count: self.count, start: self.start, clear });
-        let before = style.clone();
+        let before = style.guides.clone();
         let join = self.pitch;
         let tightness = 0.5 + 0.5 * self.tightness;
         gather(style, scope, &cords, &Gathering { join, amount: 1.0, tightness });

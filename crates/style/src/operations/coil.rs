@@ -80,7 +80,7 @@ impl Operate for Coil {
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         let plan = Plan { count: u32::MAX, start: 0.0, clear: self.radius.max(0.003) };
         let cords = cords(style, scope, &plan);
-        let before = style.clone();
+        let before = style.guides.clone();
         let onset = self.onset.max(1e-3);
         gather(style, scope, &cords, &Gathering { join: onset, amount: self.gather, tightness: 0.0 });
         // Random numbers of a lock, by its first wisp.

@@ -123,7 +123,7 @@ impl Operate for Dreadlock {
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         let plan = Plan { count: self.count, start: self.start, clear: (0.35 * self.thickness).max(0.003) };
         let cords = cords(style, scope, &plan);
-        let before = style.clone();
+        let before = style.guides.clone();
         let join = self.thickness;
         gather(style, scope, &cords, &Gathering { join, amount: 1.0, tightness: 0.8 });
         let segment = (self.thickness / SEGMENTS).min(LONGEST_SEGMENT);

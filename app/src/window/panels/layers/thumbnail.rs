@@ -113,8 +113,12 @@ mod tests {
         };
         assert_eq!(bright(&Mask::default()), [255; 4], "white without a mask");
         let of = |region| Mask::of(MaskPart::region(region));
-        assert_eq!(bright(&of(MaskRegion::Front)), [255, 0, 128, 128]);
-        assert_eq!(bright(&of(MaskRegion::Left)), [128, 128, 255, 0]);
+        // Half is 127 or 128, by the rounding of the middle of the head.
+        let near = |found: [u8; 4], wanted: [u8; 4]| {
+            assert!(found.iter().zip(&wanted).all(|(a, b)| a.abs_diff(*b) <= 1), "{found:?} {wanted:?}");
+        };
+        near(bright(&of(MaskRegion::Front)), [255, 0, 128, 128]);
+        near(bright(&of(MaskRegion::Left)), [128, 128, 255, 0]);
         assert_eq!(bright(&of(MaskRegion::Nape))[0], 0);
         thumbnails.keep(|_| false);
         assert!(thumbnails.of.is_empty());

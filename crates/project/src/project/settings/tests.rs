@@ -25,7 +25,7 @@ fn leaves(path: &str, tree: &Json, out: &mut BTreeMap<String, Json>) {
 }
 
 /// Parts of a file that are not settings: names, files, what was drawn and cut, and the look inside a groom, which is not used.
-const NO_SETTINGS: [&str; 13] = [
+const NO_SETTINGS: [&str; 15] = [
     "version",
     "hair.groom.look.",
     "hair.cut.",
@@ -35,6 +35,9 @@ const NO_SETTINGS: [&str; 13] = [
     "timeline.tracks",
     "motion.clip",
     "body.head_joint",
+    // Painted over directions.
+    "body.scalp.added",
+    "body.scalp.removed",
     ".file",
     ".name",
     ".take",

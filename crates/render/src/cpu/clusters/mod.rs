@@ -112,7 +112,7 @@ impl PlacedClusters {
             published::light(hair, view, (&self.ribs, &self.transmittance), input, &mut self.vertices);
         }
         let opacity = input.picture.strand_opacity;
-        self.depth = self.share * opacity * lovelock_satf::strand_width(input.look, hair.strands);
+        self.depth = self.share * opacity * lovelock_satf::strand_width(&input.look, hair.strands);
         let columns = hair.clusters() * hair.grid.around * hair.grid.along;
         let (vertices, of) = (&self.vertices, hair.grid);
         self.bins.fill(columns, grid.columns, grid.rows, |column| {

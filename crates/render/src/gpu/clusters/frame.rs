@@ -82,7 +82,7 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
     let settings = &input.picture.clusters;
     let RibGrid { layers, around, along } = frame.grid();
     let opacity = input.picture.strand_opacity;
-    let depth = frame.share * opacity * lovelock_satf::strand_width(input.look, frame.hair.strands);
+    let depth = frame.share * opacity * lovelock_satf::strand_width(&input.look, frame.hair.strands);
     ClusterUniform {
         eye_depth: input.camera.eye.extend(depth).to_array(),
         light_detail: to_strongest_light(input.lights).extend(settings.detail).to_array(),

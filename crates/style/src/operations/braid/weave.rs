@@ -78,7 +78,8 @@ impl Weave {
         let wander = 0.06 + 0.22 * loose;
         disc += Vec2::new((turn * (0.5 + 0.5 * a) + TAU * b).sin(), (turn * (0.5 + 0.5 * b) + TAU * c).cos())
             * wander;
-        disc *= 1.0 + 0.12 * loose;
+        // A little more than touching, so that no light shines through between bundles.
+        disc *= 1.06 + 0.12 * loose;
         if leaves < self.flyaways {
             let out = 0.25 + 0.5 * a;
             disc += disc.normalize_or(Vec2::X) * out * (0.5 + 0.5 * (turn * (0.6 + b) + TAU * c).sin());

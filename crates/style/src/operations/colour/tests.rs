@@ -178,7 +178,7 @@ fn ramps_and_masks_limit_every_operation_of_colour() {
     let head = HeadBox::of(&style.scalp);
     let left = Mask::of(MaskPart { softness: 0.0, ..MaskPart::region(MaskRegion::Left) });
     let roots = strand_roots(&style);
-    let first = applied(&style, &Layer::of(Dye::default()));
+    let first = applied(&style, &Layer::of(Dye { color: Vec3::new(0.02, 0.1, 0.3), ..Dye::default() }));
     for operation in [
         Operation::from(Melanin::default()),
         Dye::default().into(),
