@@ -2,21 +2,25 @@
 
 use std::ops::ControlFlow;
 
+use glam::Vec3;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_project::project::MotionSource;
+use lovelock_project::project::{CameraSection, MotionSource};
 use lovelock_project::styles::{Style, StyleParts};
 use lovelock_render::{Backend, Picture, Renderer};
 use lovelock_session::dance::Dance;
 use lovelock_session::prepare::open_renderer;
 use lovelock_session::progress::Progress;
+use lovelock_session::snapshot::FrameSnapshot;
 
 /// What a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shot {
     /// The hair at rest, from the camera's direction turned by so much to the dancer's left, radians.
     Rest(f32),
+    /// The hair at rest, as large as head and hair down to the chest can be.
+    Framed,
     /// The hair at so much of the dance, 0 to 1.
     Dance(f64),
 }
@@ -80,15 +84,18 @@ impl Portraits {
         let mut pictures = Vec::new();
         for shot in shots {
             let (dance, project, frame) = match *shot {
-                Shot::Rest(turn) => {
+                Shot::Rest(_) | Shot::Framed => {
                     let mut project = rest.clone();
-                    project.camera.azimuth += turn;
-                    let dance = if let Some(dance) = &mut resting {
-                        dance
-                    } else {
-                        let mut dance = Dance::open(&rest, &self.access, FPS, progress)?.0;
-                        dance.begin(0, 0.0, progress)?;
-                        resting.insert(dance)
+                    if let Shot::Rest(turn) = *shot {
+                        project.camera.azimuth += turn;
+                    }
+                    let dance = match &mut resting {
+                        Some(dance) => dance,
+                        None => {
+                            let mut dance = Dance::open(&rest, &self.access, FPS, progress)?.0;
+                            dance.begin(0, 0.0, progress)?;
+                            resting.insert(dance)
+                        }
                     };
                     (dance, project, 0)
                 }
@@ -107,7 +114,10 @@ impl Portraits {
                 }
             };
             let snapshot = dance.snapshot(frame)?;
-            let project = project.seen_at(snapshot.position_secs);
+            let mut project = project.seen_at(snapshot.position_secs).into_owned();
+            if *shot == Shot::Framed {
+                framed(&mut project.camera, &snapshot, self.size[0] as f32 / self.size[1] as f32);
+            }
             let camera = snapshot.camera(&project.camera);
             let [width, height] = self.size.map(|side| side * SAMPLES);
             let mut picture = Picture::default();
@@ -116,6 +126,29 @@ impl Portraits {
         }
         Ok(pictures)
     }
+}
+
+/// Moves the camera so that head and hair fill an image whose width is `aspect` times its height. Hair below the chest is cut off.
+fn framed(camera: &mut CameraSection, snapshot: &FrameSnapshot, aspect: f32) {
+    /// Above the joint of the head, metres: the chest, the chin and the top of the skull, which are shown in any case.
+    const CHEST: f32 = -0.30;
+    const CHIN: f32 = -0.07;
+    const SKULL: f32 = 0.20;
+    /// Half the width of the head, metres.
+    const CHEEK: f32 = 0.10;
+    let (guides, head) = (&snapshot.guides.guides, snapshot.guides.world_from_head.translation);
+    let (mut low, mut high, mut wide) = (CHIN, SKULL, CHEEK);
+    for ((&x, &y), &z) in guides.x.iter().zip(&guides.y).zip(&guides.z) {
+        let up = y - head.y;
+        low = low.min(up.max(CHEST));
+        high = high.max(up);
+        if up > CHEST {
+            wide = wide.max((x - head.x).hypot(z - head.z));
+        }
+    }
+    let half = (0.5 * (high - low)).max(wide / aspect.max(0.1));
+    camera.follow_offset = Vec3::new(0.0, 0.5 * (low + high), 0.0);
+    camera.distance = (1.12 * half / (0.5 * camera.fov_y).tan().max(0.01) + CHEEK).clamp(0.3, 10.0);
 }
 
 /// A picture with the mean of each square of `samples` pixels as a pixel.

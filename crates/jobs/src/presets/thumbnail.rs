@@ -34,7 +34,7 @@ pub fn draw(
     style: &Style,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<u8>, ProjectError> {
-    let pictures = portraits.draw(&Portraits::project_of(style), &[Shot::Rest(0.0)], progress)?;
+    let pictures = portraits.draw(&Portraits::project_of(style), &[Shot::Framed], progress)?;
     let picture = pictures.first();
     picture
         .and_then(|picture| jpeg_within(MOST_BYTES, picture.width, picture.height, &picture.rgba))
