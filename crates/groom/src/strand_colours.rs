@@ -47,6 +47,16 @@ impl StrandColour {
         Self { added: (Vec3::from(self.added) + absorption).to_array(), ..self }
     }
 
+    /// A mixture with the fraction `share` of the pigment of another colour; exactly one of both at 0 and 1.
+    #[must_use]
+    pub fn mixed(self, other: Self, share: f32) -> Self {
+        let mix = |a: f32, b: f32| if a == b { a } else { a * (1.0 - share) + b * share };
+        Self {
+            kept: mix(self.kept, other.kept),
+            added: [0, 1, 2].map(|c| mix(self.added[c], other.added[c])),
+        }
+    }
+
     /// The absorption over hair of the absorption `below`.
     pub fn absorption(self, below: Vec3) -> Vec3 {
         self.kept * below + Vec3::from(self.added)

@@ -89,13 +89,12 @@ impl Portraits {
                     if let Shot::Rest(turn) = *shot {
                         project.camera.azimuth += turn;
                     }
-                    let dance = match &mut resting {
-                        Some(dance) => dance,
-                        None => {
-                            let mut dance = Dance::open(&rest, &self.access, FPS, progress)?.0;
-                            dance.begin(0, 0.0, progress)?;
-                            resting.insert(dance)
-                        }
+                    let dance = if let Some(dance) = &mut resting {
+                        dance
+                    } else {
+                        let mut dance = Dance::open(&rest, &self.access, FPS, progress)?.0;
+                        dance.begin(0, 0.0, progress)?;
+                        resting.insert(dance)
                     };
                     (dance, project, 0)
                 }

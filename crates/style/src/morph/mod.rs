@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::{
-    Bounded, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandSet, Wisp, WispCurve, widest_radii,
+    Bounded, ColourSamples, Guides, Hairstyle, MotionFactors, Obstacle, Rope, StrandColours, StrandSet, Wisp,
+    WispCurve, widest_radii,
 };
 use rayon::prelude::*;
 
@@ -148,7 +149,26 @@ impl Morph {
             out.offset_tangent.extend(part.offset_tangent);
             out.taper.extend(part.taper);
         }
+        out.colours = self.colours_at(amount);
         out
+    }
+
+    /// The colours of strands. A strand that one hairstyle lacks has its colours all the while.
+    fn colours_at(&self, amount: f32) -> StrandColours {
+        if self.styles.iter().all(|style| style.strands.colours.is_empty()) {
+            return StrandColours::default();
+        }
+        let of = |strand: &[Option<u32>; 2]| -> ColourSamples {
+            let [a, b] = [0, 1].map(|side| {
+                let colours = self.styles[side].strands.colours.strands();
+                strand[side].map(|strand| colours.get(strand as usize).copied().unwrap_or_default())
+            });
+            match (a, b) {
+                (Some(a), Some(b)) => std::array::from_fn(|k| a[k].mixed(b[k], amount)),
+                (one, other) => one.or(other).unwrap_or_default(),
+            }
+        };
+        StrandColours::new(self.wisps.iter().flat_map(|wisp| &wisp.strands).map(of).collect())
     }
 
     /// The angles by which the frames of a wisp in both hairstyles are turned about its root against its frame `now`. The axis that a

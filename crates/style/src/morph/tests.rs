@@ -228,3 +228,28 @@ fn factors_on_the_motion_are_mixed() {
         assert!(style.motion.hold.is_empty(), "control: a list that neither has");
     }
 }
+
+#[test]
+fn colours_are_those_of_either_hairstyle_at_the_ends_and_mixed_between() {
+    let [bob, curls] = [bob(), curls()];
+    let dyed =
+        apply_layer(&Layer::of(crate::operations::Dye::default()), 1.0, &bob, &NoObstacle).expect("a dye");
+    let dye = dyed.strands.colours.mean();
+    let morph = Morph::new([Arc::new(dyed), Arc::clone(&curls)]);
+    let strands: Vec<_> = morph.wisps.iter().flat_map(|wisp| &wisp.strands).copied().collect();
+    for amount in [0.0, 0.25, 1.0] {
+        let made = morph.at(amount, &NoObstacle);
+        made.check().expect("sound");
+        for (of, samples) in strands.iter().zip(made.strands.colours.strands()) {
+            let wanted = match of {
+                [Some(_), Some(_)] => dye.mixed(lovelock_groom::StrandColour::BELOW, amount),
+                [Some(_), None] => dye,
+                _ => lovelock_groom::StrandColour::BELOW,
+            };
+            assert!((samples[3].kept - wanted.kept).abs() < 1e-6, "{of:?} at {amount}");
+            assert!((samples[3].added[1] - wanted.added[1]).abs() < 1e-5, "{of:?} at {amount}");
+        }
+    }
+    assert!(strands.iter().any(|of| of.iter().all(Option::is_some)), "some strands are matched");
+    assert!(Morph::new([bob, curls]).at(0.5, &NoObstacle).strands.colours.is_empty());
+}
