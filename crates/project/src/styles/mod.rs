@@ -1,7 +1,7 @@
 //! Hairstyles as documents of their own: how hair grows and is styled, its colours, and how it moves.
 //!
 //! - [`Style`]: the document, and its text.
-//! - [`shipped`]: the styles that are part of the program.
+//! - [`mod@shipped`]: the styles that are part of the program.
 //! - [`StyleParts`]: what of a style is applied to a project, by [`Project::apply_style`].
 //!
 //! [`Project::apply_style`]: crate::Project::apply_style
