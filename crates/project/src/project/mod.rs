@@ -7,7 +7,6 @@
 mod contender;
 mod file;
 mod generic;
-mod morph;
 mod sanitise;
 mod sections;
 mod settings;
@@ -22,10 +21,10 @@ pub use file::{
     text_of_project,
 };
 pub(crate) use file::{parse_text, read_text, text_options};
-pub use morph::{HairMorph, MorphStyle};
 pub use sections::{
-    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, KeptScalp,
-    Marker, MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairMorph, HairSection, HairSource,
+    KeptScalp, Marker, MorphStyle, MotionSection, MotionSource, RecordingSection, SurroundingsSection,
+    TakeSection, TimelineSection,
 };
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};

@@ -1,7 +1,7 @@
 //! The sections of a project that belong to no other crate.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairShading, HairTie, Haircut, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairLook, HairShading, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings, ScalpFit};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
@@ -11,7 +11,6 @@ use lovelock_style::{Layer, StyleStack};
 use serde::{Deserialize, Serialize};
 
 use super::contender::Contender;
-use super::morph::HairMorph;
 use crate::files::FileRef;
 use crate::tracks::Track;
 
@@ -211,6 +210,51 @@ impl HairSection {
         }
         layers.extend(self.ties.iter().map(|tie| Layer::of(*tie)));
         StyleStack { layers, ..StyleStack::default() }
+    }
+}
+
+/// How far the hair has turned into a second style.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HairMorph {
+    /// 0 is the project's own style and 1 the second one.
+    pub amount: f32,
+    /// The second style; without one the amount has no effect.
+    pub to: Option<Box<MorphStyle>>,
+}
+
+/// A style to which hair is morphed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MorphStyle {
+    /// What it is called.
+    pub name: String,
+    /// How it grows and is styled. Its own morph is not used.
+    pub hair: HairSection,
+    /// Its colours.
+    pub look: HairLook,
+    /// How it moves.
+    pub simulation: SimulationSettings,
+}
+
+impl Default for MorphStyle {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            hair: HairSection::default(),
+            look: GroomSettings::preset(Preset::Smooth).look,
+            simulation: SimulationSettings::default(),
+        }
+    }
+}
+
+impl HairMorph {
+    /// The longest name of a style, characters.
+    pub const LONGEST_NAME: usize = 80;
+
+    /// The second style and the amount, unless the hair is that of the project's own style alone.
+    pub fn mix(&self) -> Option<(&MorphStyle, f32)> {
+        self.to.as_deref().filter(|_| self.amount > 0.0).map(|to| (to, self.amount))
     }
 }
 

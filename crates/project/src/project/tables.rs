@@ -12,8 +12,8 @@ use super::super::Project;
 use super::PROJECT_VERSION;
 use super::contender::Contender;
 use super::sections::{
-    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
-    MotionSection, MotionSource, RecordingSection, TimelineSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairMorph, HairSection, HairSource,
+    Marker, MotionSection, MotionSource, RecordingSection, TimelineSection,
 };
 use crate::tracks::Track;
 
@@ -238,6 +238,25 @@ impl Settings for HairSection {
         self.cut = self.cut.clamped();
         self.style = self.style.chars().filter(|c| !c.is_control()).take(Self::LONGEST_STYLE).collect();
         self.moves = self.moves.map(|moves| moves.clamped());
+    }
+}
+
+impl Settings for HairMorph {
+    const TABLE: &'static [Setting<Self>] = &[Setting::number(
+        field!(Self, amount),
+        [0.0, 1.0],
+        "Morph",
+        "How far the hair has turned into the second style. 0 is the project's own style and 1 the second one.",
+    )
+    .unit(Unit::FRACTION)];
+
+    fn reconcile(&mut self) {
+        let Some(to) = &mut self.to else { return };
+        to.name = to.name.chars().filter(|c| !c.is_control()).take(Self::LONGEST_NAME).collect();
+        to.hair.morph = Self::default();
+        to.hair = to.hair.clamped();
+        to.look = to.look.clamped();
+        to.simulation = to.simulation.clamped();
     }
 }
 
