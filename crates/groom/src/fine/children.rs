@@ -22,6 +22,15 @@ const SPARSE: usize = 6000;
 const NEIGHBOURS: usize = 7;
 /// Share of children that leave their lock.
 const STRAYS: f32 = 0.06;
+/// A child follows a parent wholly that is at least this fraction as long as its first one, and less the shorter that is. Otherwise it would
+/// leave the hair: beside a stub, it would go on the way that a long strand comes.
+const AS_LONG: f32 = 0.5;
+/// Children of shorter strands lean less to their other parents, in proportion, metres. Otherwise those of stubs would lie on the scalp.
+const LEANING: f32 = 0.02;
+/// The least length of strands of hair without stubs, metres.
+const STUB: f32 = 0.004;
+/// Steps per octave in which lengths are told apart.
+const LENGTH_STEPS: f32 = 16.0;
 
 /// The strands of a hairstyle in the order in which they are drawn; see the [module](crate::fine).
 #[derive(Clone, Debug, Default)]
@@ -35,6 +44,8 @@ pub struct FineStrands {
     /// How near each stored strand is to the edge of the hair.
     edges: Vec<f32>,
     of: Source,
+    /// See [`lengths_of`].
+    lengths: Vec<i16>,
     rest: Option<Arc<Hairstyle>>,
 }
 
@@ -100,6 +111,36 @@ fn blended(guides: &Guides, of: [u32; 3], weights: [f32; 3], u: f32) -> Vec3 {
     (0..3).map(|k| point(of[k]) * weights[k]).sum()
 }
 
+/// How long the strands of a style are, as binary logarithms of millimetres in [`LENGTH_STEPS`]; empty if none is a stub or much shorter than
+/// others of its wisp.
+fn lengths_of(style: &Hairstyle) -> Vec<i16> {
+    let (set, guides) = (&style.strands, &style.guides);
+    if style.check().is_err() {
+        return Vec::new();
+    }
+    let links = (guides.points_per_guide - 1) as f32;
+    let link_lengths: Vec<f32> = (0..guides.count())
+        .into_par_iter()
+        .map(|guide| {
+            let link = |p| guides.point(guide, p).distance(guides.point(guide, p + 1));
+            (0..guides.points_per_guide - 1).map(link).sum::<f32>() / links
+        })
+        .collect();
+    let length = |strand: usize| {
+        let of = style.wisps[set.wisp[strand] as usize].guides;
+        let link: f32 = (0..3).map(|k| link_lengths[of[k] as usize] * set.weights[strand][k]).sum();
+        set.guide_param[set.first_point[strand + 1] as usize - 1] * link
+    };
+    let all: Vec<i16> = (0..set.count()).map(|strand| steps_of(length(strand))).collect();
+    let much = (-LENGTH_STEPS * AS_LONG.log2()) as i16;
+    let uneven = style.wisps.iter().filter(|wisp| wisp.strand_count > 0).any(|wisp| {
+        let of = &all[wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize];
+        of.iter().max() > of.iter().min().map(|least| least + much).as_ref()
+    });
+    let stub = steps_of(STUB);
+    if uneven || all.iter().any(|length| *length < stub) { all } else { Vec::new() }
+}
+
 impl FineStrands {
     /// Makes this the list of `style`, with at least `count` strands. Returns whether anything has changed.
     ///
@@ -108,8 +149,14 @@ impl FineStrands {
         if !self.rest.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             self.rest = Some(Arc::clone(style));
             let source = Source::of(style);
+            let lengths = lengths_of(style);
             if self.of != source {
                 self.start(source);
+                self.lengths = lengths;
+            } else if self.lengths != lengths {
+                // The same children, which follow their parents less or more.
+                self.lengths = lengths;
+                self.strands.clear();
             }
         }
         let stored = self.order.len();
@@ -129,7 +176,9 @@ impl FineStrands {
             let parent = self.order[i % stored];
             let near = &self.neighbours[parent as usize];
             let edge = self.edges.get(parent as usize).copied().unwrap_or(0.0);
-            self.strands.push(child(&self.of, parent, near, edge, i));
+            let mut child = child(&self.of, parent, near, edge, i);
+            follow_by_length(&mut child, &self.lengths);
+            self.strands.push(child);
         }
         true
     }
@@ -186,6 +235,26 @@ fn child(source: &Source, parent: u32, near: &[u32; NEIGHBOURS], edge: f32, i: u
     };
     shorten(&mut strand, edge, &mut random);
     strand
+}
+
+/// A length in metres as a number of [`lengths_of`].
+fn steps_of(length: f32) -> i16 {
+    ((length.max(1e-6) * 1e3).log2() * LENGTH_STEPS).round() as i16
+}
+
+/// Reduces the weights of parents that are much longer or much shorter than the first one, and those of a stub toward its tip.
+fn follow_by_length(strand: &mut FineStrand, lengths: &[i16]) {
+    let length = |parent: u32| lengths.get(parent as usize).copied();
+    let Some(own) = length(strand.parents[0]) else { return };
+    let leans = ((f32::from(own) / LENGTH_STEPS).exp2() * 1e-3 / LEANING).min(1.0);
+    for (k, of) in strand.weights.iter_mut().enumerate() {
+        let octaves = f32::from(own.abs_diff(length(strand.parents[k + 1]).unwrap_or(own))) / LENGTH_STEPS;
+        let follows = ((-octaves).exp2() / AS_LONG).min(1.0);
+        if follows < 1.0 || leans < 1.0 {
+            let root = f32::from(of[0]) * follows;
+            *of = of.map(|weight| (root + (f32::from(weight) * follows - root) * leans) as i8);
+        }
+    }
 }
 
 /// The nearest strands of each strand, of its wisp or of all with a similar shape where a wisp has few.

@@ -293,3 +293,51 @@ fn nothing_and_single_strands_are_no_problem() {
     let strands = Strands { first_point: vec![0, 0, 1, 2].into(), ..strands };
     assert_eq!(grown(&fine, 50, &strands).points(), 100);
 }
+
+#[test]
+fn children_of_stubs_beside_long_strands_stay_stubs() {
+    let style = small_style();
+    let is_stub = |strand: u32| strand.is_multiple_of(3);
+    let mut cut = (*style).clone();
+    for strand in (0..style.strands.count() as u32).filter(|strand| is_stub(*strand)) {
+        let ends = [0, 1].map(|k| style.strands.first_point[strand as usize + k] as usize);
+        let set = &mut cut.strands;
+        set.guide_param[ends[0]..ends[1]].iter_mut().for_each(|u| *u *= 1e-3);
+        for offset in [&mut set.offset_normal, &mut set.offset_binormal, &mut set.offset_tangent] {
+            let root = offset[ends[0]];
+            offset[ends[0]..ends[1]].fill(root);
+        }
+    }
+    let cut = Arc::new(cut);
+    let (count, strands) = (12 * style.strands.count(), stored_points(&cut));
+    let mut fine = FineStrands::default();
+    fine.follow(&cut, count);
+    let longest = |fine: &FineStrands| {
+        let out = grown(fine, count, &strands);
+        let points = fine.points_per_strand;
+        let stubs = fine.strands[..count].iter().enumerate();
+        let stubs = stubs.filter(|(_, strand)| strand.is_short == 0 && is_stub(strand.parents[0]));
+        let length = |i: usize| {
+            (1..points)
+                .map(|k| out.point(i * points + k).distance(out.point(i * points + k - 1)))
+                .sum::<f32>()
+        };
+        stubs.map(|(i, _)| length(i)).fold(0.0, f32::max)
+    };
+    let own = (0..style.strands.count() as u32).filter(|strand| is_stub(*strand)).map(|strand| {
+        let ends = [0, 1].map(|k| strands.first_point[strand as usize + k] as usize);
+        (ends[0] + 1..ends[1]).map(|k| strands.point(k).distance(strands.point(k - 1))).sum::<f32>()
+    });
+    let own = own.fold(0.0, f32::max);
+    let stubs = longest(&fine);
+    // Control: children that follow their parents whatever their lengths.
+    let mut plain = FineStrands::default();
+    plain.follow(&style, count);
+    fine.strands.clone_from(&plain.strands);
+    let spikes = longest(&fine);
+    println!("stubs {own} m, their children {stubs} m, without regard to lengths {spikes} m");
+    assert!(stubs < 2.0 * own && spikes > 10.0 * stubs);
+    // Hair of even lengths has the children that it always had, and hair that grows again gets them back.
+    fine.follow(&style, count);
+    assert_eq!(fine.strands[..count], plain.strands[..count]);
+}
