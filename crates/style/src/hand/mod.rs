@@ -19,7 +19,7 @@ use lovelock_base::numbers::smoothstep;
 use rayon::prelude::*;
 
 pub use edit::{HandChannel, HandEdit};
-pub use guides::{hand_input, relength};
+pub use guides::{hand_input, relength, resampled, turned_toward};
 use place::PlaceIndex;
 pub use place::{HandPlace, HandRoots, link_frames, turn_to, turned_by};
 use sample::HandSample;
