@@ -284,8 +284,24 @@ pub fn length(points: &[Vec3]) -> f32 {
     points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
+/// Makes a guide longer by a factor: new hair goes on at its end and bends down. A factor below 1 takes hair away there.
+pub fn lengthen(points: &mut [Vec3], factor: f32) {
+    let links = points.len() - 1;
+    let link = length(points) / links as f32;
+    let mut way = points.to_vec();
+    let mut direction = (points[links] - points[links - 1]).normalize_or(Vec3::NEG_Y);
+    for _ in 0..((factor - 1.0) * links as f32).ceil() as usize {
+        direction = (direction + Vec3::NEG_Y * (link / 0.05).min(1.0)).normalize_or(Vec3::NEG_Y);
+        way.push(way[way.len() - 1] + direction * link);
+    }
+    // As many points as before, at even places of the longer way.
+    for (i, point) in points.iter_mut().enumerate() {
+        *point = sample(&way, i as f32 * factor);
+    }
+}
+
 /// Equal links along `target`, as many as `before` has, outside the body as far as those of `before` were.
-fn laid(target: &[Vec3], before: &[Vec3], link: f32, obstacle: &dyn Obstacle) -> Vec<Vec3> {
+pub fn laid(target: &[Vec3], before: &[Vec3], link: f32, obstacle: &dyn Obstacle) -> Vec<Vec3> {
     let mut out = Vec::with_capacity(before.len());
     out.push(target[0]);
     let mut at = 0.0;

@@ -8,6 +8,7 @@
 mod cord;
 mod evaluate;
 mod guides;
+pub mod hand;
 mod mask;
 mod morph;
 mod motion;

@@ -78,6 +78,19 @@ pub trait Operate: Settings + Debug + PartialEq {
 
     /// Takes one of those lists.
     fn set_list(&mut self, _name: &str, _numbers: Vec<f32>) {}
+
+    /// Packed data that it keeps besides its settings, by their names in files.
+    fn texts(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
+    /// Takes one of those texts.
+    ///
+    /// # Errors
+    /// What is wrong with the text, in one sentence.
+    fn set_text(&mut self, _name: &str, _text: &str) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// An [`Operate`] of any kind.
@@ -98,6 +111,13 @@ pub trait AnyOperation: AnySettings {
     fn lists(&self) -> Vec<(&'static str, Vec<f32>)>;
     /// See [`Operate::set_list`].
     fn set_list(&mut self, name: &str, numbers: Vec<f32>);
+    /// See [`Operate::texts`].
+    fn texts(&self) -> Vec<(&'static str, String)>;
+    /// See [`Operate::set_text`].
+    ///
+    /// # Errors
+    /// What is wrong with the text, in one sentence.
+    fn set_text(&mut self, name: &str, text: &str) -> Result<(), String>;
     /// As settings.
     fn settings(&self) -> &dyn AnySettings;
     /// The same, to be changed.
@@ -135,6 +155,14 @@ impl<T: Operate> AnyOperation for T {
 
     fn set_list(&mut self, name: &str, numbers: Vec<f32>) {
         Operate::set_list(self, name, numbers);
+    }
+
+    fn texts(&self) -> Vec<(&'static str, String)> {
+        Operate::texts(self)
+    }
+
+    fn set_text(&mut self, name: &str, text: &str) -> Result<(), String> {
+        Operate::set_text(self, name, text)
     }
 
     fn settings(&self) -> &dyn AnySettings {

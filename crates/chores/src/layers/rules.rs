@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 22] = [
+const ARROWS: [(&str, &[&str]); 23] = [
     (
         "app",
         &[
@@ -53,6 +53,7 @@ const ARROWS: [(&str, &[&str]); 22] = [
     ("render", &["shadow", "satf", "gpu", "groom", "motion", "appearance", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
     ("satf", &["groom", "base"]),
+    ("brush", &["style", "groom", "base"]),
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
@@ -72,9 +73,10 @@ const ARROWS: [(&str, &[&str]); 22] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 12] = [
+const WITHOUT_WGPU: [&str; 13] = [
     "appearance",
     "base",
+    "brush",
     "groom",
     "motion",
     "satf",

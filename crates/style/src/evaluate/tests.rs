@@ -1,8 +1,9 @@
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lovelock_groom::{GroomSettings, Guides, Haircut, PlainHead, StrandSet, TieKind, grow};
 
 use super::*;
-use crate::operations::{Curl, HairTie, Length, Scissors, Wave};
+use crate::hand::{HandChannel, HandEdit, HandRoots};
+use crate::operations::{Curl, HairTie, Hand, Length, Scissors, Wave};
 use crate::{Mask, MaskPart, MaskRegion, Operation, Ramp};
 
 fn base() -> Arc<Hairstyle> {
@@ -18,6 +19,15 @@ fn shape(style: &Hairstyle) -> (&Guides, &StrandSet, &[f32]) {
 fn cut(style: &Hairstyle, kept: f32) -> Layer {
     let kept = vec![kept; style.guides.count()];
     Layer::of(Scissors { cut: Haircut { first_root: style.guides.point(0, 0), kept } })
+}
+
+/// Turns and curls every guide.
+fn combed(style: &Hairstyle) -> Layer {
+    let mut edit = HandEdit { turns: vec![Vec2::new(0.2, 0.1); 30], ..HandEdit::default() };
+    edit.channel_mut(HandChannel::Curl, 30).fill(0.01);
+    let mut hand = Hand::default();
+    hand.edits.change(&HandRoots::of(style), (0..style.guides.count()).map(|guide| (guide, edit.clone())));
+    Layer::of(hand)
 }
 
 fn tie(kind: TieKind) -> Layer {
@@ -98,6 +108,9 @@ fn every_kind(base: &Hairstyle) -> Vec<Layer> {
     for layer in &mut layers {
         if layer.operation.id() == "scissors" {
             *layer = cut(base, 0.5);
+        }
+        if layer.operation.id() == "hand" {
+            *layer = combed(base);
         }
     }
     layers

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use lovelock_base::settings::{entries, find, set_value};
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Operation;
@@ -34,6 +35,8 @@ impl File {
             .extend(entries(known.settings()).into_iter().map(|entry| (entry.path, Stored::of(entry.value))));
         let lists = known.lists().into_iter();
         file.values.extend(lists.map(|(name, numbers)| (name.to_owned(), Stored::Numbers(numbers))));
+        let texts = known.texts().into_iter();
+        file.values.extend(texts.map(|(name, text)| (name.to_owned(), Stored::Choice(text))));
         let ramps = known.ramps().iter().enumerate();
         file.ramps.extend(ramps.map(|(i, info)| (info.name.to_owned(), known.ramp(i).clone())));
         file
@@ -43,32 +46,34 @@ impl File {
         Self { kind: kind.to_owned(), values: BTreeMap::new(), ramps: BTreeMap::new() }
     }
 
-    fn operation(self) -> Operation {
+    fn operation(self) -> Result<Operation, String> {
         let Some(mut operation) = Operation::new(&self.kind) else {
-            return Operation::Unknown(UnknownOperation {
-                id: self.kind,
-                values: self.values,
-                ramps: self.ramps,
-            });
+            let Self { kind: id, values, ramps } = self;
+            return Ok(Operation::Unknown(UnknownOperation { id, values, ramps }));
         };
         if let Some(known) = operation.known_mut() {
-            self.fill(known);
+            self.fill(known)?;
         }
-        operation
+        Ok(operation)
     }
 
     /// Takes what the operation knows; the rest keeps its defaults.
-    fn fill(self, operation: &mut dyn AnyOperation) {
+    fn fill(self, operation: &mut dyn AnyOperation) -> Result<(), String> {
         let lists: Vec<&str> = operation.lists().into_iter().map(|(name, _)| name).collect();
+        let texts: Vec<&str> = operation.texts().into_iter().map(|(name, _)| name).collect();
         for (name, stored) in self.values {
             if let Some((info, _)) = find(operation.settings(), &name) {
                 if let Some(value) = stored.value(info) {
                     set_value(operation.settings_mut(), &name, value);
                 }
-            } else if let Stored::Numbers(numbers) = stored
-                && lists.contains(&name.as_str())
-            {
-                operation.set_list(&name, numbers);
+                continue;
+            }
+            match stored {
+                Stored::Numbers(numbers) if lists.contains(&name.as_str()) => {
+                    operation.set_list(&name, numbers)
+                }
+                Stored::Choice(text) if texts.contains(&name.as_str()) => operation.set_text(&name, &text)?,
+                _ => {}
             }
         }
         for (i, info) in operation.ramps().iter().enumerate() {
@@ -76,6 +81,7 @@ impl File {
                 *operation.ramp_mut(i) = ramp.clone();
             }
         }
+        Ok(())
     }
 }
 
@@ -87,6 +93,6 @@ impl Serialize for Operation {
 
 impl<'de> Deserialize<'de> for Operation {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        File::deserialize(deserializer).map(File::operation)
+        File::deserialize(deserializer)?.operation().map_err(D::Error::custom)
     }
 }

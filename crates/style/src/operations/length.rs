@@ -6,7 +6,7 @@ use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::guides::{self, GuideShape, Lengths, reshape, shorten};
+use crate::guides::{self, GuideShape, Lengths, lengthen, reshape, shorten};
 use crate::operate::{Kind, Operate, Subject};
 
 /// The length to which hair can be lengthened, metres.
@@ -177,21 +177,5 @@ impl Operate for Length {
             });
         }
         shorten(style, scope, |shape| parts[shape.index]);
-    }
-}
-
-/// Makes a guide longer by a factor: new hair goes on at its end and bends down.
-fn lengthen(points: &mut [Vec3], factor: f32) {
-    let links = points.len() - 1;
-    let link = guides::length(points) / links as f32;
-    let mut way = points.to_vec();
-    let mut direction = (points[links] - points[links - 1]).normalize_or(Vec3::NEG_Y);
-    for _ in 0..((factor - 1.0) * links as f32).ceil() as usize {
-        direction = (direction + Vec3::NEG_Y * (link / 0.05).min(1.0)).normalize_or(Vec3::NEG_Y);
-        way.push(way[way.len() - 1] + direction * link);
-    }
-    // As many points as before, at even places of the longer way.
-    for (i, point) in points.iter_mut().enumerate() {
-        *point = lovelock_groom::polyline::sample(&way, i as f32 * factor);
     }
 }

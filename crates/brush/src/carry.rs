@@ -1,0 +1,156 @@
+//! Carrying a change of moving hair back to the rest shape.
+
+use glam::{Quat, Vec3};
+use lovelock_groom::Guides;
+use lovelock_style::hand::{
+    HandChannel, HandEdit, hand_input, link_frames, relength, resampled, turn_to, turned_by,
+};
+
+use crate::chain::{along, directions, lengths};
+
+/// Links that turned less than this keep their edit, as a difference of directions.
+const STILL: f32 = 1e-6;
+
+/// One guide: its edit in the layer, and its shapes in head space.
+#[derive(Clone, Debug)]
+pub(crate) struct CarriedGuide<'a> {
+    pub guide: usize,
+    /// The direction of its root from the middle of the head.
+    pub outward: Vec3,
+    /// The guides that the layer gets.
+    pub below: &'a Guides,
+    /// Its points at rest after all layers, without the cut part.
+    pub rest: Vec<Vec3>,
+    /// Its points as they are seen.
+    pub seen: Vec<Vec3>,
+    /// Its edit in the layer.
+    pub edit: HandEdit,
+}
+
+impl CarriedGuide<'_> {
+    /// The input of the layer with the length of the edit.
+    fn input(&self) -> Option<Vec<Vec3>> {
+        hand_input(self.below, self.guide, self.edit.length)
+    }
+
+    /// The points that the layer makes of its input, before a cut.
+    fn output(&self, input: &[Vec3]) -> Vec<Vec3> {
+        let turns = self.edit.turns_at(input.len() - 1);
+        let frames = link_frames(input, self.outward);
+        let own = directions(input);
+        let turned = |i: usize| turns.get(i).map_or(own[i], |turn| turned_by(frames[i], *turn));
+        let ways: Vec<Vec3> = (0..frames.len()).map(turned).collect();
+        along(input[0], &ways, &lengths(input))
+    }
+
+    /// The seen guide takes other places. `factor` is that on its length.
+    ///
+    /// Each link has the direction in the frame of the seen link that it gets in the frame of the link at rest.
+    pub fn move_to(&mut self, seen: &[Vec3], factor: f32) -> Option<()> {
+        let input = self.input()?;
+        let output = directions(&self.output(&input));
+        let count = (self.seen.len().min(self.rest.len()) - 1).min(output.len());
+        let [of_seen, of_rest] = [&self.seen, &self.rest].map(|points| link_frames(points, self.outward));
+        let [before, after, mut rest] = [&self.seen, &seen.to_vec(), &self.rest].map(|p| directions(p));
+        let mut ways = output;
+        let mut moved = false;
+        for i in 0..count {
+            if before[i].distance_squared(after[i]) < STILL * STILL {
+                continue;
+            }
+            let now = of_rest[i] * (of_seen[i].inverse() * after[i]);
+            ways[i] = Quat::from_rotation_arc(rest[i], now.normalize_or(rest[i])) * ways[i];
+            rest[i] = now;
+            moved = true;
+        }
+        if !moved && factor == 1.0 {
+            return Some(());
+        }
+        let links: Vec<f32> = lengths(&self.rest).iter().map(|link| link * factor).collect();
+        self.rest = along(self.rest[0], &rest, &links);
+        self.seen = seen.to_vec();
+        self.set_length(self.edit.length * factor);
+        self.turn_to(&ways)
+    }
+
+    /// The guide becomes longer or shorter at its end. Hair that was cut grows from the cut on.
+    pub fn relength(&mut self, factor: f32) -> Option<()> {
+        let input = self.input()?;
+        let links = input.len() - 1;
+        let kept = self.edit.kept;
+        let length = (self.edit.length * kept * factor).clamp(HandEdit::LENGTHS[0], HandEdit::LENGTHS[1]);
+        let factor = length / (self.edit.length * kept);
+        let mut output = self.output(&input);
+        if kept < 1.0 {
+            let whole = lengths(&output).iter().sum::<f32>() * kept;
+            for points in [&mut output, &mut self.seen, &mut self.rest] {
+                let part = whole / lengths(points).iter().sum::<f32>().max(1e-6);
+                *points = resampled(points, part, links);
+            }
+        }
+        for points in [&mut output, &mut self.seen, &mut self.rest] {
+            relength(points, factor);
+        }
+        for kind in HandChannel::ALL {
+            if !self.edit.channels[kind as usize].is_empty() {
+                let at = |i: usize| (i as f32 / links as f32 * kept * factor).min(1.0);
+                let values: Vec<f32> = (0..=links).map(|i| self.edit.channel(kind, at(i))).collect();
+                self.edit.channels[kind as usize] = values;
+            }
+        }
+        self.edit.kept = 1.0;
+        self.set_length(length);
+        self.turn_to(&directions(&output))
+    }
+
+    /// The guide ends at a place, in links.
+    pub fn cut(&mut self, at: f32) -> Option<()> {
+        let links = (self.input()?.len() - 1) as f32;
+        self.edit.kept = self.edit.kept.min((at / links).clamp(0.0, 1.0));
+        // The link after the cut stays, as a cut of the style leaves it.
+        let end = at.ceil() as usize + 2;
+        self.seen.truncate(end);
+        self.rest.truncate(end);
+        Some(())
+    }
+
+    /// The guide takes another edit of the layer; what is seen turns with it.
+    pub fn take(&mut self, edit: HandEdit) -> Option<()> {
+        let before = directions(&self.output(&self.input()?));
+        let factor = edit.length / self.edit.length;
+        self.edit = edit;
+        let after = directions(&self.output(&self.input()?));
+        if factor != 1.0 {
+            relength(&mut self.seen, factor);
+            relength(&mut self.rest, factor);
+        }
+        let [of_seen, of_rest] = [&self.seen, &self.rest].map(|points| link_frames(points, self.outward));
+        let [mut seen, mut rest] = [&self.seen, &self.rest].map(|points| directions(points));
+        for i in 0..seen.len().min(rest.len()).min(before.len()) {
+            rest[i] = Quat::from_rotation_arc(before[i], after[i]) * rest[i];
+            seen[i] = of_seen[i] * (of_rest[i].inverse() * rest[i]);
+        }
+        self.seen = along(self.seen[0], &seen, &lengths(&self.seen));
+        self.rest = along(self.rest[0], &rest, &lengths(&self.rest));
+        Some(())
+    }
+
+    fn set_length(&mut self, length: f32) {
+        // Rounding of a stretched link is no change of length.
+        self.edit.length = if (length - 1.0).abs() < 1e-5 { 1.0 } else { length };
+    }
+
+    /// The edit turns the links of its input to these directions.
+    fn turn_to(&mut self, ways: &[Vec3]) -> Option<()> {
+        let input = self.input()?;
+        let frames = link_frames(&input, self.outward);
+        let own = directions(&input);
+        let turns = self.edit.turns_mut(frames.len());
+        for (i, way) in ways.iter().enumerate().take(frames.len()) {
+            let still = own[i].distance_squared(*way) < STILL * STILL;
+            turns[i] = if still { glam::Vec2::ZERO } else { turn_to(frames[i], *way) };
+        }
+        self.edit.tidy();
+        Some(())
+    }
+}

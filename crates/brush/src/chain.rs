@@ -1,0 +1,97 @@
+//! Laying the links of a guide after its points were moved.
+
+use glam::Vec3;
+use lovelock_groom::{Bounded, Obstacle};
+use lovelock_style::hand::turned_toward;
+
+/// Clearance between the body and guides that had more of it before, metres.
+const CLEAR: f32 = 0.003;
+/// Links turn from one to the next by this angle at most, radians, unless they did before.
+const MOST_BEND: f32 = 0.6;
+
+/// A chain from the first of `before` along `targets`, with links of the given lengths, outside the body as far as it was before.
+pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: &dyn Obstacle) -> Vec<Vec3> {
+    let obstacle = Bounded(obstacle);
+    let mut out = Vec::with_capacity(before.len());
+    out.push(before[0]);
+    let mut moved = false;
+    let mut last: Option<Vec3> = None;
+    for (i, length) in lengths.iter().enumerate() {
+        let from = out[i];
+        let old = before[i + 1] - before[i];
+        moved |= targets[i + 1] != before[i + 1] || *length != old.length();
+        if !moved {
+            out.push(before[i + 1]);
+            last = Some(old.normalize_or(Vec3::NEG_Y));
+            continue;
+        }
+        let mut along = (targets[i + 1] - from).normalize_or(old.normalize_or(Vec3::NEG_Y));
+        if let Some(last) = last {
+            let bend = (before[i] - before[i - 1]).angle_between(old);
+            let most = if bend.is_finite() { bend.max(MOST_BEND) } else { MOST_BEND };
+            if last.angle_between(along) > most {
+                along = turned_toward(last, along, most);
+            }
+        }
+        let mut p = from + along * *length;
+        let clear = obstacle.distance(before[i + 1]).0.clamp(0.0, CLEAR);
+        for _ in 0..3 {
+            let (distance, normal) = obstacle.distance(p);
+            if distance >= clear {
+                break;
+            }
+            p += normal * (clear - distance);
+            p = from + (p - from).normalize_or(along) * *length;
+        }
+        last = Some((p - from).normalize_or(along));
+        out.push(p);
+    }
+    out
+}
+
+/// The length of each link.
+pub(crate) fn lengths(points: &[Vec3]) -> Vec<f32> {
+    points.windows(2).map(|pair| pair[0].distance(pair[1])).collect()
+}
+
+/// Unit direction of each link.
+pub(crate) fn directions(points: &[Vec3]) -> Vec<Vec3> {
+    let mut last = Vec3::NEG_Y;
+    let mut next = |pair: &[Vec3]| {
+        last = (pair[1] - pair[0]).normalize_or(last);
+        last
+    };
+    points.windows(2).map(&mut next).collect()
+}
+
+/// A chain from a point with links of these directions and lengths.
+pub(crate) fn along(root: Vec3, directions: &[Vec3], lengths: &[f32]) -> Vec<Vec3> {
+    let mut at = root;
+    let steps = directions.iter().zip(lengths).map(|(direction, length)| {
+        at += *direction * *length;
+        at
+    });
+    std::iter::once(root).chain(steps).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lovelock_groom::NoObstacle;
+
+    #[test]
+    fn links_keep_their_lengths_and_do_not_fold() {
+        let before: Vec<Vec3> = (0..20).map(|i| Vec3::NEG_Y * 0.01 * i as f32).collect();
+        let mut targets = before.clone();
+        // Pushed back toward the root.
+        targets[8..].iter_mut().for_each(|p| *p += Vec3::Y * 0.1);
+        let after = lay(&before, &targets, &lengths(&before), &NoObstacle);
+        assert_eq!(after[..8], before[..8]);
+        for link in lengths(&after) {
+            assert!((link - 0.01).abs() < 1e-6, "{link}");
+        }
+        for pair in directions(&after).windows(2) {
+            assert!(pair[0].angle_between(pair[1]) < MOST_BEND + 1e-3);
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Brushes: tools that change the hair that is seen, and write what they did into a layer of the style.
+//!
+//! A [`Brush`] is one stroke. It gets the guides as they move at one instant, moves those that its tool touches, and carries each change
+//! back to the rest shape: every link keeps its new direction in the frame of the moving link, and takes that direction in the frame of
+//! the link at rest. What a stroke did is added to [`HandEdits`](lovelock_style::hand::HandEdits).
+//!
+//! Strokes can be recorded and played: see [`StrokeFile`].
+
+mod brush;
+mod carry;
+mod chain;
+mod file;
+mod settings;
+mod stroke;
+mod tool;
+mod tools;
+mod touch;
+
+#[cfg(test)]
+mod tests;
+
+pub use brush::{Brush, BrushSurroundings};
+pub use file::{RecordedStroke, StrokeFile};
+pub use settings::{BrushMirror, BrushSettings};
+pub use stroke::StrokeSample;
+pub use tool::Tool;

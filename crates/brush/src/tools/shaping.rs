@@ -1,0 +1,87 @@
+//! Tools that change the shape of hair where it is.
+
+use glam::Vec3;
+use lovelock_groom::polyline::sample;
+use lovelock_style::hand::{hand_input, turned_toward};
+use rayon::prelude::*;
+
+use super::Stamp;
+use crate::chain::{along, directions, lengths};
+use crate::touch::Touched;
+
+/// Guides whose course a guide takes over while it is smoothed.
+const NEIGHBOURS: usize = 6;
+/// The part of the way that smoothing goes at a dab.
+const SMOOTH: f32 = 0.35;
+/// The part of the way that straightening goes at a dab.
+const STRAIGHTEN: f32 = 0.25;
+
+/// The nearest roots to each.
+pub(crate) fn neighbours(roots: &[Vec3]) -> Vec<Vec<u32>> {
+    let of = |own: usize| {
+        let mut near: Vec<(f32, u32)> = (0..roots.len())
+            .filter(|other| *other != own)
+            .map(|other| (roots[other].distance_squared(roots[own]), other as u32))
+            .collect();
+        if near.len() > NEIGHBOURS {
+            near.select_nth_unstable_by(NEIGHBOURS, |a, b| a.0.total_cmp(&b.0));
+            near.truncate(NEIGHBOURS);
+        }
+        near.into_iter().map(|(_, other)| other).collect()
+    };
+    (0..roots.len()).into_par_iter().map(of).collect()
+}
+
+impl Stamp<'_> {
+    pub(super) fn smoothed(&self, touched: &Touched) -> Vec<Vec3> {
+        let before = &touched.points;
+        let last = before.len() - 1;
+        let length: f32 = lengths(before).iter().sum();
+        let own = before[last] - before[0];
+        let near: Vec<(f32, Vec<Vec3>)> = (self.neighbours.get(touched.guide).into_iter().flatten())
+            .filter_map(|other| hand_input(self.seen, *other as usize, 1.0))
+            .map(|points| {
+                let way = points[points.len() - 1] - points[0];
+                // Hair that goes another way, as across a parting, counts less.
+                let alike = way.normalize_or_zero().dot(own.normalize_or_zero()).max(0.0).powi(4);
+                let long: f32 = lengths(&points).iter().sum();
+                (alike, points.iter().map(|p| (*p - points[0]) * (length / long.max(1e-6))).collect())
+            })
+            .collect();
+        let mut out = before.clone();
+        for i in 1..=last {
+            let weight = touched.weights[i] * SMOOTH;
+            if weight == 0.0 {
+                continue;
+            }
+            let (mut sum, mut all) = (before[i] - before[0], 1.0);
+            for (alike, other) in &near {
+                let place = i as f32 / last as f32 * (other.len() - 1) as f32;
+                sum += sample(other, place) * *alike;
+                all += alike;
+            }
+            let common = before[0] + sum / all;
+            let even = if i < last { 0.5 * (before[i - 1] + before[i + 1]) } else { before[i] };
+            out[i] = before[i] + ((even - before[i]) + 0.5 * (common - before[i])) * weight;
+        }
+        out
+    }
+
+    pub(super) fn straightened(&self, touched: &Touched) -> Vec<Vec3> {
+        let before = &touched.points;
+        let last = before.len() - 1;
+        let from = touched.weights.iter().position(|w| *w > 0.0).unwrap_or(0).saturating_sub(1);
+        let until = touched.weights.iter().rposition(|w| *w > 0.0).unwrap_or(last).max(from + 1).min(last);
+        let Some(target) = (before[until] - before[from]).try_normalize() else { return before.clone() };
+        let mut ways = directions(before);
+        for (i, way) in ways.iter_mut().enumerate().skip(from) {
+            let weight = touched.weights[i].max(touched.weights[i + 1]) * STRAIGHTEN;
+            if weight > 0.0 {
+                *way = turned_toward(*way, target, weight * way.angle_between(target));
+            }
+        }
+        let mut out = before[..=from].to_vec();
+        out.extend(along(before[from], &ways[from..], &lengths(before)[from..]).into_iter().skip(1));
+        out
+    }
+}
