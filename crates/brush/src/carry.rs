@@ -3,13 +3,26 @@
 use glam::{Quat, Vec3};
 use lovelock_groom::Guides;
 use lovelock_style::hand::{
-    HandChannel, HandEdit, hand_input, link_frames, relength, resampled, turn_to, turned_by,
+    HandChannel, HandEdit, hand_input, link_frames, relength, resampled, smallest_turn, turn_to, turned_by,
 };
 
 use crate::chain::{along, directions, lengths};
 
 /// Links that turned less than this keep their edit, as a difference of directions.
 const STILL: f32 = 1e-6;
+
+/// How each link at rest is turned in motion. Each turn is that of the link before, and the smallest one from there, as the simulation
+/// carries a motion over to another hairstyle.
+pub(crate) fn link_turns(rest: &[Vec3], moved: &[Vec3]) -> Vec<Quat> {
+    let mut turn = Quat::IDENTITY;
+    let pairs = directions(rest).into_iter().zip(directions(moved));
+    pairs
+        .map(|(rest, moved)| {
+            turn = (smallest_turn((turn * rest).normalize_or(rest), moved) * turn).normalize();
+            turn
+        })
+        .collect()
+}
 
 /// One guide: its edit in the layer, and its shapes in head space.
 #[derive(Clone, Debug)]
@@ -45,12 +58,12 @@ impl CarriedGuide<'_> {
 
     /// The seen guide takes other places. `factor` is that on its length.
     ///
-    /// Each link has the direction in the frame of the seen link that it gets in the frame of the link at rest.
+    /// A motion turns each link at rest to the seen one. What it turns to the new place of the link becomes the link at rest.
     pub fn move_to(&mut self, seen: &[Vec3], factor: f32) -> Option<()> {
         let input = self.input()?;
         let output = directions(&self.output(&input));
         let count = (self.seen.len().min(self.rest.len()) - 1).min(output.len());
-        let [of_seen, of_rest] = [&self.seen, &self.rest].map(|points| link_frames(points, self.outward));
+        let turns = link_turns(&self.rest, &self.seen);
         let [before, after, mut rest] = [&self.seen, &seen.to_vec(), &self.rest].map(|p| directions(p));
         let mut ways = output;
         let mut moved = false;
@@ -58,8 +71,8 @@ impl CarriedGuide<'_> {
             if before[i].distance_squared(after[i]) < STILL * STILL {
                 continue;
             }
-            let now = of_rest[i] * (of_seen[i].inverse() * after[i]);
-            ways[i] = Quat::from_rotation_arc(rest[i], now.normalize_or(rest[i])) * ways[i];
+            let now = turns[i].inverse() * after[i];
+            ways[i] = smallest_turn(rest[i], now.normalize_or(rest[i])) * ways[i];
             rest[i] = now;
             moved = true;
         }
@@ -81,6 +94,8 @@ impl CarriedGuide<'_> {
         let length = (self.edit.length * kept * factor).clamp(HandEdit::LENGTHS[0], HandEdit::LENGTHS[1]);
         let factor = length / (self.edit.length * kept);
         let mut output = self.output(&input);
+        let link = |points: &[Vec3]| points[0].distance(points[1]);
+        let before = [&self.seen, &self.rest].map(|points| link(points) / link(&input));
         if kept < 1.0 {
             let whole = lengths(&output).iter().sum::<f32>() * kept;
             for points in [&mut output, &mut self.seen, &mut self.rest] {
@@ -90,6 +105,12 @@ impl CarriedGuide<'_> {
         }
         for points in [&mut output, &mut self.seen, &mut self.rest] {
             relength(points, factor);
+        }
+        // The links of all shapes are those of the input by the same factors as before.
+        let new = link(&hand_input(self.below, self.guide, length)?);
+        for (points, part) in [&mut self.seen, &mut self.rest].into_iter().zip(before) {
+            let ways = directions(points);
+            *points = along(points[0], &ways, &vec![new * part; ways.len()]);
         }
         for kind in HandChannel::ALL {
             if !self.edit.channels[kind as usize].is_empty() {
@@ -124,11 +145,11 @@ impl CarriedGuide<'_> {
             relength(&mut self.seen, factor);
             relength(&mut self.rest, factor);
         }
-        let [of_seen, of_rest] = [&self.seen, &self.rest].map(|points| link_frames(points, self.outward));
+        let turns = link_turns(&self.rest, &self.seen);
         let [mut seen, mut rest] = [&self.seen, &self.rest].map(|points| directions(points));
         for i in 0..seen.len().min(rest.len()).min(before.len()) {
-            rest[i] = Quat::from_rotation_arc(before[i], after[i]) * rest[i];
-            seen[i] = of_seen[i] * (of_rest[i].inverse() * rest[i]);
+            rest[i] = smallest_turn(before[i], after[i]) * rest[i];
+            seen[i] = turns[i] * rest[i];
         }
         self.seen = along(self.seen[0], &seen, &lengths(&self.seen));
         self.rest = along(self.rest[0], &rest, &lengths(&self.rest));

@@ -1,7 +1,7 @@
 //! Brushes: tools that change the hair that is seen, and write what they did into a layer of the style.
 //!
 //! A [`Brush`] is one stroke. It gets the guides as they move at one instant, moves those that its tool touches, and carries each change
-//! back to the rest shape: every link keeps its new direction in the frame of the moving link, and takes that direction in the frame of
+//! back to the rest shape: a motion turns every link at rest to the one that is seen, and what it turns to the new place of the link becomes
 //! the link at rest. What a stroke did is added to [`HandEdits`](lovelock_style::hand::HandEdits).
 //!
 //! Strokes can be recorded and played: see [`StrokeFile`].

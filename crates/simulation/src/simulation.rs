@@ -51,6 +51,8 @@ pub struct Simulation {
     field: Option<MovingField>,
     /// Ties whose strength is still growing after a change of hairstyle.
     tie_blend: Option<TieBlend>,
+    /// The guides that were moved from outside since the last change of hairstyle; empty for none.
+    moved: Vec<bool>,
     /// Seconds simulated since the last reset, for the wind.
     elapsed_secs: f64,
     /// Distance that the mean wind has carried the air in that time, metres; `None` if it is to be computed
@@ -106,6 +108,7 @@ impl Simulation {
             rest_colliders: RestColliders::default(),
             field: None,
             tie_blend: None,
+            moved: Vec::new(),
             elapsed_secs: 0.0,
             air_travel: None,
             clamped_links,

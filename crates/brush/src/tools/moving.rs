@@ -1,14 +1,15 @@
 //! Tools that move hair.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use lovelock_base::numbers::smoothstep;
 use lovelock_groom::{Blade, Bounded, GuideFrame, Haircut, Hairstyle, Obstacle};
+use lovelock_style::hand::smallest_turn;
 
 use super::Stamp;
 use crate::touch::Touched;
 
 /// How far hair moves at a dab of a tool that does not follow the brush, as a part of the radius.
-const REACH: f32 = 0.1;
+const REACH: f32 = 0.15;
 /// Hair that is combed away from a parting moves wholly from this distance from its root on, metres.
 const PART_FROM: f32 = 0.03;
 /// The distances from the root between which a parting has less and less effect, metres.
@@ -107,7 +108,7 @@ impl Stamp<'_> {
         let root = touched.points[0];
         let from = *touched.points.get(grab.point)? - root;
         let to = from + self.dab.step * grab.weight;
-        let turn = Quat::from_rotation_arc(from.try_normalize()?, to.try_normalize()?);
+        let turn = smallest_turn(from.try_normalize()?, to.try_normalize()?);
         Some(touched.points.iter().map(|p| root + turn * (*p - root)).collect())
     }
 

@@ -1,7 +1,6 @@
 //! Tools that change the shape of hair where it is.
 
 use glam::Vec3;
-use lovelock_groom::polyline::sample;
 use lovelock_style::hand::{hand_input, turned_toward};
 use rayon::prelude::*;
 
@@ -36,7 +35,6 @@ impl Stamp<'_> {
     pub(super) fn smoothed(&self, touched: &Touched) -> Vec<Vec3> {
         let before = &touched.points;
         let last = before.len() - 1;
-        let length: f32 = lengths(before).iter().sum();
         let own = before[last] - before[0];
         let near: Vec<(f32, Vec<Vec3>)> = (self.neighbours.get(touched.guide).into_iter().flatten())
             .filter_map(|other| hand_input(self.seen, *other as usize, 1.0))
@@ -44,27 +42,25 @@ impl Stamp<'_> {
                 let way = points[points.len() - 1] - points[0];
                 // Hair that goes another way, as across a parting, counts less.
                 let alike = way.normalize_or_zero().dot(own.normalize_or_zero()).max(0.0).powi(4);
-                let long: f32 = lengths(&points).iter().sum();
-                (alike, points.iter().map(|p| (*p - points[0]) * (length / long.max(1e-6))).collect())
+                (alike, directions(&points))
             })
             .collect();
-        let mut out = before.clone();
-        for i in 1..=last {
-            let weight = touched.weights[i] * SMOOTH;
+        let ways = directions(before);
+        let mut out = ways.clone();
+        for (i, way) in out.iter_mut().enumerate() {
+            let weight = touched.weights[i].max(touched.weights[i + 1]) * SMOOTH;
             if weight == 0.0 {
                 continue;
             }
-            let (mut sum, mut all) = (before[i] - before[0], 1.0);
+            let even = 0.5 * (ways[i.saturating_sub(1)] + ways[(i + 1).min(last - 1)]);
+            let (mut common, mut all) = (ways[i], 1.0);
             for (alike, other) in &near {
-                let place = i as f32 / last as f32 * (other.len() - 1) as f32;
-                sum += sample(other, place) * *alike;
+                common += other[i * other.len() / last] * *alike;
                 all += alike;
             }
-            let common = before[0] + sum / all;
-            let even = if i < last { 0.5 * (before[i - 1] + before[i + 1]) } else { before[i] };
-            out[i] = before[i] + ((even - before[i]) + 0.5 * (common - before[i])) * weight;
+            *way = (*way + ((even - *way) + 0.5 * (common / all - *way)) * weight).normalize_or(*way);
         }
-        out
+        from_first_change(before, &ways, &out)
     }
 
     pub(super) fn straightened(&self, touched: &Touched) -> Vec<Vec3> {
@@ -73,15 +69,22 @@ impl Stamp<'_> {
         let from = touched.weights.iter().position(|w| *w > 0.0).unwrap_or(0).saturating_sub(1);
         let until = touched.weights.iter().rposition(|w| *w > 0.0).unwrap_or(last).max(from + 1).min(last);
         let Some(target) = (before[until] - before[from]).try_normalize() else { return before.clone() };
-        let mut ways = directions(before);
-        for (i, way) in ways.iter_mut().enumerate().skip(from) {
+        let ways = directions(before);
+        let mut out = ways.clone();
+        for (i, way) in out.iter_mut().enumerate().skip(from) {
             let weight = touched.weights[i].max(touched.weights[i + 1]) * STRAIGHTEN;
             if weight > 0.0 {
                 *way = turned_toward(*way, target, weight * way.angle_between(target));
             }
         }
-        let mut out = before[..=from].to_vec();
-        out.extend(along(before[from], &ways[from..], &lengths(before)[from..]).into_iter().skip(1));
-        out
+        from_first_change(before, &ways, &out)
     }
+}
+
+/// The guide with other directions of its links; the points before the first change stay.
+fn from_first_change(before: &[Vec3], ways: &[Vec3], new: &[Vec3]) -> Vec<Vec3> {
+    let Some(first) = ways.iter().zip(new).position(|(a, b)| a != b) else { return before.to_vec() };
+    let mut out = before[..first].to_vec();
+    out.extend(along(before[first], &new[first..], &lengths(before)[first..]));
+    out
 }

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_groom::Hairstyle;
+use lovelock_groom::{GuideFrame, Hairstyle};
 
 use super::{Simulation, first_free};
 use crate::block::{Bending, Block};
@@ -61,7 +61,10 @@ impl Simulation {
     /// Changes the hairstyle. If the guides are the same, so is the state. If only the numbers of guides and
     /// points are unchanged, the motion continues: every guide keeps its rotations and velocities or, if ties
     /// gather it in another way, its place. Otherwise the new style starts at rest.
+    ///
+    /// Guides that [`Simulation::move_guides`] moved since the last change stay where they are.
     pub fn set_style(&mut self, style: Arc<Hairstyle>) {
+        let moved = std::mem::take(&mut self.moved);
         if self.moves_alike(&style) {
             self.set_factors(style);
             return;
@@ -87,7 +90,7 @@ impl Simulation {
             // Each new block first collects the old state of its guides.
             let mut gathered = next.blocks.clone();
             for block in &mut gathered {
-                self.gather(block, retied);
+                self.gather(block, |guide| retied || moved.get(guide as usize).is_some_and(|moved| *moved));
             }
             for (block, old) in next.blocks.iter_mut().zip(&gathered) {
                 block.copy_motion(old, &from_head);
@@ -168,14 +171,39 @@ impl Simulation {
         self.advance_ties(0.0);
     }
 
-    /// Copies rest directions and motion of the guides of `block` from this simulation. With `keep_rest` the
-    /// block keeps its own rest directions, so that its links rotate from those to where they are.
-    fn gather(&self, block: &mut Block, keep_rest: bool) {
+    /// Moves some guides to where they are in `frame`, world space; their roots stay. Velocities stay as they are, so that the movement
+    /// itself is none. The next [`Simulation::set_style`], with the rest shape that belongs to the new places, leaves these guides there.
+    ///
+    /// A frame of another layout, and a guide with a point that is not finite, change nothing.
+    pub fn move_guides(&mut self, frame: &GuideFrame, guides: &[usize]) {
+        let (count, points) = (self.style.guides.count(), self.style.guides.points_per_guide);
+        if frame.guides.points_per_guide != points || frame.guides.count() != count {
+            return;
+        }
+        self.moved.resize(count, false);
+        for &guide in guides.iter().filter(|guide| **guide < self.slots.len()) {
+            let places: Vec<Vec3> =
+                (0..points).map(|i| frame.guides.point(guide, i) - self.head.place).collect();
+            if !places.iter().all(|p| p.is_finite()) {
+                continue;
+            }
+            let (block, lane) = self.slots[guide];
+            let block = &mut self.blocks[block as usize];
+            for (row, place) in block.position.iter_mut().zip(places).skip(1) {
+                put(row, lane as usize, place);
+            }
+            self.moved[guide] = true;
+        }
+    }
+
+    /// Copies rest directions and motion of the guides of `block` from this simulation. Guides for which `keeps_rest` is true keep the rest
+    /// directions of the block, so that their links rotate from those to where they are.
+    fn gather(&self, block: &mut Block, keeps_rest: impl Fn(u32) -> bool) {
         for k in 0..LANES {
             let (from, lane) = self.slots[block.guides[k] as usize];
             let (from, lane) = (&self.blocks[from as usize], lane as usize);
             for i in 0..block.points() {
-                if !keep_rest {
+                if !keeps_rest(block.guides[k]) {
                     put(&mut block.rest.direction[i], k, at(&from.rest.direction[i], lane));
                 }
                 put(&mut block.position[i], k, at(&from.position[i], lane));

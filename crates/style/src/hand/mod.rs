@@ -21,7 +21,7 @@ use rayon::prelude::*;
 pub use edit::{HandChannel, HandEdit};
 pub use guides::{hand_input, relength, resampled, turned_toward};
 use place::PlaceIndex;
-pub use place::{HandPlace, HandRoots, link_frames, turn_to, turned_by};
+pub use place::{HandPlace, HandRoots, link_frames, smallest_turn, turn_to, turned_by};
 use sample::HandSample;
 
 /// Edits reach hair of another hairstyle up to this many distances between roots.

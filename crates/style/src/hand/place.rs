@@ -132,16 +132,26 @@ fn cell_of(direction: Vec3, cell: f32) -> [i32; 3] {
 /// The frame of each link of a guide: a rotation that carries a constant direction to that of the link. The frame of the first link is
 /// carried from that of the place `outward` by the smallest rotation, and the others from link to link.
 pub fn link_frames(points: &[Vec3], outward: Vec3) -> Vec<Quat> {
-    let mut frame = Quat::from_rotation_arc(BASE, outward);
+    let mut frame = smallest_turn(BASE, outward);
     let mut before = outward;
     let mut out = Vec::with_capacity(points.len().saturating_sub(1));
     for pair in points.windows(2) {
         let along = (pair[1] - pair[0]).normalize_or(before);
-        frame = (Quat::from_rotation_arc(before, along) * frame).normalize();
+        frame = (smallest_turn(before, along) * frame).normalize();
         before = along;
         out.push(frame);
     }
     out
+}
+
+/// The smallest rotation from one unit vector to another, exact also for small angles.
+pub fn smallest_turn(from: Vec3, to: Vec3) -> Quat {
+    let real = 1.0 + from.dot(to);
+    if real < 1e-6 {
+        return Quat::from_axis_angle(from.any_orthonormal_vector(), std::f32::consts::PI);
+    }
+    let axis = from.cross(to);
+    Quat::from_xyzw(axis.x, axis.y, axis.z, real).normalize()
 }
 
 /// How a link is turned: the direction `turned` seen in the frame of the link. The length is the angle; 0 is not turned.
