@@ -83,11 +83,18 @@ impl Window {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
-            Command::Scissors => self.scissors.held = !self.scissors.held,
+            Command::Scissors => {
+                self.scissors.held = !self.scissors.held;
+                self.brushes.on &= !self.scissors.held;
+            }
             Command::ShowMask => self.layers.toggle_mask(),
             Command::PaintMask => self.layers.toggle_painting(),
-            Command::BrushSmaller => self.layers.resize_brush(1.0 / BRUSH_STEP),
-            Command::BrushLarger => self.layers.resize_brush(BRUSH_STEP),
+            Command::BrushSmaller => self.resize_brush(1.0 / BRUSH_STEP),
+            Command::BrushLarger => self.resize_brush(BRUSH_STEP),
+            Command::Brushes => {
+                self.brushes.on = !self.brushes.on;
+                self.scissors.held &= !self.brushes.on;
+            }
             Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {
@@ -158,6 +165,15 @@ impl Window {
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    /// Resizes the brush that is in use: that of the hair, otherwise that of masks.
+    fn resize_brush(&mut self, factor: f32) {
+        if self.brushes.on {
+            self.brushes.scale_radius(factor, &mut self.layout.brushes);
+        } else {
+            self.layers.resize_brush(factor);
         }
     }
 

@@ -27,6 +27,8 @@ pub enum Command {
     ShowMask,
     /// Starts or ends painting the mask of the selected layer.
     PaintMask,
+    /// Switches the brushes of hair.
+    Brushes,
     /// Makes the brush smaller.
     BrushSmaller,
     /// Makes the brush larger.

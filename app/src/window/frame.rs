@@ -26,6 +26,7 @@ impl Window {
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
         let said = self.session.update();
         self.warn(said);
+        self.take_brushed();
         for done in std::mem::take(&mut self.session.done) {
             self.notices.push(notices::Kind::Done, done);
         }
@@ -100,6 +101,7 @@ impl Window {
         let compares = self.layout.compare.shown && !walls;
         let (shown, seen) = self.shown();
         let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
+        self.brushes.send(self.session.worker());
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
         self.follow_mask(&seen);
         let again = self.session.send(&shown, &seen, size, self.shown_mask.as_ref());

@@ -2,6 +2,7 @@
 
 mod actions;
 mod aim;
+mod brushes;
 mod camera_control;
 mod command;
 mod compare;
@@ -83,6 +84,7 @@ struct Layout {
     wall: WallLayout,
     timeline: timeline::Zoom,
     styles: styles::Kept,
+    brushes: brushes::Kept,
 }
 
 impl Default for Layout {
@@ -96,6 +98,7 @@ impl Default for Layout {
             wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
             styles: styles::Kept::default(),
+            brushes: brushes::Kept::default(),
         }
     }
 }
@@ -138,6 +141,7 @@ pub(crate) struct Window {
     /// What is shown of the layers of the style, and the brush that paints their masks.
     layers: panels::layers::LayersView,
     stroke: overlay::brush::Stroke,
+    brushes: brushes::Brushes,
     /// The mask that the image shows.
     shown_mask: Option<Arc<ShownMask>>,
     scalp: overlay::scalp::ScalpTool,
@@ -252,6 +256,7 @@ impl Window {
             selected_tie: 0,
             layers: panels::layers::LayersView::default(),
             stroke: overlay::brush::Stroke::default(),
+            brushes: brushes::Brushes::default(),
             shown_mask: None,
             scalp: overlay::scalp::ScalpTool::default(),
             ties_shown: false,
@@ -344,7 +349,7 @@ impl Window {
                 self.layers.painting
                     || (self.layers.selected.is_some() && self.history.project().take.file.is_none())
             }
-            Command::BrushSmaller | Command::BrushLarger => self.layers.painting,
+            Command::BrushSmaller | Command::BrushLarger => self.layers.painting || self.brushes.on,
             Command::Scissors => self.history.project().take.file.is_none(),
             Command::SavePicture => self.session.painted.is_some(),
             Command::ExportCurves => !self.recorder.is_running(),

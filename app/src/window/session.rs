@@ -14,6 +14,7 @@ use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::stats::{PassHistory, StageHistory};
+use lovelock_session::strokes::Brushed;
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
@@ -73,6 +74,8 @@ pub(crate) struct Session {
     pub(crate) done: Vec<String>,
     /// The latest recorded take.
     pub(crate) saved_take: Option<PathBuf>,
+    /// What brushes have done since the last pass.
+    pub(crate) brushed: Vec<Brushed>,
 }
 
 impl Session {
@@ -130,6 +133,7 @@ impl Session {
             draw_error: None,
             done: Vec::new(),
             saved_take: None,
+            brushed: Vec::new(),
         })
     }
 
@@ -225,6 +229,7 @@ impl Session {
                     self.playing = false;
                     said.push(message);
                 }
+                Event::Brushed(brushed) => self.brushed.push(brushed),
                 Event::Panicked { thread, message } => {
                     said.push(format!(
                         "The {thread} thread failed and was restarted. Save your project. ({message})"

@@ -31,6 +31,12 @@ impl Window {
                 section(ui, "Layers", self.layers.is_revealed(), |ui| {
                     panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
+                section(ui, "Brushes", self.brushes.on, |ui| {
+                    if super::brushes::ui(ui, &mut self.brushes, &mut self.layout.brushes).is_some() {
+                        self.session.worker().thaw();
+                        self.brushes.forget_frozen();
+                    }
+                });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
                     let scalp = self.session.scene.as_ref().map(|scene| &*scene.usual_scalp);
                     panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);

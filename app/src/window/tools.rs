@@ -24,7 +24,14 @@ impl Window {
         self.colliders_over(ui, response, view, &painted.snapshot, project);
         self.paint_marked_gauge(ui, view, painted);
         if project.take.file.is_some() {
+            self.end_stroke();
             return true;
+        }
+        if !self.scissors.held
+            && !self.layers.painting
+            && self.brush_hair(ui, response, (view, painted), project)
+        {
+            return false;
         }
         let painted_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
         let held = self.scissors.held;

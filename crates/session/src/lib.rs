@@ -3,6 +3,7 @@
 //! - [`scene`]: what is simulated and rendered, and its loader.
 //! - [`engine`]: the simulation of a scene, step by step, without a clock.
 //! - [`worker`]: the same on a thread of its own, in real time.
+//! - [`strokes`]: brushes on the hair of an engine.
 //! - [`take`]: recorded simulations, and playing them.
 //! - [`dance`]: frames of a simulation or a take for work without a window; [`prepare`] and [`progress`] belong to it.
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
@@ -26,6 +27,7 @@ pub mod resolution;
 pub mod scene;
 pub mod snapshot;
 pub mod stats;
+pub mod strokes;
 pub mod take;
 #[cfg(any(test, feature = "testing"))]
 pub mod testing;

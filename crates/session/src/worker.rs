@@ -13,17 +13,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use load_thread::LoadThread;
+use lovelock_brush::StrokeSample;
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_record::TakeReport;
-use mailbox::{Mailbox, TakeRequest};
+use mailbox::{BrushRequest, Mailbox, TakeRequest};
 use simulation_thread::SimulationThread;
 
 use crate::engine::PrerollProgress;
 use crate::latest::Latest;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
+use crate::strokes::{Brushed, StrokeStart};
 use crate::take::TakeProgress;
 
 /// Maximum number of unread events; more are dropped and logged.
@@ -63,6 +65,8 @@ pub enum Event {
         /// The reason.
         message: String,
     },
+    /// A stroke of a brush has changed the hair.
+    Brushed(Brushed),
     /// A part of the played take cannot be read; the previous frame stays visible.
     TakeUnreadable {
         /// The reason.
@@ -275,6 +279,40 @@ impl Worker {
     /// The newest frame as a shared value.
     pub fn frames(&self) -> &Latest<FrameSnapshot> {
         &self.frames
+    }
+
+    /// Begins a stroke of a brush. It waits for the scene that has its layer. What it does is reported by [`Event::Brushed`].
+    pub fn begin_stroke(&self, start: StrokeStart) {
+        self.brush(BrushRequest::Begin(Box::new(start)));
+    }
+
+    /// Moves the brush of the stroke `id` to further samples, in the space of the head.
+    pub fn stroke_to(&self, id: u64, samples: Vec<StrokeSample>) {
+        self.brush(BrushRequest::To(id, samples));
+    }
+
+    /// Ends the stroke `id`.
+    pub fn end_stroke(&self, id: u64) {
+        self.brush(BrushRequest::End(id));
+    }
+
+    /// Forgets all strokes that have not ended.
+    pub fn cancel_strokes(&self) {
+        self.brush(BrushRequest::Cancel);
+    }
+
+    /// Lets brushes touch all hair again.
+    pub fn thaw(&self) {
+        self.brush(BrushRequest::Thaw);
+    }
+
+    fn brush(&self, request: BrushRequest) {
+        self.mailbox.post(|requests| requests.brushes.push(request));
+    }
+
+    /// Sets whether the hair stays in its rest shape instead of being simulated.
+    pub fn set_still(&self, still: bool) {
+        self.mailbox.post(|requests| requests.still = Some(still));
     }
 
     /// The oldest unread event.

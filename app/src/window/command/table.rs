@@ -91,6 +91,14 @@ pub const COMMANDS: &[CommandInfo] = {
             &["Shift+K"],
             G::Hair,
         ),
+        entry(
+            C::Brushes,
+            "brushes",
+            "Brush hair",
+            "Switches the brushes, which comb, cut and curl hair in the image while it dances.",
+            &["H"],
+            G::Hair,
+        ),
         entry(C::BrushSmaller, "brush-smaller", "Smaller brush", "Makes the brush smaller.", &["["], G::Hair),
         entry(C::BrushLarger, "brush-larger", "Larger brush", "Makes the brush larger.", &["]"], G::Hair),
         entry(
@@ -98,7 +106,7 @@ pub const COMMANDS: &[CommandInfo] = {
             "show-colliders",
             "Show colliders",
             "Shows or hides the colliders over the image.",
-            &["B"],
+            &["G"],
             G::View,
         ),
         entry(

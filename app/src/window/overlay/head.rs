@@ -26,7 +26,7 @@ impl Head<'_> {
     }
 
     /// The point of the surface under a point of the screen and the normal there, head space.
-    pub(super) fn hit(self, view: View, at: Pos2) -> Option<(Vec3, Vec3)> {
+    pub(crate) fn hit(self, view: View, at: Pos2) -> Option<(Vec3, Vec3)> {
         let ray = self.ray(view, at);
         let found = under(self.scalp, 0.0, ray, (ray.0, Side::Seen))?;
         Some((found.place, found.normal))

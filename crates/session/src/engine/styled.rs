@@ -2,10 +2,40 @@
 
 use std::sync::Arc;
 
+use glam::Affine3A;
+use lovelock_groom::{GuideFrame, Guides};
+
 use super::Engine;
 use crate::scene::Scene;
 
 impl Engine {
+    /// The scene with the hairstyle of the current step.
+    pub(crate) fn current_scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Moves guides of the current step to where `change` puts them, world space; it returns which. The hair goes on from there with the
+    /// velocities that it has. Returns whether any was moved.
+    pub(crate) fn move_hair(&mut self, change: impl FnOnce(&mut GuideFrame) -> Vec<usize>) -> bool {
+        let mut frame =
+            GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
+        self.simulation.frame(&mut frame);
+        let moved = change(&mut frame);
+        self.simulation.move_guides(&frame, &moved);
+        !moved.is_empty()
+    }
+
+    /// Lays the hair of the current step in its rest shape.
+    pub(crate) fn lay_at_rest(&mut self) {
+        self.reset_to_rest(self.at_step, f64::NEG_INFINITY);
+    }
+
+    /// Moves to the next step with the hair at rest.
+    pub(crate) fn step_at_rest(&mut self) {
+        self.reset_to_rest(self.at_step + 1, f64::NEG_INFINITY);
+        self.taken += 1;
+    }
+
     /// The loaded scene with the hairstyle of the current step, or with that of `lead_in_secs` if it is later.
     pub(super) fn styled(&mut self, lead_in_secs: f64) -> Arc<Scene> {
         let secs = self.loaded.position_secs(self.time_secs().max(lead_in_secs));

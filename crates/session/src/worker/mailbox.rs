@@ -1,15 +1,18 @@
 //! The mailbox of the simulation thread, in which later requests replace earlier ones.
 //!
-//! It holds at most one request of each kind, so it cannot overflow and nobody waits, however fast a slider is dragged.
+//! It holds at most one request of each kind, so it cannot overflow and nobody waits, however fast a slider is dragged. Only what brushes
+//! do is kept in order.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
+use lovelock_brush::StrokeSample;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 
 use super::load_thread::Loaded;
+use crate::strokes::StrokeStart;
 
 /// A request about recording a take.
 #[derive(Debug, PartialEq, Eq)]
@@ -18,6 +21,21 @@ pub(super) enum TakeRequest {
     Start(PathBuf),
     /// Complete the take.
     Finish,
+}
+
+/// A request of a brush.
+#[derive(Debug)]
+pub(super) enum BrushRequest {
+    /// A stroke begins.
+    Begin(Box<StrokeStart>),
+    /// The brush of a stroke moves.
+    To(u64, Vec<StrokeSample>),
+    /// A stroke ends.
+    End(u64),
+    /// All strokes are forgotten.
+    Cancel,
+    /// No hair is protected any more.
+    Thaw,
 }
 
 /// All pending requests.
@@ -47,6 +65,10 @@ pub(super) struct Requests {
     pub(super) settle: Option<bool>,
     /// Start or complete the recording of a take.
     pub(super) take: Option<TakeRequest>,
+    /// What brushes do, in this order.
+    pub(super) brushes: Vec<BrushRequest>,
+    /// Whether the hair stays in its rest shape.
+    pub(super) still: Option<bool>,
     /// End the thread.
     pub(super) stop: bool,
 }
@@ -67,6 +89,8 @@ impl Requests {
             restart,
             settle,
             take,
+            brushes,
+            still,
             stop,
         } = self;
         project.is_none()
@@ -80,6 +104,8 @@ impl Requests {
             && !restart
             && settle.is_none()
             && take.is_none()
+            && brushes.is_empty()
+            && still.is_none()
             && !stop
     }
 }

@@ -1,5 +1,6 @@
 //! The state of the simulation thread: an engine or a take, and the handling of requests.
 
+mod brushing;
 mod inputs;
 mod playing;
 mod recording;
@@ -12,6 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use brushing::Brushing;
 use inputs::SceneInputs;
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
@@ -59,6 +61,9 @@ pub(super) struct SimulationThread {
     /// The last two steps, for images between them.
     last_steps: LastSteps,
     backwards: bool,
+    brushing: Brushing,
+    /// Whether the hair stays in its rest shape.
+    still: bool,
     panics: u32,
 }
 
@@ -91,6 +96,8 @@ impl SimulationThread {
             playback: Playback::default(),
             last_steps: LastSteps::default(),
             backwards: false,
+            brushing: Brushing::default(),
+            still: false,
             panics: 0,
         }
     }
@@ -160,6 +167,8 @@ impl SimulationThread {
             restart,
             settle,
             take,
+            brushes,
+            still,
             stop: _,
         } = requests;
         if let Some((project, access)) = project {
@@ -232,6 +241,8 @@ impl SimulationThread {
                 }
             }
         }
+        changed |= self.set_still(still);
+        changed |= self.brush(brushes);
         match take {
             Some(TakeRequest::Start(path)) => self.start_take(&path),
             Some(TakeRequest::Finish) => self.end_take(None),
@@ -298,7 +309,14 @@ impl SimulationThread {
                 || !Arc::ptr_eq(&before.colliders, &scene.colliders)
                 || before.field.is_some() != scene.field.is_some()
                 || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
+            let (brushed, brushes) = (self.brushing.made(&scene), self.brushing.is_open());
             let laid = engine.set_scene(scene);
+            if self.still && (laid || !brushes) {
+                engine.lay_at_rest();
+            }
+            if self.still || (brushed && !laid) {
+                return;
+            }
             // During playback, hair that only changes or gets other colliders keeps moving. While paused, it settles visibly.
             let waits = self.preroll.is_some() || self.settling_pending;
             if laid || waits || (other_hair && !self.playback.is_playing()) {

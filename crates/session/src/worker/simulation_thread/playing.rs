@@ -5,6 +5,10 @@ use super::SimulationThread;
 
 impl SimulationThread {
     pub(super) fn step(&mut self) {
+        if self.still {
+            self.step_at_rest();
+            return;
+        }
         if let Some(engine) = &mut self.engine {
             if self.playback.shows_between() {
                 self.last_steps.step(engine);
@@ -14,6 +18,31 @@ impl SimulationThread {
             }
             self.record_step();
         }
+    }
+
+    /// A step of the body alone. While the hair is brushed, time stands still.
+    fn step_at_rest(&mut self) {
+        if let Some(engine) = &mut self.engine
+            && !self.brushing.is_open()
+        {
+            self.last_steps.forget();
+            engine.step_at_rest();
+            self.record_step();
+        }
+    }
+
+    /// Switches the simulation off or on. Returns whether the hair has changed.
+    pub(super) fn set_still(&mut self, still: Option<bool>) -> bool {
+        let Some(still) = still.filter(|still| *still != self.still) else { return false };
+        self.still = still;
+        let Some(engine) = &mut self.engine else { return false };
+        if still {
+            (self.preroll, self.settling_pending) = (None, false);
+            engine.lay_at_rest();
+        } else {
+            self.begin_preroll();
+        }
+        true
     }
 
     /// Shows the last step. The next image continues from it.

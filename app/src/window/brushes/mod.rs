@@ -1,0 +1,74 @@
+//! Brushes: combing the hair that is seen, while it dances.
+
+mod bar;
+mod circle;
+mod keys;
+mod panel;
+mod pick;
+mod pointer;
+mod strokes;
+
+use std::collections::BTreeMap;
+
+use lovelock_base::settings::{Choices as _, Settings as _};
+use lovelock_brush::{BrushSettings, Tool};
+use serde::{Deserialize, Serialize};
+
+pub(crate) use panel::ui;
+use pointer::Held;
+use strokes::Strokes;
+
+/// What of the brushes is stored between runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(crate) struct Kept {
+    /// The settings of tools by their ids; those of the others are the defaults.
+    settings: BTreeMap<String, BrushSettings>,
+}
+
+impl Kept {
+    /// The settings of a tool.
+    pub(crate) fn of(&self, tool: Tool) -> BrushSettings {
+        self.settings.get(tool.names().0).cloned().unwrap_or_default().clamped()
+    }
+
+    fn set(&mut self, tool: Tool, settings: BrushSettings) {
+        self.settings.insert(tool.names().0.to_owned(), settings);
+    }
+}
+
+/// The brushes of the window.
+#[derive(Default)]
+pub(crate) struct Brushes {
+    /// Whether the pointer brushes hair instead of moving the camera.
+    pub(crate) on: bool,
+    /// The tool.
+    pub(crate) tool: Tool,
+    /// Whether the hair is shown at rest, without its simulation.
+    pub(crate) still: bool,
+    sent_still: bool,
+    held: Option<Held>,
+    resize: Option<keys::Resize>,
+    strokes: Strokes,
+}
+
+impl Brushes {
+    /// Makes the brush larger or smaller.
+    pub(crate) fn scale_radius(&self, factor: f32, kept: &mut Kept) {
+        let settings = kept.of(self.tool);
+        kept.set(self.tool, BrushSettings { radius: settings.radius * factor, ..settings }.clamped());
+    }
+
+    /// Tells the simulation whether the hair is shown at rest.
+    pub(crate) fn send(&mut self, worker: &lovelock_session::worker::Worker) {
+        if self.still != self.sent_still {
+            self.sent_still = self.still;
+            worker.set_still(self.still);
+        }
+    }
+
+    /// Forgets which locks are protected.
+    pub(crate) fn forget_frozen(&mut self) {
+        self.strokes.frozen = std::sync::Arc::default();
+    }
+}

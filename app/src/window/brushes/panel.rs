@@ -1,0 +1,94 @@
+//! The settings of the brush, in the panel and in its menu.
+
+use egui::{RichText, Ui};
+use egui_material_icons::icons::{ICON_AC_UNIT, ICON_BRUSH, ICON_PAUSE};
+use lovelock_base::settings::Choices as _;
+use lovelock_brush::{BrushSettings, Tool};
+
+use super::{Brushes, Kept};
+use crate::window::control::{curve, note, restore_all, section, settings};
+
+/// What the panel asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BrushRequest {
+    /// Free all protected locks.
+    Thaw,
+}
+
+/// The switches of brushes and the settings of the tool.
+pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<BrushRequest> {
+    let mut request = None;
+    ui.horizontal_wrapped(|ui| {
+        let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: &mut bool, tip: &str| {
+            let response = ui.add(egui::Button::selectable(*on, (icon.rich_text(), name)));
+            response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, *on, name));
+            if response.on_hover_text(tip).clicked() {
+                *on = !*on;
+            }
+        };
+        let tip = "Brushes the hair with the pointer, also while it dances. Beside the hair, the pointer moves the camera. Key: H";
+        toggle(ICON_BRUSH, "Brush", &mut brushes.on, tip);
+        let tip = "Shows the hairstyle without its simulation. Pause (Space) instead to brush one pose of the moving hair.";
+        toggle(ICON_PAUSE, "No physics", &mut brushes.still, tip);
+        if brushes.strokes.frozen.contains(&true) {
+            let thaw = ui.button((ICON_AC_UNIT.rich_text(), "Unfreeze all"));
+            if thaw.on_hover_text("Lets brushes touch every lock again.").clicked() {
+                request = Some(BrushRequest::Thaw);
+            }
+        }
+    });
+    egui::ComboBox::from_id_salt("tool")
+        .selected_text(brushes.tool.names().1)
+        .width(ui.available_width() - 8.0)
+        .show_ui(ui, |ui| {
+            for tool in Tool::ALL {
+                ui.selectable_value(&mut brushes.tool, *tool, tool.names().1);
+            }
+        });
+    note(ui, brushes.tool.text());
+    tool_settings(ui, brushes.tool, kept);
+    note(ui, "Strokes are written into the selected layer *By hand*, or into the last one.".replace('*', ""));
+    request
+}
+
+/// The settings of a tool.
+pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
+    let default = BrushSettings::default();
+    let before = kept.of(tool);
+    let mut now = before.clone();
+    settings(ui, &["radius", "strength", "share", "mirror", "front_only"], &mut now, &default);
+    match tool {
+        Tool::Comb | Tool::Attract | Tool::Place | Tool::Part => {
+            settings(ui, &["keep_lengths"], &mut now, &default)
+        }
+        Tool::Curl => settings(ui, &["curl_radius", "curl_pitch"], &mut now, &default),
+        _ => {}
+    }
+    section(ui, "Falloff", false, |ui| {
+        let tip =
+            "Strength by the distance from the centre of the brush: left is the centre, right its edge.";
+        curve(ui, "From the centre", tip, &mut now.falloff, &default.falloff);
+        let tip = "Strength along the hair: left is the root, right the tip.";
+        curve(ui, "Root to tip", tip, &mut now.along, &default.along);
+    });
+    restore_all(ui, "Defaults", "Restores every setting of this tool.", &mut now, &default);
+    if now != before {
+        kept.set(tool, now);
+    }
+}
+
+impl Brushes {
+    /// The menu of the brush, opened by a right click on the image.
+    pub(in crate::window) fn menu(&mut self, response: &egui::Response, kept: &mut Kept) {
+        if !self.on {
+            return;
+        }
+        let config = egui::containers::menu::MenuConfig::new()
+            .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+        egui::Popup::context_menu(response).close_behavior(config.close_behavior).show(|ui| {
+            ui.set_width(260.0);
+            ui.label(RichText::new(self.tool.names().1).strong());
+            tool_settings(ui, self.tool, kept);
+        });
+    }
+}

@@ -1,0 +1,117 @@
+//! What strokes did, written into the layer of the style.
+
+use std::sync::Arc;
+
+use lovelock_base::settings::Choices as _;
+use lovelock_brush::{BrushSettings, StrokeSample, Tool};
+use lovelock_project::Project;
+use lovelock_project::history::GestureId;
+use lovelock_session::strokes::{Brushed, StrokeStart};
+use lovelock_style::hand::HandEdits;
+use lovelock_style::operations::Hand;
+use lovelock_style::{Layer, Operation};
+
+use crate::window::Window;
+
+/// Strokes whose results have not all arrived.
+#[derive(Debug, Default)]
+pub(super) struct Strokes {
+    last: u64,
+    open: Vec<Open>,
+    /// Which guides are protected.
+    pub(super) frozen: Arc<[bool]>,
+}
+
+#[derive(Debug)]
+struct Open {
+    id: u64,
+    layer: u32,
+    /// The undo step of the stroke.
+    gesture: GestureId,
+    label: String,
+    /// The layer as the stroke left it: it ends when something else changes that, such as an undo.
+    left: HandEdits,
+}
+
+/// The layer that brushes write to: the selected one if it is one of theirs, otherwise the last of them, otherwise a new one at the end of
+/// the list. `None` if there are too many layers.
+pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<u32> {
+    let stack = &mut project.hair.stack;
+    let is_hand = |layer: &&Layer| matches!(layer.operation, Operation::Hand(_));
+    let chosen = selected.and_then(|id| stack.layer(id)).filter(is_hand);
+    let found = chosen.or_else(|| stack.layers.iter().rev().find(is_hand)).map(|layer| layer.id);
+    found.or_else(|| stack.push(Layer::of(Hand::default())))
+}
+
+/// What brushes did in a layer; `None` if it is none of theirs.
+pub(super) fn edits_of(project: &Project, layer: u32) -> Option<&HandEdits> {
+    match &project.hair.stack.layer(layer)?.operation {
+        Operation::Hand(hand) => Some(&hand.edits),
+        _ => None,
+    }
+}
+
+impl Window {
+    /// Begins a stroke in a layer; returns its number.
+    pub(super) fn begin_stroke(
+        &mut self,
+        project: &Project,
+        layer: u32,
+        (tool, inverted): (Tool, bool),
+        settings: BrushSettings,
+    ) -> u64 {
+        // Each stroke is an undo step of its own, however soon it follows the last one.
+        self.gestures.next();
+        let strokes = &mut self.brushes.strokes;
+        let left = edits_of(project, layer).cloned().unwrap_or_default();
+        // What an earlier stroke did may still be on its way: the simulation has it already.
+        let goes_on = strokes.open.iter().any(|open| open.layer == layer);
+        strokes.last += 1;
+        let id = strokes.last;
+        let edits = (!goes_on).then(|| left.clone());
+        let label = tool.names().1.to_lowercase();
+        strokes.open.push(Open { id, layer, gesture: self.gestures.id(), label, left });
+        self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits });
+        id
+    }
+
+    /// Moves the brush of a stroke.
+    pub(super) fn go_on_with_stroke(&self, id: u64, samples: Vec<StrokeSample>) {
+        self.session.worker().stroke_to(id, samples);
+    }
+
+    /// Writes what the simulation has made of strokes into the project.
+    pub(in crate::window) fn take_brushed(&mut self) {
+        for brushed in std::mem::take(&mut self.session.brushed) {
+            self.write_brushed(brushed);
+        }
+    }
+
+    fn write_brushed(&mut self, brushed: Brushed) {
+        let strokes = &mut self.brushes.strokes;
+        if let Some(frozen) = brushed.frozen {
+            strokes.frozen = frozen;
+        }
+        let Some(at) = strokes.open.iter().position(|open| open.id == brushed.stroke) else { return };
+        let now = edits_of(self.history.project(), brushed.layer);
+        if now != Some(&strokes.open[at].left) {
+            // An undo or another edit: what the stroke does from now on is lost with it.
+            self.session.worker().cancel_strokes();
+            self.brushes.strokes.open.clear();
+            self.brushes.held = None;
+            return;
+        }
+        let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].label.clone());
+        for open in &mut strokes.open {
+            open.left = brushed.edits.clone();
+        }
+        if brushed.ended {
+            strokes.open.remove(at);
+        }
+        let mut project = (**self.history.project()).clone();
+        if let Some(layer) = project.hair.stack.layer_mut(brushed.layer) {
+            layer.operation = Operation::Hand(Hand { edits: brushed.edits });
+        }
+        self.history.edit(&label, Some(gesture), project);
+    }
+}

@@ -1,0 +1,1 @@
+//! Strokes on moving hair.
