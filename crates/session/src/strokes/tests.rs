@@ -1,1 +1,157 @@
-//! Strokes on moving hair.
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_brush::{BrushSettings, StrokeSample, Tool};
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_style::operations::{Hand, Wave};
+use lovelock_style::{Layer, Operation};
+
+use super::*;
+use crate::scene::SceneLoader;
+use crate::snapshot::FrameSnapshot;
+use crate::testing::{farthest, small_project};
+
+/// A project with a wave, and with a layer of brushes above it, whose number is 2.
+fn brushed() -> Project {
+    let mut project = small_project();
+    project.hair.stack.push(Layer::of(Wave::default()));
+    project.hair.stack.push(Layer::of(Hand::default()));
+    project
+}
+
+fn with_edits(project: &Project, edits: HandEdits) -> Project {
+    let mut project = project.clone();
+    project.hair.stack.layers[1].operation = Operation::Hand(Hand { edits });
+    project
+}
+
+/// A stroke outward from the left side of the hair, in the space of the head.
+fn samples(engine: &Engine) -> Vec<StrokeSample> {
+    let guides = &engine.current_scene().style.guides;
+    let far = (0..guides.count()).map(|guide| guides.point(guide, guides.points_per_guide / 2));
+    let start = far.max_by(|a, b| a.x.total_cmp(&b.x)).expect("hair");
+    let step = Vec3::new(0.004, 0.0, 0.004);
+    let at = |i: usize| StrokeSample {
+        position: start + step * i as f32,
+        view: Vec3::NEG_X,
+        drag: if i == 0 { Vec3::ZERO } else { step },
+        pressure: 1.0,
+        time_secs: 0.0,
+    };
+    (0..12).map(at).collect()
+}
+
+fn start(tool: Tool) -> StrokeStart {
+    let settings =
+        BrushSettings { radius: 0.08, strength: 1.0, front_only: false, ..BrushSettings::default() };
+    StrokeStart { id: 1, layer: 2, tool, inverted: false, settings, edits: None }
+}
+
+fn snapshot(engine: &mut Engine) -> FrameSnapshot {
+    FrameSnapshot::clone(&engine.snapshot())
+}
+
+/// Combs the hair of an engine, and loads the project with what that did.
+fn comb(engine: &mut Engine, loader: &mut SceneLoader, project: &Project, tool: Tool) -> Project {
+    let mut below = HairBelow::default();
+    let mut stroke =
+        Stroke::begin(engine, &start(tool), HandEdits::default(), &[], &mut below).expect("a stroke");
+    for sample in samples(engine) {
+        stroke.stroke_to(engine, &sample);
+    }
+    let project = with_edits(project, stroke.edits());
+    let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+    assert!(!engine.set_scene(scene), "the hair goes on");
+    project
+}
+
+#[test]
+fn hair_that_is_combed_at_rest_is_the_hair_of_the_layer() {
+    let mut loader = SceneLoader::new();
+    let project = brushed();
+    let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+    let mut engine = Engine::at_rest(scene, project.simulation, crate::clock::STEP_SECS);
+    let before = snapshot(&mut engine);
+    comb(&mut engine, &mut loader, &project, Tool::Comb);
+    let after = snapshot(&mut engine);
+    let moved = farthest(&before, &after);
+    engine.lay_at_rest();
+    let rest = snapshot(&mut engine);
+    let off = farthest(&after, &rest);
+    println!("combed by {moved} m; the layer differs by {off} m");
+    assert!(moved > 0.02 && off < 0.002, "{moved}, {off}");
+}
+
+#[test]
+fn hair_that_is_combed_in_motion_goes_on_without_a_jump() {
+    let mut loader = SceneLoader::new();
+    let project = brushed();
+    let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+    // The largest movement in a step, over half a second.
+    let fastest = |engine: &mut Engine| {
+        let mut last = snapshot(engine);
+        (0..30).fold(0.0_f32, |most, _| {
+            engine.step();
+            let now = snapshot(engine);
+            let moved = farthest(&last, &now);
+            last = now;
+            most.max(moved)
+        })
+    };
+    let engine = || {
+        let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+        engine.advance_to_step(90);
+        engine
+    };
+    let still = fastest(&mut engine());
+    let mut combed = engine();
+    let before = snapshot(&mut combed);
+    let of = comb(&mut combed, &mut loader, &project, Tool::Comb);
+    let moved = farthest(&before, &snapshot(&mut combed));
+    let going_on = fastest(&mut combed);
+    // Control: the same hairstyle, taken at once.
+    let mut other = engine();
+    let loaded = loader.load_now(&of, &Access::new()).expect("a scene").0;
+    other.set_scene(loaded);
+    let at_once = farthest(&before, &snapshot(&mut other));
+    println!("combed by {moved} m; {going_on} m a step after it, {still} m without; at once {at_once} m");
+    assert!(moved > 0.02 && going_on < 1.5 * still, "{moved}, {going_on}, {still}");
+    assert!(combed.totals().recovered_guides == 0 && combed.totals().max_stretch < 1e-3);
+}
+
+#[test]
+fn every_tool_acts_or_protects() {
+    use lovelock_base::settings::Choices as _;
+    let project = brushed();
+    let scene = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene").0;
+    let mut below = HairBelow::default();
+    for tool in Tool::ALL {
+        let mut engine = Engine::at_rest(Arc::clone(&scene), project.simulation, crate::clock::STEP_SECS);
+        let mut stroke =
+            Stroke::begin(&engine, &start(*tool), HandEdits::default(), &[], &mut below).expect("a stroke");
+        for sample in samples(&engine) {
+            stroke.stroke_to(&mut engine, &sample);
+        }
+        let acts =
+            if *tool == Tool::Freeze { stroke.frozen().contains(&true) } else { !stroke.edits().is_empty() };
+        assert!(acts, "{tool:?}");
+    }
+}
+
+#[test]
+fn layers_that_are_not_there_and_hair_between_styles_cannot_be_brushed() {
+    let mut project = brushed();
+    let mut below = HairBelow::default();
+    let mut begin = |project: &Project, layer: u32| {
+        let scene = SceneLoader::new().load_now(project, &Access::new()).expect("a scene").0;
+        let engine = Engine::at_rest(scene, project.simulation, crate::clock::STEP_SECS);
+        let start = StrokeStart { layer, ..start(Tool::Comb) };
+        Stroke::begin(&engine, &start, HandEdits::default(), &[], &mut below).is_some()
+    };
+    assert_eq!([1, 2, 3].map(|layer| begin(&project, layer)), [false, true, false]);
+    let mut other = small_project();
+    other.hair.groom.wisps = 20;
+    project.start_morph(&lovelock_project::styles::Style::of_project(&other));
+    assert!(!begin(&project, 2));
+}

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use lovelock_project::files::Access;
+use lovelock_style::hand::HandEdits;
 
 use super::*;
 use crate::engine::Engine;
@@ -310,4 +311,80 @@ fn a_dragged_slider_shows_intermediate_hair() {
         (lengths.len() == 3).then_some(())
     });
     assert!(lengths.is_sorted() && lengths[0] < lengths[2], "each is newer than the one before: {lengths:?}");
+}
+
+/// The next report of a brush.
+fn brushed(worker: &Worker) -> Brushed {
+    wait("a brush", || match worker.poll_event() {
+        Some(Event::Brushed(brushed)) => Some(brushed),
+        _ => None,
+    })
+}
+
+#[test]
+fn strokes_wait_for_their_layer_and_report_what_they_do() {
+    use lovelock_brush::{BrushSettings, Tool};
+    use lovelock_style::operations::Hand;
+    use lovelock_style::{Layer, Operation};
+
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    worker.seek(0.0);
+    let frame = settled_at(&worker, 0.0);
+    let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+    let settings = BrushSettings { radius: 0.08, front_only: false, ..BrushSettings::default() };
+    let begin = |id, edits| StrokeStart {
+        id,
+        layer,
+        tool: Tool::Comb,
+        inverted: false,
+        settings: settings.clone(),
+        edits,
+    };
+    let tip = frame.scene.style.guides.point(0, frame.scene.style.guides.points_per_guide - 1);
+    let sample = |i: u8| StrokeSample {
+        position: tip + glam::Vec3::Z * 0.01 * f32::from(i),
+        view: glam::Vec3::NEG_Z,
+        drag: glam::Vec3::Z * 0.01 * f32::from(i.min(1)),
+        pressure: 1.0,
+        time_secs: 0.0,
+    };
+    worker.begin_stroke(begin(1, Some(HandEdits::default())));
+    worker.stroke_to(1, (0..6).map(sample).collect());
+    worker.end_stroke(1);
+    // The layer comes after the stroke.
+    worker.set_project(Arc::new(project.clone()), Access::new());
+    let first = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(!first.edits.is_empty() && first.stroke == 1);
+    // The next goes on from there, although the project does not have it yet.
+    worker.begin_stroke(begin(2, None));
+    worker.stroke_to(2, (0..6).map(sample).collect());
+    worker.end_stroke(2);
+    let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(second.edits != first.edits && second.edits.count() >= first.edits.count());
+    // Paused hair that was brushed stays as it was left.
+    let left = worker.frame().expect("a frame");
+    project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: second.edits.clone() });
+    worker.set_project(Arc::new(project), Access::new());
+    let now = wait("the layer's hair", || {
+        worker.frame().filter(|frame| match &frame.scene.source.stack.layers[..] {
+            [layer] => matches!(&layer.operation, Operation::Hand(hand) if hand.edits == second.edits),
+            _ => false,
+        })
+    });
+    assert!(crate::testing::farthest(&left, &now) < 1e-4);
+    assert_eq!(worker.settling(), None);
+    // Without physics, the hair is that of the layer.
+    worker.set_still(true);
+    wait("the hair at rest", || worker.frame().filter(|frame| !Arc::ptr_eq(frame, &now)));
+    let style = &now.scene.style;
+    let rest = worker.frame().expect("a frame");
+    let guide = (0..style.guides.count()).map(|guide| {
+        let last = style.guides.points_per_guide - 1;
+        let wanted = rest.guides.world_from_head.transform_point3(style.guides.point(guide, last));
+        wanted.distance(rest.guides.guides.point(guide, last))
+    });
+    assert!(guide.fold(0.0, f32::max) < 1e-3);
 }
