@@ -74,6 +74,9 @@ pub(crate) struct SourceArguments {
     /// `lovelock presets` lists all.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,
+    /// Second hairstyle that the hair turns into, named as by --preset. `--set hair.morph.amount=0.5` or a track sets how far.
+    #[arg(long, value_name = "ID")]
+    pub(crate) morph: Option<String>,
     /// Hair file to use instead of the project's hairstyle.
     #[arg(long, value_name = "FILE")]
     pub(crate) hair: Option<PathBuf>,

@@ -68,6 +68,14 @@ impl Source {
             project.apply_style(&listed.style, StyleParts::ALL);
             names.push(id.clone());
         }
+        if let Some(id) = &task.morph {
+            let listed = style_named(id)?;
+            if let Some(file) = &listed.style.hair.file {
+                access.pick(&file.path);
+            }
+            project.start_morph(&listed.style);
+            names.push(format!("to {id}"));
+        }
         let places = [
             (Place::Hair, &task.hair),
             (Place::Body, &task.body),
@@ -175,6 +183,9 @@ fn allow(
     };
     if task.preset.is_some() {
         return Err(refused("--preset"));
+    }
+    if task.morph.is_some() {
+        return Err(refused("--morph"));
     }
     let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
     for (option, named, own) in [

@@ -152,6 +152,8 @@ pub(crate) struct Window {
     styles: styles::Browser,
     /// The project with the style that is shown and not applied.
     preview: Option<styles::Preview>,
+    /// The project that is seen, and the same with the colours of its morph.
+    morphed: Option<(Arc<Project>, Arc<Project>)>,
     /// The style that is exported, while its path is asked for.
     exported: Option<Box<lovelock_project::styles::Style>>,
     /// The project at the current time, with the project and the time from which it was computed.
@@ -260,6 +262,7 @@ impl Window {
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
             styles: styles::Browser::default(),
             preview: None,
+            morphed: None,
             exported: None,
             display: Display::new(device, textures),
             seen: None,

@@ -84,6 +84,11 @@ impl Window {
 
     /// Cuts the hair beyond a line on the screen, as it is in the image.
     fn cut(&mut self, view: View, painted: &RenderedImage, line: [egui::Pos2; 2], project: &mut Project) {
+        if project.hair.morph.to.is_some() {
+            let why =
+                "Hair between two styles cannot be cut. End the morph first, or become the second style.";
+            return self.notices.push(notices::Kind::Warning, why.to_owned());
+        }
         match overlay::scissors::cut(view, &painted.snapshot, line) {
             Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
             None => self.notices.push(notices::Kind::Warning, "The line crosses no hair.".to_owned()),

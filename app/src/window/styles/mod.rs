@@ -1,6 +1,7 @@
 //! The browser of hairstyles: a grid of pictures from which a style is applied, wholly or in part, and the user's own styles.
 
 mod dialogs;
+mod morph;
 mod panel;
 mod shelf;
 #[cfg(test)]

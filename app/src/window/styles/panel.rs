@@ -21,6 +21,7 @@ const TALL: f32 = 330.0;
 /// What is done to a style from its tile.
 enum Action {
     Apply(StyleParts),
+    Morph,
     Favourite,
     Export,
     Rename,
@@ -43,6 +44,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
             browser.dialog = Some(Dialog::Save { style: Box::new(style), name: String::new() });
         }
     });
+    super::morph::ui(ui, project);
     parts(ui, &mut browser.parts);
     chips(ui, browser);
     grid(ui, project, browser, kept);
@@ -161,6 +163,7 @@ fn one(
             ("Apply shape", Action::Apply(StyleParts::SHAPE)),
             ("Apply colour", Action::Apply(StyleParts::COLOUR)),
             ("Apply motion", Action::Apply(StyleParts::MOTION)),
+            ("Morph to this style", Action::Morph),
             (name, Action::Favourite),
             ("Export…", Action::Export),
         ];
@@ -215,6 +218,11 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
     match *action {
         Action::Apply(parts) => {
             project.apply_style(&entry.style, parts);
+            browser.clicked = Some(entry.id.clone());
+            browser.preview = None;
+        }
+        Action::Morph => {
+            project.start_morph(&entry.style);
             browser.clicked = Some(entry.id.clone());
             browser.preview = None;
         }

@@ -236,3 +236,45 @@ fn tiles_say_what_they_are() {
     let said = tooltip_at(&mut harness, at).expect("a tooltip");
     assert!(said.contains("Red curls to the shoulders."), "{said}");
 }
+
+#[test]
+fn the_menu_starts_a_morph_whose_slider_mixes_and_whose_buttons_end_it() {
+    let mut harness = shelf(None);
+    let before = project(&harness);
+    let start = |harness: &mut Shelf| {
+        let at = tile(harness, "Red curls");
+        harness.hover_at(at);
+        harness.run();
+        for pressed in [true, false] {
+            harness.event(egui::Event::PointerButton {
+                pos: at,
+                button: PointerButton::Secondary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+            harness.run();
+        }
+        control(harness, Role::Button, "Morph to this style").click();
+        harness.run();
+        harness.remove_cursor();
+        harness.run();
+    };
+    start(&mut harness);
+    let mut wanted = before.clone();
+    wanted.start_morph(&shipped::by_id("curly").expect("shipped").style);
+    assert_eq!(project(&harness), wanted);
+    assert!(harness.query_by_label_contains("Turns into Red curls").is_some());
+    let slider = control(&harness, Role::Slider, "Morph").rect();
+    click(&mut harness, slider.left_center() + egui::vec2(0.5 * slider.width(), 0.0));
+    let amount = project(&harness).hair.morph.amount;
+    assert!((0.3..0.7).contains(&amount), "{amount}");
+    control(&harness, Role::Button, "End morph").click();
+    harness.run();
+    assert_eq!(project(&harness), before);
+    start(&mut harness);
+    control(&harness, Role::Button, "Become Red curls").click();
+    harness.run();
+    wanted = before;
+    wanted.apply_style(&shipped::by_id("curly").expect("shipped").style, StyleParts::ALL);
+    assert_eq!(project(&harness), wanted);
+}

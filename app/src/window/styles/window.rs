@@ -21,8 +21,25 @@ pub(crate) struct Preview {
 }
 
 impl Window {
-    /// The project that is simulated, and the one at the current time that is drawn: with the style on whose tile the pointer rests.
+    /// The project that is simulated, and the one at the current time that is drawn: with the style on whose tile the pointer rests,
+    /// and with the colours of the morph.
     pub(in crate::window) fn shown(&mut self) -> (Arc<Project>, Arc<Project>) {
+        let (shown, seen) = self.previewed();
+        let Some(look) = seen.morphed_look() else {
+            self.morphed = None;
+            return (shown, seen);
+        };
+        // The same allocation as long as nothing changes, so that nothing is drawn again.
+        let known = self.morphed.take().filter(|(of, _)| Arc::ptr_eq(of, &seen));
+        let (_, drawn) = self.morphed.insert(known.unwrap_or_else(|| {
+            let drawn = Arc::new(Project { look, ..(*seen).clone() });
+            (seen, drawn)
+        }));
+        (shown, Arc::clone(drawn))
+    }
+
+    /// The project with the style on whose tile the pointer rests, and the same at the current time.
+    fn previewed(&mut self) -> (Arc<Project>, Arc<Project>) {
         let of = Arc::clone(self.history.project());
         let Some((id, style, parts)) = self.styles.preview() else {
             self.preview = None;

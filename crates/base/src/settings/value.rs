@@ -42,6 +42,18 @@ impl Value {
             _ => None,
         }
     }
+
+    /// The value between this and `other`, of the same type: numbers are mixed, and of what is not a number the nearer one is taken.
+    #[must_use]
+    pub fn between(&self, other: &Self, amount: f64) -> Self {
+        let nearer = if amount < 0.5 { *self } else { *other };
+        if amount <= 0.0 || amount >= 1.0 {
+            return nearer;
+        }
+        let (a, b) = (self.numbers(), other.numbers());
+        let mixed: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a * (1.0 - amount) + b * amount).collect();
+        self.with_numbers(&mixed).filter(|_| a.len() == b.len()).unwrap_or(nearer)
+    }
 }
 
 /// A type that a setting may have.

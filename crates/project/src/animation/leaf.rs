@@ -8,13 +8,14 @@ use lovelock_base::settings::{AnySettings, entries, find, set_value};
 use crate::project::Project;
 
 /// Parts of the project whose numbers may follow the timeline: what is rendered or simulated without loading anything. Of the section
-/// `hair` these are only the layers, see [`is_keyable`].
+/// `hair` these are only the layers and the morph, see [`is_keyable`].
 const SECTIONS: [&str; 7] = ["hair", "look", "simulation", "shadow", "lights", "camera", "picture"];
 
 /// Whether the number at a path may follow the timeline. Growing, importing, cutting and tying load the hair again.
 fn is_keyable(path: &str) -> bool {
     let section = path.split('.').next().unwrap_or_default();
-    SECTIONS.contains(&section) && (section != "hair" || path.starts_with("hair.stack."))
+    SECTIONS.contains(&section)
+        && (section != "hair" || path.starts_with("hair.stack.") || path == "hair.morph.amount")
 }
 
 /// The path of a track's target among the project's settings: tracks divide names by slashes.
@@ -106,6 +107,7 @@ pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64
 /// Whether any of [`SECTIONS`] differs.
 fn sections_differ(a: &Project, b: &Project) -> bool {
     a.hair.stack != b.hair.stack
+        || a.hair.morph.amount.to_bits() != b.hair.morph.amount.to_bits()
         || a.look != b.look
         || a.simulation != b.simulation
         || a.shadow != b.shadow

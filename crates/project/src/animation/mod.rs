@@ -10,7 +10,7 @@ mod style;
 
 pub use animate::Animation;
 pub use overdub::{Moment, Overdub};
-pub use style::StyleTracks;
+pub use style::{StyleTracks, StyleValues};
 
 #[cfg(test)]
 mod ride_tests;

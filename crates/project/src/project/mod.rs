@@ -7,6 +7,7 @@
 mod contender;
 mod file;
 mod generic;
+mod morph;
 mod sanitise;
 mod sections;
 mod settings;
@@ -21,6 +22,7 @@ pub use file::{
     text_of_project,
 };
 pub(crate) use file::{parse_text, read_text, text_options};
+pub use morph::{HairMorph, MorphStyle};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, KeptScalp,
     Marker, MotionSection, MotionSource, RecordingSection, SurroundingsSection, TakeSection, TimelineSection,
@@ -143,6 +145,8 @@ impl Project {
         let motion =
             (self.motion.source == MotionSource::File).then_some(self.motion.file.as_ref()).flatten();
         let hair = (self.hair.source == HairSource::File).then_some(self.hair.file.as_ref()).flatten();
+        let morph = self.hair.morph.to.as_ref().map(|to| &to.hair);
+        let other = morph.filter(|hair| hair.source == HairSource::File).and_then(|hair| hair.file.as_ref());
         let surroundings = (crate::error::Place::Surroundings, self.surroundings.file.as_ref());
         let take = self.take.file.as_ref();
         if take.is_some() {
@@ -154,6 +158,7 @@ impl Project {
             (crate::error::Place::Body, body),
             (crate::error::Place::Motion, motion),
             (crate::error::Place::Hair, hair),
+            (crate::error::Place::Hair, other),
             surroundings,
         ]
         .into_iter()
@@ -165,9 +170,11 @@ impl Project {
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
         let own = [&mut body.file, &mut motion.file, &mut hair.file, &mut surroundings.file];
+        let other = hair.morph.to.as_mut().map(|to| &mut to.hair.file);
         let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
             .chain(scalps)
+            .chain(other)
             .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()

@@ -11,6 +11,7 @@ use lovelock_style::{Layer, StyleStack};
 use serde::{Deserialize, Serialize};
 
 use super::contender::Contender;
+use super::morph::HairMorph;
 use crate::files::FileRef;
 use crate::tracks::Track;
 
@@ -170,6 +171,8 @@ pub struct HairSection {
     pub stack: StyleStack,
     /// What was cut off while it moved; made by [`Haircut::of`] from an instant, and added up by [`Haircut::and`].
     pub cut: Haircut,
+    /// A second style that the hair turns into.
+    pub morph: HairMorph,
 }
 
 impl Default for HairSection {
@@ -185,6 +188,7 @@ impl Default for HairSection {
             ties: Vec::new(),
             stack: StyleStack::default(),
             cut: Haircut::default(),
+            morph: HairMorph::default(),
         }
     }
 }

@@ -220,6 +220,7 @@ impl Settings for HairSection {
         let mut parts: Vec<Part<'_>> = vec![("groom".into(), &self.groom), ("import".into(), &self.import)];
         parts.extend(list("ties", &self.ties));
         parts.push(("stack".into(), &self.stack));
+        parts.push(("morph".into(), &self.morph));
         parts
     }
 
@@ -228,6 +229,7 @@ impl Settings for HairSection {
             vec![("groom".into(), &mut self.groom), ("import".into(), &mut self.import)];
         parts.extend(list_mut("ties", &mut self.ties));
         parts.push(("stack".into(), &mut self.stack));
+        parts.push(("morph".into(), &mut self.morph));
         parts
     }
 

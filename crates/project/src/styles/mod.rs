@@ -9,14 +9,18 @@
 mod apply;
 mod document;
 mod mix;
+mod morph;
 mod motion;
 mod own;
 pub mod shipped;
 
 pub use document::{STYLE_EXTENSION, Style};
 pub use mix::StyleParts;
+pub(crate) use morph::MovesMix;
 pub use own::{OwnStyle, OwnStyles, own_id};
 pub use shipped::{Shipped, shipped, unknown_style};
 
+#[cfg(test)]
+mod morph_tests;
 #[cfg(test)]
 mod tests;

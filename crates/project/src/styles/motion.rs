@@ -4,7 +4,8 @@ use lovelock_simulation::SimulationSettings;
 use serde_json::{Map, Value};
 
 /// The settings of the world and of the method, which no style changes.
-const WORLD: [&str; 6] = ["gravity", "wind", "substeps", "integrator", "relaxation_sweeps", "follow_damping"];
+pub(super) const WORLD: [&str; 6] =
+    ["gravity", "wind", "substeps", "integrator", "relaxation_sweeps", "follow_damping"];
 
 /// The settings with those of the world and of the method at their defaults.
 pub(super) fn own(settings: &SimulationSettings) -> SimulationSettings {

@@ -5,4 +5,4 @@
 pub(crate) mod curve;
 mod section;
 
-pub use section::{Key, STACK_TARGET, Track};
+pub use section::{Key, MORPH_TARGET, STACK_TARGET, Track};

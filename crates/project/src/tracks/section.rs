@@ -7,6 +7,8 @@ use super::curve;
 
 /// What targets of tracks begin with that are numbers of layers of the hairstyle.
 pub const STACK_TARGET: &str = "hair/stack/";
+/// The target of the amount of the morph.
+pub const MORPH_TARGET: &str = "hair/morph/amount";
 
 /// The value of a track at a time. A track is linear between keys and constant before the first and after the last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -66,6 +68,9 @@ impl Track {
 
     /// The label in the interface, with the name of the layer where it is a number of one: `Curl radius` for `hair/stack/3/curl/radius`.
     pub fn label_in(&self, stack: &StyleStack) -> String {
+        if self.target == MORPH_TARGET {
+            return "Morph".to_owned();
+        }
         let Some(below) = self.target.strip_prefix(STACK_TARGET) else { return self.label() };
         let mut parts: Vec<&str> = below.split('/').collect();
         let of = parts.remove(0);

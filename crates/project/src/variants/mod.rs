@@ -141,11 +141,7 @@ pub fn breed(a: &Project, b: &Project, seed: u32) -> Project {
             u if u < 0.7 => 1.0,
             _ => f64::from(random.unit()),
         };
-        let (x, y) = (entry.value.numbers(), other.numbers());
-        let mixed: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x * (1.0 - part) + y * part).collect();
-        if let Some(value) = entry.value.with_numbers(&mixed).filter(|_| x.len() == y.len()) {
-            set_value(&mut out, &entry.path, value);
-        }
+        set_value(&mut out, &entry.path, entry.value.between(other, part));
     }
     out.hair.clamp();
     out.look.clamp();

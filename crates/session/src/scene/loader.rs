@@ -3,16 +3,17 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lovelock_groom::Obstacle;
 use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
+use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_style::StyleCache;
 
-use super::hair_part::{HairFileCache, HairKey, HairPart};
+use super::hair_slot::HairSlot;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
+use super::styling::{MorphCache, MorphSource};
 use super::{Scene, StyleSource, SurroundingsLoader};
 
 /// Progress and cancellation of a load.
@@ -51,11 +52,11 @@ pub struct SceneLoader {
     body: Option<Kept<BodyKey, BodyPart>>,
     motion: Option<Kept<MotionKey, MotionPart>>,
     scalp: Option<Kept<ScalpFit, ScalpPart>>,
-    hair: Option<Kept<HairKey, HairPart, ScalpPart>>,
+    hair: HairSlot,
+    /// The second style of the morph.
+    other_hair: HairSlot,
+    morph: MorphCache,
     enlarged: Enlarged,
-    hair_file: HairFileCache,
-    cut_and_ties: StyleCache,
-    layers: StyleCache,
     surroundings: SurroundingsLoader,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
     colliders: Option<(Arc<BodyPart>, ColliderEdits, ColliderLists)>,
@@ -100,22 +101,15 @@ impl SceneLoader {
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("creating the hair", 0.5)?;
         let scalp = self.scalp(&body, &project.body.scalp);
-        let hair = self.hair(&project, access, &scalp, &mut problems);
-        let obstacle = Arc::clone(&scalp.obstacle);
-        let tied = self.cut_and_ties.apply(&hair.style, &project.hair.cut_and_ties(), obstacle.clone());
-        let styled = self.layers.apply(&tied.style, &project.hair.stack, obstacle.clone());
-        let source =
-            StyleSource { base: tied.style, stack: project.hair.stack.clone(), obstacle, scale: scalp.scale };
-        let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
-            format!(
-                "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
-            )
+        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems);
+        let obstacle: Arc<dyn Obstacle + Send> = scalp.obstacle.clone();
+        let morph = project.hair.morph.to.as_ref().map(|to| MorphSource {
+            to: self.other_hair.load(&to.hair, access, &scalp, &mut problems).style,
+            amount: project.hair.morph.amount,
         });
-        let other_version = project.hair.stack.unknown().into_iter().map(|(layer, id)| {
-            format!("the layer \"{layer}\" uses `{id}`, which this version does not know; it is kept and has no effect")
-        });
-        let ignored = |message| Problem::new(Place::Hair, ProblemKind::Ignored, message);
-        problems.extend(other_hair.chain(other_version).map(ignored));
+        let styled = self.morph.of(&hair.style, morph.as_ref(), None, &*obstacle);
+        let stack = project.hair.stack.clone();
+        let source = StyleSource { base: hair.base, stack, obstacle, scale: scalp.scale, morph };
         control.at("loading the surroundings", 0.85)?;
         let surroundings = self.surroundings.load(&project, access, &mut problems);
         control.at("computing the path of the head", 0.9)?;
@@ -137,7 +131,7 @@ impl SceneLoader {
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
-            style: self.enlarged.of(&styled.style, scalp.scale),
+            style: self.enlarged.of(&styled, scalp.scale),
             source: Arc::new(source),
             hair_scale: scalp.scale,
             usual_scalp: Arc::clone(&scalp.scalp),
@@ -226,43 +220,6 @@ impl SceneLoader {
         }
         let part = Arc::new(ScalpPart::new(body, fit));
         self.scalp = Some(Kept { key: fit.clone(), body: Some(Arc::clone(body)), part: Arc::clone(&part) });
-        part
-    }
-
-    fn hair(
-        &mut self,
-        project: &Project,
-        access: &Access,
-        body: &Arc<ScalpPart>,
-        problems: &mut Vec<Problem>,
-    ) -> Arc<HairPart> {
-        let wanted = HairKey::of(&project.hair, access);
-        if let (Ok(key), Some(kept)) = (&wanted, &self.hair)
-            && kept.key == *key
-            && kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body))
-        {
-            return Arc::clone(&kept.part);
-        }
-        let mut cache = self.hair_file.take();
-        let loaded = wanted.and_then(|key| key.load(body, &mut cache).map(|part| (key, part)));
-        self.hair_file = cache;
-        let (key, part) = match (loaded, &self.hair) {
-            (Ok(loaded), _) => loaded,
-            (Err(problem), Some(kept)) => {
-                problems.push(problem.with_fallback("the previous hair is kept"));
-                return Arc::clone(&kept.part);
-            }
-            (Err(problem), None) => {
-                let key = HairKey::grown(&project.hair);
-                let grown = key.load(body, &mut None);
-                let instead =
-                    if grown.is_ok() { "the grown hairstyle is shown instead" } else { "no hair is shown" };
-                problems.push(problem.with_fallback(instead));
-                (key, grown.unwrap_or_else(|_| HairPart::bald(body)))
-            }
-        };
-        let part = Arc::new(part);
-        self.hair = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
         part
     }
 

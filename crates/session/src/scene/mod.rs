@@ -3,6 +3,7 @@
 mod camera;
 mod dancer;
 mod hair_part;
+mod hair_slot;
 mod head_path;
 mod loader;
 mod parts;
@@ -163,6 +164,8 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 mod collider_tests;
 #[cfg(test)]
 mod head_tests;
+#[cfg(test)]
+mod morph_tests;
 #[cfg(test)]
 mod operation_tests;
 #[cfg(test)]

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use lovelock_groom::{Hairstyle, Obstacle};
 use lovelock_project::Project;
-use lovelock_project::animation::StyleTracks;
-use lovelock_style::{StyleCache, StyleStack};
+use lovelock_project::animation::{StyleTracks, StyleValues};
+use lovelock_style::{Morph, StyleCache, StyleStack};
 
 use super::Scene;
 use super::scalp_part::Enlarged;
@@ -20,6 +20,17 @@ pub struct StyleSource {
     pub obstacle: Arc<dyn Obstacle + Send>,
     /// Size of the head that wears the hair as a multiple of the one that it is styled on.
     pub scale: f32,
+    /// What the hair turns into, if it does.
+    pub morph: Option<MorphSource>,
+}
+
+/// The second style of a morph.
+#[derive(Clone)]
+pub struct MorphSource {
+    /// The style with its layers.
+    pub to: Arc<Hairstyle>,
+    /// How far the hair has turned into it where no track sets that, 0 to 1.
+    pub amount: f32,
 }
 
 impl std::fmt::Debug for StyleSource {
@@ -29,7 +40,45 @@ impl std::fmt::Debug for StyleSource {
 }
 
 /// The scene as it was loaded, the numbers of the tracks, and the scene with them.
-type Evaluated = (Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>);
+type Evaluated = (Arc<Scene>, StyleValues, Arc<Scene>);
+
+/// The last morph, and the last hairstyle between its two.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MorphCache {
+    morph: Option<Arc<Morph>>,
+    last: Option<(f32, Arc<Hairstyle>)>,
+}
+
+impl MorphCache {
+    /// The hairstyle between `own` and the second style of `source`: at `amount`, or at that of the source.
+    pub(super) fn of(
+        &mut self,
+        own: &Arc<Hairstyle>,
+        source: Option<&MorphSource>,
+        amount: Option<f32>,
+        obstacle: &dyn Obstacle,
+    ) -> Arc<Hairstyle> {
+        let Some(source) = source else {
+            *self = Self::default();
+            return Arc::clone(own);
+        };
+        let amount = amount.unwrap_or(source.amount);
+        let morph = match self.morph.take() {
+            Some(morph) if morph.is_of([own, &source.to]) => morph,
+            _ => {
+                self.last = None;
+                Arc::new(Morph::new([Arc::clone(own), Arc::clone(&source.to)]))
+            }
+        };
+        let style = match self.last.take() {
+            Some((at, style)) if at.to_bits() == amount.to_bits() => style,
+            _ => Arc::new(morph.at(amount, obstacle)),
+        };
+        self.last = Some((amount, Arc::clone(&style)));
+        self.morph = Some(morph);
+        style
+    }
+}
 
 /// Applies the tracks of layers. A scene is the same allocation as long as the numbers of the tracks are, and a changed number evaluates
 /// only its layer and those after it.
@@ -37,6 +86,7 @@ type Evaluated = (Arc<Scene>, Vec<Vec<f64>>, Arc<Scene>);
 pub(crate) struct Styling {
     tracks: StyleTracks,
     cache: StyleCache,
+    morph: MorphCache,
     enlarged: Enlarged,
     last: Option<Evaluated>,
 }
@@ -48,8 +98,9 @@ impl Styling {
         match before {
             Some(before) if before.tracks == tracks => Some(before),
             before => {
-                let (cache, enlarged) = before.map(|of| (of.cache, of.enlarged)).unwrap_or_default();
-                Some(Self { tracks, cache, enlarged, last: None })
+                let (cache, morph, enlarged) =
+                    before.map(|of| (of.cache, of.morph, of.enlarged)).unwrap_or_default();
+                Some(Self { tracks, cache, morph, enlarged, last: None })
             }
         }
     }
@@ -66,6 +117,7 @@ impl Styling {
         let source = &loaded.source;
         let stack = self.tracks.stack_with(&source.stack, &values);
         let style = self.cache.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
+        let style = self.morph.of(&style, source.morph.as_ref(), values.amount(), &*source.obstacle);
         let style = self.enlarged.of(&style, source.scale);
         let scene = match &self.last {
             // Other numbers of layers that are off.

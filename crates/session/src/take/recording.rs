@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::project::text_of_project;
-use lovelock_project::tracks::STACK_TARGET;
+use lovelock_project::tracks::{MORPH_TARGET, STACK_TARGET};
 use lovelock_record::{
     FrameRate, TakeAsset, TakeFrame, TakeHeader, TakeReport, TakeWriter, hairstyle_fingerprint,
 };
@@ -148,7 +148,10 @@ fn same_but_tracks(a: &Project, b: &Project) -> bool {
     }
     let without = |project: &Project| {
         let mut project = project.clone();
-        project.timeline.tracks.retain(|track| track.target.starts_with(STACK_TARGET));
+        project
+            .timeline
+            .tracks
+            .retain(|track| track.target.starts_with(STACK_TARGET) || track.target == MORPH_TARGET);
         project
     };
     without(a) == without(b)

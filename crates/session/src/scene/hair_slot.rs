@@ -1,0 +1,94 @@
+//! One hairstyle of a scene with its layers, loaded again only where its sources change.
+
+use std::sync::Arc;
+
+use lovelock_groom::Hairstyle;
+use lovelock_project::error::{Place, Problem, ProblemKind};
+use lovelock_project::files::Access;
+use lovelock_project::project::HairSection;
+use lovelock_style::StyleCache;
+
+use super::hair_part::{HairFileCache, HairKey, HairPart};
+use super::scalp_part::ScalpPart;
+
+/// What is kept of a hairstyle between two loads.
+#[derive(Debug, Default)]
+pub(super) struct HairSlot {
+    grown: Option<(HairKey, Arc<ScalpPart>, Arc<HairPart>)>,
+    file: HairFileCache,
+    cut_and_ties: StyleCache,
+    layers: StyleCache,
+}
+
+/// A hairstyle in the size of the shipped dancer's head.
+pub(super) struct LoadedHair {
+    /// The hair below the layers: grown or imported, cut and tied.
+    pub(super) base: Arc<Hairstyle>,
+    /// The hair with its layers.
+    pub(super) style: Arc<Hairstyle>,
+    /// What the loader has to say about the file.
+    pub(super) notes: Vec<Problem>,
+}
+
+impl HairSlot {
+    /// Loads the hair of a section. Hair that cannot be loaded is replaced by that of the last call, or by a grown one, with a problem.
+    pub(super) fn load(
+        &mut self,
+        section: &HairSection,
+        access: &Access,
+        scalp: &Arc<ScalpPart>,
+        problems: &mut Vec<Problem>,
+    ) -> LoadedHair {
+        let hair = self.part(section, access, scalp, problems);
+        let tied = self.cut_and_ties.apply(&hair.style, &section.cut_and_ties(), scalp.obstacle.clone());
+        let styled = self.layers.apply(&tied.style, &section.stack, scalp.obstacle.clone());
+        let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
+            format!(
+                "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
+            )
+        });
+        let other_version = section.stack.unknown().into_iter().map(|(layer, id)| {
+            format!("the layer \"{layer}\" uses `{id}`, which this version does not know; it is kept and has no effect")
+        });
+        let ignored = |message| Problem::new(Place::Hair, ProblemKind::Ignored, message);
+        problems.extend(other_hair.chain(other_version).map(ignored));
+        LoadedHair { base: tied.style, style: styled.style, notes: hair.notes.clone() }
+    }
+
+    fn part(
+        &mut self,
+        section: &HairSection,
+        access: &Access,
+        scalp: &Arc<ScalpPart>,
+        problems: &mut Vec<Problem>,
+    ) -> Arc<HairPart> {
+        let wanted = HairKey::of(section, access);
+        if let (Ok(key), Some((known, of, part))) = (&wanted, &self.grown)
+            && known == key
+            && Arc::ptr_eq(of, scalp)
+        {
+            return Arc::clone(part);
+        }
+        let mut cache = self.file.take();
+        let loaded = wanted.and_then(|key| key.load(scalp, &mut cache).map(|part| (key, part)));
+        self.file = cache;
+        let (key, part) = match (loaded, &self.grown) {
+            (Ok(loaded), _) => loaded,
+            (Err(problem), Some((_, _, part))) => {
+                problems.push(problem.with_fallback("the previous hair is kept"));
+                return Arc::clone(part);
+            }
+            (Err(problem), None) => {
+                let key = HairKey::grown(section);
+                let grown = key.load(scalp, &mut None);
+                let instead =
+                    if grown.is_ok() { "the grown hairstyle is shown instead" } else { "no hair is shown" };
+                problems.push(problem.with_fallback(instead));
+                (key, grown.unwrap_or_else(|_| HairPart::bald(scalp)))
+            }
+        };
+        let part = Arc::new(part);
+        self.grown = Some((key, Arc::clone(scalp), Arc::clone(&part)));
+        part
+    }
+}
