@@ -169,15 +169,14 @@ impl Project {
     /// Every file that the project refers to, used or not.
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
-        let own = [&mut body.file, &mut motion.file, &mut hair.file, &mut surroundings.file];
-        let other = hair.morph.to.as_mut().map(|to| &mut to.hair.file);
+        let own = [&mut body.file, &mut motion.file, &mut surroundings.file];
         let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
             .chain(scalps)
-            .chain(other)
             .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()
+            .chain(hair.files_mut())
     }
 }
 

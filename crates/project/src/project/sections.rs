@@ -197,6 +197,12 @@ impl HairSection {
     /// The longest name of a style, characters.
     pub const LONGEST_STYLE: usize = 100;
 
+    /// The hair files that it refers to, used or not: its own and that of its morph.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
+        let other = self.morph.to.as_mut().and_then(|to| to.hair.file.as_mut());
+        self.file.as_mut().into_iter().chain(other)
+    }
+
     /// The cut and the ties as layers, which act before those of [`HairSection::stack`].
     pub fn cut_and_ties(&self) -> StyleStack {
         let mut layers = Vec::new();

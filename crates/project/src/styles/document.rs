@@ -104,7 +104,7 @@ impl Style {
     pub fn load(path: &Path) -> Result<(Self, Vec<Problem>), ProjectError> {
         let (mut style, problems) = Self::parse(path, &read_text(path, "style")?)?;
         let folder = folder_of(path);
-        style.hair.file = style.hair.file.map(|file| file.in_memory(&folder));
+        style.hair.files_mut().for_each(|file| *file = file.clone().in_memory(&folder));
         if style.name.is_empty() {
             style.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             style = style.tidied();
@@ -119,7 +119,7 @@ impl Style {
     pub fn text_of(&self, path: &Path) -> Result<String, ron::Error> {
         let mut style = self.clone();
         style.version = PROJECT_VERSION;
-        style.hair.file = self.hair.file.as_ref().map(|file| file.for_disk(&folder_of(path)));
+        style.hair.files_mut().for_each(|file| *file = file.for_disk(&folder_of(path)));
         ron::ser::to_string_pretty(&style, ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4))
     }
 
