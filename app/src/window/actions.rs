@@ -271,6 +271,7 @@ impl Window {
                 self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }
             Purpose::ExportStyle => self.export_style(path),
+            Purpose::SaveStrokes => self.save_strokes(path),
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };

@@ -381,6 +381,7 @@ impl Window {
                 let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
                 folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
             }
+            Purpose::SaveStrokes => folder.join("hair").with_extension(lovelock_brush::StrokeFile::EXTENSION),
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
@@ -397,6 +398,7 @@ impl Window {
             | Purpose::Surroundings
             | Purpose::SaveProject
             | Purpose::ExportStyle
+            | Purpose::SaveStrokes
             | Purpose::Picture => dialog,
         });
     }

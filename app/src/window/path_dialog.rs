@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{Modal, RichText};
 use lovelock_base::clock::Stopwatch;
+use lovelock_brush::StrokeFile;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -34,6 +35,8 @@ pub(crate) enum Purpose {
     Curves,
     /// Exporting a style.
     ExportStyle,
+    /// Saving the strokes of brushes.
+    SaveStrokes,
     /// Saving the image in the viewport.
     Picture,
 }
@@ -60,6 +63,7 @@ impl Purpose {
             Self::Resume => "Resume the images in a folder",
             Self::Curves => "Export curves: .usdc, .usda or .glb",
             Self::ExportStyle => "Export the style",
+            Self::SaveStrokes => "Save the strokes of the brushes",
             Self::Picture => "Save the image",
         }
     }
@@ -68,7 +72,9 @@ impl Purpose {
         match self {
             Self::Open | Self::Surroundings => "Open file",
             Self::Beside => "Compare",
-            Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle => "Save file",
+            Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle | Self::SaveStrokes => {
+                "Save file"
+            }
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
             Self::Resume => "Resume recording",
         }
@@ -83,6 +89,7 @@ impl Purpose {
             Self::Preview => Some("apng"),
             Self::Curves => Some("usdc"),
             Self::ExportStyle => Some(STYLE_EXTENSION),
+            Self::SaveStrokes => Some(StrokeFile::EXTENSION),
             Self::Picture => Some("png"),
         }
     }
@@ -230,6 +237,9 @@ impl PathDialog {
                 Box::pin(dialog.save_file())
             }
             Purpose::ExportStyle => Box::pin(dialog.add_filter("Style", &[STYLE_EXTENSION]).save_file()),
+            Purpose::SaveStrokes => {
+                Box::pin(dialog.add_filter("Strokes", &[StrokeFile::EXTENSION]).save_file())
+            }
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };
         let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {

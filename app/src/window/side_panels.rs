@@ -32,9 +32,13 @@ impl Window {
                     panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
                 section(ui, "Brushes", self.brushes.on, |ui| {
-                    if super::brushes::ui(ui, &mut self.brushes, &mut self.layout.brushes).is_some() {
-                        self.session.worker().thaw();
-                        self.brushes.forget_frozen();
+                    match super::brushes::ui(ui, &mut self.brushes, &mut self.layout.brushes) {
+                        Some(super::brushes::BrushRequest::Thaw) => {
+                            self.session.worker().thaw();
+                            self.brushes.forget_frozen();
+                        }
+                        Some(super::brushes::BrushRequest::Save) => asked = Some(Purpose::SaveStrokes),
+                        None => {}
                     }
                 });
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {

@@ -34,6 +34,17 @@ impl StrokeSample {
             && self.time_secs.is_finite()
     }
 
+    /// The sample in another space, such as in the world from the space of the head.
+    #[must_use]
+    pub fn placed(&self, world_from_own: &Affine3A) -> Self {
+        Self {
+            position: world_from_own.transform_point3(self.position),
+            view: world_from_own.transform_vector3(self.view),
+            drag: world_from_own.transform_vector3(self.drag),
+            ..*self
+        }
+    }
+
     /// The sample carried to the space of the head.
     fn in_head(&self, head_from_world: &Affine3A) -> Self {
         Self {

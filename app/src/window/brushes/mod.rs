@@ -14,7 +14,7 @@ use lovelock_base::settings::{Choices as _, Settings as _};
 use lovelock_brush::{BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use panel::ui;
+pub(crate) use panel::{BrushRequest, ui};
 use pointer::Held;
 use strokes::Strokes;
 
@@ -30,6 +30,12 @@ impl Kept {
     /// The settings of a tool.
     pub(crate) fn of(&self, tool: Tool) -> BrushSettings {
         self.settings.get(tool.names().0).cloned().unwrap_or_default().clamped()
+    }
+
+    /// Sets the settings of a tool.
+    #[cfg(test)]
+    pub(crate) fn set_for_tests(&mut self, tool: Tool, settings: BrushSettings) {
+        self.set(tool, settings);
     }
 
     fn set(&mut self, tool: Tool, settings: BrushSettings) {
@@ -65,6 +71,18 @@ impl Brushes {
             self.sent_still = self.still;
             worker.set_still(self.still);
         }
+    }
+
+    /// Whether results of strokes are still on their way.
+    #[cfg(test)]
+    pub(crate) fn has_open_strokes(&self) -> bool {
+        self.held.is_some() || self.strokes.has_open()
+    }
+
+    /// Whether any lock is protected.
+    #[cfg(test)]
+    pub(crate) fn has_frozen(&self) -> bool {
+        self.strokes.frozen.contains(&true)
     }
 
     /// Forgets which locks are protected.

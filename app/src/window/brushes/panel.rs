@@ -13,6 +13,8 @@ use crate::window::control::{curve, note, restore_all, section, settings};
 pub(crate) enum BrushRequest {
     /// Free all protected locks.
     Thaw,
+    /// Save the strokes of this run.
+    Save,
 }
 
 /// The switches of brushes and the settings of the tool.
@@ -47,7 +49,13 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
         });
     note(ui, brushes.tool.text());
     tool_settings(ui, brushes.tool, kept);
-    note(ui, "Strokes are written into the selected layer *By hand*, or into the last one.".replace('*', ""));
+    let recorded = brushes.strokes.recorded.len();
+    let save = ui.add_enabled(recorded > 0, egui::Button::new("Save strokes…"));
+    let tip = "Saves the strokes since the program started, to be played again by `lovelock style`.";
+    if save.on_hover_text(tip).on_disabled_hover_text("There is no stroke yet.").clicked() {
+        request = Some(BrushRequest::Save);
+    }
+    note(ui, "Strokes are written into the selected layer By hand, or into the last one.");
     request
 }
 

@@ -127,7 +127,7 @@ impl Window {
         }
         let id = held.id;
         if !samples.is_empty() {
-            self.go_on_with_stroke(id, samples);
+            self.go_on_with_stroke(id, samples, head.world_from_head);
         }
     }
 

@@ -1,17 +1,20 @@
 //! What strokes did, written into the layer of the style.
 
+use std::path::Path;
 use std::sync::Arc;
 
+use glam::Affine3A;
 use lovelock_base::settings::Choices as _;
-use lovelock_brush::{BrushSettings, StrokeSample, Tool};
+use lovelock_brush::{BrushSettings, RecordedStroke, StrokeFile, StrokeSample, Tool};
 use lovelock_project::Project;
+use lovelock_project::files::write_whole;
 use lovelock_project::history::GestureId;
 use lovelock_session::strokes::{Brushed, StrokeStart};
 use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::Hand;
 use lovelock_style::{Layer, Operation};
 
-use crate::window::Window;
+use crate::window::{Window, notices};
 
 /// Strokes whose results have not all arrived.
 #[derive(Debug, Default)]
@@ -20,6 +23,8 @@ pub(super) struct Strokes {
     open: Vec<Open>,
     /// Which guides are protected.
     pub(super) frozen: Arc<[bool]>,
+    /// The strokes of this run, as they can be saved.
+    pub(super) recorded: Vec<RecordedStroke>,
 }
 
 #[derive(Debug)]
@@ -31,6 +36,14 @@ struct Open {
     label: String,
     /// The layer as the stroke left it: it ends when something else changes that, such as an undo.
     left: HandEdits,
+}
+
+#[cfg(test)]
+impl Strokes {
+    /// Whether results are still on their way.
+    pub(super) fn has_open(&self) -> bool {
+        !self.open.is_empty()
+    }
 }
 
 /// The layer that brushes write to: the selected one if it is one of theirs, otherwise the last of them, otherwise a new one at the end of
@@ -70,14 +83,40 @@ impl Window {
         let id = strokes.last;
         let edits = (!goes_on).then(|| left.clone());
         let label = tool.names().1.to_lowercase();
+        if strokes.recorded.len() < StrokeFile::MOST_STROKES {
+            let settings = settings.clone();
+            strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
+        }
         strokes.open.push(Open { id, layer, gesture: self.gestures.id(), label, left });
         self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits });
         id
     }
 
-    /// Moves the brush of a stroke.
-    pub(super) fn go_on_with_stroke(&self, id: u64, samples: Vec<StrokeSample>) {
+    /// Moves the brush of a stroke to samples in the space of the head.
+    pub(super) fn go_on_with_stroke(
+        &mut self,
+        id: u64,
+        samples: Vec<StrokeSample>,
+        world_from_head: &Affine3A,
+    ) {
+        if let Some(stroke) = self.brushes.strokes.recorded.last_mut() {
+            let room = StrokeFile::MOST_SAMPLES.saturating_sub(stroke.samples.len());
+            let in_world = samples.iter().map(|sample| sample.placed(world_from_head));
+            stroke.samples.extend(in_world.take(room));
+        }
         self.session.worker().stroke_to(id, samples);
+    }
+
+    /// Saves the strokes of this run.
+    pub(in crate::window) fn save_strokes(&mut self, path: &Path) {
+        let file = StrokeFile::new(self.brushes.strokes.recorded.clone());
+        let saved = file
+            .to_text()
+            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|error| error.to_string()));
+        match saved {
+            Ok(()) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
+            Err(error) => self.warn([error]),
+        }
     }
 
     /// Writes what the simulation has made of strokes into the project.

@@ -1,5 +1,6 @@
 //! Shows parts of the window on an off-screen display, for tests.
 
+mod brushes;
 mod compare;
 mod dialogs;
 mod health;

@@ -131,7 +131,7 @@ fn a_tie_can_be_dragged_in_the_viewport() {
 #[test]
 fn colliders_are_shown_and_edited() {
     let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::B);
+    key(&mut harness, Modifiers::NONE, Key::G);
     assert!(of(&harness).colliders.on);
     let scene = of(&harness).session.scene.clone().expect("a scene");
     assert!(scene.field.is_some() && !scene.fitted.is_empty());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use lovelock_brush::{Brush, BrushSettings, BrushSurroundings, StrokeSample, Tool};
 use lovelock_groom::{Hairstyle, Obstacle};
 use lovelock_style::hand::HandEdits;
@@ -118,7 +118,7 @@ impl Stroke {
         let around = ScaledObstacle { usual: &*source.obstacle, scale: source.scale };
         let brush = &mut self.brush;
         engine.move_hair(|frame| {
-            let sample = in_world(sample, &frame.world_from_head);
+            let sample = sample.placed(&frame.world_from_head);
             brush.stroke_to(frame, &BrushSurroundings { obstacle: &around }, &sample)
         })
     }
@@ -133,15 +133,6 @@ impl Stroke {
     /// Which guides are protected.
     pub fn frozen(&self) -> &[bool] {
         self.brush.frozen()
-    }
-}
-
-fn in_world(sample: &StrokeSample, world_from_head: &Affine3A) -> StrokeSample {
-    StrokeSample {
-        position: world_from_head.transform_point3(sample.position),
-        view: world_from_head.transform_vector3(sample.view),
-        drag: world_from_head.transform_vector3(sample.drag),
-        ..*sample
     }
 }
 

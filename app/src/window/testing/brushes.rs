@@ -1,0 +1,160 @@
+//! Brushes in the viewport of the whole window.
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_base::settings::Choices as _;
+use lovelock_brush::{BrushSettings, Tool};
+use lovelock_style::Operation;
+use lovelock_style::hand::HandEdits;
+
+use super::tools::{drag_over, view, with_picture};
+use super::whole::{CTRL, go, key, of, project, wait};
+use super::{Shown, control, press};
+use crate::window::Window;
+
+type Whole = Harness<'static, Shown<Option<Window>>>;
+
+/// The window with brushes on, and the place of hair in the image.
+fn brushing() -> Option<(Whole, Pos2)> {
+    let mut harness = with_picture()?;
+    key(&mut harness, Modifiers::NONE, Key::H);
+    assert!(of(&harness).brushes.on);
+    for tool in Tool::ALL {
+        let settings =
+            BrushSettings { radius: 0.07, strength: 1.0, front_only: false, ..BrushSettings::default() };
+        let window = harness.state_mut().state.as_mut().expect("a window");
+        window.layout.brushes.set_for_tests(*tool, settings);
+    }
+    let painted = of(&harness).session.painted.clone().expect("an image");
+    let guides = &painted.snapshot.guides.guides;
+    // The hair nearest to the camera, half-way along.
+    let half = guides.points_per_guide / 2;
+    let eye = painted.camera.eye;
+    let nearest = (0..guides.count()).map(|guide| guides.point(guide, half));
+    let nearest = nearest.min_by(|a, b| a.distance(eye).total_cmp(&b.distance(eye))).expect("hair");
+    let at = view(&harness).to_screen(nearest).expect("before the camera");
+    Some((harness, at))
+}
+
+fn edits(harness: &Whole) -> Option<HandEdits> {
+    let project = project(harness);
+    let layers = project.hair.stack.layers.iter();
+    layers.rev().find_map(|layer| match &layer.operation {
+        Operation::Hand(hand) => Some(hand.edits.clone()),
+        _ => None,
+    })
+}
+
+fn done(harness: &mut Whole) {
+    wait(harness, "the end of the stroke", |window| !window.brushes.has_open_strokes());
+    // The hair of the project must be there before the next stroke.
+    let project = project(harness);
+    wait(harness, "the hair", |window| {
+        window.session.scene.as_ref().is_some_and(|scene| scene.source.stack == project.hair.stack)
+    });
+}
+
+#[test]
+fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
+    let Some((mut harness, at)) = brushing() else { return };
+    let before = project(&harness);
+    let steps = of(&harness).history.undo_len();
+    for tool in Tool::ALL {
+        let (_, name) = tool.names();
+        control(&harness, egui::accesskit::Role::RadioButton, name).click();
+        go(&mut harness);
+        assert_eq!(of(&harness).brushes.tool, *tool);
+        drag_over(&mut harness, at, at + vec2(40.0, 14.0));
+        done(&mut harness);
+        assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
+        let made = edits(&harness).expect("a layer");
+        if *tool == Tool::Freeze {
+            assert!(of(&harness).brushes.has_frozen(), "{name}");
+            harness.state_mut().state.as_mut().expect("a window").session.worker().thaw();
+        } else {
+            assert!(!made.is_empty(), "{name} did nothing");
+        }
+        assert_eq!(of(&harness).history.undo_len(), steps + 1, "{name}: one step");
+        key(&mut harness, CTRL, Key::Z);
+        assert_eq!(project(&harness), before, "{name}");
+        wait(&mut harness, "the hair of before", |window| {
+            window.session.scene.as_ref().is_some_and(|scene| scene.source.stack.layers.is_empty())
+        });
+    }
+}
+
+#[test]
+fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
+    let Some((mut harness, at)) = brushing() else { return };
+    let before = project(&harness);
+    let corner =
+        control(&harness, egui::accesskit::Role::Image, "Viewport").rect().right_bottom() - vec2(60.0, 60.0);
+    drag_over(&mut harness, corner, corner - vec2(20.0, 0.0));
+    assert!(project(&harness).camera != before.camera && edits(&harness).is_none());
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    wait(&mut harness, "the image of before", |window| {
+        window.session.drawn.as_ref().is_some_and(|drawn| drawn.project.camera == before.camera)
+            && window.session.painted.as_ref().is_some_and(|painted| {
+                let camera = painted.snapshot.camera(&before.camera);
+                painted.camera.eye.distance(camera.eye) < 1e-4
+            })
+    });
+    // In the middle of a stroke.
+    harness.hover_at(at);
+    harness.run_steps(1);
+    press(&harness, at, true);
+    harness.run_steps(2);
+    harness.hover_at(at + vec2(20.0, 5.0));
+    wait(&mut harness, "the stroke", |window| {
+        let layers = &window.history.project().hair.stack.layers;
+        layers.iter().any(|layer| matches!(&layer.operation, Operation::Hand(hand) if !hand.edits.is_empty()))
+    });
+    key(&mut harness, CTRL, Key::Z);
+    harness.hover_at(at + vec2(40.0, 9.0));
+    harness.run_steps(8);
+    press(&harness, at + vec2(40.0, 9.0), false);
+    go(&mut harness);
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    go(&mut harness);
+    assert_eq!(project(&harness), before, "nothing of the stroke is left");
+    assert!(!of(&harness).brushes.has_open_strokes());
+}
+
+#[test]
+fn b_and_the_brackets_change_the_radius_and_shift_b_the_strength() {
+    let Some((mut harness, at)) = brushing() else { return };
+    let settings = |harness: &Whole| of(harness).layout.brushes.of(Tool::Comb);
+    let before = settings(&harness);
+    key(&mut harness, Modifiers::NONE, Key::CloseBracket);
+    let larger = settings(&harness);
+    assert!(larger.radius > 1.05 * before.radius);
+    key(&mut harness, Modifiers::NONE, Key::OpenBracket);
+    assert!((settings(&harness).radius / before.radius - 1.0).abs() < 1e-3);
+    for (modifiers, moved) in [(Modifiers::NONE, -60.0), (Modifiers::SHIFT, -60.0)] {
+        harness.hover_at(at);
+        harness.run_steps(1);
+        let down =
+            |pressed| Event::Key { key: Key::B, physical_key: None, pressed, repeat: false, modifiers };
+        harness.event_modifiers(down(true), modifiers);
+        harness.run_steps(2);
+        harness.event_modifiers(Event::PointerMoved(at + vec2(moved, 0.0)), modifiers);
+        harness.run_steps(2);
+        harness.event_modifiers(down(false), modifiers);
+        harness.run_steps(2);
+    }
+    let after = settings(&harness);
+    assert!(after.radius < 0.8 * before.radius && after.strength < 0.9 * before.strength, "{after:?}");
+    assert!(edits(&harness).is_none(), "no stroke");
+    // Its menu.
+    harness.hover_at(at);
+    harness.run_steps(1);
+    for pressed in [true, false] {
+        let button = PointerButton::Secondary;
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        harness.run_steps(2);
+    }
+    go(&mut harness);
+    assert!(harness.query_all_by_label("Brush radius").count() > 0);
+}
