@@ -63,6 +63,8 @@ pub(crate) enum Task {
     Assemble(Assemble),
     /// Makes the database from which hair is drawn as clusters.
     Satf(Satf),
+    /// Plays recorded strokes of brushes on the hair of a project and writes the project with them.
+    Style(StyleTask),
 }
 
 /// The project, with changes.
@@ -374,6 +376,18 @@ pub(crate) struct Convert {
     /// Axis of IN that points up: auto, y or z.
     #[arg(long, default_value = "auto", value_parser = up_axis)]
     pub(crate) up: UpAxis,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StyleTask {
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+    /// Recorded strokes, a .lovelockstrokes file. Each is played at its time of the dance.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) strokes: PathBuf,
+    /// The new project.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

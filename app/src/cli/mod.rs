@@ -13,6 +13,7 @@ mod record;
 mod satf;
 mod settings;
 mod source;
+mod style;
 
 use std::process::ExitCode;
 
@@ -60,6 +61,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Task::Farm(task)) => farm::run(&task, output),
         Some(Task::Assemble(task)) => farm::run_assemble(&task, output),
         Some(Task::Satf(task)) => satf::run(&task, output),
+        Some(Task::Style(task)) => style::run(&task, output),
     };
     // The window has shown it.
     if let Some(note) = lovelock_satf::cache::note().filter(|_| !opens_window) {

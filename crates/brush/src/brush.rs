@@ -201,7 +201,7 @@ impl Brush {
                     edit.removed = removed;
                 }),
                 Outcome::Frozen(frozen) => {
-                    self.each_of_lock(guide, |brush, guide| brush.frozen[guide] = frozen)
+                    self.each_of_lock(guide, |brush, guide| brush.frozen[guide] = frozen);
                 }
             }
         }

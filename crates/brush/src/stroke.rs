@@ -90,7 +90,7 @@ pub(crate) struct Resampler {
 impl Resampler {
     /// The dabs between the sample before and this one. A sample that is not finite makes none.
     pub fn dabs(&mut self, sample: &StrokeSample, radius: f32, head_from_world: &Affine3A) -> Vec<Dab> {
-        if !sample.is_finite() || !(radius > 0.0 && radius.is_finite()) {
+        if !(sample.is_finite() && radius > 0.0 && radius.is_finite()) {
             return Vec::new();
         }
         let now = sample.in_head(head_from_world);

@@ -45,7 +45,9 @@ impl Locks {
             style.wisps.iter().map(|wisp| wisp.guides.map(|g| g as usize)).collect();
         let mut wisp = vec![None; style.guides.count()];
         for (w, guides) in guides.iter().enumerate() {
-            guides.iter().for_each(|guide| wisp[*guide] = Some(w));
+            for guide in guides {
+                wisp[*guide] = Some(w);
+            }
         }
         Self { wisp, guides }
     }

@@ -1,11 +1,13 @@
 //! The simulation of a scene, step by step. It is synchronous and has no clock.
 
+mod brushing;
 mod combing;
 mod preroll;
 mod settle;
 mod shown;
 mod styled;
 
+pub use brushing::BrushLayers;
 pub use preroll::{Preroll, PrerollProgress};
 pub(crate) use shown::LastSteps;
 

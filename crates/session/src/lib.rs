@@ -7,6 +7,7 @@
 //! - [`take`]: recorded simulations, and playing them.
 //! - [`dance`]: frames of a simulation or a take for work without a window; [`prepare`] and [`progress`] belong to it.
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
+//! - [`strokes`]: recorded strokes of brushes, played on the hair of a project.
 //! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
 //! - [`clock`], [`stats`], [`latest`], [`threads`], [`machine`] and [`new_folders`]: parts that the others need.
 //!

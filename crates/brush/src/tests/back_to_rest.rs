@@ -68,9 +68,9 @@ fn hair_combed_in_another_pose_of_the_head_is_the_same_at_rest() {
 /// Each link of a guide turned in its frame by an angle that grows along the guide, as wind or a dance bends it.
 fn bent(guides: &Guides, roots: &[Vec3], angle: f32) -> Guides {
     let mut out = guides.clone();
-    for guide in 0..guides.count() {
+    for (guide, outward) in roots.iter().enumerate() {
         let points = hand_input(guides, guide, 1.0).expect("points");
-        let frames = link_frames(&points, roots[guide]);
+        let frames = link_frames(&points, *outward);
         let mut at = points[0];
         for (i, frame) in frames.iter().enumerate() {
             let local = frame.inverse() * (points[i + 1] - points[i]);

@@ -71,7 +71,9 @@ fn a_thousand_strokes_are_undone_to_the_byte_and_survive_a_file() {
         let angle = 0.7 * i as f32;
         let from = Vec3::new(0.09 * angle.cos(), 0.12 + 0.05 * (0.3 * i as f32).sin(), 0.1 * angle.sin());
         let mut way = samples(from, from + Vec3::new(0.0, -0.02, 0.02), 4);
-        way.iter_mut().for_each(|s| s.view = (Vec3::Y * 0.1 - from).normalize_or(Vec3::NEG_Z));
+        for sample in &mut way {
+            sample.view = (Vec3::Y * 0.1 - from).normalize_or(Vec3::NEG_Z);
+        }
         let now = Arc::new(rest);
         let mut stroke = Brush::new(tool, false, &brush(), [&style, &now], &edits, &[]).expect("a stroke");
         for sample in &way {

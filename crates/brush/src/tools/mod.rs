@@ -83,7 +83,7 @@ impl Stamp<'_> {
             Tool::Part => Points(self.parted(touched)?),
             Tool::Place => Points(self.placed(touched)?),
             Tool::Smooth => Points(self.smoothed(touched)),
-            Tool::Straighten => Points(self.straightened(touched)),
+            Tool::Straighten => Points(Self::straightened(touched)),
             Tool::Pinch => Channel(HandChannel::Spread, Step::Times(0.8), weights()),
             Tool::Spread => Channel(HandChannel::Spread, Step::Times(1.25), weights()),
             Tool::Twist => {

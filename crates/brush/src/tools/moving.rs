@@ -93,11 +93,11 @@ impl Stamp<'_> {
         let side = if to_left == self.inverted { -side } else { side };
         let mut metres = 0.0;
         let mut out = touched.points.clone();
-        for i in 1..out.len() {
+        for (i, p) in out.iter_mut().enumerate().skip(1) {
             metres += touched.points[i].distance(touched.points[i - 1]);
             let fade = 1.0 - smoothstep(PART_FADES[0], PART_FADES[1], metres);
             let amount = weight * fade * (metres / PART_FROM).min(1.0);
-            out[i] += side * (3.0 * REACH * self.dab.radius * amount);
+            *p += side * (3.0 * REACH * self.dab.radius * amount);
         }
         Some(out)
     }

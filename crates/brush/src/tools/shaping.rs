@@ -63,7 +63,7 @@ impl Stamp<'_> {
         from_first_change(before, &ways, &out)
     }
 
-    pub(super) fn straightened(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn straightened(touched: &Touched) -> Vec<Vec3> {
         let before = &touched.points;
         let last = before.len() - 1;
         let from = touched.weights.iter().position(|w| *w > 0.0).unwrap_or(0).saturating_sub(1);

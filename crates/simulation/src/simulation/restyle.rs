@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_groom::{GuideFrame, Hairstyle};
+use lovelock_groom::{GuideFrame, Guides, Hairstyle};
 
 use super::{Simulation, first_free};
 use crate::block::{Bending, Block};
@@ -172,27 +172,43 @@ impl Simulation {
     }
 
     /// Moves some guides to where they are in `frame`, world space; their roots stay. Velocities stay as they are, so that the movement
-    /// itself is none. The next [`Simulation::set_style`], with the rest shape that belongs to the new places, leaves these guides there.
+    /// itself is none. `rest` contains the guides at rest, head space: those of the moved ones take the shape that belongs to their new
+    /// places. The next [`Simulation::set_style`] leaves the moved guides where they are then.
     ///
-    /// A frame of another layout, and a guide with a point that is not finite, change nothing.
-    pub fn move_guides(&mut self, frame: &GuideFrame, guides: &[usize]) {
+    /// Guides of another layout, and a guide with a point that is not finite, change nothing. While ties grow, rest shapes stay.
+    pub fn move_guides(&mut self, frame: &GuideFrame, rest: &Guides, guides: &[usize]) {
         let (count, points) = (self.style.guides.count(), self.style.guides.points_per_guide);
-        if frame.guides.points_per_guide != points || frame.guides.count() != count {
+        let fits = |guides: &Guides| guides.points_per_guide == points && guides.count() == count;
+        if self.slots.len() != count || !fits(&frame.guides) || !fits(rest) {
             return;
         }
         self.moved.resize(count, false);
-        for &guide in guides.iter().filter(|guide| **guide < self.slots.len()) {
+        let mut touched = vec![false; self.blocks.len()];
+        for &guide in guides.iter().filter(|guide| **guide < count) {
             let places: Vec<Vec3> =
                 (0..points).map(|i| frame.guides.point(guide, i) - self.head.place).collect();
-            if !places.iter().all(|p| p.is_finite()) {
+            let is_finite = |i: usize| places[i].is_finite() && rest.point(guide, i).is_finite();
+            if !(0..points).all(is_finite) {
                 continue;
             }
             let (block, lane) = self.slots[guide];
-            let block = &mut self.blocks[block as usize];
-            for (row, place) in block.position.iter_mut().zip(places).skip(1) {
+            for (row, place) in self.blocks[block as usize].position.iter_mut().zip(places).skip(1) {
                 put(row, lane as usize, place);
             }
             self.moved[guide] = true;
+            touched[block as usize] = true;
+        }
+        if self.tie_blend.is_some() {
+            return;
+        }
+        let from_head = self.head.map_from_head(self.head.place);
+        let first_free = first_free(self.clamped_links, points);
+        for (block, _) in self.blocks.iter_mut().zip(touched).filter(|(_, touched)| *touched) {
+            block.rest = RestShape::new(rest, &block.lanes(), first_free);
+            let old = block.clone();
+            block.copy_motion(&old, &from_head);
+            // The factors are outdated.
+            block.bending = Bending::new(points);
         }
     }
 

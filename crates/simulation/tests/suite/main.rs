@@ -17,6 +17,7 @@ mod integrators;
 mod kinks;
 mod locks;
 mod long_dances;
+mod moved;
 mod physics;
 mod snapshots;
 mod still;

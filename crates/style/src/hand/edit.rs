@@ -239,8 +239,8 @@ mod tests {
         }
         assert!(HandEdit::mean(&[]).is_none() && HandEdit::mean(&[(0.5, &HandEdit::default())]).is_none());
         // Hair that is turned round entirely keeps a side.
-        let round = HandEdit { turns: vec![Vec2::new(3.14, 0.0)], ..HandEdit::default() };
-        let other = HandEdit { turns: vec![Vec2::new(-3.14, 0.0)], ..HandEdit::default() };
+        let round = HandEdit { turns: vec![Vec2::new(3.1, 0.0)], ..HandEdit::default() };
+        let other = HandEdit { turns: vec![Vec2::new(-3.1, 0.0)], ..HandEdit::default() };
         let mean = HandEdit::mean(&[(0.6, &round), (0.4, &other)]);
         assert!(mean.turns[0].length() > 3.0, "{}", mean.turns[0]);
     }

@@ -107,7 +107,9 @@ impl HandEdits {
                 pinned[guide] |= free && roots.directions[guide].distance(centre) < reach;
             }
         };
-        touched.iter().for_each(|guide| pin(roots.directions[*guide], FADE[1] * roots.spacing));
+        for guide in &touched {
+            pin(roots.directions[*guide], FADE[1] * roots.spacing);
+        }
         if foreign.contains(&true) {
             // Any new edit would count among those of other hairstyles around it.
             for (guide, pinned) in pinned.iter_mut().enumerate() {

@@ -70,7 +70,7 @@ impl File {
             }
             match stored {
                 Stored::Numbers(numbers) if lists.contains(&name.as_str()) => {
-                    operation.set_list(&name, numbers)
+                    operation.set_list(&name, numbers);
                 }
                 Stored::Choice(text) if texts.contains(&name.as_str()) => operation.set_text(&name, &text)?,
                 _ => {}

@@ -1,0 +1,174 @@
+//! Brushes on the hair of an engine.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use lovelock_base::settings::Settings as _;
+use lovelock_brush::{Brush, BrushSettings, BrushSurroundings, StrokeSample, Tool};
+use lovelock_groom::{GuideFrame, Guides, Obstacle};
+use lovelock_style::{Operation, StyleCache, StyleStack};
+
+use super::Engine;
+use crate::scene::{Scene, StyleSource};
+
+/// What strokes need of the layers of a scene. It keeps evaluated hairstyles from stroke to stroke.
+#[derive(Clone, Debug, Default)]
+pub struct BrushLayers {
+    below: StyleCache,
+    whole: StyleCache,
+}
+
+impl Engine {
+    /// A stroke that begins on the hair of the current instant. It is written into the layer with the number `layer`, which must be one of
+    /// edits by hand; `None` otherwise. `frozen` says which guides are protected.
+    pub fn begin_stroke(
+        &self,
+        layers: &mut BrushLayers,
+        (tool, inverted): (Tool, bool),
+        settings: &BrushSettings,
+        layer: u32,
+        frozen: &[bool],
+    ) -> Option<Brush> {
+        let source = &self.loaded.source;
+        let at = source.stack.layers.iter().position(|own| own.id == layer)?;
+        let Operation::Hand(hand) = &source.stack.layers[at].operation else { return None };
+        let mut stack = source.stack.clone();
+        stack.layers.truncate(at);
+        let below = layers.below.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
+        Brush::new(tool, inverted, settings, [&below, &self.scene.style], &hand.edits, frozen)
+    }
+
+    /// Moves a brush to a sample of its stroke. The touched guides take their new places and rest shapes without a jump, and keep their
+    /// velocities. Returns the guides that were changed.
+    pub fn comb(&mut self, brush: &mut Brush, sample: &StrokeSample) -> Vec<usize> {
+        let mut frame =
+            GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
+        self.simulation.frame(&mut frame);
+        let source = &self.loaded.source;
+        let obstacle = WornObstacle { obstacle: &*source.obstacle, scale: source.scale };
+        let changed = brush.stroke_to(&mut frame, &BrushSurroundings { obstacle: &obstacle }, sample);
+        if !changed.is_empty() {
+            self.simulation.move_guides(&frame, brush.rest(), &changed);
+        }
+        changed
+    }
+
+    /// Writes a stroke into its layer and takes the hairstyle with it. Returns the layers; the hair stays where it is.
+    pub fn end_stroke(&mut self, layers: &mut BrushLayers, brush: &Brush, layer: u32) -> StyleStack {
+        let source = &self.loaded.source;
+        let mut stack = source.stack.clone();
+        if let Some(Operation::Hand(hand)) = stack.layer_mut(layer).map(|layer| &mut layer.operation) {
+            brush.write(&mut hand.edits);
+        }
+        let scene = scene_with(&self.loaded, &mut layers.whole, stack.clone());
+        self.set_scene(scene);
+        stack
+    }
+}
+
+/// The scene with other layers.
+fn scene_with(scene: &Scene, cache: &mut StyleCache, stack: StyleStack) -> Arc<Scene> {
+    let source = &scene.source;
+    let style = cache.apply(&source.base, &stack.clamped(), Arc::clone(&source.obstacle)).style;
+    let style = if source.scale == 1.0 { style } else { Arc::new(style.scaled(source.scale)) };
+    let source = StyleSource {
+        base: Arc::clone(&source.base),
+        stack,
+        obstacle: Arc::clone(&source.obstacle),
+        scale: source.scale,
+    };
+    Arc::new(Scene { style, source: Arc::new(source), ..scene.clone() })
+}
+
+/// The body at rest in the size of the head that wears the hair, head space. Shoulders do not move with the dance here; the simulation
+/// pushes hair out of those that do.
+struct WornObstacle<'a> {
+    obstacle: &'a dyn Obstacle,
+    scale: f32,
+}
+
+impl Obstacle for WornObstacle<'_> {
+    fn distance(&self, p: Vec3) -> (f32, Vec3) {
+        let (distance, normal) = self.obstacle.distance(p / self.scale);
+        (distance * self.scale, normal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_simulation::SimulationSettings;
+    use lovelock_style::Layer;
+    use lovelock_style::operations::Hand;
+
+    use super::*;
+    use crate::testing::{farthest, load, small_project};
+
+    /// A stroke over the hair on the wearer's left, seen from there, in the pose of the engine.
+    fn samples(engine: &Engine, count: usize) -> Vec<StrokeSample> {
+        let pose = engine.pose.world_from_head;
+        let at = |i: usize| Vec3::new(0.1, 0.06, 0.03 - 0.1 * i as f32 / count as f32);
+        (0..count)
+            .map(|i| StrokeSample {
+                position: pose.transform_point3(at(i)),
+                view: pose.transform_vector3(Vec3::NEG_X),
+                drag: if i > 0 { pose.transform_vector3(at(i) - at(i - 1)) } else { Vec3::ZERO },
+                pressure: 1.0,
+                time_secs: engine.time_secs(),
+            })
+            .collect()
+    }
+
+    fn engine() -> (Engine, u32) {
+        let mut project = small_project();
+        let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+        (Engine::new(load(&project).0, SimulationSettings::default()), layer)
+    }
+
+    #[test]
+    fn a_stroke_in_motion_moves_hair_at_once_and_leaves_it_there() {
+        let (mut engine, layer) = engine();
+        engine.advance_to_step(90);
+        let mut control = engine.copy();
+        let mut layers = BrushLayers::default();
+        let settings = BrushSettings { radius: 0.06, ..BrushSettings::default() };
+        let mut brush =
+            engine.begin_stroke(&mut layers, (Tool::Comb, false), &settings, layer, &[]).expect("a stroke");
+        let before = engine.snapshot();
+        let mut touched = 0;
+        for sample in samples(&engine, 20) {
+            touched += engine.comb(&mut brush, &sample).len();
+        }
+        let combed = engine.snapshot();
+        let moved = farthest(&before, &combed);
+        let stack = engine.end_stroke(&mut layers, &brush, layer);
+        let jump = farthest(&combed, &engine.snapshot());
+        assert!(touched > 10 && moved > 0.01 && jump < 1e-4, "{touched} {moved} {jump}");
+        assert_ne!(stack, StyleStack::default());
+        let mut fastest = [0.0_f32; 2];
+        for (engine, fastest) in [&mut engine, &mut control].into_iter().zip(&mut fastest) {
+            for _ in 0..30 {
+                let last = engine.snapshot();
+                engine.step();
+                *fastest = fastest.max(farthest(&last, &engine.snapshot()));
+            }
+        }
+        println!("moved by {moved} m, jump {jump} m, then {} m per step, control {}", fastest[0], fastest[1]);
+        assert!(fastest[0] < 1.5 * fastest[1] + 0.002, "{fastest:?}");
+        // The edits are in the layer: a scene with them has the combed rest shape.
+        let off = (0..brush.rest().x.len())
+            .map(|i| (brush.rest().x[i] - engine.scene.style.guides.x[i]).abs())
+            .fold(0.0, f32::max);
+        println!("rest shapes differ by {off} m");
+        assert!(off < 2e-3, "{off}");
+    }
+
+    #[test]
+    fn a_stroke_needs_a_layer_of_edits() {
+        let (engine, layer) = engine();
+        let begin = |layer| {
+            let (tool, settings) = ((Tool::Comb, false), BrushSettings::default());
+            engine.begin_stroke(&mut BrushLayers::default(), tool, &settings, layer, &[])
+        };
+        assert!(begin(layer).is_some() && begin(layer + 1).is_none());
+    }
+}

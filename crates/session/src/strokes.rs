@@ -1,0 +1,176 @@
+//! Playing recorded strokes on the hair of a project.
+
+use std::ops::ControlFlow;
+
+use lovelock_brush::{RecordedStroke, StrokeFile};
+use lovelock_project::Project;
+use lovelock_project::error::{Problem, ProjectError};
+use lovelock_project::files::Access;
+use lovelock_style::operations::Hand;
+use lovelock_style::{Layer, Operation, StyleStack};
+use serde::Serialize;
+
+use crate::clock::STEP_SECS;
+use crate::engine::{BrushLayers, Engine};
+use crate::prepare::load;
+use crate::progress::{Progress, report_progress};
+
+/// A stroke that begins later than this is not simulated up to, but the hair is settled there, seconds.
+const LONGEST_WAY_SECS: f64 = 10.0;
+
+/// What playing strokes did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StrokesReport {
+    /// Number of strokes.
+    pub strokes: usize,
+    /// Number of strokes that touched no hair.
+    pub missed: usize,
+    /// Number of guides that the layer changes, those beside them included.
+    pub places: usize,
+    /// The number of the layer with the edits.
+    pub layer: u32,
+}
+
+/// Plays strokes at their times and returns the project with what they did, in its last layer of edits by hand or in a new one.
+///
+/// Strokes that follow each other within a few seconds are played on the same dance. Before any other stroke the hair is settled at the
+/// time of the stroke.
+///
+/// # Errors
+/// A stack without room for a layer, what cannot be loaded, or [`ProjectError::Cancelled`].
+pub fn play_strokes(
+    project: &Project,
+    access: &Access,
+    file: &StrokeFile,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(Project, StrokesReport, Vec<Problem>), ProjectError> {
+    let mut project = project.clone();
+    let layer = layer_of(&mut project.hair.stack)?;
+    let (scene, problems) = load(&project, access, progress)?;
+    let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
+    engine.follow(&project);
+    let mut report = StrokesReport { strokes: file.strokes.len(), layer, ..StrokesReport::default() };
+    let mut layers = BrushLayers::default();
+    let mut frozen = Vec::new();
+    for (i, stroke) in file.strokes.iter().enumerate() {
+        report_progress(progress, Progress::Simulating { done: i as u64, total: file.strokes.len() as u64 })?;
+        let Some(first) = stroke.samples.first() else {
+            report.missed += 1;
+            continue;
+        };
+        reach(&mut engine, first.time_secs, i == 0);
+        let (touched, stack) = play(&mut engine, &mut layers, stroke, layer, &mut frozen);
+        report.missed += usize::from(touched == 0);
+        project.hair.stack = stack.unwrap_or(project.hair.stack);
+    }
+    let operation = project.hair.stack.layer(layer).map(|layer| &layer.operation);
+    if let Some(Operation::Hand(hand)) = operation {
+        report.places = hand.edits.count();
+    }
+    Ok((project, report, problems))
+}
+
+/// The layer that takes the edits.
+fn layer_of(stack: &mut StyleStack) -> Result<u32, ProjectError> {
+    let known = stack.layers.iter().rev().find(|layer| matches!(layer.operation, Operation::Hand(_)));
+    let known = known.map(|layer| layer.id);
+    known.or_else(|| stack.push(Layer::of(Hand::default()))).ok_or_else(|| {
+        let most = StyleStack::MOST_LAYERS;
+        ProjectError::option(format!(
+            "--strokes: found a style of {most} layers; must have fewer, because a layer is added"
+        ))
+    })
+}
+
+/// Brings the engine to a time, by simulation if it is near.
+fn reach(engine: &mut Engine, time_secs: f64, afresh: bool) {
+    let step = (time_secs.max(0.0) / engine.step_secs()).round() as i64;
+    let ahead = (step - engine.at_step()) as f64 * engine.step_secs();
+    if afresh || !(0.0..=LONGEST_WAY_SECS).contains(&ahead) {
+        engine.seek(time_secs);
+        engine.settle();
+    } else {
+        engine.advance_to_step(step.unsigned_abs());
+    }
+}
+
+/// Plays one stroke. Returns how often it changed a guide, and the layers with it.
+fn play(
+    engine: &mut Engine,
+    layers: &mut BrushLayers,
+    stroke: &RecordedStroke,
+    layer: u32,
+    frozen: &mut Vec<bool>,
+) -> (usize, Option<StyleStack>) {
+    let tool = (stroke.tool, stroke.inverted);
+    let Some(mut brush) = engine.begin_stroke(layers, tool, &stroke.settings, layer, frozen) else {
+        return (0, None);
+    };
+    let mut touched = 0;
+    for sample in &stroke.samples {
+        reach(engine, sample.time_secs, false);
+        touched += engine.comb(&mut brush, sample).len();
+    }
+    *frozen = brush.frozen().to_vec();
+    (touched, Some(engine.end_stroke(layers, &brush, layer)))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use lovelock_brush::{BrushSettings, StrokeSample, Tool};
+
+    use super::*;
+    use crate::testing::small_project;
+
+    /// A stroke around the wearer's left ear, at some seconds of the dance.
+    fn stroke(engine: &mut Engine, tool: Tool, from_secs: f64) -> RecordedStroke {
+        let at = |i: usize| Vec3::new(0.1, 0.06, 0.04 - 0.006 * i as f32);
+        let mut samples = Vec::new();
+        for i in 0..20 {
+            let time_secs = from_secs + i as f64 / 60.0;
+            engine.seek(time_secs);
+            let pose = engine.snapshot().guides.world_from_head;
+            samples.push(StrokeSample {
+                position: pose.transform_point3(at(i)),
+                view: pose.transform_vector3(Vec3::NEG_X),
+                drag: if i > 0 { pose.transform_vector3(at(i) - at(i - 1)) } else { Vec3::ZERO },
+                pressure: 1.0,
+                time_secs,
+            });
+        }
+        let settings = BrushSettings { radius: 0.06, ..BrushSettings::default() };
+        RecordedStroke { tool, inverted: false, settings, samples }
+    }
+
+    #[test]
+    fn strokes_are_played_at_their_times_into_one_layer() {
+        let project = small_project();
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let (scene, _) = load(&project, &Access::new(), go_on).expect("a scene");
+        let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
+        let far = RecordedStroke {
+            samples: vec![StrokeSample { position: Vec3::splat(9.0), ..StrokeSample::default() }],
+            ..RecordedStroke::default()
+        };
+        let file = StrokeFile::new(vec![
+            stroke(&mut engine, Tool::Comb, 0.5),
+            stroke(&mut engine, Tool::Curl, 1.0),
+            far,
+            RecordedStroke::default(),
+        ]);
+        let (made, report, _) = play_strokes(&project, &Access::new(), &file, go_on).expect("a project");
+        println!("{report:?}");
+        assert_eq!((report.strokes, report.missed), (4, 2));
+        assert!(report.places > 3);
+        assert_eq!(made.hair.stack.layers.len(), project.hair.stack.layers.len() + 1);
+        // The same strokes give the same bytes, and further ones go into the same layer.
+        let (again, ..) = play_strokes(&project, &Access::new(), &file, go_on).expect("a project");
+        assert_eq!(again, made);
+        let (more, next, _) = play_strokes(&made, &Access::new(), &file, go_on).expect("a project");
+        assert_eq!(next.layer, report.layer);
+        assert_ne!(more, made);
+        let cancelled = play_strokes(&project, &Access::new(), &file, &mut |_| ControlFlow::Break(()));
+        assert!(matches!(cancelled, Err(ProjectError::Cancelled)));
+    }
+}
