@@ -3,11 +3,10 @@
 //! - [`scene`]: what is simulated and rendered, and its loader.
 //! - [`engine`]: the simulation of a scene, step by step, without a clock.
 //! - [`worker`]: the same on a thread of its own, in real time.
-//! - [`strokes`]: brushes on the hair of an engine.
 //! - [`take`]: recorded simulations, and playing them.
 //! - [`dance`]: frames of a simulation or a take for work without a window; [`prepare`] and [`progress`] belong to it.
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
-//! - [`strokes`]: recorded strokes of brushes, played on the hair of a project.
+//! - [`strokes`]: brushes on the hair of an engine, and recorded strokes played on a project.
 //! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
 //! - [`clock`], [`stats`], [`latest`], [`threads`], [`machine`] and [`new_folders`]: parts that the others need.
 //!

@@ -5,17 +5,32 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_base::settings::Settings as _;
 use lovelock_brush::{Brush, BrushSettings, BrushSurroundings, StrokeSample, Tool};
-use lovelock_groom::{GuideFrame, Guides, Obstacle};
+use lovelock_groom::{GuideFrame, Guides, Hairstyle, Obstacle};
+use lovelock_style::hand::HandEdits;
 use lovelock_style::{Operation, StyleCache, StyleStack};
 
 use super::Engine;
-use crate::scene::{Scene, StyleSource};
+use crate::scene::{Enlarged, Scene, StyleSource};
 
 /// What strokes need of the layers of a scene. It keeps evaluated hairstyles from stroke to stroke.
 #[derive(Clone, Debug, Default)]
 pub struct BrushLayers {
     below: StyleCache,
+    worn: Enlarged,
     whole: StyleCache,
+}
+
+impl BrushLayers {
+    /// The hair that the layer `layer` of a scene gets, in the size of the head that wears it; `None` if the scene has no such layer of
+    /// edits by hand.
+    fn below(&mut self, source: &StyleSource, layer: u32) -> Option<Arc<Hairstyle>> {
+        let at = source.stack.layers.iter().position(|own| own.id == layer)?;
+        let Operation::Hand(_) = &source.stack.layers[at].operation else { return None };
+        let mut stack = source.stack.clone();
+        stack.layers.truncate(at);
+        let below = self.below.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
+        Some(self.worn.of(&below, source.scale))
+    }
 }
 
 impl Engine {
@@ -29,21 +44,46 @@ impl Engine {
         layer: u32,
         frozen: &[bool],
     ) -> Option<Brush> {
-        let source = &self.loaded.source;
-        let at = source.stack.layers.iter().position(|own| own.id == layer)?;
-        let Operation::Hand(hand) = &source.stack.layers[at].operation else { return None };
-        let mut stack = source.stack.clone();
-        stack.layers.truncate(at);
-        let below = layers.below.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
-        Brush::new(tool, inverted, settings, [&below, &self.scene.style], &hand.edits, frozen)
+        let Operation::Hand(hand) = &self.loaded.source.stack.layer(layer)?.operation else { return None };
+        let hand = (layer, &hand.edits);
+        self.begin_stroke_after(layers, (tool, inverted), settings, hand, frozen)
+    }
+
+    /// As [`Engine::begin_stroke`], where the layer has other edits than in the scene: those of strokes that the scene does not have yet.
+    pub fn begin_stroke_after(
+        &self,
+        layers: &mut BrushLayers,
+        (tool, inverted): (Tool, bool),
+        settings: &BrushSettings,
+        (layer, edits): (u32, &HandEdits),
+        frozen: &[bool],
+    ) -> Option<Brush> {
+        let below = layers.below(&self.loaded.source, layer)?;
+        Brush::new(tool, inverted, settings, [&below, &self.scene.style], edits, frozen)
     }
 
     /// Moves a brush to a sample of its stroke. The touched guides take their new places and rest shapes without a jump, and keep their
     /// velocities. Returns the guides that were changed.
     pub fn comb(&mut self, brush: &mut Brush, sample: &StrokeSample) -> Vec<usize> {
+        let frame = self.frame_of_guides();
+        self.comb_frame(brush, sample, frame)
+    }
+
+    /// As [`Engine::comb`], with a sample in the space of the head.
+    pub fn comb_in_head(&mut self, brush: &mut Brush, sample: &StrokeSample) -> Vec<usize> {
+        let frame = self.frame_of_guides();
+        let sample = sample.placed(&frame.world_from_head);
+        self.comb_frame(brush, &sample, frame)
+    }
+
+    fn frame_of_guides(&self) -> GuideFrame {
         let mut frame =
             GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
         self.simulation.frame(&mut frame);
+        frame
+    }
+
+    fn comb_frame(&mut self, brush: &mut Brush, sample: &StrokeSample, mut frame: GuideFrame) -> Vec<usize> {
         let source = &self.loaded.source;
         let obstacle = WornObstacle { obstacle: &*source.obstacle, scale: source.scale };
         let changed = brush.stroke_to(&mut frame, &BrushSurroundings { obstacle: &obstacle }, sample);
@@ -76,6 +116,7 @@ fn scene_with(scene: &Scene, cache: &mut StyleCache, stack: StyleStack) -> Arc<S
         stack,
         obstacle: Arc::clone(&source.obstacle),
         scale: source.scale,
+        morph: source.morph.clone(),
     };
     Arc::new(Scene { style, source: Arc::new(source), ..scene.clone() })
 }

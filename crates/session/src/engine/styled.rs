@@ -2,29 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::Affine3A;
-use lovelock_groom::{GuideFrame, Guides};
-
 use super::Engine;
 use crate::scene::Scene;
 
 impl Engine {
-    /// The scene with the hairstyle of the current step.
-    pub(crate) fn current_scene(&self) -> &Arc<Scene> {
-        &self.scene
-    }
-
-    /// Moves guides of the current step to where `change` puts them, world space; it returns which. The hair goes on from there with the
-    /// velocities that it has. Returns whether any was moved.
-    pub(crate) fn move_hair(&mut self, change: impl FnOnce(&mut GuideFrame) -> Vec<usize>) -> bool {
-        let mut frame =
-            GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
-        self.simulation.frame(&mut frame);
-        let moved = change(&mut frame);
-        self.simulation.move_guides(&frame, &moved);
-        !moved.is_empty()
-    }
-
     /// Lays the hair of the current step in its rest shape.
     pub(crate) fn lay_at_rest(&mut self) {
         self.reset_to_rest(self.at_step, f64::NEG_INFINITY);

@@ -15,6 +15,7 @@ pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
+pub(crate) use scalp_part::Enlarged;
 pub use styling::StyleSource;
 pub(crate) use styling::Styling;
 pub(crate) use surroundings::SurroundingsLoader;

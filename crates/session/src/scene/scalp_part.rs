@@ -72,11 +72,11 @@ impl ScalpPart {
 
 /// A style in the size of the head that wears it, kept until the style changes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Enlarged(Option<(Arc<Hairstyle>, f32, Arc<Hairstyle>)>);
+pub(crate) struct Enlarged(Option<(Arc<Hairstyle>, f32, Arc<Hairstyle>)>);
 
 impl Enlarged {
     /// The style on a head that is `scale` times as large as the dancer's; the style itself for 1.
-    pub(super) fn of(&mut self, style: &Arc<Hairstyle>, scale: f32) -> Arc<Hairstyle> {
+    pub(crate) fn of(&mut self, style: &Arc<Hairstyle>, scale: f32) -> Arc<Hairstyle> {
         if scale == 1.0 {
             self.0 = None;
             return Arc::clone(style);

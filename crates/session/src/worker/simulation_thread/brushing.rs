@@ -9,8 +9,9 @@ use lovelock_style::hand::HandEdits;
 use super::super::Event;
 use super::super::mailbox::BrushRequest;
 use super::SimulationThread;
+use crate::engine::BrushLayers;
 use crate::scene::Scene;
-use crate::strokes::{Brushed, HairBelow, Stroke, StrokeStart};
+use crate::strokes::{Brushed, Stroke, StrokeStart};
 
 /// The most requests that wait for a scene.
 const MOST_WAITING: usize = 4096;
@@ -20,7 +21,7 @@ const MOST_WAITING: usize = 4096;
 pub(super) struct Brushing {
     waiting: VecDeque<BrushRequest>,
     open: Option<Open>,
-    below: HairBelow,
+    layers: BrushLayers,
     frozen: Vec<bool>,
     /// What the last stroke left in its layer.
     left: Option<(u32, HandEdits)>,
@@ -111,7 +112,7 @@ impl SimulationThread {
         let left = brushing.left.take().filter(|(layer, _)| *layer == start.layer).map(|(_, left)| left);
         let edits = start.edits.clone().or(left).unwrap_or_default();
         brushing.left = Some((start.layer, edits.clone()));
-        let stroke = Stroke::begin(engine, &start, edits, &brushing.frozen, &mut brushing.below);
+        let stroke = Stroke::begin(engine, &start, edits, &brushing.frozen, &mut brushing.layers);
         brushing.open = Some(Open { start, stroke });
     }
 

@@ -4,10 +4,12 @@ use glam::Vec3;
 use lovelock_brush::{BrushSettings, StrokeSample, Tool};
 use lovelock_project::Project;
 use lovelock_project::files::Access;
+use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::{Hand, Wave};
 use lovelock_style::{Layer, Operation};
 
-use super::*;
+use super::{Stroke, StrokeStart};
+use crate::engine::{BrushLayers, Engine};
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
 use crate::testing::{farthest, small_project};
@@ -28,7 +30,7 @@ fn with_edits(project: &Project, edits: HandEdits) -> Project {
 
 /// A stroke outward from the left side of the hair, in the space of the head.
 fn samples(engine: &Engine) -> Vec<StrokeSample> {
-    let guides = &engine.current_scene().style.guides;
+    let guides = &engine.scene().style.guides;
     let far = (0..guides.count()).map(|guide| guides.point(guide, guides.points_per_guide / 2));
     let start = far.max_by(|a, b| a.x.total_cmp(&b.x)).expect("hair");
     let step = Vec3::new(0.004, 0.0, 0.004);
@@ -54,7 +56,7 @@ fn snapshot(engine: &mut Engine) -> FrameSnapshot {
 
 /// Combs the hair of an engine, and loads the project with what that did.
 fn comb(engine: &mut Engine, loader: &mut SceneLoader, project: &Project, tool: Tool) -> Project {
-    let mut below = HairBelow::default();
+    let mut below = BrushLayers::default();
     let mut stroke =
         Stroke::begin(engine, &start(tool), HandEdits::default(), &[], &mut below).expect("a stroke");
     for sample in samples(engine) {
@@ -125,7 +127,7 @@ fn every_tool_acts_or_protects() {
     use lovelock_base::settings::Choices as _;
     let project = brushed();
     let scene = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene").0;
-    let mut below = HairBelow::default();
+    let mut below = BrushLayers::default();
     for tool in Tool::ALL {
         let mut engine = Engine::at_rest(Arc::clone(&scene), project.simulation, crate::clock::STEP_SECS);
         let mut stroke =
@@ -142,7 +144,7 @@ fn every_tool_acts_or_protects() {
 #[test]
 fn layers_that_are_not_there_and_hair_between_styles_cannot_be_brushed() {
     let mut project = brushed();
-    let mut below = HairBelow::default();
+    let mut below = BrushLayers::default();
     let mut begin = |project: &Project, layer: u32| {
         let scene = SceneLoader::new().load_now(project, &Access::new()).expect("a scene").0;
         let engine = Engine::at_rest(scene, project.simulation, crate::clock::STEP_SECS);

@@ -1,0 +1,80 @@
+//! A stroke of the pointer on the hair of an engine.
+
+use std::sync::Arc;
+
+use lovelock_brush::{Brush, BrushSettings, StrokeSample, Tool};
+use lovelock_style::hand::HandEdits;
+
+use crate::engine::{BrushLayers, Engine};
+
+/// A stroke that begins.
+#[derive(Clone, Debug)]
+pub struct StrokeStart {
+    /// A number that no earlier stroke has.
+    pub id: u64,
+    /// The layer of the style that it is written into.
+    pub layer: u32,
+    /// The tool.
+    pub tool: Tool,
+    /// Whether the tool does the opposite.
+    pub inverted: bool,
+    /// How the brush touches hair.
+    pub settings: BrushSettings,
+    /// What the layer holds; none where it is what the last stroke left there.
+    pub edits: Option<HandEdits>,
+}
+
+/// What a stroke has done so far.
+#[derive(Clone, Debug)]
+pub struct Brushed {
+    /// The number of the stroke.
+    pub stroke: u64,
+    /// The layer.
+    pub layer: u32,
+    /// What the layer holds now.
+    pub edits: HandEdits,
+    /// Which guides are protected, if that has changed.
+    pub frozen: Option<Arc<[bool]>>,
+    /// Whether the stroke has ended.
+    pub ended: bool,
+}
+
+/// A stroke on the hair of an engine.
+#[derive(Debug)]
+pub struct Stroke {
+    brush: Brush,
+    before: HandEdits,
+}
+
+impl Stroke {
+    /// Begins a stroke on the hair of an engine. `edits` is what the layer holds, and `frozen` says which guides are protected. `None` if
+    /// the engine's scene has no such layer, or its guides are not those of the layer.
+    pub fn begin(
+        engine: &Engine,
+        start: &StrokeStart,
+        edits: HandEdits,
+        frozen: &[bool],
+        layers: &mut BrushLayers,
+    ) -> Option<Self> {
+        let (tool, hand) = ((start.tool, start.inverted), (start.layer, &edits));
+        let brush = engine.begin_stroke_after(layers, tool, &start.settings, hand, frozen)?;
+        Some(Self { brush, before: edits })
+    }
+
+    /// Moves the brush to a sample, which is in the space of the head, and the hair of the engine with it. Returns whether hair has moved.
+    pub fn stroke_to(&mut self, engine: &mut Engine, sample: &StrokeSample) -> bool {
+        !engine.comb_in_head(&mut self.brush, sample).is_empty()
+    }
+
+    /// What the layer holds after the stroke so far.
+    pub fn edits(&self) -> HandEdits {
+        let mut edits = self.before.clone();
+        self.brush.write(&mut edits);
+        edits
+    }
+
+    /// Which guides are protected.
+    pub fn frozen(&self) -> &[bool] {
+        self.brush.frozen()
+    }
+}
