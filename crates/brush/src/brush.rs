@@ -182,6 +182,7 @@ impl Brush {
             path: &self.way,
             seen,
             neighbours: &self.neighbours,
+            locks: &self.locks,
             grab: &self.grab,
             obstacle: around.obstacle,
         };
@@ -208,8 +209,7 @@ impl Brush {
     }
 
     fn each_of_lock(&mut self, guide: usize, mut act: impl FnMut(&mut Self, usize)) {
-        let lock = self.locks.wisp[guide].map_or([guide; 3], |wisp| self.locks.guides[wisp]);
-        for guide in lock {
+        for guide in self.locks.of_guide(guide) {
             act(self, guide);
         }
     }

@@ -28,6 +28,16 @@ impl Touched {
     pub fn most(&self) -> f32 {
         self.weights.iter().copied().fold(0.0, f32::max)
     }
+
+    /// The weights, with hair beyond the brush touched as strongly as above: it follows what it hangs on.
+    pub fn trailing(&self) -> Vec<f32> {
+        let mut most = 0.0_f32;
+        let trailing = self.weights.iter().map(|weight| {
+            most = most.max(*weight);
+            most
+        });
+        trailing.collect()
+    }
 }
 
 /// The locks of a hairstyle.
@@ -50,6 +60,11 @@ impl Locks {
             }
         }
         Self { wisp, guides }
+    }
+
+    /// The guides of the lock of a guide.
+    pub fn of_guide(&self, guide: usize) -> [usize; 3] {
+        self.wisp.get(guide).copied().flatten().map_or([guide; 3], |wisp| self.guides[wisp])
     }
 
     /// Whether a guide is in the share of locks that a brush touches.

@@ -25,7 +25,8 @@ fn bends(guides: &Guides, guide: usize) -> f32 {
 fn every_tool_changes_what_it_touches_and_no_other_guide() {
     let style = hair(1, 60);
     for tool in Tool::ALL {
-        let made = stroked((*tool, false), &brush(), &style, &across(), &PlainHead);
+        let way = if *tool == Tool::Part { beside_the_parting() } else { across() };
+        let made = stroked((*tool, false), &brush(), &style, &way, &PlainHead);
         let frozen = *tool == Tool::Freeze;
         assert_eq!(made.touched.contains(&true), !frozen, "{tool:?}");
         assert_eq!(made.edits.is_empty(), frozen, "{tool:?}");
@@ -171,20 +172,40 @@ fn hair_goes_to_a_line_and_away_from_a_parting() {
     let made = stroked((Tool::Attract, false), &brush(), &style, &across(), &FREE);
     let change = mean(&made.touched, |g| away(&made.frame.guides, g) - away(&style.guides, g));
     assert!(change < -0.002, "{change}");
+}
 
-    // Over the top of the head, from the front to the back.
-    let top: Vec<StrokeSample> = samples(Vec3::new(0.0, 0.216, 0.05), Vec3::new(0.0, 0.216, -0.06), 24)
+/// From the front to the back over the top of the head, beside the parting that the hair has.
+fn beside_the_parting() -> Vec<StrokeSample> {
+    samples(Vec3::new(0.04, 0.205, 0.05), Vec3::new(0.04, 0.205, -0.06), 24)
         .into_iter()
         .map(|s| StrokeSample { view: Vec3::NEG_Y, ..s })
-        .collect();
-    let settings = BrushSettings { strength: 1.0, ..brush() };
-    let made = stroked((Tool::Part, false), &settings, &style, &top, &PlainHead);
-    let outward = mean(&made.touched, |g| {
-        let side = style.guides.point(g, 0).x.signum();
-        side * (made.frame.guides.point(g, 6).x - style.guides.point(g, 6).x)
-    });
-    println!("to the line by {change} m, from the parting by {outward} m");
-    assert!(outward > 0.002, "{outward}");
+        .collect()
+}
+
+#[test]
+fn locks_at_a_parting_fall_to_the_side_of_their_roots() {
+    let style = hair(1, 200);
+    let line = 0.04;
+    // Locks beside the line that fall over it, and all locks beside it.
+    let over = |guides: &Guides| {
+        let mut counts = [0, 0];
+        for wisp in &style.wisps {
+            let mean = |i| wisp.guides.iter().map(|g| guides.point(*g as usize, i)).sum::<Vec3>() / 3.0;
+            let (root, at) = (mean(0), mean(6));
+            if root.y > 0.15 && (-0.05..0.04).contains(&root.z) && (root.x - line).abs() < 0.035 {
+                counts[0] += usize::from((at.x - root.x) * (root.x - line) < 0.0);
+                counts[1] += 1;
+            }
+        }
+        counts
+    };
+    let settings = BrushSettings { radius: 0.06, strength: 1.0, ..brush() };
+    let made =
+        |inverted| stroked((Tool::Part, inverted), &settings, &style, &beside_the_parting(), &PlainHead);
+    let [before, after, inverted] =
+        [&style.guides, &made(false).frame.guides, &made(true).frame.guides].map(over);
+    println!("over the line: {before:?}, with a parting there {after:?}, inverted {inverted:?}");
+    assert!(before[0] > 3 && after[0] <= before[0] / 4 && inverted[0] > before[0] + 3);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use lovelock_style::hand::HandChannel;
 use crate::settings::BrushSettings;
 use crate::stroke::Dab;
 use crate::tool::Tool;
-use crate::touch::Touched;
+use crate::touch::{Locks, Touched};
 
 pub(crate) use moving::Grab;
 pub(crate) use shaping::neighbours;
@@ -65,6 +65,7 @@ pub(crate) struct Stamp<'a> {
     pub seen: &'a Guides,
     /// Guides with near roots, of each guide; only for tools that use them.
     pub neighbours: &'a [Vec<u32>],
+    pub locks: &'a Locks,
     /// What was grabbed when the stroke began.
     pub grab: &'a [Grab],
     pub obstacle: &'a dyn Obstacle,
@@ -88,13 +89,7 @@ impl Stamp<'_> {
             Tool::Spread => Channel(HandChannel::Spread, Step::Times(1.25), weights()),
             Tool::Twist => {
                 let more = if self.inverted { -0.1 } else { 0.1 };
-                // Hair beyond the brush turns with it.
-                let mut most = 0.0_f32;
-                let carried = touched.weights.iter().map(|weight| {
-                    most = most.max(*weight);
-                    most
-                });
-                Channel(HandChannel::Twist, Step::Plus(more), carried.collect())
+                Channel(HandChannel::Twist, Step::Plus(more), touched.trailing())
             }
             Tool::Curl => {
                 let radius = if self.inverted { 0.0 } else { self.settings.curl_radius };

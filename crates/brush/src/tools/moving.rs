@@ -1,7 +1,6 @@
 //! Tools that move hair.
 
 use glam::Vec3;
-use lovelock_base::numbers::smoothstep;
 use lovelock_groom::{Blade, Bounded, GuideFrame, Haircut, Hairstyle, Obstacle};
 use lovelock_style::hand::smallest_turn;
 
@@ -10,10 +9,10 @@ use crate::touch::Touched;
 
 /// How far hair moves at a dab of a tool that does not follow the brush, as a part of the radius.
 const REACH: f32 = 0.15;
-/// Hair that is combed away from a parting moves wholly from this distance from its root on, metres.
-const PART_FROM: f32 = 0.03;
-/// The distances from the root between which a parting has less and less effect, metres.
-const PART_FADES: [f32; 2] = [0.05, 0.18];
+/// The side to which a lock falls is that of its points at this part of its length.
+const FALLS_AT: f32 = 0.2;
+/// Locks that a parting touches less than this stay.
+const PARTS_FROM: f32 = 0.2;
 /// Clearance of flattened hair from the body, metres.
 const FLAT: f32 = 0.004;
 
@@ -37,27 +36,27 @@ impl Grab {
 }
 
 impl Stamp<'_> {
-    fn moved(touched: &Touched, by: impl Fn(usize, Vec3) -> Vec3) -> Vec<Vec3> {
+    fn moved(touched: &Touched, weights: &[f32], by: impl Fn(usize, Vec3) -> Vec3) -> Vec<Vec3> {
         let new = |(i, p): (usize, &Vec3)| {
-            let weight = touched.weights[i];
+            let weight = weights[i];
             if weight > 0.0 && i > 0 { *p + by(i, *p) * weight } else { *p }
         };
         touched.points.iter().enumerate().map(new).collect()
     }
 
     pub(super) fn combed(&self, touched: &Touched) -> Vec<Vec3> {
-        Self::moved(touched, |_, _| self.dab.step)
+        Self::moved(touched, &touched.trailing(), |_, _| self.dab.step)
     }
 
     pub(super) fn puffed(&self, touched: &Touched) -> Vec<Vec3> {
         let root = touched.points[0];
         let outward = Bounded(self.obstacle).distance(root).1;
-        Self::moved(touched, |_, _| outward * (REACH * self.dab.radius))
+        Self::moved(touched, &touched.trailing(), |_, _| outward * (REACH * self.dab.radius))
     }
 
     pub(super) fn flattened(&self, touched: &Touched) -> Vec<Vec3> {
         let body = Bounded(self.obstacle);
-        Self::moved(touched, |_, p| {
+        Self::moved(touched, &touched.weights, |_, p| {
             let (distance, normal) = body.distance(p);
             -normal * (distance - FLAT).clamp(0.0, REACH * self.dab.radius)
         })
@@ -65,7 +64,7 @@ impl Stamp<'_> {
 
     pub(super) fn attracted(&self, touched: &Touched) -> Vec<Vec3> {
         let reach = REACH * self.dab.radius;
-        Self::moved(touched, |_, p| {
+        Self::moved(touched, &touched.weights, |_, p| {
             let pairs = self.path.windows(2).map(|pair| {
                 let along = pair[1] - pair[0];
                 let t = (p - pair[0]).dot(along) / along.length_squared().max(1e-12);
@@ -78,28 +77,31 @@ impl Stamp<'_> {
         })
     }
 
-    /// Hair is moved by the side on which its root is.
+    /// A lock falls to the side of the line on which its root is. One that falls to the other is turned over as a mirror would show it, so
+    /// that it lies on the head as it did before. Locks are not divided, because their strands would stand up between the two sides.
     pub(super) fn parted(&self, touched: &Touched) -> Option<Vec<Vec3>> {
-        let root = touched.points[0];
-        let normal = Bounded(self.obstacle).distance(self.dab.centre).1;
+        let centre = self.dab.centre;
+        let normal = Bounded(self.obstacle).distance(centre).1;
         let side = normal.cross(self.dab.step).try_normalize()?;
-        let away = root.distance(self.dab.centre) / self.dab.radius;
-        if away >= 1.0 {
-            return None;
-        }
+        let lock = self.locks.of_guide(touched.guide);
+        let mean = |of: &dyn Fn(usize) -> Vec3| lock.iter().map(|guide| of(*guide)).sum::<Vec3>() / 3.0;
+        let root = mean(&|guide| self.seen.point(guide, 0));
+        let away = root.distance(centre) / self.dab.radius;
         let weight =
             self.settings.strength * self.dab.pressure * self.settings.falloff.at(away).clamp(0.0, 1.0);
-        let to_left = (root - self.dab.centre).dot(side) >= 0.0;
-        let side = if to_left == self.inverted { -side } else { side };
-        let mut metres = 0.0;
-        let mut out = touched.points.clone();
-        for (i, p) in out.iter_mut().enumerate().skip(1) {
-            metres += touched.points[i].distance(touched.points[i - 1]);
-            let fade = 1.0 - smoothstep(PART_FADES[0], PART_FADES[1], metres);
-            let amount = weight * fade * (metres / PART_FROM).min(1.0);
-            *p += side * (3.0 * REACH * self.dab.radius * amount);
+        if away >= 1.0 || weight < PARTS_FROM {
+            return None;
         }
-        Some(out)
+        let at = ((self.seen.points_per_guide - 1) as f32 * FALLS_AT).ceil() as usize;
+        let falls = mean(&|guide| self.seen.point(guide, at)) - root;
+        let is_left = (root - centre).dot(side) >= 0.0;
+        let away_from_line = if is_left == self.inverted { -side } else { side };
+        if falls.dot(away_from_line) >= 0.0 {
+            return None;
+        }
+        let own = touched.points[0];
+        let mirrored = |p: &Vec3| *p - side * (2.0 * side.dot(*p - own));
+        Some(touched.points.iter().map(mirrored).collect())
     }
 
     /// A guide turns about its root as a whole, so that its grabbed point follows the brush.

@@ -180,3 +180,17 @@ fn every_file_reads_without_problems_and_says_what_it_is() {
         assert!((300..=40_000).contains(&strands), "{}: {strands} strands", shipped.id);
     }
 }
+
+#[test]
+fn the_examples_of_the_documents_are_whole() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples");
+    let files = std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let styles: Vec<_> =
+        files.filter(|path| path.extension().is_some_and(|of| of == STYLE_EXTENSION)).collect();
+    assert!(styles.len() >= 6, "{styles:?}");
+    for path in styles {
+        let (style, problems) = Style::load(&path).expect("a style");
+        assert!(problems.is_empty(), "{}: {problems:?}", path.display());
+        assert!(!style.hair.stack.layers.is_empty() && style.hair.stack.unknown().is_empty());
+    }
+}
