@@ -182,3 +182,31 @@ fn a_hundred_thousand_samples_are_quick() {
     assert!(made.frame.guides.x.iter().all(|v| v.is_finite()));
     assert!(brush().clamped() == brush());
 }
+
+#[test]
+fn a_dab_on_a_thousand_locks_is_quick() {
+    let settings = GroomSettings { wisps: 1000, strands_per_wisp: 1, ..GroomSettings::default() };
+    let style = Arc::new(grow(&settings, &PlainHead.scalp(48), &PlainHead).expect("hair"));
+    for (tool, radius) in [(Tool::Comb, 0.04), (Tool::Smooth, 0.04), (Tool::Comb, 0.5)] {
+        let settings = BrushSettings { radius, ..brush() };
+        let mut edits = HandEdits::default();
+        let watch = lovelock_base::clock::Stopwatch::start();
+        let mut stroke = Brush::new(tool, false, &settings, [&style, &style], &edits, &[]).expect("a stroke");
+        let begun = watch.ms();
+        let mut frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
+        let way = samples(Vec3::new(0.1, 0.08, 0.04), Vec3::new(0.1, 0.08, -0.08), 20);
+        let watch = lovelock_base::clock::Stopwatch::start();
+        for sample in &way {
+            stroke.stroke_to(&mut frame, &BrushSurroundings { obstacle: &PlainHead }, sample);
+        }
+        let each = watch.ms() / way.len() as f64;
+        let watch = lovelock_base::clock::Stopwatch::start();
+        stroke.write(&mut edits);
+        println!(
+            "{tool:?} {radius}: begin {begun} ms, {each} ms per sample, write {} ms, {} places",
+            watch.ms(),
+            edits.count()
+        );
+        assert!(begun < 2000.0 && each < 1000.0, "{begun} {each}");
+    }
+}

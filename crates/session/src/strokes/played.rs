@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn strokes_are_played_at_their_times_into_one_layer() {
-        let project = small_project();
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.25;
         let go_on = &mut |_| ControlFlow::Continue(());
         let (scene, _) = load(&project, &Access::new(), go_on).expect("a scene");
         let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
