@@ -11,6 +11,10 @@ use crate::touch::Touched;
 const REACH: f32 = 0.15;
 /// The side to which a lock falls is that of its points at this part of its length.
 const FALLS_AT: f32 = 0.2;
+/// A parting turns hair over in an upright mirror if that is turned from the tangent of the head by at most this cosine.
+const UPRIGHT: f32 = 0.5;
+/// Hair up to this far from the body keeps its distance while it is turned over, metres.
+const LIES: f32 = 0.03;
 /// Locks that a parting touches less than this stay.
 const PARTS_FROM: f32 = 0.2;
 /// Clearance of flattened hair from the body, metres.
@@ -99,8 +103,16 @@ impl Stamp<'_> {
         if falls.dot(away_from_line) >= 0.0 {
             return None;
         }
-        let own = touched.points[0];
-        let mirrored = |p: &Vec3| *p - side * (2.0 * side.dot(*p - own));
+        // The mirror is upright where it can be, because hair hangs down on both sides of it.
+        let upright = Vec3::Y.cross(self.dab.step).normalize_or_zero();
+        let across = if upright.dot(side).abs() > UPRIGHT { upright } else { side };
+        let (own, body) = (touched.points[0], Bounded(self.obstacle));
+        let mirrored = |p: &Vec3| {
+            let other = *p - across * (2.0 * across.dot(*p - own));
+            // As far from the body as before.
+            let (distance, normal) = body.distance(other);
+            other + normal * (body.distance(*p).0.clamp(0.0, LIES) - distance).max(0.0)
+        };
         Some(touched.points.iter().map(mirrored).collect())
     }
 
