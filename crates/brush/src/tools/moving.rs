@@ -9,6 +9,8 @@ use crate::touch::Touched;
 
 /// How far hair moves at a dab of a tool that does not follow the brush, as a part of the radius.
 const REACH: f32 = 0.15;
+/// Hair turns into the direction of a comb within about this way, in radii.
+const COMBS_WITHIN: f32 = 0.8;
 /// The side to which a lock falls is that of its points at this part of its length.
 const FALLS_AT: f32 = 0.2;
 /// A parting turns hair over in an upright mirror if that is turned from the tangent of the head by at most this cosine.
@@ -48,8 +50,25 @@ impl Stamp<'_> {
         touched.points.iter().enumerate().map(new).collect()
     }
 
+    /// Hair goes with the brush, and the part of it that is under the brush turns into the direction in which the brush moves. Along a
+    /// stroke that begins at the roots, the brush so reaches one link after the other, and the hair follows its way.
     pub(super) fn combed(&self, touched: &Touched) -> Vec<Vec3> {
-        Self::moved(touched, &touched.trailing(), |_, _| self.dab.step)
+        let moved = Self::moved(touched, &touched.trailing(), |_, _| self.dab.step);
+        let Some(wanted) = self.dab.step.try_normalize() else { return moved };
+        let rate = self.dab.step.length() / (COMBS_WITHIN * self.dab.radius);
+        let mut out = Vec::with_capacity(moved.len());
+        out.push(moved[0]);
+        for (i, pair) in moved.windows(2).enumerate() {
+            let link = pair[1] - pair[0];
+            let weight = touched.weights[i].max(touched.weights[i + 1]);
+            let direction = link.normalize_or_zero();
+            // Hair is pushed aside by a brush that crosses it more than it turns.
+            let along = 0.5 + 0.5 * direction.dot(wanted);
+            let part = (1.0 - (-weight * rate).exp()) * along;
+            let turned = direction.lerp(wanted, part).normalize_or(direction);
+            out.push(out[i] + turned * link.length());
+        }
+        out
     }
 
     pub(super) fn puffed(&self, touched: &Touched) -> Vec<Vec3> {
