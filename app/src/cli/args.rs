@@ -385,6 +385,9 @@ pub(crate) struct StyleTask {
     /// Recorded strokes, a .lovelockstrokes file. Each is played at its time of the dance.
     #[arg(long, value_name = "FILE")]
     pub(crate) strokes: PathBuf,
+    /// Play only the first strokes, so many; all by default.
+    #[arg(long, value_name = "N")]
+    pub(crate) count: Option<usize>,
     /// The new project.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,

@@ -14,8 +14,9 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
     let name = task.strokes.display();
     let text = std::fs::read_to_string(&task.strokes)
         .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
-    let strokes = StrokeFile::from_text(&text)
+    let mut strokes = StrokeFile::from_text(&text)
         .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
+    strokes.strokes.truncate(task.count.unwrap_or(usize::MAX));
     let source = Source::open(&task.source)?;
     let (project, report, problems) =
         source.watched(|project, progress| play_strokes(project, &source.access, &strokes, progress))?;
