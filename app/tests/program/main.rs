@@ -10,4 +10,5 @@ mod projects;
 mod record;
 mod refusals;
 mod settings;
+mod strokes;
 mod tool;

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::carry::CarriedGuide;
 use crate::chain::{lay, lengths};
 use crate::settings::{BrushMirror, BrushSettings};
-use crate::stroke::{Dab, Resampler, StrokeSample};
+use crate::stroke::{Dab, Resampler, StrokeSample, mirror};
 use crate::tool::Tool;
 use crate::tools::{Change, Grab, Stamp, neighbours};
 use crate::touch::{Locks, Touched, touched};
@@ -166,20 +166,23 @@ impl Brush {
         let mut touched = touched(seen, dab, &self.settings, &self.locks, is_free, around.obstacle);
         if self.tool == Tool::Place {
             if dab.first {
-                self.grab.extend(touched.iter().filter_map(Grab::of));
+                self.grab.extend(touched.iter().filter_map(|touched| Grab::of(touched, dab.mirrored)));
             }
             let again = |grab: &Grab| {
                 let points = hand_input(seen, grab.guide, 1.0)?;
                 Some(Touched { guide: grab.guide, weights: vec![grab.weight; points.len()], points })
             };
-            touched = self.grab.iter().filter_map(again).collect();
+            touched =
+                self.grab.iter().filter(|grab| grab.mirrored == dab.mirrored).filter_map(again).collect();
         }
+        let way: Vec<Vec3> =
+            if dab.mirrored { self.way.iter().copied().map(mirror).collect() } else { self.way.clone() };
         let stamp = Stamp {
             tool: self.tool,
             inverted: self.inverted,
             settings: &self.settings,
             dab: *dab,
-            path: &self.way,
+            path: &way,
             seen,
             neighbours: &self.neighbours,
             locks: &self.locks,
@@ -285,7 +288,7 @@ impl Brush {
         let reach = self.roots.spacing;
         let near = |guide: &usize| {
             let own = self.roots.directions[*guide];
-            let other = Vec3::new(-own.x, own.y, own.z);
+            let other = mirror(own);
             let on_other_side = own.x * side < 0.0 && !self.frozen[*guide];
             on_other_side
                 && touched.iter().any(|from| {

@@ -68,14 +68,26 @@ pub(crate) struct Dab {
     pub pressure: f32,
     /// Whether the stroke begins here.
     pub first: bool,
+    /// Whether it is on the other side of the head than the brush.
+    pub mirrored: bool,
 }
 
 impl Dab {
     /// The dab on the other side of the head.
     pub fn mirrored(self) -> Self {
-        let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-        Self { centre: mirror(self.centre), step: mirror(self.step), view: mirror(self.view), ..self }
+        Self {
+            centre: mirror(self.centre),
+            step: mirror(self.step),
+            view: mirror(self.view),
+            mirrored: true,
+            ..self
+        }
     }
+}
+
+/// A place or a direction on the other side of the head.
+pub(crate) fn mirror(v: Vec3) -> Vec3 {
+    Vec3::new(-v.x, v.y, v.z)
 }
 
 /// Divides a stroke into dabs at equal distances along the movement, so that its shape does not depend on how often the pointer is read.
@@ -101,6 +113,7 @@ impl Resampler {
             view: at.view,
             pressure: at.pressure.clamp(0.0, 1.0),
             first,
+            mirrored: false,
         };
         let Some(last) = self.last.replace(now) else { return vec![dab(&now, Vec3::ZERO, true)] };
         let length = now.drag.length();

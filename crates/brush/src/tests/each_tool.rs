@@ -243,6 +243,24 @@ fn frozen_locks_stay_and_are_freed_again() {
 }
 
 #[test]
+fn a_mirrored_line_and_a_mirrored_lock_are_on_the_other_side() {
+    let style = hair(1, 120);
+    let settings = BrushSettings { mirror: BrushMirror::Own, ..brush() };
+    let way = samples(Vec3::new(0.1, 0.08, -0.04), Vec3::new(0.16, 0.08, -0.04), 24);
+    for tool in [Tool::Place, Tool::Attract] {
+        let made = stroked((tool, false), &settings, &style, &way, &FREE);
+        let outward = |left: bool| {
+            let side: Vec<bool> =
+                (0..360).map(|g| made.touched[g] && (style.guides.point(g, 0).x > 0.0) == left).collect();
+            let sign = if left { 1.0 } else { -1.0 };
+            mean(&side, |g| sign * (made.frame.guides.point(g, 15).x - style.guides.point(g, 15).x))
+        };
+        println!("{tool:?}: {} m on the left, {} m on the right", outward(true), outward(false));
+        assert!(outward(true) > 2e-4 && (outward(false) / outward(true) - 1.0).abs() < 0.7);
+    }
+}
+
+#[test]
 fn the_other_side_gets_its_own_shape_or_the_same() {
     let style = hair(1, 120);
     let side = |touched: &[bool], left: bool| {

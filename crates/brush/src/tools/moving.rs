@@ -30,14 +30,16 @@ pub(crate) struct Grab {
     pub point: usize,
     /// How closely it follows.
     pub weight: f32,
+    /// Whether it follows the brush on the other side of the head.
+    pub mirrored: bool,
 }
 
 impl Grab {
     /// The point of a guide that is touched most.
-    pub fn of(touched: &Touched) -> Option<Self> {
+    pub fn of(touched: &Touched, mirrored: bool) -> Option<Self> {
         let weights = touched.weights.iter().enumerate().skip(1);
         let (point, weight) = weights.max_by(|a, b| a.1.total_cmp(b.1))?;
-        (*weight > 0.0).then_some(Self { guide: touched.guide, point, weight: *weight })
+        (*weight > 0.0).then_some(Self { guide: touched.guide, point, weight: *weight, mirrored })
     }
 }
 
@@ -137,7 +139,10 @@ impl Stamp<'_> {
 
     /// A guide turns about its root as a whole, so that its grabbed point follows the brush.
     pub(super) fn placed(&self, touched: &Touched) -> Option<Vec<Vec3>> {
-        let grab = self.grab.iter().find(|grab| grab.guide == touched.guide)?;
+        let grab = self
+            .grab
+            .iter()
+            .find(|grab| grab.guide == touched.guide && grab.mirrored == self.dab.mirrored)?;
         let root = touched.points[0];
         let from = *touched.points.get(grab.point)? - root;
         let to = from + self.dab.step * grab.weight;
