@@ -308,6 +308,7 @@ impl Window {
             }
             Pending::New => {
                 self.overdub.let_go();
+                self.cancel_strokes();
                 self.history = lovelock_project::history::History::new(Project::default());
                 self.project_path = None;
                 self.session.set_project_path(None);

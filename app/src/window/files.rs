@@ -87,6 +87,7 @@ impl Window {
         match load_project_with(path, &mut access) {
             Ok((project, problems)) => {
                 self.overdub.let_go();
+                self.cancel_strokes();
                 self.history = lovelock_project::history::History::new(project);
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());

@@ -54,6 +54,8 @@ pub(crate) struct Brushes {
     pub(crate) still: bool,
     sent_still: bool,
     held: Option<Held>,
+    /// Whether the stroke of the button that is down was taken back, so that the pointer does nothing more.
+    spent: bool,
     resize: Option<keys::Resize>,
     strokes: Strokes,
 }

@@ -71,12 +71,13 @@ impl Window {
         if let Some(place) = under.filter(|_| begins) {
             self.press(project, (tool, inverted), &settings, (snapshot, place));
         }
-        let holds = self.brushes.held.is_some() || resizing.is_some();
+        let holds = self.brushes.held.is_some() || self.brushes.spent || resizing.is_some();
         if self.brushes.held.is_some() {
             self.drag(ui, (view, head), snapshot, begins);
         }
         if !down {
             self.end_stroke();
+            self.brushes.spent = false;
         }
         holds
     }

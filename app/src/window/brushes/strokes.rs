@@ -78,17 +78,17 @@ impl Window {
         let strokes = &mut self.brushes.strokes;
         let left = edits_of(project, layer).cloned().unwrap_or_default();
         // What an earlier stroke did may still be on its way: the simulation has it already.
-        let goes_on = strokes.open.iter().any(|open| open.layer == layer);
+        let after = strokes.open.iter().rev().find(|open| open.layer == layer).map(|open| open.id);
         strokes.last += 1;
         let id = strokes.last;
-        let edits = (!goes_on).then(|| left.clone());
+        let edits = left.clone();
         let label = tool.names().1.to_lowercase();
         if strokes.recorded.len() < StrokeFile::MOST_STROKES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
         }
         strokes.open.push(Open { id, layer, gesture: self.gestures.id(), label, left });
-        self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits });
+        self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits, after });
         id
     }
 
@@ -126,6 +126,13 @@ impl Window {
         }
     }
 
+    /// Forgets the strokes whose results have not arrived.
+    pub(in crate::window) fn cancel_strokes(&mut self) {
+        self.session.worker().cancel_strokes();
+        self.brushes.strokes.open.clear();
+        self.brushes.spent |= self.brushes.held.take().is_some();
+    }
+
     fn write_brushed(&mut self, brushed: Brushed) {
         let strokes = &mut self.brushes.strokes;
         if let Some(frozen) = brushed.frozen {
@@ -135,9 +142,7 @@ impl Window {
         let now = edits_of(self.history.project(), brushed.layer);
         if now != Some(&strokes.open[at].left) {
             // An undo or another edit: what the stroke does from now on is lost with it.
-            self.session.worker().cancel_strokes();
-            self.brushes.strokes.open.clear();
-            self.brushes.held = None;
+            self.cancel_strokes();
             return;
         }
         let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].label.clone());

@@ -3,6 +3,7 @@
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use glam::Vec3;
 use lovelock_base::settings::Choices as _;
 use lovelock_brush::{BrushSettings, Tool};
 use lovelock_style::Operation;
@@ -37,6 +38,15 @@ fn brushing() -> Option<(Whole, Pos2)> {
     Some((harness, at))
 }
 
+/// The ends of a line over the top of the head, beside the parting that the hair has.
+fn beside_the_parting(harness: &Whole) -> [Pos2; 2] {
+    let painted = of(harness).session.painted.clone().expect("an image");
+    [0.07, 0.0].map(|z| {
+        let place = painted.snapshot.guides.world_from_head.transform_point3(Vec3::new(0.05, 0.16, z));
+        view(harness).to_screen(place).expect("before the camera")
+    })
+}
+
 fn edits(harness: &Whole) -> Option<HandEdits> {
     let project = project(harness);
     let layers = project.hair.stack.layers.iter();
@@ -65,7 +75,9 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         control(&harness, egui::accesskit::Role::RadioButton, name).click();
         go(&mut harness);
         assert_eq!(of(&harness).brushes.tool, *tool);
-        drag_over(&mut harness, at, at + vec2(40.0, 14.0));
+        let way =
+            if *tool == Tool::Part { beside_the_parting(&harness) } else { [at, at + vec2(40.0, 14.0)] };
+        drag_over(&mut harness, way[0], way[1]);
         done(&mut harness);
         assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
         let made = edits(&harness).expect("a layer");

@@ -276,7 +276,7 @@ fn a_patch_is_resized_and_moved_in_the_viewport() {
 #[test]
 fn a_collider_is_moved_and_resized_in_the_viewport() {
     let Some(mut harness) = with_picture() else { return };
-    key(&mut harness, Modifiers::NONE, Key::B);
+    key(&mut harness, Modifiers::NONE, Key::G);
     let scene = of(&harness).session.scene.clone().expect("a scene");
     let name = scene.fitted[0].name.clone();
     let before = project(&harness);

@@ -20,8 +20,10 @@ pub struct StrokeStart {
     pub inverted: bool,
     /// How the brush touches hair.
     pub settings: BrushSettings,
-    /// What the layer holds; none where it is what the last stroke left there.
-    pub edits: Option<HandEdits>,
+    /// What the layer holds.
+    pub edits: HandEdits,
+    /// The stroke whose result may not be in `edits` yet: if it was the last one, this one goes on from what it left.
+    pub after: Option<u64>,
 }
 
 /// What a stroke has done so far.

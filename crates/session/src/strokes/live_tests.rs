@@ -47,7 +47,7 @@ fn samples(engine: &Engine) -> Vec<StrokeSample> {
 fn start(tool: Tool) -> StrokeStart {
     let settings =
         BrushSettings { radius: 0.08, strength: 1.0, front_only: false, ..BrushSettings::default() };
-    StrokeStart { id: 1, layer: 2, tool, inverted: false, settings, edits: None }
+    StrokeStart { id: 1, layer: 2, tool, inverted: false, settings, edits: HandEdits::default(), after: None }
 }
 
 fn snapshot(engine: &mut Engine) -> FrameSnapshot {

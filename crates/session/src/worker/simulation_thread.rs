@@ -34,6 +34,9 @@ use crate::take::{TakeProgress, TakeRecording, TakeTransport};
 /// Number of consecutive panics after which the simulation stops until something changes.
 const MOST_PANICS: u32 = 3;
 
+/// Time after which strokes that wait for a scene are looked at again.
+const STROKES_AGAIN: Duration = Duration::from_millis(50);
+
 /// The state of the simulation thread.
 pub(super) struct SimulationThread {
     mailbox: Mailbox,
@@ -115,6 +118,11 @@ impl SimulationThread {
                 }
                 (None, Some(_)) => self.playback.until_next(),
                 (None, None) => None,
+            };
+            let timeout = if self.has_waiting_strokes() {
+                Some(timeout.unwrap_or(STROKES_AGAIN).min(STROKES_AGAIN))
+            } else {
+                timeout
             };
             let requests = self.mailbox.take(self.until_calm(timeout));
             if requests.stop {

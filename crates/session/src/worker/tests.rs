@@ -335,13 +335,14 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     let frame = settled_at(&worker, 0.0);
     let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
     let settings = BrushSettings { radius: 0.08, front_only: false, ..BrushSettings::default() };
-    let begin = |id, edits| StrokeStart {
+    let begin = |id, after| StrokeStart {
         id,
         layer,
         tool: Tool::Comb,
         inverted: false,
         settings: settings.clone(),
-        edits,
+        edits: HandEdits::default(),
+        after,
     };
     let tip = frame.scene.style.guides.point(0, frame.scene.style.guides.points_per_guide - 1);
     let sample = |i: u8| StrokeSample {
@@ -351,7 +352,7 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
         pressure: 1.0,
         time_secs: 0.0,
     };
-    worker.begin_stroke(begin(1, Some(HandEdits::default())));
+    worker.begin_stroke(begin(1, None));
     worker.stroke_to(1, (0..6).map(sample).collect());
     worker.end_stroke(1);
     // The layer comes after the stroke.
@@ -359,11 +360,22 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     let first = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(!first.edits.is_empty() && first.stroke == 1);
     // The next goes on from there, although the project does not have it yet.
-    worker.begin_stroke(begin(2, None));
+    worker.begin_stroke(begin(2, Some(1)));
     worker.stroke_to(2, (0..6).map(sample).collect());
     worker.end_stroke(2);
     let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(second.edits != first.edits && second.edits.count() >= first.edits.count());
+    // A stroke in a layer that never comes ends without a change, and so does one that is cancelled.
+    let nowhere = StrokeStart { layer: 77, ..begin(3, Some(2)) };
+    worker.begin_stroke(nowhere);
+    worker.stroke_to(3, (0..6).map(sample).collect());
+    worker.end_stroke(3);
+    worker.begin_stroke(begin(4, Some(3)));
+    worker.end_stroke(4);
+    let lost = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(lost.stroke == 3 && lost.edits.is_empty());
+    let fourth = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(fourth.stroke == 4 && fourth.edits.is_empty(), "what another layer got is not taken over");
     // Paused hair that was brushed stays as it was left.
     let left = worker.frame().expect("a frame");
     project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: second.edits.clone() });

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_style::Operation;
 use lovelock_style::hand::HandEdits;
 
@@ -15,16 +16,20 @@ use crate::strokes::{Brushed, Stroke, StrokeStart};
 
 /// The most requests that wait for a scene.
 const MOST_WAITING: usize = 4096;
+/// The longest time for which a stroke waits for the scene that has its layer, seconds, and the longest if the project lacks that.
+const LONGEST_WAIT_SECS: [f64; 2] = [60.0, 0.25];
 
 /// The strokes of the thread.
 #[derive(Debug, Default)]
 pub(super) struct Brushing {
     waiting: VecDeque<BrushRequest>,
+    /// Since when the first of them waits.
+    since: Option<Stopwatch>,
     open: Option<Open>,
     layers: BrushLayers,
     frozen: Vec<bool>,
-    /// What the last stroke left in its layer.
-    left: Option<(u32, HandEdits)>,
+    /// The last stroke, its layer and what it left there.
+    left: Option<(u64, u32, HandEdits)>,
 }
 
 #[derive(Debug)]
@@ -39,7 +44,7 @@ impl Brushing {
     pub(super) fn made(&self, scene: &Scene) -> bool {
         let stack = &scene.source.stack;
         self.open.is_some()
-            || self.left.as_ref().is_some_and(|(layer, left)| match stack.layer(*layer) {
+            || self.left.as_ref().is_some_and(|(_, layer, left)| match stack.layer(*layer) {
                 Some(layer) => matches!(&layer.operation, Operation::Hand(hand) if hand.edits == *left),
                 None => false,
             })
@@ -54,9 +59,14 @@ impl Brushing {
 impl SimulationThread {
     /// Does what brushes have been asked to do, as far as the scene has their layer. Returns whether hair has moved.
     pub(super) fn brush(&mut self, requests: Vec<BrushRequest>) -> bool {
-        self.brushing.waiting.extend(requests);
+        for request in requests {
+            if matches!(request, BrushRequest::Cancel) {
+                self.brushing.waiting.clear();
+            }
+            self.brushing.waiting.push_back(request);
+        }
         if self.take.is_some() || self.brushing.waiting.len() > MOST_WAITING {
-            self.brushing.waiting.clear();
+            self.drop_waiting();
             self.end_open_stroke();
         }
         let mut moved = false;
@@ -64,10 +74,11 @@ impl SimulationThread {
             match request {
                 BrushRequest::Begin(start) => {
                     self.end_open_stroke();
-                    if !self.has_layer(start.layer) {
+                    if self.waits_for(start.layer) {
                         self.brushing.waiting.push_front(BrushRequest::Begin(start));
                         break;
                     }
+                    self.brushing.since = None;
                     self.begin_stroke(start);
                 }
                 BrushRequest::To(id, samples) => {
@@ -92,8 +103,7 @@ impl SimulationThread {
                     }
                 }
                 BrushRequest::Cancel => {
-                    self.brushing.waiting.retain(|request| matches!(request, BrushRequest::Thaw));
-                    (self.brushing.open, self.brushing.left) = (None, None);
+                    (self.brushing.open, self.brushing.left, self.brushing.since) = (None, None, None);
                 }
                 BrushRequest::Thaw => self.brushing.frozen.clear(),
             }
@@ -101,18 +111,45 @@ impl SimulationThread {
         moved
     }
 
-    fn has_layer(&self, layer: u32) -> bool {
+    /// Whether a stroke has to wait for the scene that has its layer.
+    fn waits_for(&mut self, layer: u32) -> bool {
         let Some(engine) = &self.engine else { return false };
-        engine.scene().source.stack.layer(layer).is_some()
+        if engine.scene().source.stack.layer(layer).is_some() {
+            return false;
+        }
+        // The project with a new layer comes a little after the stroke.
+        let is_there = self.project.as_ref().is_some_and(|of| of.hair.stack.layer(layer).is_some());
+        let waited = self.brushing.since.get_or_insert_with(Stopwatch::start).secs();
+        waited < LONGEST_WAIT_SECS[usize::from(!is_there)]
+    }
+
+    /// Ends all strokes that wait, without what they would have done.
+    fn drop_waiting(&mut self) {
+        self.brushing.since = None;
+        for request in std::mem::take(&mut self.brushing.waiting) {
+            if let BrushRequest::Begin(start) = request {
+                self.brushing.open = Some(Open { start, stroke: None });
+                self.end_open_stroke();
+            }
+        }
+    }
+
+    /// Whether strokes wait, so that the thread looks again soon.
+    pub(super) fn has_waiting_strokes(&self) -> bool {
+        !self.brushing.waiting.is_empty()
     }
 
     fn begin_stroke(&mut self, start: Box<StrokeStart>) {
-        let Some(engine) = &self.engine else { return };
         let brushing = &mut self.brushing;
-        let left = brushing.left.take().filter(|(layer, _)| *layer == start.layer).map(|(_, left)| left);
-        let edits = start.edits.clone().or(left).unwrap_or_default();
-        brushing.left = Some((start.layer, edits.clone()));
-        let stroke = Stroke::begin(engine, &start, edits, &brushing.frozen, &mut brushing.layers);
+        let left = brushing.left.take().filter(|(stroke, layer, _)| {
+            *layer == start.layer && start.after.is_some_and(|after| after == *stroke)
+        });
+        let edits = left.map_or_else(|| start.edits.clone(), |(.., left)| left);
+        brushing.left = Some((start.id, start.layer, edits.clone()));
+        let stroke = self
+            .engine
+            .as_ref()
+            .and_then(|engine| Stroke::begin(engine, &start, edits, &brushing.frozen, &mut brushing.layers));
         brushing.open = Some(Open { start, stroke });
     }
 
@@ -129,13 +166,14 @@ impl SimulationThread {
         let Some(Open { start, stroke }) = &brushing.open else { return };
         let mut frozen = None;
         if let Some(stroke) = stroke {
-            brushing.left = Some((start.layer, stroke.edits()));
+            brushing.left = Some((start.id, start.layer, stroke.edits()));
             if brushing.frozen != stroke.frozen() {
                 brushing.frozen = stroke.frozen().to_vec();
                 frozen = Some(Arc::from(brushing.frozen.as_slice()));
             }
         }
-        let edits = brushing.left.as_ref().map(|(_, left)| left.clone()).unwrap_or_default();
+        let left = brushing.left.as_ref().filter(|(id, ..)| *id == start.id);
+        let edits = left.map_or_else(|| start.edits.clone(), |(.., left)| left.clone());
         let brushed = Brushed { stroke: start.id, layer: start.layer, edits, frozen, ended };
         self.outbox.send(Event::Brushed(brushed));
     }
