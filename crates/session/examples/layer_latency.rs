@@ -1,4 +1,4 @@
-//! The time from a change of a layer to the image that shows it, while the dance plays:
+//! The time from a change of a layer, and from a movement of a brush, to the image that shows it, while the dance plays:
 //! `cargo run --release -p lovelock-session --example layer_latency -- [CHANGES] [WIDTHxHEIGHT]`.
 //!
 //! The threads are those of the window: the loader evaluates the stack, the simulation takes the new hair, and the render thread draws
@@ -9,16 +9,20 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
+use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
+use lovelock_brush::{BrushSettings, StrokeSample, Tool};
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Backend;
 use lovelock_session::render_thread::{RenderRequest, RenderThread};
 use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::strokes::StrokeStart;
 use lovelock_session::window_device::WindowDevice;
-use lovelock_session::worker::Worker;
-use lovelock_style::operations::{Curl, Frizz, Lift};
+use lovelock_session::worker::{Event, Worker};
+use lovelock_style::hand::HandEdits;
+use lovelock_style::operations::{Curl, Frizz, Hand, Lift};
 use lovelock_style::{Layer, Operation, Ramp};
 
 /// No change takes longer, seconds.
@@ -44,6 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let measured = measure(&project, layer, changes, size)?;
             println!("{name}, {} strands, {what}: {measured}", measured.strands);
         }
+        let measured = measure_strokes(&project, changes, size)?;
+        println!("{name}, {} strands, a movement of the comb: {measured}", measured.strands);
     }
     Ok(())
 }
@@ -77,9 +83,39 @@ struct Threads {
     drawn: Option<Arc<FrameSnapshot>>,
     seen: u64,
     images: usize,
+    /// Reports of brushes so far.
+    brushed: usize,
 }
 
 impl Threads {
+    /// Starts the threads and waits until the dance has run for a while. Returns the instant of the newest image.
+    fn start(project: &Project, size: [u32; 2]) -> Result<(Self, Arc<FrameSnapshot>), Box<dyn Error>> {
+        let (send, woken) = sync_channel(1);
+        // One that waits is enough.
+        let wake = move || {
+            let _ = send.try_send(());
+        };
+        let project = Arc::new(project.clone());
+        let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
+        let worker = Worker::start(Arc::clone(&project), Access::new(), Arc::new(wake))?;
+        let mut threads =
+            Self { worker, painter, woken, project, size, drawn: None, seen: 0, images: 0, brushed: 0 };
+        let watch = Stopwatch::start();
+        let mut shown = loop {
+            if let Some(shown) = threads.turn()? {
+                break shown;
+            }
+            if watch.secs() > 4.0 * PATIENCE {
+                return Err("no image".into());
+            }
+        };
+        let watch = Stopwatch::start();
+        while watch.secs() < 3.0 {
+            shown = threads.turn()?.unwrap_or(shown);
+        }
+        Ok((threads, shown))
+    }
+
     /// Waits for something new and hands frames on to the render thread, as the window does. Returns the style of the newest image.
     fn turn(&mut self) -> Result<Option<Arc<FrameSnapshot>>, Box<dyn Error>> {
         match self.woken.recv_timeout(Duration::from_millis(200)) {
@@ -87,7 +123,9 @@ impl Threads {
             Err(RecvTimeoutError::Disconnected) => return Err("the threads ended".into()),
         }
         while self.woken.try_recv().is_ok() {}
-        while self.worker.poll_event().is_some() {}
+        while let Some(event) = self.worker.poll_event() {
+            self.brushed += usize::from(matches!(event, Event::Brushed(_)));
+        }
         if let Some(frame) = self.worker.frame()
             && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
         {
@@ -114,29 +152,7 @@ fn measure(
     changes: usize,
     size: [u32; 2],
 ) -> Result<Measured, Box<dyn Error>> {
-    let (send, woken) = sync_channel(1);
-    // One that waits is enough.
-    let wake = move || {
-        let _ = send.try_send(());
-    };
-    let project = Arc::new(project.clone());
-    let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
-    let worker = Worker::start(Arc::clone(&project), Access::new(), Arc::new(wake))?;
-    let mut threads = Threads { worker, painter, woken, project, size, drawn: None, seen: 0, images: 0 };
-    let watch = Stopwatch::start();
-    let mut shown = loop {
-        if let Some(shown) = threads.turn()? {
-            break shown;
-        }
-        if watch.secs() > 4.0 * PATIENCE {
-            return Err("no image".into());
-        }
-    };
-    // The dance runs for a while first.
-    let watch = Stopwatch::start();
-    while watch.secs() < 3.0 {
-        shown = threads.turn()?.unwrap_or(shown);
-    }
+    let (mut threads, mut shown) = Threads::start(project, size)?;
     let strands = shown.scene.style.strands.count();
     let mut times_ms = [Vec::new(), Vec::new(), Vec::new()];
     let (images, whole) = (threads.images, Stopwatch::start());
@@ -179,6 +195,84 @@ fn measure(
         while watch.secs() < pause {
             shown = threads.turn()?.unwrap_or(shown);
         }
+    }
+    let images_per_sec = (threads.images - images) as f64 / whole.secs();
+    for times in &mut times_ms {
+        times.sort_unstable_by(f64::total_cmp);
+    }
+    Ok(Measured { strands, times_ms, images_per_sec })
+}
+
+/// The time from movements of a comb, each a few millimetres long.
+fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<Measured, Box<dyn Error>> {
+    let mut project = project.clone();
+    let layer = project.hair.stack.push(Layer::of(Hand::default())).ok_or("too many layers")?;
+    let (mut threads, mut shown) = Threads::start(&project, size)?;
+    let strands = shown.scene.style.strands.count();
+    let settings = BrushSettings { front_only: false, ..BrushSettings::default() };
+    let tool = Tool::Comb;
+    let edits = HandEdits::default();
+    threads.worker.begin_stroke(StrokeStart {
+        id: 1,
+        layer,
+        tool,
+        inverted: false,
+        settings,
+        edits,
+        after: None,
+    });
+    let mut times_ms = [Vec::new(), Vec::new(), Vec::new()];
+    let (images, whole) = (threads.images, Stopwatch::start());
+    for change in 0..changes {
+        // Back and forth over the hair on the wearer's left.
+        let step = Vec3::Z * if change % 20 < 10 { 0.009 } else { -0.009 };
+        let at = (change % 20).min(20 - change % 20) as f32 * 0.009 - 0.045;
+        let sample = StrokeSample {
+            position: Vec3::new(0.1, 0.06, at),
+            view: Vec3::NEG_X,
+            drag: step,
+            pressure: 1.0,
+            time_secs: 0.0,
+        };
+        let (reports, watch) = (threads.brushed, Stopwatch::start());
+        threads.worker.stroke_to(1, vec![sample]);
+        let (mut applied, mut framed) = (None, None::<(f64, Arc<FrameSnapshot>)>);
+        loop {
+            let before = threads.drawn.clone();
+            let image = threads.turn()?;
+            if applied.is_none() && threads.brushed > reports {
+                applied = Some(watch.ms());
+            }
+            if let (Some(_), None, Some(now)) = (applied, &framed, &threads.drawn)
+                && before.is_none_or(|before| !Arc::ptr_eq(&before, now))
+            {
+                framed = Some((watch.ms(), Arc::clone(now)));
+            }
+            if let Some(image) = image {
+                shown = image;
+                let is_there = |(_, frame): &(f64, Arc<FrameSnapshot>)| shown.time_secs >= frame.time_secs;
+                if framed.as_ref().is_some_and(is_there) {
+                    break;
+                }
+            }
+            // The first movement of a stroke only puts the brush down, and one beside the hair does nothing.
+            if watch.secs() > 0.5 {
+                break;
+            }
+        }
+        if let (Some(applied), Some((framed, _))) = (applied, framed) {
+            for (times, ms) in times_ms.iter_mut().zip([applied, framed, watch.ms()]) {
+                times.push(ms);
+            }
+        }
+        let pause = 0.05 + 0.001 * ((change * 97) % 50) as f64;
+        let watch = Stopwatch::start();
+        while watch.secs() < pause {
+            shown = threads.turn()?.unwrap_or(shown);
+        }
+    }
+    if times_ms[0].is_empty() {
+        return Err("no movement of the brush touched hair".into());
     }
     let images_per_sec = (threads.images - images) as f64 / whole.secs();
     for times in &mut times_ms {

@@ -118,18 +118,29 @@ fn lengths_of(style: &Hairstyle) -> Vec<i16> {
     if style.check().is_err() {
         return Vec::new();
     }
-    let links = (guides.points_per_guide - 1) as f32;
-    let link_lengths: Vec<f32> = (0..guides.count())
+    // Links beyond a cut have no length, so lengths are added up to where a strand ends.
+    let points = guides.points_per_guide;
+    let ways: Vec<f32> = (0..guides.count())
         .into_par_iter()
-        .map(|guide| {
-            let link = |p| guides.point(guide, p).distance(guides.point(guide, p + 1));
-            (0..guides.points_per_guide - 1).map(link).sum::<f32>() / links
+        .flat_map_iter(|guide| {
+            let mut way = 0.0;
+            (0..points).map(move |p| {
+                if p > 0 {
+                    way += guides.point(guide, p - 1).distance(guides.point(guide, p));
+                }
+                way
+            })
         })
         .collect();
     let length = |strand: usize| {
+        let u = set.guide_param[set.first_point[strand + 1] as usize - 1].clamp(0.0, (points - 1) as f32);
+        let p = (u as usize).min(points - 2);
+        let along = |guide: u32| {
+            let way = &ways[guide as usize * points..][p..p + 2];
+            way[0] + (way[1] - way[0]) * (u - p as f32)
+        };
         let of = style.wisps[set.wisp[strand] as usize].guides;
-        let link: f32 = (0..3).map(|k| link_lengths[of[k] as usize] * set.weights[strand][k]).sum();
-        set.guide_param[set.first_point[strand + 1] as usize - 1] * link
+        (0..3).map(|k| along(of[k]) * set.weights[strand][k]).sum::<f32>()
     };
     let all: Vec<i16> = (0..set.count()).map(|strand| steps_of(length(strand))).collect();
     let much = (-LENGTH_STEPS * AS_LONG.log2()) as i16;
