@@ -132,7 +132,12 @@ fn every_tool_acts_or_protects() {
         let mut engine = Engine::at_rest(Arc::clone(&scene), project.simulation, crate::clock::STEP_SECS);
         let mut stroke =
             Stroke::begin(&engine, &start(*tool), HandEdits::default(), &[], &mut below).expect("a stroke");
-        for sample in samples(&engine) {
+        // A parting acts where locks fall over it.
+        for (i, sample) in samples(&engine).into_iter().enumerate() {
+            let at = Vec3::new(0.05, 0.16, 0.09 - 0.012 * i as f32);
+            let drag = Vec3::NEG_Z * if i == 0 { 0.0 } else { 0.012 };
+            let sample =
+                if *tool == Tool::Part { StrokeSample { position: at, drag, ..sample } } else { sample };
             stroke.stroke_to(&mut engine, &sample);
         }
         let acts =
