@@ -88,12 +88,18 @@ impl Window {
                 self.brushes.on &= !self.scissors.held;
             }
             Command::ShowMask => self.layers.toggle_mask(),
-            Command::PaintMask => self.layers.toggle_painting(),
+            Command::PaintMask => {
+                self.layers.toggle_painting();
+                self.brushes.on &= !self.layers.painting;
+            }
             Command::BrushSmaller => self.resize_brush(1.0 / BRUSH_STEP),
             Command::BrushLarger => self.resize_brush(BRUSH_STEP),
             Command::Brushes => {
                 self.brushes.on = !self.brushes.on;
                 self.scissors.held &= !self.brushes.on;
+                if self.brushes.on && self.layers.painting {
+                    self.layers.toggle_painting();
+                }
             }
             Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),

@@ -77,6 +77,10 @@ impl Window {
         } else {
             self.picture(ui, &mut project);
         }
+        if !std::mem::take(&mut self.brushes.handled) {
+            // Another page, another tool, or no image.
+            self.end_stroke();
+        }
         self.take_edit(&seen, project, &ctx);
         self.answer_styles();
         if let Some(ask) = playback {

@@ -29,8 +29,8 @@ struct Step {
 }
 
 impl History {
-    /// Number of steps kept by default. A project is a few kilobytes.
-    pub const LIMIT: usize = 256;
+    /// Number of steps kept by default. A project is a few kilobytes, and shares what brushes did with the step before.
+    pub const LIMIT: usize = 1200;
 
     /// A project without undo steps.
     pub fn new(project: Project) -> Self {

@@ -18,7 +18,7 @@ const BUTTON: f32 = 28.0;
 /// Distance of the bar from the edges of the image, points.
 const AIR: f32 = 10.0;
 
-/// The picture of a tool.
+/// The icon of a tool.
 fn icon(tool: Tool) -> MaterialIcon {
     match tool {
         Tool::Comb => ICON_BRUSH,
@@ -88,10 +88,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_tool_has_a_picture_of_its_own() {
-        let pictures: std::collections::BTreeSet<_> =
+    fn every_tool_has_an_icon_of_its_own() {
+        let icons: std::collections::BTreeSet<_> =
             Tool::ALL.iter().map(|tool| icon(*tool).codepoint).collect();
-        assert_eq!(pictures.len(), Tool::ALL.len());
+        assert_eq!(icons.len(), Tool::ALL.len());
         assert!(Tool::ALL.iter().all(|tool| tooltip(*tool).len() > 20));
     }
 }

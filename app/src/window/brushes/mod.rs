@@ -53,6 +53,8 @@ pub(crate) struct Brushes {
     /// Whether the hair is shown at rest, without its simulation.
     pub(crate) still: bool,
     sent_still: bool,
+    /// Whether the pointer was handled in this pass.
+    pub(crate) handled: bool,
     held: Option<Held>,
     /// Whether the stroke of the button that is down was taken back, so that the pointer does nothing more.
     spent: bool,

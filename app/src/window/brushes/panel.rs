@@ -8,7 +8,7 @@ use lovelock_brush::{BrushSettings, Tool};
 use super::{Brushes, Kept};
 use crate::window::control::{curve, note, restore_all, section, settings};
 
-/// What the panel asks for.
+/// What the panel requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BrushRequest {
     /// Free all protected locks.

@@ -35,6 +35,7 @@ impl Window {
         (view, painted): (View, &RenderedImage),
         project: &mut Project,
     ) -> bool {
+        self.brushes.handled = true;
         if !self.brushes.on {
             self.end_stroke();
             return false;

@@ -50,7 +50,14 @@ impl Strokes {
 /// the list. `None` if there are too many layers.
 pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<u32> {
     let stack = &mut project.hair.stack;
-    let is_hand = |layer: &&Layer| matches!(layer.operation, Operation::Hand(_));
+    // One that does not act would not keep what is brushed.
+    let acts: Vec<u32> = stack
+        .layers
+        .iter()
+        .filter(|layer| stack.factor(layer) * layer.weight > 0.0 && layer.on)
+        .map(|layer| layer.id)
+        .collect();
+    let is_hand = |layer: &&Layer| matches!(layer.operation, Operation::Hand(_)) && acts.contains(&layer.id);
     let chosen = selected.and_then(|id| stack.layer(id)).filter(is_hand);
     let found = chosen.or_else(|| stack.layers.iter().rev().find(is_hand)).map(|layer| layer.id);
     found.or_else(|| stack.push(Layer::of(Hand::default())))
@@ -101,8 +108,12 @@ impl Window {
     ) {
         if let Some(stroke) = self.brushes.strokes.recorded.last_mut() {
             let room = StrokeFile::MOST_SAMPLES.saturating_sub(stroke.samples.len());
-            let in_world = samples.iter().map(|sample| sample.placed(world_from_head));
-            stroke.samples.extend(in_world.take(room));
+            for sample in samples.iter().take(room) {
+                // The time goes back where the dance starts again, and must not in a file.
+                let before = stroke.samples.last().map_or(0.0, |last| last.time_secs);
+                let time_secs = sample.time_secs.max(before);
+                stroke.samples.push(StrokeSample { time_secs, ..sample.placed(world_from_head) });
+            }
         }
         self.session.worker().stroke_to(id, samples);
     }
@@ -146,7 +157,7 @@ impl Window {
             return;
         }
         let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].label.clone());
-        for open in &mut strokes.open {
+        for open in strokes.open.iter_mut().filter(|open| open.layer == brushed.layer) {
             open.left = brushed.edits.clone();
         }
         if brushed.ended {

@@ -15,8 +15,8 @@ use crate::files::{Access, folder_of, write_whole};
 /// The extension of project files, without the dot.
 pub const PROJECT_EXTENSION: &str = "lovelock";
 
-/// Largest size of a project file. A project is a few kilobytes of text; a larger file is something else.
-const LARGEST_BYTES: u64 = 4 << 20;
+/// Largest size of a project file. A project is a few kilobytes of text, and up to a few megabytes with much hair that was brushed.
+const LARGEST_BYTES: u64 = 64 << 20;
 
 /// The deepest nesting that is read. Projects use four levels.
 const DEEPEST: usize = 32;

@@ -76,7 +76,13 @@ impl Engine {
         self.comb_frame(brush, &sample, frame)
     }
 
-    fn frame_of_guides(&self) -> GuideFrame {
+    /// Moves guides to where they are in `frame`, world space, and gives them the rest shape that they have in `rest`, head space.
+    pub(crate) fn move_hair(&mut self, frame: &GuideFrame, rest: &Guides, guides: &[usize]) {
+        self.simulation.move_guides(frame, rest, guides);
+    }
+
+    /// The guides of the current step, world space.
+    pub(crate) fn frame_of_guides(&self) -> GuideFrame {
         let mut frame =
             GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
         self.simulation.frame(&mut frame);

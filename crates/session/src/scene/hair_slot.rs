@@ -26,7 +26,7 @@ pub(super) struct LoadedHair {
     pub(super) base: Arc<Hairstyle>,
     /// The hair with its layers.
     pub(super) style: Arc<Hairstyle>,
-    /// What the loader has to say about the file.
+    /// Notes of the loader about the file.
     pub(super) notes: Vec<Problem>,
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_brush::{Brush, BrushSettings, StrokeSample, Tool};
+use lovelock_groom::GuideFrame;
 use lovelock_style::hand::HandEdits;
 
 use crate::engine::{BrushLayers, Engine};
@@ -66,6 +67,25 @@ impl Stroke {
     /// Moves the brush to a sample, which is in the space of the head, and the hair of the engine with it. Returns whether hair has moved.
     pub fn stroke_to(&mut self, engine: &mut Engine, sample: &StrokeSample) -> bool {
         !engine.comb_in_head(&mut self.brush, sample).is_empty()
+    }
+
+    /// Puts the hair that the stroke has moved back to where it is in `frame`, with the rest shape of the stroke: after a scene that does
+    /// not have the whole stroke yet.
+    pub fn hold(&self, engine: &mut Engine, frame: &GuideFrame) {
+        let touched = self.touched();
+        engine.move_hair(frame, self.brush.rest(), &touched);
+    }
+
+    /// Takes the rest shape of the stroke away from the hair that it has moved, which goes back to the style of the scene.
+    pub fn take_back(&self, engine: &mut Engine) {
+        let frame = engine.frame_of_guides();
+        let style = Arc::clone(&engine.scene().style);
+        engine.move_hair(&frame, &style.guides, &self.touched());
+    }
+
+    fn touched(&self) -> Vec<usize> {
+        let touched = self.brush.touched().iter().enumerate();
+        touched.filter(|(_, touched)| **touched).map(|(guide, _)| guide).collect()
     }
 
     /// What the layer holds after the stroke so far.

@@ -272,7 +272,10 @@ impl SimulationThread {
             take.set_looping(project.motion.looping);
         }
         self.project = Some(Arc::clone(&project));
-        self.record_change();
+        if !self.brushing.is_open() {
+            // A stroke changes the project many times a second.
+            self.record_change();
+        }
         let inputs = SceneInputs::of(&project, &access);
         if self.inputs.as_ref() != Some(&inputs) {
             self.inputs = Some(inputs);
@@ -317,12 +320,18 @@ impl SimulationThread {
                 || !Arc::ptr_eq(&before.colliders, &scene.colliders)
                 || before.field.is_some() != scene.field.is_some()
                 || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
-            let (brushed, brushes) = (self.brushing.made(&scene), self.brushing.is_open());
+            let (brushed, brushes) = (self.brushing.awaits(), self.brushing.is_open());
+            let frame = brushed.then(|| engine.frame_of_guides());
             let laid = engine.set_scene(scene);
+            if let Some(frame) = frame.filter(|_| !laid) {
+                self.brushing.keep(engine, &frame);
+            }
             if self.still && (laid || !brushes) {
                 engine.lay_at_rest();
             }
             if self.still || (brushed && !laid) {
+                // Hair that was brushed stays as it is.
+                (self.preroll, self.settling_pending) = (None, false);
                 return;
             }
             // During playback, hair that only changes or gets other colliders keeps moving. While paused, it settles visibly.
@@ -361,6 +370,7 @@ impl SimulationThread {
         let played = self.take.take().is_some();
         (self.preroll, self.settling_pending) = (None, false);
         self.last_steps.forget();
+        self.forget_strokes();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();

@@ -365,17 +365,6 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     worker.end_stroke(2);
     let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(second.edits != first.edits && second.edits.count() >= first.edits.count());
-    // A stroke in a layer that never comes ends without a change, and so does one that is cancelled.
-    let nowhere = StrokeStart { layer: 77, ..begin(3, Some(2)) };
-    worker.begin_stroke(nowhere);
-    worker.stroke_to(3, (0..6).map(sample).collect());
-    worker.end_stroke(3);
-    worker.begin_stroke(begin(4, Some(3)));
-    worker.end_stroke(4);
-    let lost = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
-    assert!(lost.stroke == 3 && lost.edits.is_empty());
-    let fourth = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
-    assert!(fourth.stroke == 4 && fourth.edits.is_empty(), "what another layer got is not taken over");
     // Paused hair that was brushed stays as it was left.
     let left = worker.frame().expect("a frame");
     project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: second.edits.clone() });
@@ -399,4 +388,15 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
         wanted.distance(rest.guides.guides.point(guide, last))
     });
     assert!(guide.fold(0.0, f32::max) < 1e-3);
+    // A stroke in a layer that never comes ends without a change, and so does one that is cancelled.
+    let nowhere = StrokeStart { layer: 77, ..begin(3, Some(2)) };
+    worker.begin_stroke(nowhere);
+    worker.stroke_to(3, (0..6).map(sample).collect());
+    worker.end_stroke(3);
+    worker.begin_stroke(begin(4, Some(3)));
+    worker.end_stroke(4);
+    let lost = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(lost.stroke == 3 && lost.edits.is_empty());
+    let fourth = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(fourth.stroke == 4 && fourth.edits.is_empty(), "what another layer got is not taken over");
 }

@@ -65,7 +65,7 @@ impl Simulation {
     /// Guides that [`Simulation::move_guides`] moved since the last change stay where they are.
     pub fn set_style(&mut self, style: Arc<Hairstyle>) {
         let moved = std::mem::take(&mut self.moved);
-        if self.moves_alike(&style) {
+        if !moved.contains(&true) && self.moves_alike(&style) {
             self.set_factors(style);
             return;
         }

@@ -1,17 +1,17 @@
 //! Strokes of brushes on the simulation thread.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
+use lovelock_groom::GuideFrame;
 use lovelock_style::Operation;
 use lovelock_style::hand::HandEdits;
 
 use super::super::Event;
 use super::super::mailbox::BrushRequest;
 use super::SimulationThread;
-use crate::engine::BrushLayers;
-use crate::scene::Scene;
+use crate::engine::{BrushLayers, Engine};
 use crate::strokes::{Brushed, Stroke, StrokeStart};
 
 /// The most requests that wait for a scene.
@@ -28,8 +28,17 @@ pub(super) struct Brushing {
     open: Option<Open>,
     layers: BrushLayers,
     frozen: Vec<bool>,
-    /// The last stroke, its layer and what it left there.
-    left: Option<(u64, u32, HandEdits)>,
+    /// The last stroke of each layer, and what it left there.
+    left: BTreeMap<u32, (u64, HandEdits)>,
+    /// The last stroke that has ended, until the scene that has all of it is loaded.
+    ended: Option<Ended>,
+}
+
+/// A stroke that has ended.
+#[derive(Debug)]
+struct Ended {
+    layer: u32,
+    stroke: Stroke,
 }
 
 #[derive(Debug)]
@@ -40,14 +49,29 @@ struct Open {
 }
 
 impl Brushing {
-    /// Whether the hair of a scene is in the state in which strokes left it, so that it must not be settled.
-    pub(super) fn made(&self, scene: &Scene) -> bool {
-        let stack = &scene.source.stack;
-        self.open.is_some()
-            || self.left.as_ref().is_some_and(|(_, layer, left)| match stack.layer(*layer) {
-                Some(layer) => matches!(&layer.operation, Operation::Hand(hand) if hand.edits == *left),
-                None => false,
-            })
+    /// Whether hair is as strokes have left it, and the scene that has all of them is still to come or is this one.
+    pub(super) fn awaits(&self) -> bool {
+        self.open.is_some() || self.ended.is_some()
+    }
+
+    /// Keeps hair where strokes have left it, after a scene was taken that does not have all of them. `frame` is the hair before it.
+    pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) {
+        let has_all = |layer: u32, stroke: &Stroke| {
+            let stack = &engine.scene().source.stack;
+            let edits = stack.layer(layer).map(|layer| &layer.operation);
+            matches!(edits, Some(Operation::Hand(hand)) if hand.edits == stroke.edits())
+        };
+        if let Some(Open { start, stroke: Some(stroke) }) = &self.open {
+            if !has_all(start.layer, stroke) {
+                stroke.hold(engine, frame);
+            }
+        } else if let Some(Ended { layer, stroke }) = &self.ended {
+            if has_all(*layer, stroke) {
+                self.ended = None;
+            } else {
+                stroke.hold(engine, frame);
+            }
+        }
     }
 
     /// Whether a stroke is being made.
@@ -57,11 +81,11 @@ impl Brushing {
 }
 
 impl SimulationThread {
-    /// Does what brushes have been asked to do, as far as the scene has their layer. Returns whether hair has moved.
+    /// Applies the requests of brushes, as far as the scene has their layer. Returns whether hair has moved.
     pub(super) fn brush(&mut self, requests: Vec<BrushRequest>) -> bool {
         for request in requests {
             if matches!(request, BrushRequest::Cancel) {
-                self.brushing.waiting.clear();
+                self.brushing.waiting.retain(|request| matches!(request, BrushRequest::Thaw));
             }
             self.brushing.waiting.push_back(request);
         }
@@ -103,7 +127,7 @@ impl SimulationThread {
                     }
                 }
                 BrushRequest::Cancel => {
-                    (self.brushing.open, self.brushing.left, self.brushing.since) = (None, None, None);
+                    moved |= self.take_back_strokes();
                 }
                 BrushRequest::Thaw => self.brushing.frozen.clear(),
             }
@@ -121,6 +145,28 @@ impl SimulationThread {
         let is_there = self.project.as_ref().is_some_and(|of| of.hair.stack.layer(layer).is_some());
         let waited = self.brushing.since.get_or_insert_with(Stopwatch::start).secs();
         waited < LONGEST_WAIT_SECS[usize::from(!is_there)]
+    }
+
+    /// Forgets the strokes whose scene has not come, and takes them out of the hair. Returns whether it has changed.
+    fn take_back_strokes(&mut self) -> bool {
+        let brushing = &mut self.brushing;
+        brushing.left.clear();
+        brushing.since = None;
+        let open = brushing.open.take().and_then(|open| open.stroke);
+        let stroke = open.or(brushing.ended.take().map(|ended| ended.stroke));
+        let (Some(stroke), Some(engine)) = (stroke, &mut self.engine) else { return false };
+        stroke.take_back(engine);
+        if !self.playback.is_playing() {
+            self.begin_preroll();
+        }
+        true
+    }
+
+    /// Forgets all strokes, after a failure.
+    pub(super) fn forget_strokes(&mut self) {
+        self.drop_waiting();
+        let frozen = std::mem::take(&mut self.brushing.frozen);
+        self.brushing = Brushing { frozen, ..Brushing::default() };
     }
 
     /// Ends all strokes that wait, without what they would have done.
@@ -141,11 +187,14 @@ impl SimulationThread {
 
     fn begin_stroke(&mut self, start: Box<StrokeStart>) {
         let brushing = &mut self.brushing;
-        let left = brushing.left.take().filter(|(stroke, layer, _)| {
-            *layer == start.layer && start.after.is_some_and(|after| after == *stroke)
-        });
-        let edits = left.map_or_else(|| start.edits.clone(), |(.., left)| left);
-        brushing.left = Some((start.id, start.layer, edits.clone()));
+        let left = brushing.left.get(&start.layer).filter(|(stroke, _)| start.after == Some(*stroke));
+        let edits = left.map_or_else(|| start.edits.clone(), |(_, left)| left.clone());
+        brushing.left.insert(start.layer, (start.id, edits.clone()));
+        let guides = self.engine.as_ref().map(|engine| engine.scene().style.guides.count());
+        if guides != Some(brushing.frozen.len()) {
+            // Those of other hair.
+            brushing.frozen.clear();
+        }
         let stroke = self
             .engine
             .as_ref()
@@ -156,24 +205,27 @@ impl SimulationThread {
     fn end_open_stroke(&mut self) {
         if self.brushing.open.is_some() {
             self.report_stroke(true);
-            self.brushing.open = None;
+            if let Some(Open { start, stroke: Some(stroke) }) = self.brushing.open.take() {
+                self.brushing.ended = Some(Ended { layer: start.layer, stroke });
+            }
+            self.record_change();
         }
     }
 
-    /// Tells what the open stroke has done.
+    /// Reports what the open stroke has done.
     fn report_stroke(&mut self, ended: bool) {
         let brushing = &mut self.brushing;
         let Some(Open { start, stroke }) = &brushing.open else { return };
         let mut frozen = None;
         if let Some(stroke) = stroke {
-            brushing.left = Some((start.id, start.layer, stroke.edits()));
+            brushing.left.insert(start.layer, (start.id, stroke.edits()));
             if brushing.frozen != stroke.frozen() {
                 brushing.frozen = stroke.frozen().to_vec();
                 frozen = Some(Arc::from(brushing.frozen.as_slice()));
             }
         }
-        let left = brushing.left.as_ref().filter(|(id, ..)| *id == start.id);
-        let edits = left.map_or_else(|| start.edits.clone(), |(.., left)| left.clone());
+        let left = brushing.left.get(&start.layer).filter(|(id, _)| *id == start.id);
+        let edits = left.map_or_else(|| start.edits.clone(), |(_, left)| left.clone());
         let brushed = Brushed { stroke: start.id, layer: start.layer, edits, frozen, ended };
         self.outbox.send(Event::Brushed(brushed));
     }

@@ -20,7 +20,7 @@ impl SimulationThread {
         }
     }
 
-    /// A step of the body alone. While the hair is brushed, time stands still.
+    /// A step of the body alone. There is none while the hair is brushed.
     fn step_at_rest(&mut self) {
         if let Some(engine) = &mut self.engine
             && !self.brushing.is_open()

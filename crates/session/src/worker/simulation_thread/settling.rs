@@ -39,6 +39,12 @@ impl SimulationThread {
     /// Starts a pre-roll that leads to the engine's instant, and replaces a running one.
     pub(super) fn begin_preroll(&mut self) {
         self.settling_pending = false;
+        if self.still {
+            if let Some(engine) = &mut self.engine {
+                engine.lay_at_rest();
+            }
+            return;
+        }
         self.preroll = self.engine.as_ref().map(|engine| PendingPreroll {
             preroll: Box::new(engine.preroll()),
             since: Stopwatch::start(),
