@@ -14,7 +14,7 @@ use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::stats::{PassHistory, StageHistory};
-use lovelock_session::strokes::Brushed;
+use lovelock_session::strokes::StrokeReport;
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
@@ -75,7 +75,7 @@ pub(crate) struct Session {
     /// The latest recorded take.
     pub(crate) saved_take: Option<PathBuf>,
     /// What brushes have done since the last pass.
-    pub(crate) brushed: Vec<Brushed>,
+    pub(crate) brushed: Vec<StrokeReport>,
 }
 
 impl Session {

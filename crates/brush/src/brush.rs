@@ -14,7 +14,7 @@ use crate::settings::{BrushMirror, BrushSettings};
 use crate::stroke::{Dab, Resampler, StrokeSample, mirror};
 use crate::tool::Tool;
 use crate::tools::{Change, Grab, Stamp, neighbours};
-use crate::touch::{Locks, Touched, touched};
+use crate::touch::{TouchedGuide, Wisps, touched};
 
 /// How far a link may be stretched or compressed at a dab, as factors.
 const STRETCH: [f32; 2] = [0.8, 1.25];
@@ -39,7 +39,7 @@ pub struct Brush {
     /// The guides at rest after all layers, as the stroke has changed them.
     rest: Guides,
     roots: HandRoots,
-    locks: Locks,
+    locks: Wisps,
     /// The edit of each guide in the layer.
     edits: Vec<Option<HandEdit>>,
     touched: Vec<bool>,
@@ -79,7 +79,7 @@ impl Brush {
             settings: settings.clamped(),
             below: Arc::clone(below),
             rest: rest.guides.clone(),
-            locks: Locks::of(rest),
+            locks: Wisps::of(rest),
             edits: edits.of_roots(&roots),
             touched: vec![false; count],
             frozen,
@@ -170,7 +170,7 @@ impl Brush {
             }
             let again = |grab: &Grab| {
                 let points = hand_input(seen, grab.guide, 1.0)?;
-                Some(Touched { guide: grab.guide, weights: vec![grab.weight; points.len()], points })
+                Some(TouchedGuide { guide: grab.guide, weights: vec![grab.weight; points.len()], points })
             };
             touched =
                 self.grab.iter().filter(|grab| grab.mirrored == dab.mirrored).filter_map(again).collect();
@@ -199,19 +199,19 @@ impl Brush {
         for (guide, outcome) in changes {
             match outcome {
                 Outcome::Guide(carried) => self.keep(seen, *carried, changed),
-                Outcome::Removed(removed) => self.each_of_lock(guide, |brush, guide| {
+                Outcome::Removed(removed) => self.each_of_wisp(guide, |brush, guide| {
                     let edit = brush.edits[guide].get_or_insert_default();
                     changed[guide] |= edit.removed != removed;
                     edit.removed = removed;
                 }),
                 Outcome::Frozen(frozen) => {
-                    self.each_of_lock(guide, |brush, guide| brush.frozen[guide] = frozen);
+                    self.each_of_wisp(guide, |brush, guide| brush.frozen[guide] = frozen);
                 }
             }
         }
     }
 
-    fn each_of_lock(&mut self, guide: usize, mut act: impl FnMut(&mut Self, usize)) {
+    fn each_of_wisp(&mut self, guide: usize, mut act: impl FnMut(&mut Self, usize)) {
         for guide in self.locks.of_guide(guide) {
             act(self, guide);
         }
@@ -228,7 +228,7 @@ impl Brush {
         })
     }
 
-    fn outcome(&self, touched: &Touched, change: Change, obstacle: &dyn Obstacle) -> Option<Outcome> {
+    fn outcome(&self, touched: &TouchedGuide, change: Change, obstacle: &dyn Obstacle) -> Option<Outcome> {
         let mut carried = self.carried(touched.guide, touched.points.clone())?;
         match change {
             Change::Points(targets) => {

@@ -38,9 +38,9 @@ pub enum Tool {
     Part,
     /// The locks under the brush at the start of the stroke are moved as a whole.
     Place,
-    /// Locks are removed.
+    /// Wisps are removed.
     Remove,
-    /// Locks are protected from all other tools.
+    /// Wisps are protected from all other tools.
     Freeze,
 }
 

@@ -15,7 +15,7 @@ const NEAR: f32 = 0.12;
 
 /// A guide that the brush touches.
 #[derive(Clone, Debug)]
-pub(crate) struct Touched {
+pub(crate) struct TouchedGuide {
     pub guide: usize,
     /// Its points as they are seen, head space, without the cut part.
     pub points: Vec<Vec3>,
@@ -23,7 +23,7 @@ pub(crate) struct Touched {
     pub weights: Vec<f32>,
 }
 
-impl Touched {
+impl TouchedGuide {
     /// The strongest touch.
     pub fn most(&self) -> f32 {
         self.weights.iter().copied().fold(0.0, f32::max)
@@ -42,14 +42,14 @@ impl Touched {
 
 /// The locks of a hairstyle.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Locks {
+pub(crate) struct Wisps {
     /// The wisp of each guide.
     pub wisp: Vec<Option<usize>>,
     /// The guides of each wisp.
     pub guides: Vec<[usize; 3]>,
 }
 
-impl Locks {
+impl Wisps {
     pub fn of(style: &Hairstyle) -> Self {
         let guides: Vec<[usize; 3]> =
             style.wisps.iter().map(|wisp| wisp.guides.map(|g| g as usize)).collect();
@@ -79,10 +79,10 @@ pub(crate) fn touched(
     seen: &Guides,
     dab: &Dab,
     settings: &BrushSettings,
-    locks: &Locks,
+    locks: &Wisps,
     is_free: impl Fn(usize) -> bool + Sync,
     obstacle: &dyn Obstacle,
-) -> Vec<Touched> {
+) -> Vec<TouchedGuide> {
     let radius = dab.radius;
     let distance = |p: Vec3| {
         let from = p - dab.centre;
@@ -111,7 +111,7 @@ pub(crate) fn touched(
             let weights: Vec<f32> =
                 points.iter().enumerate().map(weight).map(|w| w.clamp(0.0, 1.0)).collect();
             let touches = weights.iter().any(|w| *w > 0.0);
-            touches.then_some(Touched { guide, points, weights })
+            touches.then_some(TouchedGuide { guide, points, weights })
         })
         .collect()
 }

@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("{name}, {} strands, {what}: {measured}", measured.strands);
         }
         let measured = measure_strokes(&project, changes, size)?;
-        println!("{name}, {} strands, a movement of the comb: {measured}", measured.strands);
+        println!("{name}, {} strands, a movement of the brush Smooth: {measured}", measured.strands);
     }
     Ok(())
 }
@@ -124,7 +124,15 @@ impl Threads {
         }
         while self.woken.try_recv().is_ok() {}
         while let Some(event) = self.worker.poll_event() {
-            self.brushed += usize::from(matches!(event, Event::Brushed(_)));
+            if let Event::Brushed(report) = event {
+                self.brushed += 1;
+                let mut changed = (*self.project).clone();
+                if let Some(layer) = changed.hair.stack.layer_mut(report.layer) {
+                    layer.operation = Operation::Hand(Hand { edits: report.edits });
+                }
+                self.project = Arc::new(changed);
+                self.worker.set_project(Arc::clone(&self.project), Access::new());
+            }
         }
         if let Some(frame) = self.worker.frame()
             && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
@@ -203,14 +211,14 @@ fn measure(
     Ok(Measured { strands, times_ms, images_per_sec })
 }
 
-/// The time from movements of a comb, each a few millimetres long.
+/// The time from movements of a brush that smooths, each a few millimetres long, with the edits written into the project as the window does.
 fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<Measured, Box<dyn Error>> {
     let mut project = project.clone();
     let layer = project.hair.stack.push(Layer::of(Hand::default())).ok_or("too many layers")?;
     let (mut threads, mut shown) = Threads::start(&project, size)?;
     let strands = shown.scene.style.strands.count();
     let settings = BrushSettings { front_only: false, ..BrushSettings::default() };
-    let tool = Tool::Comb;
+    let tool = Tool::Smooth;
     let edits = HandEdits::default();
     threads.worker.begin_stroke(StrokeStart {
         id: 1,

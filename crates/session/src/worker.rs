@@ -25,7 +25,7 @@ use crate::engine::PrerollProgress;
 use crate::latest::Latest;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
-use crate::strokes::{Brushed, StrokeStart};
+use crate::strokes::{StrokeReport, StrokeStart};
 use crate::take::TakeProgress;
 
 /// Maximum number of unread events; more are dropped and logged.
@@ -66,7 +66,7 @@ pub enum Event {
         message: String,
     },
     /// A stroke of a brush has changed the hair.
-    Brushed(Brushed),
+    Brushed(StrokeReport),
     /// A part of the played take cannot be read; the previous frame stays visible.
     TakeUnreadable {
         /// The reason.

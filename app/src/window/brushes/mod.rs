@@ -15,7 +15,7 @@ use lovelock_brush::{BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use panel::{BrushRequest, ui};
-use pointer::Held;
+use pointer::PointerStroke;
 use strokes::Strokes;
 
 /// What of the brushes is stored between runs.
@@ -55,7 +55,7 @@ pub(crate) struct Brushes {
     sent_still: bool,
     /// Whether the pointer was handled in this pass.
     pub(crate) handled: bool,
-    held: Option<Held>,
+    held: Option<PointerStroke>,
     /// Whether the stroke of the button that is down was taken back, so that the pointer does nothing more.
     spent: bool,
     resize: Option<keys::Resize>,

@@ -18,7 +18,7 @@ const MOST_SAMPLES: usize = 512;
 
 /// A stroke of the pointer.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
+pub(super) struct PointerStroke {
     id: u64,
     /// The last place on the hair, head space.
     place: Vec3,
@@ -101,7 +101,7 @@ impl Window {
         };
         let place = snapshot.guides.world_from_head.inverse().transform_point3(place);
         let id = self.begin_stroke(project, layer, (tool, inverted), settings.clone());
-        self.brushes.held = Some(Held { id, place, tool, inverted });
+        self.brushes.held = Some(PointerStroke { id, place, tool, inverted });
     }
 
     /// Sends the way of the pointer since the last pass.

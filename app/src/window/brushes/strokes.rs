@@ -9,7 +9,7 @@ use lovelock_brush::{BrushSettings, RecordedStroke, StrokeFile, StrokeSample, To
 use lovelock_project::Project;
 use lovelock_project::files::write_whole;
 use lovelock_project::history::GestureId;
-use lovelock_session::strokes::{Brushed, StrokeStart};
+use lovelock_session::strokes::{StrokeReport, StrokeStart};
 use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::Hand;
 use lovelock_style::{Layer, Operation};
@@ -20,7 +20,7 @@ use crate::window::{Window, notices};
 #[derive(Debug, Default)]
 pub(super) struct Strokes {
     last: u64,
-    open: Vec<Open>,
+    open: Vec<OpenStroke>,
     /// Which guides are protected.
     pub(super) frozen: Arc<[bool]>,
     /// The strokes of this run, as they can be saved.
@@ -28,7 +28,7 @@ pub(super) struct Strokes {
 }
 
 #[derive(Debug)]
-struct Open {
+struct OpenStroke {
     id: u64,
     layer: u32,
     /// The undo step of the stroke.
@@ -94,7 +94,7 @@ impl Window {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
         }
-        strokes.open.push(Open { id, layer, gesture: self.gestures.id(), label, left });
+        strokes.open.push(OpenStroke { id, layer, gesture: self.gestures.id(), label, left });
         self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits, after });
         id
     }
@@ -144,7 +144,7 @@ impl Window {
         self.brushes.spent |= self.brushes.held.take().is_some();
     }
 
-    fn write_brushed(&mut self, brushed: Brushed) {
+    fn write_brushed(&mut self, brushed: StrokeReport) {
         let strokes = &mut self.brushes.strokes;
         if let Some(frozen) = brushed.frozen {
             strokes.frozen = frozen;

@@ -186,7 +186,7 @@ fn beside_the_parting() -> Vec<StrokeSample> {
 fn locks_at_a_parting_fall_to_the_side_of_their_roots() {
     let style = hair(1, 200);
     let line = 0.04;
-    // Locks beside the line that fall over it, and all locks beside it.
+    // Wisps beside the line that fall over it, and all locks beside it.
     let over = |guides: &Guides| {
         let mut counts = [0, 0];
         for wisp in &style.wisps {

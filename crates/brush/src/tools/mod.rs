@@ -10,7 +10,7 @@ use lovelock_style::hand::HandChannel;
 use crate::settings::BrushSettings;
 use crate::stroke::Dab;
 use crate::tool::Tool;
-use crate::touch::{Locks, Touched};
+use crate::touch::{TouchedGuide, Wisps};
 
 pub(crate) use moving::Grab;
 pub(crate) use shaping::neighbours;
@@ -65,7 +65,7 @@ pub(crate) struct Stamp<'a> {
     pub seen: &'a Guides,
     /// Guides with near roots, of each guide; only for tools that use them.
     pub neighbours: &'a [Vec<u32>],
-    pub locks: &'a Locks,
+    pub locks: &'a Wisps,
     /// What was grabbed when the stroke began.
     pub grab: &'a [Grab],
     pub obstacle: &'a dyn Obstacle,
@@ -73,7 +73,7 @@ pub(crate) struct Stamp<'a> {
 
 impl Stamp<'_> {
     /// What the tool does to a guide; `None` for nothing.
-    pub fn change(&self, touched: &Touched) -> Option<Change> {
+    pub fn change(&self, touched: &TouchedGuide) -> Option<Change> {
         use Change::{Channel, Cut, Frozen, Length, Points, Removed};
         let weights = || touched.weights.clone();
         Some(match self.tool {

@@ -5,7 +5,7 @@ use lovelock_groom::{Blade, Bounded, GuideFrame, Haircut, Hairstyle, Obstacle};
 use lovelock_style::hand::smallest_turn;
 
 use super::Stamp;
-use crate::touch::Touched;
+use crate::touch::TouchedGuide;
 
 /// How far hair moves at a dab of a tool that does not follow the brush, as a part of the radius.
 const REACH: f32 = 0.15;
@@ -17,7 +17,7 @@ const FALLS_AT: f32 = 0.2;
 const UPRIGHT: f32 = 0.5;
 /// Hair up to this far from the body keeps its distance while it is turned over, metres.
 const LIES: f32 = 0.03;
-/// Locks that a parting touches less than this stay.
+/// Wisps that a parting touches less than this stay.
 const PARTS_FROM: f32 = 0.2;
 /// Clearance of flattened hair from the body, metres.
 const FLAT: f32 = 0.004;
@@ -36,7 +36,7 @@ pub(crate) struct Grab {
 
 impl Grab {
     /// The point of a guide that is touched most.
-    pub fn of(touched: &Touched, mirrored: bool) -> Option<Self> {
+    pub fn of(touched: &TouchedGuide, mirrored: bool) -> Option<Self> {
         let weights = touched.weights.iter().enumerate().skip(1);
         let (point, weight) = weights.max_by(|a, b| a.1.total_cmp(b.1))?;
         (*weight > 0.0).then_some(Self { guide: touched.guide, point, weight: *weight, mirrored })
@@ -44,7 +44,7 @@ impl Grab {
 }
 
 impl Stamp<'_> {
-    fn moved(touched: &Touched, weights: &[f32], by: impl Fn(usize, Vec3) -> Vec3) -> Vec<Vec3> {
+    fn moved(touched: &TouchedGuide, weights: &[f32], by: impl Fn(usize, Vec3) -> Vec3) -> Vec<Vec3> {
         let new = |(i, p): (usize, &Vec3)| {
             let weight = weights[i];
             if weight > 0.0 && i > 0 { *p + by(i, *p) * weight } else { *p }
@@ -54,7 +54,7 @@ impl Stamp<'_> {
 
     /// Hair goes with the brush, and the part of it that is under the brush turns into the direction in which the brush moves. Along a
     /// stroke that begins at the roots, the brush so reaches one link after the other, and the hair follows its way.
-    pub(super) fn combed(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn combed(&self, touched: &TouchedGuide) -> Vec<Vec3> {
         let moved = Self::moved(touched, &touched.trailing(), |_, _| self.dab.step);
         let Some(wanted) = self.dab.step.try_normalize() else { return moved };
         let rate = self.dab.step.length() / (COMBS_WITHIN * self.dab.radius);
@@ -73,13 +73,13 @@ impl Stamp<'_> {
         out
     }
 
-    pub(super) fn puffed(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn puffed(&self, touched: &TouchedGuide) -> Vec<Vec3> {
         let root = touched.points[0];
         let outward = Bounded(self.obstacle).distance(root).1;
         Self::moved(touched, &touched.trailing(), |_, _| outward * (REACH * self.dab.radius))
     }
 
-    pub(super) fn flattened(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn flattened(&self, touched: &TouchedGuide) -> Vec<Vec3> {
         let body = Bounded(self.obstacle);
         Self::moved(touched, &touched.weights, |_, p| {
             let (distance, normal) = body.distance(p);
@@ -87,7 +87,7 @@ impl Stamp<'_> {
         })
     }
 
-    pub(super) fn attracted(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn attracted(&self, touched: &TouchedGuide) -> Vec<Vec3> {
         let reach = REACH * self.dab.radius;
         Self::moved(touched, &touched.weights, |_, p| {
             let pairs = self.path.windows(2).map(|pair| {
@@ -103,8 +103,8 @@ impl Stamp<'_> {
     }
 
     /// A lock falls to the side of the line on which its root is. One that falls to the other is turned over as a mirror would show it, so
-    /// that it lies on the head as it did before. Locks are not divided, because their strands would stand up between the two sides.
-    pub(super) fn parted(&self, touched: &Touched) -> Option<Vec<Vec3>> {
+    /// that it lies on the head as it did before. Wisps are not divided, because their strands would stand up between the two sides.
+    pub(super) fn parted(&self, touched: &TouchedGuide) -> Option<Vec<Vec3>> {
         let centre = self.dab.centre;
         let normal = Bounded(self.obstacle).distance(centre).1;
         let side = normal.cross(self.dab.step).try_normalize()?;
@@ -138,7 +138,7 @@ impl Stamp<'_> {
     }
 
     /// A guide turns about its root as a whole, so that its grabbed point follows the brush.
-    pub(super) fn placed(&self, touched: &Touched) -> Option<Vec<Vec3>> {
+    pub(super) fn placed(&self, touched: &TouchedGuide) -> Option<Vec<Vec3>> {
         let grab = self
             .grab
             .iter()
@@ -151,7 +151,7 @@ impl Stamp<'_> {
     }
 
     /// Where the brush cuts a guide, in links.
-    pub(super) fn cut(&self, touched: &Touched) -> Option<f32> {
+    pub(super) fn cut(&self, touched: &TouchedGuide) -> Option<f32> {
         let mut style = Hairstyle::default();
         style.guides.points_per_guide = touched.points.len();
         style.guides.push(&touched.points);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Stamp;
 use crate::chain::{along, directions, lengths};
-use crate::touch::Touched;
+use crate::touch::TouchedGuide;
 
 /// Guides whose course a guide takes over while it is smoothed.
 const NEIGHBOURS: usize = 6;
@@ -32,7 +32,7 @@ pub(crate) fn neighbours(roots: &[Vec3]) -> Vec<Vec<u32>> {
 }
 
 impl Stamp<'_> {
-    pub(super) fn smoothed(&self, touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn smoothed(&self, touched: &TouchedGuide) -> Vec<Vec3> {
         let before = &touched.points;
         let last = before.len() - 1;
         let own = before[last] - before[0];
@@ -63,7 +63,7 @@ impl Stamp<'_> {
         from_first_change(before, &ways, &out)
     }
 
-    pub(super) fn straightened(touched: &Touched) -> Vec<Vec3> {
+    pub(super) fn straightened(touched: &TouchedGuide) -> Vec<Vec3> {
         let before = &touched.points;
         let last = before.len() - 1;
         let from = touched.weights.iter().position(|w| *w > 0.0).unwrap_or(0).saturating_sub(1);

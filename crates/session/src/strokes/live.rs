@@ -29,7 +29,7 @@ pub struct StrokeStart {
 
 /// What a stroke has done so far.
 #[derive(Clone, Debug)]
-pub struct Brushed {
+pub struct StrokeReport {
     /// The number of the stroke.
     pub stroke: u64,
     /// The layer.

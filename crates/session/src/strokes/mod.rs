@@ -1,6 +1,6 @@
 //! Strokes of brushes on the hair of an engine: of the pointer, and recorded ones.
 //!
-//! - [`Stroke`]: one stroke while it is made, with [`StrokeStart`] and [`Brushed`] as its messages.
+//! - [`Stroke`]: one stroke while it is made, with [`StrokeStart`] and [`StrokeReport`] as its messages.
 //! - [`play_strokes`]: recorded strokes, played on a project.
 
 mod live;
@@ -8,5 +8,5 @@ mod live;
 mod live_tests;
 mod played;
 
-pub use live::{Brushed, Stroke, StrokeStart};
+pub use live::{Stroke, StrokeReport, StrokeStart};
 pub use played::{StrokesReport, play_strokes};

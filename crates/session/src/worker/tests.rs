@@ -314,7 +314,7 @@ fn a_dragged_slider_shows_intermediate_hair() {
 }
 
 /// The next report of a brush.
-fn brushed(worker: &Worker) -> Brushed {
+fn brushed(worker: &Worker) -> StrokeReport {
     wait("a brush", || match worker.poll_event() {
         Some(Event::Brushed(brushed)) => Some(brushed),
         _ => None,

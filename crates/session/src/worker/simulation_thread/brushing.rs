@@ -12,7 +12,7 @@ use super::super::Event;
 use super::super::mailbox::BrushRequest;
 use super::SimulationThread;
 use crate::engine::{BrushLayers, Engine};
-use crate::strokes::{Brushed, Stroke, StrokeStart};
+use crate::strokes::{Stroke, StrokeReport, StrokeStart};
 
 /// The most requests that wait for a scene.
 const MOST_WAITING: usize = 4096;
@@ -25,24 +25,24 @@ pub(super) struct Brushing {
     waiting: VecDeque<BrushRequest>,
     /// Since when the first of them waits.
     since: Option<Stopwatch>,
-    open: Option<Open>,
+    open: Option<OpenStroke>,
     layers: BrushLayers,
     frozen: Vec<bool>,
     /// The last stroke of each layer, and what it left there.
     left: BTreeMap<u32, (u64, HandEdits)>,
     /// The last stroke that has ended, until the scene that has all of it is loaded.
-    ended: Option<Ended>,
+    ended: Option<EndedStroke>,
 }
 
 /// A stroke that has ended.
 #[derive(Debug)]
-struct Ended {
+struct EndedStroke {
     layer: u32,
     stroke: Stroke,
 }
 
 #[derive(Debug)]
-struct Open {
+struct OpenStroke {
     start: Box<StrokeStart>,
     /// None if the hair cannot be brushed.
     stroke: Option<Stroke>,
@@ -61,11 +61,11 @@ impl Brushing {
             let edits = stack.layer(layer).map(|layer| &layer.operation);
             matches!(edits, Some(Operation::Hand(hand)) if hand.edits == stroke.edits())
         };
-        if let Some(Open { start, stroke: Some(stroke) }) = &self.open {
+        if let Some(OpenStroke { start, stroke: Some(stroke) }) = &self.open {
             if !has_all(start.layer, stroke) {
                 stroke.hold(engine, frame);
             }
-        } else if let Some(Ended { layer, stroke }) = &self.ended {
+        } else if let Some(EndedStroke { layer, stroke }) = &self.ended {
             if has_all(*layer, stroke) {
                 self.ended = None;
             } else {
@@ -174,7 +174,7 @@ impl SimulationThread {
         self.brushing.since = None;
         for request in std::mem::take(&mut self.brushing.waiting) {
             if let BrushRequest::Begin(start) = request {
-                self.brushing.open = Some(Open { start, stroke: None });
+                self.brushing.open = Some(OpenStroke { start, stroke: None });
                 self.end_open_stroke();
             }
         }
@@ -199,14 +199,14 @@ impl SimulationThread {
             .engine
             .as_ref()
             .and_then(|engine| Stroke::begin(engine, &start, edits, &brushing.frozen, &mut brushing.layers));
-        brushing.open = Some(Open { start, stroke });
+        brushing.open = Some(OpenStroke { start, stroke });
     }
 
     fn end_open_stroke(&mut self) {
         if self.brushing.open.is_some() {
             self.report_stroke(true);
-            if let Some(Open { start, stroke: Some(stroke) }) = self.brushing.open.take() {
-                self.brushing.ended = Some(Ended { layer: start.layer, stroke });
+            if let Some(OpenStroke { start, stroke: Some(stroke) }) = self.brushing.open.take() {
+                self.brushing.ended = Some(EndedStroke { layer: start.layer, stroke });
             }
             self.record_change();
         }
@@ -215,7 +215,7 @@ impl SimulationThread {
     /// Reports what the open stroke has done.
     fn report_stroke(&mut self, ended: bool) {
         let brushing = &mut self.brushing;
-        let Some(Open { start, stroke }) = &brushing.open else { return };
+        let Some(OpenStroke { start, stroke }) = &brushing.open else { return };
         let mut frozen = None;
         if let Some(stroke) = stroke {
             brushing.left.insert(start.layer, (start.id, stroke.edits()));
@@ -226,7 +226,7 @@ impl SimulationThread {
         }
         let left = brushing.left.get(&start.layer).filter(|(id, _)| *id == start.id);
         let edits = left.map_or_else(|| start.edits.clone(), |(_, left)| left.clone());
-        let brushed = Brushed { stroke: start.id, layer: start.layer, edits, frozen, ended };
+        let brushed = StrokeReport { stroke: start.id, layer: start.layer, edits, frozen, ended };
         self.outbox.send(Event::Brushed(brushed));
     }
 }
