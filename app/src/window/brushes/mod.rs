@@ -45,6 +45,7 @@ impl Kept {
 
 /// The brushes of the window.
 #[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "independent switches")]
 pub(crate) struct Brushes {
     /// Whether the pointer brushes hair instead of moving the camera.
     pub(crate) on: bool,
@@ -52,7 +53,8 @@ pub(crate) struct Brushes {
     pub(crate) tool: Tool,
     /// Whether the hair is shown at rest, without its simulation.
     pub(crate) still: bool,
-    sent_still: bool,
+    /// What was last sent of that.
+    sent: Option<bool>,
     /// Whether the pointer was handled in this pass.
     pub(crate) handled: bool,
     held: Option<PointerStroke>,
@@ -71,8 +73,8 @@ impl Brushes {
 
     /// Tells the simulation whether the hair is shown at rest.
     pub(crate) fn send(&mut self, worker: &lovelock_session::worker::Worker) {
-        if self.still != self.sent_still {
-            self.sent_still = self.still;
+        if self.still != self.sent.unwrap_or_default() {
+            self.sent = Some(self.still);
             worker.set_still(self.still);
         }
     }

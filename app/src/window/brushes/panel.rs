@@ -67,7 +67,7 @@ pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
     settings(ui, &["radius", "strength", "share", "mirror", "front_only"], &mut now, &default);
     match tool {
         Tool::Comb | Tool::Attract | Tool::Place | Tool::Part => {
-            settings(ui, &["keep_lengths"], &mut now, &default)
+            settings(ui, &["keep_lengths"], &mut now, &default);
         }
         Tool::Curl => settings(ui, &["curl_radius", "curl_pitch"], &mut now, &default),
         _ => {}

@@ -90,8 +90,16 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         assert_eq!(of(&harness).history.undo_len(), steps + 1, "{name}: one step");
         key(&mut harness, CTRL, Key::Z);
         assert_eq!(project(&harness), before, "{name}");
-        wait(&mut harness, "the hair of before", |window| {
-            window.session.scene.as_ref().is_some_and(|scene| scene.source.stack.layers.is_empty())
+        wait(&mut harness, "the image of the hair of before", |window| {
+            let painted = window.session.painted.as_ref();
+            painted.is_some_and(|painted| painted.snapshot.scene.source.stack.layers.is_empty())
+                && window.session.worker().settling().is_none()
+                && window
+                    .session
+                    .frame
+                    .as_ref()
+                    .zip(painted)
+                    .is_some_and(|(frame, painted)| std::sync::Arc::ptr_eq(frame, &painted.snapshot))
         });
     }
 }

@@ -162,3 +162,43 @@ fn layers_that_are_not_there_and_hair_between_styles_cannot_be_brushed() {
     project.start_morph(&lovelock_project::styles::Style::of_project(&other));
     assert!(!begin(&project, 2));
 }
+
+#[test]
+fn a_scene_of_an_earlier_dab_leaves_the_hair_where_it_is() {
+    let project = brushed();
+    // How far the scene of the first half of a stroke, and then that of all of it, move hair that is combed.
+    let jumps = |holds: bool| {
+        let mut loader = SceneLoader::new();
+        let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+        let mut engine = Engine::at_rest(scene, project.simulation, crate::clock::STEP_SECS);
+        let mut layers = BrushLayers::default();
+        let mut stroke = Stroke::begin(&engine, &start(Tool::Comb), HandEdits::default(), &[], &mut layers)
+            .expect("a stroke");
+        let all = samples(&engine);
+        let (first, second) = all.split_at(all.len() / 2);
+        for sample in first {
+            stroke.stroke_to(&mut engine, sample);
+        }
+        let half = with_edits(&project, stroke.edits());
+        for sample in second {
+            stroke.stroke_to(&mut engine, sample);
+        }
+        let combed = snapshot(&mut engine);
+        let mut take = |project: &Project, engine: &mut Engine| {
+            let scene = loader.load_now(project, &Access::new()).expect("a scene").0;
+            let frame = engine.frame_of_guides();
+            engine.set_scene(scene);
+            if holds {
+                stroke.hold(engine, &frame);
+            }
+        };
+        take(&half, &mut engine);
+        let first = farthest(&combed, &snapshot(&mut engine));
+        take(&with_edits(&project, stroke.edits()), &mut engine);
+        engine.step();
+        [first, farthest(&combed, &snapshot(&mut engine))]
+    };
+    let [[half, whole], without] = [true, false].map(jumps);
+    println!("by the half {half} m, by the whole and a step {whole} m; without holding {without:?} m");
+    assert!(half < 1e-4 && whole < 0.02 && without[1] > 1.5 * whole);
+}

@@ -272,6 +272,7 @@ impl SimulationThread {
             take.set_looping(project.motion.looping);
         }
         self.project = Some(Arc::clone(&project));
+        self.brushing.follow(&project);
         if !self.brushing.is_open() {
             // A stroke changes the project many times a second.
             self.record_change();

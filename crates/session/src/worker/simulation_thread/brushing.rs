@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::GuideFrame;
-use lovelock_style::Operation;
+use lovelock_project::Project;
 use lovelock_style::hand::HandEdits;
+use lovelock_style::{Operation, StyleStack};
 
 use super::super::Event;
 use super::super::mailbox::BrushRequest;
@@ -16,6 +17,8 @@ use crate::strokes::{Stroke, StrokeReport, StrokeStart};
 
 /// The most requests that wait for a scene.
 const MOST_WAITING: usize = 4096;
+/// The longest time for which hair is kept as a stroke has left it until its scene comes, seconds.
+const LONGEST_KEPT_SECS: f64 = 20.0;
 /// The longest time for which a stroke waits for the scene that has its layer, seconds, and the longest if the project lacks that.
 const LONGEST_WAIT_SECS: [f64; 2] = [60.0, 0.25];
 
@@ -39,6 +42,10 @@ pub(super) struct Brushing {
 struct EndedStroke {
     layer: u32,
     stroke: Stroke,
+    edits: HandEdits,
+    /// Whether the project has had all of it.
+    is_known: bool,
+    since: Stopwatch,
 }
 
 #[derive(Debug)]
@@ -46,6 +53,14 @@ struct OpenStroke {
     start: Box<StrokeStart>,
     /// None if the hair cannot be brushed.
     stroke: Option<Stroke>,
+}
+
+/// What brushes did in a layer; `None` if it is none of theirs.
+fn edits_of(stack: &StyleStack, layer: u32) -> Option<&HandEdits> {
+    match &stack.layer(layer)?.operation {
+        Operation::Hand(hand) => Some(&hand.edits),
+        _ => None,
+    }
 }
 
 impl Brushing {
@@ -56,20 +71,28 @@ impl Brushing {
 
     /// Keeps hair where strokes have left it, after a scene was taken that does not have all of them. `frame` is the hair before it.
     pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) {
-        let has_all = |layer: u32, stroke: &Stroke| {
-            let stack = &engine.scene().source.stack;
-            let edits = stack.layer(layer).map(|layer| &layer.operation);
-            matches!(edits, Some(Operation::Hand(hand)) if hand.edits == stroke.edits())
-        };
+        let stack = &engine.scene().source.stack;
         if let Some(OpenStroke { start, stroke: Some(stroke) }) = &self.open {
-            if !has_all(start.layer, stroke) {
+            if edits_of(stack, start.layer) != Some(&stroke.edits()) {
                 stroke.hold(engine, frame);
             }
-        } else if let Some(EndedStroke { layer, stroke }) = &self.ended {
-            if has_all(*layer, stroke) {
+        } else if let Some(ended) = &self.ended {
+            let now = edits_of(stack, ended.layer);
+            if now.is_none() || now == Some(&ended.edits) || ended.since.secs() > LONGEST_KEPT_SECS {
                 self.ended = None;
             } else {
-                stroke.hold(engine, frame);
+                ended.stroke.hold(engine, frame);
+            }
+        }
+    }
+
+    /// Takes notice of a project: a stroke that it had and has no longer was undone, and is not waited for.
+    pub(super) fn follow(&mut self, project: &Project) {
+        if let Some(ended) = &mut self.ended {
+            let has_all = edits_of(&project.hair.stack, ended.layer) == Some(&ended.edits);
+            ended.is_known |= has_all;
+            if ended.is_known && !has_all {
+                self.ended = None;
             }
         }
     }
@@ -206,7 +229,9 @@ impl SimulationThread {
         if self.brushing.open.is_some() {
             self.report_stroke(true);
             if let Some(OpenStroke { start, stroke: Some(stroke) }) = self.brushing.open.take() {
-                self.brushing.ended = Some(EndedStroke { layer: start.layer, stroke });
+                let (layer, edits) = (start.layer, stroke.edits());
+                let since = Stopwatch::start();
+                self.brushing.ended = Some(EndedStroke { layer, stroke, edits, is_known: false, since });
             }
             self.record_change();
         }
