@@ -162,6 +162,45 @@ mod tests {
     }
 
     #[test]
+    fn a_thousand_strokes_are_undone_and_done_again_and_share_their_memory() {
+        use lovelock_groom::{GroomSettings, PlainHead, grow};
+        use lovelock_style::hand::{HandEdit, HandEdits, HandRoots};
+        use lovelock_style::operations::Hand;
+        use lovelock_style::{Layer, Operation};
+
+        let settings = GroomSettings {
+            wisps: 60,
+            strands_per_wisp: 2,
+            segments_per_strand: 8,
+            ..GroomSettings::default()
+        };
+        let style = grow(&settings, &PlainHead.scalp(16), &PlainHead).expect("hair");
+        let roots = HandRoots::of(&style);
+        let mut project = at(1.0);
+        project.hair.stack.push(Layer::of(Hand::default()));
+        let (mut history, mut states, mut bytes) = (History::new(project.clone()), vec![project.clone()], 0);
+        let mut edits = HandEdits::default();
+        for stroke in 0..1000_usize {
+            let before = edits.clone();
+            let edit = HandEdit { length: 0.5 + 0.001 * (stroke % 400) as f32, ..HandEdit::default() };
+            edits.change(&roots, (0..9).map(|k| ((stroke * 7 + k) % style.guides.count(), edit.clone())));
+            bytes += edits.bytes_beside(&before);
+            project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: edits.clone() });
+            assert!(history.edit("comb", Some(stroke as GestureId + 9), project.clone()), "stroke {stroke}");
+            states.push(project.clone());
+        }
+        for state in states.iter().rev().skip(1) {
+            assert_eq!(history.undo().map(|project| &**project), Some(state));
+        }
+        assert!(history.undo().is_none());
+        for state in &states[1..] {
+            assert_eq!(history.redo().map(|project| &**project), Some(state));
+        }
+        println!("{bytes} bytes of edits in a thousand steps");
+        assert!(bytes < 16 << 20);
+    }
+
+    #[test]
     fn a_drag_is_one_step() {
         let mut history = History::new(at(1.0));
         for i in 2..20 {
