@@ -1,6 +1,6 @@
 //! The styles that are part of the program.
 //!
-//! A new one is a file `styles/ID.lovelockstyle` of this crate and a line of [`FILES`].
+//! A new one is a file `styles/ID.lovelockstyle` of this crate and a line of `FILES`.
 
 use std::path::Path;
 use std::sync::LazyLock;
