@@ -22,6 +22,8 @@ pub(super) struct PointerStroke {
     id: u64,
     /// The last place on the hair, head space.
     place: Vec3,
+    /// The last place of the pointer.
+    at: Pos2,
     tool: Tool,
     inverted: bool,
 }
@@ -69,8 +71,8 @@ impl Window {
         }
         let begins =
             pressed && response.contains_pointer() && resizing.is_none() && self.brushes.held.is_none();
-        if let Some(place) = under.filter(|_| begins) {
-            self.press(project, (tool, inverted), &settings, (snapshot, place));
+        if let Some((place, at)) = under.zip(at).filter(|_| begins) {
+            self.press(project, (tool, inverted), &settings, (snapshot, place, at));
         }
         let holds = self.brushes.held.is_some() || self.brushes.spent || resizing.is_some();
         if self.brushes.held.is_some() {
@@ -88,7 +90,7 @@ impl Window {
         project: &mut Project,
         (tool, inverted): (Tool, bool),
         settings: &BrushSettings,
-        (snapshot, place): (&FrameSnapshot, Vec3),
+        (snapshot, place, at): (&FrameSnapshot, Vec3, Pos2),
     ) {
         if project.hair.morph.to.is_some() {
             let why =
@@ -101,7 +103,7 @@ impl Window {
         };
         let place = snapshot.guides.world_from_head.inverse().transform_point3(place);
         let id = self.begin_stroke(project, layer, (tool, inverted), settings.clone());
-        self.brushes.held = Some(PointerStroke { id, place, tool, inverted });
+        self.brushes.held = Some(PointerStroke { id, place, at, tool, inverted });
     }
 
     /// Sends the way of the pointer since the last pass.
@@ -117,13 +119,16 @@ impl Window {
         for at in way.into_iter().take(MOST_SAMPLES) {
             let before = head.world_from_head.transform_point3(held.place);
             let moved = view.at_depth_of(at, before);
+            // Only what the pointer has moved: hair that dances past it is not combed by that.
+            let from = view.at_depth_of(held.at, before);
             // The brush follows the hair in depth, but does not fall from a lock onto what is far behind it.
             let found = pick::hair_at(view, head, snapshot, at);
             let now = found.filter(|found| found.distance(moved) < radius).unwrap_or(moved);
             if !now.is_finite() {
                 continue;
             }
-            let drag = head_from_world.transform_vector3(moved - before);
+            let drag = head_from_world.transform_vector3(moved - from);
+            held.at = at;
             held.place = head_from_world.transform_point3(now);
             samples.push(sample(held.place, drag, &head_from_world, view, pressure, snapshot));
         }
