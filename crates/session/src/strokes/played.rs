@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use lovelock_brush::{RecordedStroke, StrokeFile};
+use lovelock_brush::{RecordedStroke, StrokeFile, Tool};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
@@ -37,13 +37,22 @@ pub struct StrokesReport {
 /// time of the stroke.
 ///
 /// # Errors
-/// A stack without room for a layer, what cannot be loaded, or [`ProjectError::Cancelled`].
+/// A take, a morph, a stack without room for a layer, what cannot be loaded, or [`ProjectError::Cancelled`].
 pub fn play_strokes(
     project: &Project,
     access: &Access,
     file: &StrokeFile,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(Project, StrokesReport, Vec<Problem>), ProjectError> {
+    if project.take.file.is_some() {
+        return Err(ProjectError::option(
+            "--strokes: found a take, which plays as recorded; must be a project",
+        ));
+    }
+    if project.hair.morph.to.is_some() {
+        let why = "--strokes: found hair between two styles, which cannot be brushed; must be a project without a morph";
+        return Err(ProjectError::option(why));
+    }
     let mut project = project.clone();
     let layer = layer_of(&mut project.hair.stack)?;
     let (scene, problems) = load(&project, access, progress)?;
@@ -60,7 +69,7 @@ pub fn play_strokes(
         };
         reach(&mut engine, first.time_secs, i == 0);
         let (touched, stack) = play(&mut engine, &mut layers, stroke, layer, &mut frozen);
-        report.missed += usize::from(touched == 0);
+        report.missed += usize::from(touched == 0 && stroke.tool != Tool::Freeze);
         project.hair.stack = stack.unwrap_or(project.hair.stack);
     }
     let operation = project.hair.stack.layer(layer).map(|layer| &layer.operation);
@@ -118,7 +127,7 @@ fn play(
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use lovelock_brush::{BrushSettings, StrokeSample, Tool};
+    use lovelock_brush::{BrushSettings, StrokeSample};
 
     use super::*;
     use crate::testing::small_project;
@@ -171,6 +180,13 @@ mod tests {
         let (more, next, _) = play_strokes(&made, &Access::new(), &file, go_on).expect("a project");
         assert_eq!(next.layer, report.layer);
         assert_ne!(more, made);
+        let mut between = project.clone();
+        between.start_morph(&lovelock_project::styles::Style::default());
+        let mut taken = project.clone();
+        taken.take.file = Some(lovelock_project::files::FileRef::new("a.take"));
+        for refused in [between, taken] {
+            assert!(play_strokes(&refused, &Access::new(), &file, go_on).is_err());
+        }
         let cancelled = play_strokes(&project, &Access::new(), &file, &mut |_| ControlFlow::Break(()));
         assert!(matches!(cancelled, Err(ProjectError::Cancelled)));
     }
