@@ -70,7 +70,9 @@ pub(super) fn ui(
             .on_hover_text("Locks single settings.");
         ui.separator();
         if let Some(ms) = ms {
-            ui.label(RichText::new(format!("{:.0} images/s", 1e3 / ms.max(1.0))).small().color(theme::QUIET))
+            let rate =
+                RichText::new(format!("{:.1} images/s", 1e3 / ms.max(1.0))).small().color(theme::QUIET);
+            ui.add(egui::Label::new(rate).extend())
                 .on_hover_text("Rounds of nine images per second, each with its own simulation.");
         }
         let close = ui.button(ICON_CLOSE);

@@ -102,8 +102,8 @@ impl Cell {
         }
         let mut project = (**base).clone();
         adopt(&mut project, &self.variant);
-        // Images are small: the stored strands fill them.
-        project.picture.strands = StrandCount::Stored;
+        // Images are small: a part of the strands fills them.
+        project.picture.strands = StrandCount::default();
         let project = Arc::new(project);
         self.shown = Some((Arc::clone(base), Arc::clone(&project)));
         project
