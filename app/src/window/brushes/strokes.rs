@@ -50,25 +50,7 @@ impl Strokes {
 /// the list. `None` if there are too many layers.
 pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<u32> {
     let stack = &mut project.hair.stack;
-    // One that does not act would not keep what is brushed.
-    let acts: Vec<u32> = stack
-        .layers
-        .iter()
-        .filter(|layer| stack.factor(layer) * layer.weight > 0.0 && layer.on)
-        .map(|layer| layer.id)
-        .collect();
-    let is_hand = |layer: &&Layer| matches!(layer.operation, Operation::Hand(_)) && acts.contains(&layer.id);
-    let chosen = selected.and_then(|id| stack.layer(id)).filter(is_hand);
-    let found = chosen.or_else(|| stack.layers.iter().rev().find(is_hand)).map(|layer| layer.id);
-    found.or_else(|| stack.push(Layer::of(Hand::default())))
-}
-
-/// What brushes did in a layer; `None` if it is none of theirs.
-pub(super) fn edits_of(project: &Project, layer: u32) -> Option<&HandEdits> {
-    match &project.hair.stack.layer(layer)?.operation {
-        Operation::Hand(hand) => Some(&hand.edits),
-        _ => None,
-    }
+    stack.hand_layer(selected).or_else(|| stack.push(Layer::of(Hand::default())))
 }
 
 impl Window {
@@ -83,7 +65,7 @@ impl Window {
         // Each stroke is an undo step of its own, however soon it follows the last one.
         self.gestures.next();
         let strokes = &mut self.brushes.strokes;
-        let left = edits_of(project, layer).cloned().unwrap_or_default();
+        let left = project.hair.stack.hand(layer).cloned().unwrap_or_default();
         // What an earlier stroke did may still be on its way: the simulation has it already.
         let after = strokes.open.iter().rev().find(|open| open.layer == layer).map(|open| open.id);
         strokes.last += 1;
@@ -150,7 +132,7 @@ impl Window {
             strokes.frozen = frozen;
         }
         let Some(at) = strokes.open.iter().position(|open| open.id == brushed.stroke) else { return };
-        let now = edits_of(self.history.project(), brushed.layer);
+        let now = self.history.project().hair.stack.hand(brushed.layer);
         if now != Some(&strokes.open[at].left) {
             // An undo or another edit: what the stroke does from now on is lost with it.
             self.cancel_strokes();

@@ -24,8 +24,8 @@ impl BrushLayers {
     /// The hair that the layer `layer` of a scene gets, in the size of the head that wears it; `None` if the scene has no such layer of
     /// edits by hand.
     fn below(&mut self, source: &StyleSource, layer: u32) -> Option<Arc<Hairstyle>> {
+        source.stack.hand(layer)?;
         let at = source.stack.layers.iter().position(|own| own.id == layer)?;
-        let Operation::Hand(_) = &source.stack.layers[at].operation else { return None };
         let mut stack = source.stack.clone();
         stack.layers.truncate(at);
         let below = self.below.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
@@ -44,8 +44,7 @@ impl Engine {
         layer: u32,
         frozen: &[bool],
     ) -> Option<Brush> {
-        let Operation::Hand(hand) = &self.loaded.source.stack.layer(layer)?.operation else { return None };
-        let hand = (layer, &hand.edits);
+        let hand = (layer, self.loaded.source.stack.hand(layer)?);
         self.begin_stroke_after(layers, (tool, inverted), settings, hand, frozen)
     }
 

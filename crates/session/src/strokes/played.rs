@@ -6,8 +6,9 @@ use lovelock_brush::{RecordedStroke, StrokeFile, Tool};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
+use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::Hand;
-use lovelock_style::{Layer, Operation, StyleStack};
+use lovelock_style::{Layer, StyleStack};
 use serde::Serialize;
 
 use crate::clock::STEP_SECS;
@@ -72,18 +73,13 @@ pub fn play_strokes(
         report.missed += usize::from(touched == 0 && stroke.tool != Tool::Freeze);
         project.hair.stack = stack.unwrap_or(project.hair.stack);
     }
-    let operation = project.hair.stack.layer(layer).map(|layer| &layer.operation);
-    if let Some(Operation::Hand(hand)) = operation {
-        report.places = hand.edits.count();
-    }
+    report.places = project.hair.stack.hand(layer).map_or(0, HandEdits::count);
     Ok((project, report, problems))
 }
 
 /// The layer that takes the edits.
 fn layer_of(stack: &mut StyleStack) -> Result<u32, ProjectError> {
-    let known = stack.layers.iter().rev().find(|layer| matches!(layer.operation, Operation::Hand(_)));
-    let known = known.map(|layer| layer.id);
-    known.or_else(|| stack.push(Layer::of(Hand::default()))).ok_or_else(|| {
+    stack.hand_layer(None).or_else(|| stack.push(Layer::of(Hand::default()))).ok_or_else(|| {
         let most = StyleStack::MOST_LAYERS;
         ProjectError::option(format!(
             "--strokes: found a style of {most} layers; must have fewer, because a layer is added"

@@ -8,6 +8,9 @@ mod tests;
 use lovelock_base::settings::{Part, PartMut, Setting, Settings};
 use serde::{Deserialize, Serialize};
 
+use crate::Operation;
+use crate::hand::HandEdits;
+
 pub use layer::{Group, Layer};
 
 /// An ordered list of operations on a hairstyle.
@@ -40,6 +43,24 @@ impl StyleStack {
     /// The same, to be changed.
     pub fn layer_mut(&mut self, id: u32) -> Option<&mut Layer> {
         self.layers.iter_mut().find(|layer| layer.id == id)
+    }
+
+    /// What brushes did in a layer; `None` if it is none of theirs.
+    pub fn hand(&self, id: u32) -> Option<&HandEdits> {
+        match &self.layer(id)?.operation {
+            Operation::Hand(hand) => Some(&hand.edits),
+            _ => None,
+        }
+    }
+
+    /// The layer that brushes write to: `chosen` if it is one of theirs, otherwise the last of them. One that does not act would not keep
+    /// what is brushed, and is passed over.
+    pub fn hand_layer(&self, chosen: Option<u32>) -> Option<u32> {
+        let takes = |layer: &&Layer| {
+            matches!(layer.operation, Operation::Hand(_)) && self.factor(layer) * layer.weight > 0.0
+        };
+        let chosen = chosen.and_then(|id| self.layer(id)).filter(takes);
+        chosen.or_else(|| self.layers.iter().rev().find(takes)).map(|layer| layer.id)
     }
 
     /// The group with that number.

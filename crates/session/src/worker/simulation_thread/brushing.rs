@@ -7,7 +7,6 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_groom::GuideFrame;
 use lovelock_project::Project;
 use lovelock_style::hand::HandEdits;
-use lovelock_style::{Operation, StyleStack};
 
 use super::super::Event;
 use super::super::mailbox::BrushRequest;
@@ -55,14 +54,6 @@ struct OpenStroke {
     stroke: Option<Stroke>,
 }
 
-/// What brushes did in a layer; `None` if it is none of theirs.
-fn edits_of(stack: &StyleStack, layer: u32) -> Option<&HandEdits> {
-    match &stack.layer(layer)?.operation {
-        Operation::Hand(hand) => Some(&hand.edits),
-        _ => None,
-    }
-}
-
 impl Brushing {
     /// Whether hair is as strokes have left it, and the scene that has all of them is still to come or is this one.
     pub(super) fn awaits(&self) -> bool {
@@ -73,11 +64,11 @@ impl Brushing {
     pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) {
         let stack = &engine.scene().source.stack;
         if let Some(OpenStroke { start, stroke: Some(stroke) }) = &self.open {
-            if edits_of(stack, start.layer) != Some(&stroke.edits()) {
+            if stack.hand(start.layer) != Some(&stroke.edits()) {
                 stroke.hold(engine, frame);
             }
         } else if let Some(ended) = &self.ended {
-            let now = edits_of(stack, ended.layer);
+            let now = stack.hand(ended.layer);
             if now.is_none() || now == Some(&ended.edits) || ended.since.secs() > LONGEST_KEPT_SECS {
                 self.ended = None;
             } else {
@@ -89,7 +80,7 @@ impl Brushing {
     /// Takes notice of a project: a stroke that it had and has no longer was undone, and is not waited for.
     pub(super) fn follow(&mut self, project: &Project) {
         if let Some(ended) = &mut self.ended {
-            let has_all = edits_of(&project.hair.stack, ended.layer) == Some(&ended.edits);
+            let has_all = project.hair.stack.hand(ended.layer) == Some(&ended.edits);
             ended.is_known |= has_all;
             if ended.is_known && !has_all {
                 self.ended = None;
@@ -229,7 +220,8 @@ impl SimulationThread {
         if self.brushing.open.is_some() {
             self.report_stroke(true);
             if let Some(OpenStroke { start, stroke: Some(stroke) }) = self.brushing.open.take() {
-                let (layer, edits) = (start.layer, stroke.edits());
+                let layer = start.layer;
+                let edits = self.brushing.left.get(&layer).map(|(_, left)| left.clone()).unwrap_or_default();
                 let since = Stopwatch::start();
                 self.brushing.ended = Some(EndedStroke { layer, stroke, edits, is_known: false, since });
             }
