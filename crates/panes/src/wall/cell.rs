@@ -14,7 +14,31 @@ use super::{WallCell, WallRequest};
 /// The length of a simulated step, seconds: images of the wall are rarer than those of the window.
 const STEP_SECS: f64 = 1.0 / 30.0;
 /// Hair that is further behind than this many steps moves with the head instead of being simulated.
-const MOST_STEPS: i64 = 12;
+const LONGEST_WAY: i64 = 30;
+/// The most wisps of a variant: nine of them are simulated at once.
+const MOST_WISPS: u32 = 80;
+/// The most strands that a variant stores; they cast its shadows.
+const MOST_STRANDS: u32 = 4_000;
+/// The most segments of a strand.
+const MOST_SEGMENTS: u32 = 20;
+/// The strands that are drawn.
+const DRAWN_STRANDS: f32 = 1_500.0;
+/// The most cells along each edge of the voxel map, whose shadow hardly depends on it.
+const MOST_VOXELS: u32 = 64;
+
+/// Gives a variant as much hair and as fine a shadow as its small image needs.
+pub(super) fn lighten(project: &mut Project) {
+    project.picture.strands = StrandCount::Fixed;
+    project.picture.strand_number = DRAWN_STRANDS;
+    let map = &mut project.shadow.voxel_map;
+    map.resolution = map.resolution.min(MOST_VOXELS);
+    let groom = &mut project.hair.groom;
+    groom.wisps = groom.wisps.min(MOST_WISPS);
+    groom.segments_per_strand = groom.segments_per_strand.min(MOST_SEGMENTS);
+    groom.strands_per_wisp = groom.strands_per_wisp.min(MOST_STRANDS / groom.wisps.max(1));
+    let import = &mut project.hair.import;
+    import.wisps = if import.wisps == 0 { MOST_WISPS } else { import.wisps.min(MOST_WISPS) };
+}
 
 /// A variant, its simulation and its renderer.
 pub(super) struct Cell {
@@ -47,16 +71,16 @@ impl Cell {
         self.shown = None;
     }
 
-    /// Simulates up to the instant of the request.
-    pub(super) fn advance(&mut self, request: &WallRequest) {
+    /// Simulates up to an instant of the scene, or moves there with the head if that is before or far behind.
+    pub(super) fn advance(&mut self, request: &WallRequest, time_secs: f64) {
         self.engine.follow(&request.project);
-        let wanted = (request.time_secs / STEP_SECS).round() as i64;
+        let wanted = (time_secs / STEP_SECS).round() as i64;
         let behind = wanted - (self.engine.time_secs() / STEP_SECS).round() as i64;
-        if (0..=MOST_STEPS).contains(&behind) {
+        if (0..=LONGEST_WAY).contains(&behind) {
             self.engine.advance_to_step(wanted.max(0) as u64);
         } else {
-            self.engine.seek(request.time_secs);
-            self.is_new |= behind.abs() > MOST_STEPS;
+            self.engine.seek(time_secs);
+            self.is_new = true;
         }
         if self.is_new && !request.playing {
             self.engine.settle();
@@ -74,7 +98,7 @@ impl Cell {
                 (Image::default(), Some(error.to_string()))
             }
         };
-        WallCell { variant: Arc::clone(&self.variant), image, time_secs: request.time_secs, problem }
+        WallCell { variant: Arc::clone(&self.variant), image, time_secs: self.engine.time_secs(), problem }
     }
 
     fn image(&mut self, request: &WallRequest, window: &WindowDevice) -> Result<Image, RenderError> {
@@ -102,8 +126,7 @@ impl Cell {
         }
         let mut project = (**base).clone();
         adopt(&mut project, &self.variant);
-        // Images are small: a part of the strands fills them.
-        project.picture.strands = StrandCount::default();
+        lighten(&mut project);
         let project = Arc::new(project);
         self.shown = Some((Arc::clone(base), Arc::clone(&project)));
         project

@@ -1,6 +1,6 @@
 //! The wall: variants of a hairstyle, each simulated and rendered beside the others at the instant of the window.
 //!
-//! A thread simulates all variants and renders them in turn. It takes the newest request when it is free, so the window never waits for it.
+//! A thread simulates all variants and renders them side by side. It takes the newest request when it is free, so the window never waits for it.
 
 mod cell;
 mod thread;

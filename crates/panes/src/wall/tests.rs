@@ -4,6 +4,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_project::variants::{Locks, vary};
 use lovelock_render::{Backend, Picture};
 
+use super::thread::Instant;
 use super::*;
 
 fn small() -> Project {
@@ -94,4 +95,23 @@ fn a_far_time_a_huge_one_and_no_variants_are_no_panic() {
         drawn(&wall, request(&project, &[Arc::clone(&project)], time_secs));
     }
     assert!(drawn(&wall, request(&project, &[], 0.0)).is_empty());
+}
+
+#[test]
+fn slow_rounds_dance_slowly_and_jumps_are_followed() {
+    let project = Arc::new(small());
+    let at = |secs| request(&project, &[], secs);
+    let mut instant = Instant::default();
+    assert_eq!(instant.next(&at(10.0)), 10.0, "the first request");
+    assert_eq!(instant.next(&at(10.1)), 10.1, "a round that is quick enough");
+    // The next requests come 0.4 s later each: the cells take at most 4 steps of 1/30 s.
+    let slow = instant.next(&at(10.5));
+    assert!((slow - (10.1 + 4.0 / 30.0)).abs() < 1e-9, "{slow}");
+    let slower = instant.next(&at(10.9));
+    assert!((slower - (10.1 + 8.0 / 30.0)).abs() < 1e-9, "{slower}");
+    assert_eq!(instant.next(&at(3.0)), 3.0, "backwards");
+    assert_eq!(instant.next(&at(30.0)), 30.0, "further than the clock");
+    instant.next(&at(30.4));
+    let still = WallRequest { playing: false, ..at(30.4) };
+    assert_eq!(instant.next(&still), 30.4, "a paused wall shows the instant itself");
 }

@@ -1,4 +1,4 @@
-//! The thread: takes the newest request when it is free, simulates its variants side by side and renders them in turn.
+//! The thread: takes the newest request when it is free, simulates and renders its variants side by side.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use lovelock_session::threads::lower_priority;
 use lovelock_session::window_device::WindowDevice;
 use rayon::prelude::*;
 
-use super::cell::Cell;
+use super::cell::{Cell, lighten};
 use super::{Wall, WallCell, WallRequest};
 
 /// What the thread publishes.
@@ -28,6 +28,37 @@ pub(super) struct Worker {
     cells: Vec<Cell>,
     /// The project without hair whose scene the cells have.
     loaded: Option<Arc<Project>>,
+    instant: Instant,
+}
+
+/// The instant that the cells show. While time passes, it follows that of the requests by at most [`Instant::MOST_SECS`] a round, so that where
+/// rounds take longer the hair moves slowly instead of jumping.
+#[derive(Default)]
+pub(super) struct Instant {
+    shown_secs: f64,
+    /// The time of the last request, and since when it was.
+    last: Option<(f64, Stopwatch)>,
+}
+
+impl Instant {
+    /// The most that a round simulates, seconds.
+    const MOST_SECS: f64 = 4.0 / 30.0;
+    /// A request that is further ahead of the last one than the clock is a jump, seconds.
+    const JUMP_SECS: f64 = 0.5;
+
+    /// The instant of the next round.
+    pub(super) fn next(&mut self, request: &WallRequest) -> f64 {
+        let wanted = request.time_secs;
+        let passed = self.last.take().map(|(secs, watch)| (wanted - secs, watch.secs()));
+        self.last = Some((wanted, Stopwatch::start()));
+        self.shown_secs = match passed {
+            Some((by, clock)) if request.playing && (0.0..clock + Self::JUMP_SECS).contains(&by) => {
+                (self.shown_secs + by.min(Self::MOST_SECS)).min(wanted)
+            }
+            _ => wanted,
+        };
+        self.shown_secs
+    }
 }
 
 impl Worker {
@@ -37,7 +68,16 @@ impl Worker {
         on_drawn: Box<dyn Fn() + Send>,
         window: WindowDevice,
     ) -> Self {
-        Self { jobs, outputs, on_drawn, window, loader: SceneLoader::new(), cells: Vec::new(), loaded: None }
+        Self {
+            jobs,
+            outputs,
+            on_drawn,
+            window,
+            loader: SceneLoader::new(),
+            cells: Vec::new(),
+            loaded: None,
+            instant: Instant::default(),
+        }
     }
 
     /// Runs until the window is closed, on background workers of low priority, so that the window keeps running.
@@ -75,14 +115,15 @@ impl Worker {
         self.load(request);
         let shown = request.variants.len().min(Wall::CELLS);
         self.cells.truncate(shown);
-        // A simulation divides its own work only coarsely, so several run beside each other.
-        self.cells.par_iter_mut().for_each(|cell| cell.advance(request));
-        for (cell, slot) in self.cells.iter_mut().zip(&self.outputs.0) {
-            if self.jobs.is_closed() {
-                return;
+        let time_secs = self.instant.next(request);
+        let (jobs, window) = (&self.jobs, &self.window);
+        // A small image or simulation divides its own work only coarsely, so several run beside each other.
+        self.cells.par_iter_mut().zip(&self.outputs.0).for_each(|(cell, slot)| {
+            if !jobs.is_closed() {
+                cell.advance(request, time_secs);
+                slot.put(Arc::new(cell.draw(request, window)));
             }
-            slot.put(Arc::new(cell.draw(request, &self.window)));
-        }
+        });
         self.outputs.1.put(Arc::new(watch.ms()));
     }
 
@@ -103,6 +144,7 @@ impl Worker {
             }
             let mut project = (*request.project).clone();
             adopt(&mut project, variant);
+            lighten(&mut project);
             match self.loader.load_now(&project, &request.access) {
                 Ok((scene, _)) => self.take(index, variant, scene),
                 Err(error) => {
