@@ -1,10 +1,12 @@
 //! Changing guides: their points, lengths and the body that they stay out of.
 
+use std::f32::consts::{PI, TAU};
+
 use glam::{Quat, Vec3};
 use lovelock_base::numbers::smoothstep;
 use lovelock_groom::polyline::{Reach, next_at, sample};
 use lovelock_groom::{
-    Bounded, Guides, Haircut, Hairstyle, Obstacle, WispCurve, transport, trimmed, widest_radii,
+    Bounded, Guides, Haircut, Hairstyle, Obstacle, Wisp, WispCurve, transport, trimmed, widest_radii,
 };
 use rayon::prelude::*;
 
@@ -18,6 +20,8 @@ const REACH: Reach = Reach { beyond: 64.0, step: 0.25 };
 const NEAR: f32 = 0.03;
 /// How far directions near the body lean sideways on it before they are turned.
 const ASIDE: f32 = 0.2;
+/// Between these cosines of the angle to the opposite of its direction, a wisp turns more and more about the normal of the scalp.
+const OVER: [f32; 2] = [0.2, 0.8];
 /// Links shorter than this belong to the cut part of a guide, metres.
 const NO_LINK: f32 = 1e-6;
 
@@ -198,25 +202,46 @@ pub fn reshape_where(
     }
     let after = frames(&guides);
     style.guides = guides;
-    carry_offsets(style, &before, &after);
+    let outward = |wisp: &Wisp| {
+        let root = wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
+        obstacle.distance(root).1.try_normalize()
+    };
+    let turns: Vec<f32> = style
+        .wisps
+        .iter()
+        .zip(before.iter().zip(&after))
+        .map(|(wisp, (from, to))| if from == to { 0.0 } else { turn_between(from, to, outward(wisp)) })
+        .collect();
+    turn_offsets(style, &turns);
     widen(style);
 }
 
 /// The angle about the root from the frame `to` to the frame `from` of a wisp, carried by the smallest rotation between their directions.
-pub fn turn_between(from: &[Vec3; 3], to: &[Vec3; 3]) -> f32 {
-    let normal = Vec3::from(transport(from[0].into(), from[2].into(), to[2].into()));
-    normal.dot(to[1]).atan2(normal.dot(to[0]))
+/// That rotation has no definite axis where the directions are opposite, so a wisp that is combed over to the other side turns about
+/// `outward`, the normal of the scalp at its root, where that is known.
+pub fn turn_between(from: &[Vec3; 3], to: &[Vec3; 3], outward: Option<Vec3>) -> f32 {
+    let carried = |normal: Vec3, direction: Vec3| {
+        let normal = Vec3::from(transport(normal.into(), direction.into(), to[2].into()));
+        normal.dot(to[1]).atan2(normal.dot(to[0]))
+    };
+    let smallest = carried(from[0], from[2]);
+    let part = smoothstep(OVER[0], OVER[1], -from[2].dot(to[2]));
+    let about = outward.filter(|_| part > 0.0).and_then(|outward| {
+        let flat = |direction: Vec3| direction.reject_from_normalized(outward).try_normalize();
+        let (a, b) = (flat(from[2])?, flat(to[2])?);
+        let turn = Quat::from_axis_angle(outward, a.cross(b).dot(outward).atan2(a.dot(b)));
+        Some(carried(turn * from[0], turn * from[2]))
+    });
+    let rest = about.map_or(0.0, |about| (about - smallest + PI).rem_euclid(TAU) - PI);
+    smallest + rest * part
 }
 
-/// Turns the offsets of strands with the directions of their roots. The axis that a frame is made from changes abruptly with that direction,
-/// and strands would jump with it.
-fn carry_offsets(style: &mut Hairstyle, before: &[[Vec3; 3]], after: &[[Vec3; 3]]) {
+/// Turns the offsets of strands about the roots of their wisps. The axis that a frame is made from changes abruptly with the direction of
+/// the root, and strands would jump with it.
+fn turn_offsets(style: &mut Hairstyle, turns: &[f32]) {
     let set = &mut style.strands;
-    for (wisp, (from, to)) in style.wisps.iter().zip(before.iter().zip(after)) {
-        if from == to {
-            continue;
-        }
-        let (sin, cos) = turn_between(from, to).sin_cos();
+    for (wisp, turn) in style.wisps.iter().zip(turns).filter(|(_, turn)| **turn != 0.0) {
+        let (sin, cos) = turn.sin_cos();
         let first = set.first_point[wisp.first_strand as usize] as usize;
         let end = set.first_point[(wisp.first_strand + wisp.strand_count) as usize] as usize;
         let normals = set.offset_normal[first..end].iter_mut();
@@ -320,4 +345,47 @@ pub fn laid(target: &[Vec3], before: &[Vec3], link: f32, obstacle: &dyn Obstacle
         out.push(p);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame with the direction `along`.
+    fn frame(along: Vec3) -> [Vec3; 3] {
+        let (normal, binormal) = along.any_orthonormal_pair();
+        [normal, binormal, along]
+    }
+
+    /// Where an offset that points along `offset` in the frame `from` points in the frame `to`, as [`turn_offsets`] turns it.
+    fn carried(offset: Vec3, from: &[Vec3; 3], to: &[Vec3; 3], outward: Option<Vec3>) -> Vec3 {
+        let (sin, cos) = turn_between(from, to, outward).sin_cos();
+        let (x, y) = (offset.dot(from[0]), offset.dot(from[1]));
+        to[0] * (x * cos - y * sin) + to[1] * (x * sin + y * cos)
+    }
+
+    #[test]
+    fn hair_that_is_combed_to_the_other_side_keeps_its_outside_out() {
+        let outward = Vec3::Y;
+        let mut fallen = 0;
+        for k in 0..24 {
+            // Nearly opposite directions that leave the scalp by some degrees.
+            let aside = (k as f32 - 11.5) * 0.02;
+            let from = frame(Vec3::new(1.0, 0.15, 0.0).normalize_or_zero());
+            let to = frame(Vec3::new(-1.0, 0.05, aside).normalize_or_zero());
+            let offset = outward.reject_from_normalized(from[2]).normalize_or_zero();
+            assert!(carried(offset, &from, &to, Some(outward)).y > 0.95, "{aside}");
+            fallen += usize::from(carried(offset, &from, &to, None).y < 0.5);
+            // There and back is where it was.
+            let there = carried(offset, &from, &to, Some(outward));
+            assert!(carried(there, &to, &from, Some(outward)).distance(offset) < 1e-5);
+        }
+        assert!(fallen > 6, "the smallest rotation turns it over: {fallen} of 24");
+    }
+
+    #[test]
+    fn a_turn_of_less_than_a_right_angle_is_the_smallest_rotation() {
+        let (from, to) = (frame(Vec3::X), frame(Vec3::new(0.3, 0.5, 0.7).normalize_or_zero()));
+        assert_eq!(turn_between(&from, &to, Some(Vec3::Y)), turn_between(&from, &to, None));
+    }
 }

@@ -180,10 +180,10 @@ impl Morph {
         });
         match &frames {
             [Some(a), Some(b)] => {
-                let a_now = turn_between(a, now);
-                [a_now, a_now - turn_between(a, b)]
+                let a_now = turn_between(a, now, None);
+                [a_now, a_now - turn_between(a, b, None)]
             }
-            [Some(one), None] | [None, Some(one)] => [turn_between(one, now); 2],
+            [Some(one), None] | [None, Some(one)] => [turn_between(one, now, None); 2],
             [None, None] => [0.0; 2],
         }
     }
