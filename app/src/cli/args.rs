@@ -388,9 +388,15 @@ pub(crate) struct StyleTask {
     /// Play only the first strokes, so many; all by default.
     #[arg(long, value_name = "N")]
     pub(crate) count: Option<usize>,
+    /// Play strokes that were made on the body at rest one after another from this second of the dance on, carried along with the head.
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) on_dance: Option<f64>,
     /// The new project.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
+    /// Record what is seen meanwhile as a film (.mp4), with the size and rate of the project's recordings. The brush is a circle.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) film: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -1,13 +1,17 @@
 //! `lovelock style`.
 
 use lovelock_brush::StrokeFile;
+use lovelock_jobs::strokes::StrokeFilm;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::save_project;
-use lovelock_session::strokes::play_strokes;
+use lovelock_session::strokes::{PlayStrokes, SeeStrokes, play_strokes};
 
 use super::args::StyleTask;
 use super::output::Output;
 use super::source::Source;
+
+/// The latest start of strokes on the dance, seconds.
+const MOST_SECS: f64 = 3600.0;
 
 /// Plays recorded strokes on the hair of a project and writes the project with them.
 pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> {
@@ -18,8 +22,20 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
         .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
     strokes.strokes.truncate(task.count.unwrap_or(usize::MAX));
     let source = Source::open(&task.source)?;
-    let (project, report, problems) =
-        source.watched(|project, progress| play_strokes(project, &source.access, &strokes, progress))?;
+    if let Some(secs) = task.on_dance.filter(|secs| !(secs.is_finite() && (0.0..=MOST_SECS).contains(secs))) {
+        return Err(ProjectError::option(format!(
+            "--on-dance: found {secs}; must be 0 to {MOST_SECS} seconds"
+        )));
+    }
+    let mut film = task.film.as_deref().map(|out| StrokeFilm::create(out, &source.project)).transpose()?;
+    let (project, report, problems) = source.watched(|project, progress| {
+        let mut see =
+            film.as_mut().map(|film| |engine: &mut _, project: &_, brush| film.see(engine, project, brush));
+        let see = see.as_mut().map(|see| see as SeeStrokes<'_>);
+        let how = PlayStrokes { dance_from_secs: task.on_dance, see };
+        play_strokes(project, &source.access, &strokes, how, progress)
+    })?;
+    film.map(StrokeFilm::finish).transpose()?;
     for problem in &problems {
         eprintln!("lovelock: {problem}");
     }

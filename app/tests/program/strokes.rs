@@ -46,3 +46,26 @@ fn strokes_are_written_into_a_project() {
     );
     assert!(!dir.path().join("none.lovelock").exists());
 }
+
+#[test]
+fn strokes_are_filmed_while_they_are_played_on_the_dance() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    (project.recording.width, project.recording.height, project.recording.fps) = (64, 48, 20.0);
+    saved(dir.path(), "hair.lovelock", &project);
+    std::fs::write(dir.path().join("a.lovelockstrokes"), strokes("1.0")).expect("a file");
+    let film = |more: &[&str]| {
+        let given =
+            ["style", "hair.lovelock", "--strokes", "a.lovelockstrokes", "-o", "combed.lovelock", "--json"];
+        run(dir.path(), given.iter().chain(more).copied())
+    };
+    let report = film(&["--on-dance", "0.2", "--film", "combing.mp4"]).done().json();
+    assert_eq!((report["strokes"].as_u64(), report["missed"].as_u64()), (Some(1), Some(0)), "{report}");
+    let bytes = std::fs::read(dir.path().join("combing.mp4")).expect("a film");
+    assert_eq!(&bytes[4..8], b"ftyp");
+
+    assert!(film(&["--film", "combing.png"]).refused(2).contains(".mp4"));
+    for bad in ["nan", "-1", "1e9"] {
+        assert!(film(&[&format!("--on-dance={bad}")]).refused(2).contains("--on-dance"), "{bad}");
+    }
+}

@@ -17,3 +17,4 @@ pub mod presets;
 pub mod record;
 pub mod reference;
 pub mod satf;
+pub mod strokes;

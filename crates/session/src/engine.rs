@@ -268,6 +268,11 @@ impl Engine {
         self.report
     }
 
+    /// Carries the space of the head to the world at the current step.
+    pub(crate) fn world_from_head(&self) -> Affine3A {
+        self.pose.world_from_head
+    }
+
     /// Current step, counted from the scene's time zero.
     pub(crate) fn at_step(&self) -> i64 {
         self.at_step

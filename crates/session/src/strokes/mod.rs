@@ -9,4 +9,4 @@ mod live_tests;
 mod played;
 
 pub use live::{Stroke, StrokeReport, StrokeStart};
-pub use played::{StrokesReport, play_strokes};
+pub use played::{PlayStrokes, PlayedBrush, SeeStrokes, StrokesReport, play_strokes};
