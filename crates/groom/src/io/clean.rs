@@ -1,7 +1,5 @@
 //! Drops and counts the strands of a file that cannot be drawn.
 
-use std::collections::BTreeMap;
-
 use glam::Vec3;
 use lovelock_base::statistics::upper_median_by;
 
@@ -90,7 +88,7 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
         default_transparency: raw.default_transparency,
         default_colour: raw.default_colour,
         both_ends_pinned: raw.both_ends_pinned,
-        dropped: BTreeMap::new(),
+        dropped: raw.dropped,
         notes: raw.notes,
         bounds: Bounds::EMPTY,
     };

@@ -7,5 +7,6 @@ mod motion;
 
 mod growing;
 mod hair_files;
+mod hair_round_trips;
 mod interpolation;
 mod strand_bounds;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use lovelock_groom::HairFormat;
+use lovelock_groom::{HairFormat, gltf_holds_lines};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -63,7 +63,12 @@ impl FileKind {
     /// Endings of such files, for dialogs, without the dot.
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            Self::Hair => HairFormat::all_extensions(),
+            // A glTF is a character unless it holds lines, see `Self::of`.
+            Self::Hair => {
+                let mut all = HairFormat::all_extensions();
+                all.retain(|extension| !Self::Character.extensions().contains(extension));
+                all
+            }
             Self::Character => vec!["glb", "gltf"],
             Self::Motion => vec!["bvh"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
@@ -94,6 +99,8 @@ impl FileKind {
         // A style is a project with fewer sections: only its name tells it apart.
         let kind = match (Self::by_content(&start), by_name) {
             (Some(Self::Project), Some(Self::Style)) => by_name,
+            // Lines are hair, whatever else the file holds.
+            (Some(Self::Character), _) if gltf_holds_lines(path) => Some(Self::Hair),
             (by_content, _) => by_content.or(by_name),
         };
         kind.ok_or_else(|| {
@@ -116,15 +123,15 @@ impl FileKind {
 
     /// The kind by the first bytes of a file, if they are unambiguous.
     fn by_content(start: &[u8]) -> Option<Self> {
-        if HairFormat::of_magic(start).is_some() {
-            return Some(Self::Hair);
-        }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             // The start of every chunk in `record::take`.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
             [0x76, 0x2f, 0x31, 0x01, ..] | [b'#', b'?', ..] => return Some(Self::Surroundings),
             _ => {}
+        }
+        if HairFormat::of_magic(start).is_some() {
+            return Some(Self::Hair);
         }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
         let begins = |word: &str| {
