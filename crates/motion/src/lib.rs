@@ -1,4 +1,4 @@
-//! Bodies and motion: glTF, BVH, retargeting, poses and colliders.
+//! Bodies and motion: glTF, BVH, VMD, retargeting, poses and colliders.
 //!
 //! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, with the face of
 //! the rest pose toward +Z; loaders convert.
@@ -23,6 +23,7 @@ mod scalp;
 mod seam;
 mod settings;
 mod skinning;
+mod vmd;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};

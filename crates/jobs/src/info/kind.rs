@@ -17,7 +17,7 @@ pub enum FileKind {
     Hair,
     /// glTF 2: `.glb`, `.gltf`.
     Character,
-    /// BVH.
+    /// BVH or VMD.
     Motion,
     /// A project.
     Project,
@@ -70,7 +70,7 @@ impl FileKind {
                 all
             }
             Self::Character => vec!["glb", "gltf"],
-            Self::Motion => vec!["bvh"],
+            Self::Motion => vec!["bvh", "vmd"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
@@ -138,7 +138,7 @@ impl FileKind {
             text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
         };
         let holds = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
-        if begins("HIERARCHY") {
+        if begins("HIERARCHY") || start.starts_with(b"Vocaloid Motion Data") {
             Some(Self::Motion)
         } else if begins("{") && holds(b"\"asset\"") {
             Some(Self::Character)

@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{MotionError, MotionSettings, UpAxis, error::read_file, humanoid::Humanoid};
+use crate::{MotionError, MotionSettings, UpAxis, error::read_file, humanoid::Humanoid, vmd};
 
 /// Size of the largest file that is read.
 const FILE_LIMIT: u64 = 1 << 30;
@@ -51,6 +51,11 @@ pub struct MotionFile {
     pub unit_metres: f32,
     /// The axis that pointed up in the file.
     pub up: UpAxis,
+    /// The format, such as `BVH`.
+    pub format: String,
+    /// Height of the figure as it is posed, metres: the bones from the feet to the head, and the usual share of skull and
+    /// soles.
+    pub height_metres: f32,
 }
 
 impl MotionFile {
@@ -84,15 +89,15 @@ impl MotionFile {
     }
 }
 
-/// Loads a BVH file, guessing what it does not specify.
+/// Loads a BVH or VMD file, guessing what it does not specify.
 ///
 /// # Errors
-/// If the text is not BVH (the error contains the line), or the file has no joints or no frames.
+/// If the file is of neither format (the error contains the line or byte), or has no joints or no frames.
 pub fn load_motion(path: &Path) -> Result<MotionFile, MotionError> {
     load_motion_with(path, MotionSettings::default())
 }
 
-/// Loads a BVH file.
+/// Loads a BVH or VMD file.
 ///
 /// # Errors
 /// As [`load_motion`].
@@ -101,7 +106,7 @@ pub fn load_motion_with(path: &Path, settings: MotionSettings) -> Result<MotionF
     load_motion_bytes(&path.display().to_string(), &bytes, settings)
 }
 
-/// Loads a BVH file from bytes; `name` is used in messages.
+/// Loads a BVH or VMD file from bytes; `name` is used in messages.
 ///
 /// # Errors
 /// As [`load_motion`].
@@ -110,6 +115,9 @@ pub fn load_motion_bytes(
     bytes: &[u8],
     settings: MotionSettings,
 ) -> Result<MotionFile, MotionError> {
+    if vmd::is_vmd(bytes) {
+        return vmd::read(name, bytes);
+    }
     let raw = parse::parse(name, bytes)?;
     Ok(interpret::interpret(name, &raw, settings))
 }
