@@ -241,6 +241,11 @@ fn groups_of_any_size_give_a_finite_guess() {
         let guess = guess_units(&file);
         assert!((0.05..0.5).contains(&guess.size_m.max_element()), "{scale}: {guess:?}");
     }
+    // Roots that are apart by the smallest number.
+    let mut strands = hanging(&[4, 4]);
+    strands.iter_mut().flatten().for_each(|point| point[0] *= f32::from_bits(1));
+    let file = load_hair_bytes("by hand", &YukselFile::new(strands).bytes()).expect("a sound file");
+    assert!(guess_units(&file).size_m.is_finite());
     let one = YukselFile::new(hanging(&[2])).bytes();
     let guess = guess_units(&load_hair_bytes("by hand", &one).expect("a sound file"));
     assert!(guess.metres_per_unit.is_finite() && guess.metres_per_unit > 0.0);

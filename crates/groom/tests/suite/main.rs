@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/motion.rs"]
 mod motion;
 
+mod damaged_hair;
 mod growing;
 mod hair_files;
 mod hair_round_trips;
