@@ -19,7 +19,9 @@ pub(super) fn chain(segments: &[[u32; 2]], vertices: usize) -> Chains {
     // The segments at vertex `v` are `at[first[v]..first[v + 1]]`.
     let mut first = vec![0_u32; vertices + 1];
     for segment in segments.iter().filter(|segment| is_line(segment)) {
-        segment.iter().for_each(|&vertex| first[vertex as usize + 1] += 1);
+        for &vertex in segment {
+            first[vertex as usize + 1] += 1;
+        }
     }
     for v in 0..vertices {
         first[v + 1] += first[v];

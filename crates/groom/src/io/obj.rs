@@ -244,18 +244,10 @@ mod tests {
 
     #[test]
     fn two_point_records_are_joined_and_colours_follow() {
-        let mut text = String::new();
-        for strand in 0..10 {
-            for point in 0..5 {
-                text += &format!("v {strand} {point} 0 0.5 0.25 {}\n", point as f32 * 0.125);
-            }
-        }
-        for strand in 0..10 {
-            for point in 0..4 {
-                let at = strand * 5 + point + 1;
-                text += &format!("l {at} {}\n", at + 1);
-            }
-        }
+        let vertices =
+            (0..50).map(|at| format!("v {} {} 0 0.5 0.25 {}\n", at / 5, at % 5, (at % 5) as f32 * 0.125));
+        let lines = (1..50).filter(|at| at % 5 != 0).map(|at| format!("l {at} {}\n", at + 1));
+        let text: String = vertices.chain(lines).collect();
         let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
         assert_eq!((file.strands(), file.points.len()), (10, 50));
         assert_eq!(file.colours.expect("colours")[4], [0.5, 0.25, 0.5]);

@@ -1,4 +1,4 @@
-//! Dance motion of MikuMikuDance (`.vmd`): keys of bones with the standard names, performed by the standard skeleton.
+//! Dance motion of `MikuMikuDance` (`.vmd`): keys of bones with the standard names, performed by the standard skeleton.
 //!
 //! Every frame is computed as that program does: keys with their curves, then the legs by inverse kinematics. The result
 //! is a [`MotionFile`] of 30 frames per second, which is retargeted like any other.
@@ -31,9 +31,10 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     let unknown = drop_unknown(&mut raw);
     let last = raw.bones.values().filter_map(|keys| keys.last()).map(|key| key.frame).max();
     let Some(last) = last else {
-        let found = match raw.dropped.is_empty() && unknown == 0 {
-            true => "no key".to_owned(),
-            false => format!("keys of a camera, a face, or {unknown} other bones alone"),
+        let found = if raw.dropped.is_empty() && unknown == 0 {
+            "no key".to_owned()
+        } else {
+            format!("keys of a camera, a face, or {unknown} other bones alone")
         };
         let wanted = "keys of bones with the standard names, such as センター";
         return Err(MotionError::Empty { file: name.into(), found, wanted });

@@ -128,7 +128,7 @@ pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawVmd, MotionError> {
     for _ in 0..count {
         let head = reader.take(9, "a switch of inverse kinematics")?;
         let (frame, names) = (u32_of(head), u32_of(&head[5..]) as usize);
-        let names = names.checked_mul(SWITCH).unwrap_or(usize::MAX);
+        let names = names.saturating_mul(SWITCH);
         for switch in reader.take(names, "the switches of a frame")?.chunks_exact(SWITCH) {
             raw.switches.entry(name_of(&switch[..20])).or_default().insert(frame, switch[20] != 0);
         }

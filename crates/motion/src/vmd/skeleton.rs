@@ -1,11 +1,11 @@
-//! The skeleton to which the names of a VMD file belong: the standard model of MikuMikuDance at rest.
+//! The skeleton to which the names of a VMD file belong: the standard model of `MikuMikuDance` at rest.
 //!
 //! A VMD file has no skeleton. Models that share the standard names also share these proportions closely enough: the
 //! arms hang at 40 degrees, the figure is 20 units (1.6 m) tall, and stands in the origin.
 
 use glam::Vec3;
 
-/// Metres per unit of MikuMikuDance.
+/// Metres per unit of `MikuMikuDance`.
 pub(super) const UNIT_METRES: f32 = 0.08;
 
 /// A bone at rest.

@@ -3,6 +3,8 @@
 
 use crate::common;
 
+use std::fmt::Write as _;
+
 use glam::{EulerRot, Quat, Vec3};
 use lovelock_motion::{
     Body, LengthUnit, MotionFile, MotionSettings, Pose, Skin, UpAxis, load_character, load_motion,
@@ -71,7 +73,7 @@ struct Writing {
 const PLAIN: Writing =
     Writing { scale: 100.0, z_up: false, zero_pose: |_| Quat::IDENTITY, positions: None, floor_root: false };
 
-fn write(w: Writing) -> String {
+fn written(w: Writing) -> String {
     let axes = if w.z_up { Quat::from_rotation_x(std::f32::consts::FRAC_PI_2) } else { Quat::IDENTITY };
     let rest = |joint: usize| {
         let bone = if joint == 0 { offset(0) } else { (w.zero_pose)(JOINTS[joint].1) * offset(joint) };
@@ -86,7 +88,7 @@ fn write(w: Writing) -> String {
     let mut order = Vec::new();
     joint_text(0, w, &mut order, &mut |joint, text: &mut String| *text += &numbers(stated(joint)), &mut text);
     text += if w.floor_root { "}\n" } else { "" };
-    text += &format!("MOTION\nFrames: {FRAMES}\nFrame Time: 0.033333\n");
+    write!(text, "MOTION\nFrames: {FRAMES}\nFrame Time: 0.033333\n").expect("memory");
     for frame in 0..FRAMES {
         if w.floor_root {
             text += "0 0 0 0 0 0 ";
@@ -101,7 +103,8 @@ fn write(w: Writing) -> String {
             }
             let parent = if joint == 0 { Quat::IDENTITY } else { world(JOINTS[joint].1) };
             let (z, x, y) = (parent.inverse() * world(joint)).to_euler(EulerRot::ZXY);
-            text += &format!("{:.5} {:.5} {:.5} ", z.to_degrees(), x.to_degrees(), y.to_degrees());
+            write!(text, "{:.5} {:.5} {:.5} ", z.to_degrees(), x.to_degrees(), y.to_degrees())
+                .expect("memory");
         }
         text.push('\n');
     }
@@ -117,7 +120,8 @@ fn joint_text(
 ) {
     order.push(joint);
     let root = joint == 0 && !w.floor_root;
-    *text += &format!("{} {}\n{{\n OFFSET ", if root { "ROOT" } else { "JOINT" }, JOINTS[joint].0);
+    let kind = if root { "ROOT" } else { "JOINT" };
+    write!(text, "{kind} {}\n{{\n OFFSET ", JOINTS[joint].0).expect("memory");
     offset(joint, text);
     *text += if joint == 0 || w.positions.is_some() {
         "\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
@@ -160,7 +164,7 @@ fn difference(a: &MotionFile, b: &MotionFile) -> f32 {
 
 #[test]
 fn units_and_axes_are_judged_from_the_figure() {
-    let plain = load(&write(PLAIN));
+    let plain = load(&written(PLAIN));
     assert!((1.6..1.9).contains(&plain.height_metres), "{}", plain.height_metres);
     for (scale, unit) in [
         (1.0, LengthUnit::Metres),
@@ -171,7 +175,7 @@ fn units_and_axes_are_judged_from_the_figure() {
         (0.45 / 0.0254, LengthUnit::Cmu),
     ] {
         for z_up in [false, true] {
-            let motion = load(&write(Writing { scale, z_up, ..PLAIN }));
+            let motion = load(&written(Writing { scale, z_up, ..PLAIN }));
             assert_eq!(Some(motion.unit_metres), unit.metres(), "{unit:?} {:?}", motion.notes);
             assert_eq!(motion.up, if z_up { UpAxis::Z } else { UpAxis::Y });
             let off = difference(&motion, &plain);
@@ -182,25 +186,25 @@ fn units_and_axes_are_judged_from_the_figure() {
 
 #[test]
 fn a_figure_in_no_usual_unit_is_scaled_to_an_adult() {
-    let plain = load(&write(PLAIN));
+    let plain = load(&written(PLAIN));
     for scale in [28.0, 3.0, 5000.0] {
-        let motion = load(&write(Writing { scale, ..PLAIN }));
+        let motion = load(&written(Writing { scale, ..PLAIN }));
         assert!((motion.height_metres - 1.75).abs() < 1e-3, "{scale}: {} m", motion.height_metres);
         assert!(motion.notes.iter().any(|note| note.contains("no usual unit")), "{:?}", motion.notes);
     }
     // The control: a child in centimetres stays a child.
-    let child = load(&write(Writing { scale: 65.0, ..PLAIN }));
+    let child = load(&written(Writing { scale: 65.0, ..PLAIN }));
     assert_eq!(child.unit_metres, 0.01);
     assert!((child.height_metres - 0.65 * plain.height_metres).abs() < 1e-3);
 }
 
 #[test]
 fn positions_on_every_joint_decide_on_the_size() {
-    let plain = load(&write(PLAIN));
+    let plain = load(&written(PLAIN));
     for floor_root in [false, true] {
         // As in the set of Bandai-Namco; then with OFFSETs that are twice as long, in inches, and zero.
         for wrong in [1.0, 2.0, 1.0 / 2.54, 0.0] {
-            let motion = load(&write(Writing { positions: Some(wrong), floor_root, ..PLAIN }));
+            let motion = load(&written(Writing { positions: Some(wrong), floor_root, ..PLAIN }));
             assert_eq!(motion.unit_metres, 0.01, "{wrong} {:?}", motion.notes);
             assert!(
                 (motion.height_metres - plain.height_metres).abs() < 0.01,
@@ -237,6 +241,9 @@ fn dancer() -> Option<std::sync::Arc<Body>> {
     Some(load_character(&path).expect("the dancer").body)
 }
 
+/// Name and rotations of a pose in which all channels are zero.
+type Rest = (&'static str, fn(usize) -> Quat);
+
 #[test]
 fn any_rest_pose_gives_the_same_dance() {
     let Some(body) = dancer() else { return };
@@ -251,7 +258,7 @@ fn any_rest_pose_gives_the_same_dance() {
         ("thigh_r", "shin_r", 16, 17),
         ("shin_r", "foot_r", 17, 18),
     ];
-    let rests: [(&str, fn(usize) -> Quat); 4] = [
+    let rests: [Rest; 4] = [
         ("T-pose", |_| Quat::IDENTITY),
         ("A-pose", |joint| arms(joint, 0.8)),
         ("arms down", |joint| arms(joint, 1.5)),
@@ -268,7 +275,7 @@ fn any_rest_pose_gives_the_same_dance() {
         }),
     ];
     for (label, zero_pose) in rests {
-        let motion = load(&write(Writing { zero_pose, ..PLAIN }));
+        let motion = load(&written(Writing { zero_pose, ..PLAIN }));
         let clip = retarget(&motion, &body).unwrap_or_else(|error| panic!("{label}: {error}"));
         // The clip starts facing +Z.
         let start = {

@@ -132,10 +132,10 @@ fn truncated_real_files_are_handled() {
 
 /// The document of [`glb`] with its buffer as a data URI.
 fn gltf() -> Vec<u8> {
+    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let glb = glb();
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
-    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::from("data:application/octet-stream;base64,");
     for three in glb[20 + length + 8..].chunks(3) {
         let word =

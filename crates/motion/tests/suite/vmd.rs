@@ -46,7 +46,7 @@ impl Vmd {
         let row: Vec<u8> = (0..16).map(|k| curves[k % 4][k / 4]).collect();
         for shift in 0..4 {
             let mut shifted = row[shift..].to_vec();
-            shifted.resize(16, if shift == 0 { 0 } else { 1 });
+            shifted.resize(16, u8::from(shift > 0));
             self.bones.extend(shifted);
         }
         self.keys += 1;

@@ -236,19 +236,16 @@ impl Lines<'_> {
             }
             return Ok(Chains { counts: vec![vertices.len() as u32], vertices, first_listed: vec![0] });
         }
-        let segments: Vec<[u32; 2]> = match listed {
-            Some(listed) => listed.as_chunks::<2>().0.to_vec(),
-            None => {
-                // Without indices a segment that begins where the one before ends continues its strand.
-                let mut segments: Vec<[u32; 2]> = Vec::with_capacity(points / 2);
-                for first in (0..points as u32 / 2).map(|pair| 2 * pair) {
-                    let end = segments.last().map(|&[_, end]| end);
-                    let joined = end.filter(|&end| positions[end as usize] == positions[first as usize]);
-                    segments.push([joined.unwrap_or(first), first + 1]);
-                }
-                segments
-            }
-        };
+        if let Some(listed) = listed {
+            return Ok(chain(listed.as_chunks::<2>().0, points));
+        }
+        // Without indices a segment that begins where the one before ends continues its strand.
+        let mut segments: Vec<[u32; 2]> = Vec::with_capacity(points / 2);
+        for first in (0..points as u32 / 2).map(|pair| 2 * pair) {
+            let end = segments.last().map(|&[_, end]| end);
+            let joined = end.filter(|&end| positions[end as usize] == positions[first as usize]);
+            segments.push([joined.unwrap_or(first), first + 1]);
+        }
         Ok(chain(&segments, points))
     }
 

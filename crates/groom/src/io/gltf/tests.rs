@@ -19,7 +19,7 @@ fn buffer() -> Vec<u8> {
     bytes
 }
 
-fn document(primitive: Value, uri: &str) -> Value {
+fn document(primitive: &Value, uri: &str) -> Value {
     json!({
         "asset": { "version": "2.0" },
         "scenes": [{ "nodes": [0] }],
@@ -42,7 +42,7 @@ fn data_uri() -> String {
     format!("data:application/octet-stream;base64,{}", STANDARD.encode(buffer()))
 }
 
-fn load(primitive: Value) -> HairFile {
+fn load(primitive: &Value) -> HairFile {
     let text = document(primitive, &data_uri()).to_string();
     load_hair_bytes("a.gltf", text.as_bytes()).expect("hair")
 }
@@ -61,7 +61,7 @@ fn are_close(found: &[Vec3], wanted: &[usize]) {
 
 #[test]
 fn every_mode_gives_its_strands() {
-    let lines = load(json!({ "mode": 1, "indices": 2, "attributes": { "POSITION": 0, "_RADIUS": 1 } }));
+    let lines = load(&json!({ "mode": 1, "indices": 2, "attributes": { "POSITION": 0, "_RADIUS": 1 } }));
     assert_eq!((lines.first_point.clone(), lines.is_in_metres), (vec![0, 3, 6], true));
     are_close(lines.strand(0), &[0, 1, 2]);
     are_close(lines.strand(1), &[4, 5, 6]);
@@ -69,13 +69,13 @@ fn every_mode_gives_its_strands() {
     let widths = lines.thickness.expect("widths");
     assert!((widths[5] - 0.1 * 2.0 * 0.006).abs() < 1e-7, "{widths:?}");
 
-    let strip = load(json!({ "mode": 3, "attributes": { "POSITION": 0 } }));
+    let strip = load(&json!({ "mode": 3, "attributes": { "POSITION": 0 } }));
     are_close(strip.strand(0), &[0, 1, 2, 3, 4, 5, 6, 7, 8]);
     assert!(strip.thickness.is_none());
-    let ring = load(json!({ "mode": 2, "attributes": { "POSITION": 0 } }));
+    let ring = load(&json!({ "mode": 2, "attributes": { "POSITION": 0 } }));
     are_close(ring.strand(0), &[0, 1, 2, 3, 4, 5, 6, 7, 8, 0]);
     // Without indices: (0, 1), (2, 3), (4, 5), (6, 7), none of which touch.
-    assert_eq!(load(json!({ "mode": 1, "attributes": { "POSITION": 0 } })).strands(), 4);
+    assert_eq!(load(&json!({ "mode": 1, "attributes": { "POSITION": 0 } })).strands(), 4);
 }
 
 #[test]
@@ -84,17 +84,17 @@ fn buffers_beside_the_file_are_found_and_others_are_refused() {
     let path = dir.path().join("hair.gltf");
     std::fs::write(dir.path().join("hair 1.bin"), buffer()).expect("a file");
     let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
-    std::fs::write(&path, document(strip.clone(), "hair%201.bin").to_string()).expect("a file");
+    std::fs::write(&path, document(&strip, "hair%201.bin").to_string()).expect("a file");
     assert!(gltf_holds_lines(&path));
     assert_eq!(load_hair(&path).expect("hair").points.len(), 9);
     for uri in ["gone.bin", "../hair.bin", "/etc/hostname", "http://a/b.bin", "data:,x"] {
-        std::fs::write(&path, document(strip.clone(), uri).to_string()).expect("a file");
+        std::fs::write(&path, document(&strip, uri).to_string()).expect("a file");
         let error = load_hair(&path).expect_err(uri).to_string();
         assert!(error.contains("buffer 0 in") && !error.contains('\n'), "{error}");
     }
     // The control: a surface is no hair.
     let surface = json!({ "attributes": { "POSITION": 0 } });
-    std::fs::write(&path, document(surface, &data_uri()).to_string()).expect("a file");
+    std::fs::write(&path, document(&surface, &data_uri()).to_string()).expect("a file");
     assert!(!gltf_holds_lines(&path));
     assert!(load_hair(&path).expect_err("no lines").to_string().contains("no lines, and 1 primitives"));
 }
@@ -114,7 +114,7 @@ fn contradictions_are_refused() {
         (&lines, "/accessors/0/count", json!(6), "the index 6"),
         (&strip, "/nodes", json!([]), "no lines"),
     ] {
-        let mut text = document(primitive.clone(), &data_uri());
+        let mut text = document(primitive, &data_uri());
         *text.pointer_mut(place).unwrap_or(&mut Value::Null) = value.clone();
         if place.ends_with("byteStride") {
             text["bufferViews"][0]["byteStride"] = value;
@@ -123,11 +123,11 @@ fn contradictions_are_refused() {
         assert!(error.starts_with("a.gltf: ") && error.contains(found), "{place}: {error}");
     }
     // A cycle of nodes ends.
-    let mut text = document(strip.clone(), &data_uri());
+    let mut text = document(&strip, &data_uri());
     text["nodes"][1]["children"] = json!([0, 1]);
     assert_eq!(load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect("hair").strands(), 1);
     // A mesh shown in very many nodes is refused before it fills memory.
-    let mut text = document(strip, &data_uri());
+    let mut text = document(&strip, &data_uri());
     text["accessors"][0] = json!({ "componentType": 5126, "count": 1 << 24, "type": "VEC3" });
     text["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }, { "mesh": 0 }]);
     text["scenes"] = json!([{ "nodes": [0, 1, 2] }]);

@@ -23,6 +23,7 @@ pub(super) fn binary(hair: &HairFile) -> Result<Vec<u8>, String> {
 }
 
 /// A `.gltf` with its buffer as a data URI.
+#[expect(clippy::unnecessary_wraps, reason = "the signature of all writers")]
 pub(super) fn text(hair: &HairFile) -> Result<Vec<u8>, String> {
     let (document, _) = asset(hair, Some("data:application/octet-stream;base64,"));
     Ok(document.to_string().into_bytes())

@@ -100,7 +100,7 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
         }
         match curves.colours {
             Some(of_prim) => {
-                colours.extend(of_prim.iter().map(|colour| colour.to_array().map(display_from_linear)))
+                colours.extend(of_prim.iter().map(|colour| colour.to_array().map(display_from_linear)));
             }
             None => all_colours = false,
         }
