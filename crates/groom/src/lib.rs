@@ -45,8 +45,8 @@ pub use import::{
 };
 pub use interpolate::interpolate;
 pub use io::{
-    Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis, guess_units,
-    load_hair, load_hair_bytes,
+    Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis,
+    gltf_holds_lines, guess_units, load_hair, load_hair_bytes,
 };
 pub use look::{HairLook, HairShading};
 pub use motion_factors::MotionFactors;

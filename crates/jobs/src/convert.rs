@@ -32,7 +32,8 @@ pub struct ConvertReport {
 /// # Errors
 /// A file that cannot be read, a name of no such format, hair that the format cannot hold, and a full disk.
 pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, ProjectError> {
-    let write = HairFormat::of_path(out).and_then(|format| format.write);
+    let format = HairFormat::of_path(out).filter(|_| has_extension(out, &written_extensions()));
+    let write = format.and_then(|format| format.write);
     if write.is_none() && CurveFormat::of(out).is_none() {
         return Err(ProjectError::option(format!(
             "{}: found no extension of a hair format; wanted .{}",
@@ -70,7 +71,19 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
 /// Extensions of the hair files that can be written, without the dot.
 pub fn written_extensions() -> Vec<&'static str> {
     let written = HAIR_FORMATS.into_iter().filter(|format| format.write.is_some());
-    written.flat_map(|format| format.extensions).copied().chain(CurveFormat::EXTENSIONS).collect()
+    // Compressed files are only read.
+    let own: Vec<&str> = written
+        .flat_map(|format| format.extensions)
+        .copied()
+        .filter(|&extension| extension != "gz")
+        .collect();
+    let others = CurveFormat::EXTENSIONS.into_iter().filter(|extension| !own.contains(extension));
+    own.iter().copied().chain(others).collect()
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    extension.is_some_and(|extension| extensions.contains(&extension.as_str()))
 }
 
 fn write_curves(hair: &HairFile, out: &Path) -> Result<u64, RecordError> {
@@ -124,7 +137,11 @@ mod tests {
             ("b.hair", Unit::Auto, UpAxis::Auto),
             ("c.usdc", Unit::Metre, UpAxis::Z),
             ("d.tfx", Unit::Auto, UpAxis::Auto),
-            ("e.usda", Unit::Centimetre, UpAxis::Y),
+            ("e.obj", Unit::Centimetre, UpAxis::Y),
+            ("f.glb", Unit::Metre, UpAxis::Y),
+            ("g.pbrt", Unit::Auto, UpAxis::Auto),
+            ("h.gltf", Unit::Metre, UpAxis::Y),
+            ("i.usda", Unit::Auto, UpAxis::Auto),
         ] {
             let report = convert(&from, &at(name), unit, up).expect(name);
             assert_eq!((report.strands, report.points), (2, 4), "{name}");
@@ -135,7 +152,10 @@ mod tests {
         for (a, b) in last.points.iter().zip(&first.points) {
             assert!((a.y - b.y).abs() < 1e-4 && (a.length() - b.length()).abs() < 1e-4, "{a} for {b}");
         }
-        let error = convert(&from, &at("f.obj"), Unit::Auto, UpAxis::Auto).expect_err("no such format");
-        assert!(error.to_string().contains(".hair, .tfx, .usdc") && error.exit_code() == 2, "{error}");
+        for name in ["k.data", "k.stl", "k.gz"] {
+            let error = convert(&from, &at(name), Unit::Auto, UpAxis::Auto).expect_err("not written");
+            assert!(error.to_string().contains(".hair, .tfx, .glb, .gltf, .obj, .pbrt"), "{error}");
+            assert_eq!(error.exit_code(), 2, "{error}");
+        }
     }
 }

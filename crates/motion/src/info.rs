@@ -85,19 +85,22 @@ pub struct MotionInfo {
     pub frame_secs: f64,
     /// Metres per unit of the file.
     pub unit_metres: f32,
+    /// Height of the figure as it is posed, metres.
+    pub height_m: f32,
 }
 
 impl MotionFile {
     /// The summary for the command line.
     pub fn info(&self) -> MotionInfo {
         MotionInfo {
-            format: "BVH".into(),
+            format: self.format.clone(),
             dropped: self.dropped.clone(),
             notes: self.notes.clone(),
             joints: self.joints.len(),
             frames: self.frames,
             frame_secs: self.frame_secs,
             unit_metres: self.unit_metres,
+            height_m: self.height_metres,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Bodies and motion: glTF, BVH, retargeting, poses and colliders.
+//! Bodies and motion: glTF, BVH, VMD, retargeting, poses and colliders.
 //!
 //! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, with the face of
 //! the rest pose toward +Z; loaders convert.
@@ -16,6 +16,7 @@ mod gltf;
 mod head;
 mod humanoid;
 mod info;
+mod load;
 mod pose;
 mod retarget;
 mod sample;
@@ -23,10 +24,11 @@ mod scalp;
 mod seam;
 mod settings;
 mod skinning;
+mod vmd;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
-pub use bvh::{MotionFile, MotionJoint, load_motion, load_motion_bytes, load_motion_with};
+pub use bvh::{MotionFile, MotionJoint};
 pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Track};
 pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
@@ -41,6 +43,7 @@ pub use gltf::{
 };
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
+pub use load::{load_motion, load_motion_bytes, load_motion_with};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;

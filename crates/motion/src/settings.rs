@@ -112,7 +112,7 @@ pub enum RootPosition {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MotionSettings {
-    /// The unit of the file. The guess assumes a figure between 1.2 and 2.2 m.
+    /// The unit of the file. The guess is one in which the figure is as tall as a person, otherwise its scale.
     pub unit: LengthUnit,
     /// The axis that points up.
     pub up: UpAxis,

@@ -1,7 +1,8 @@
-//! Helpers for tests: comparison of images, the folder of real data files, and skipping without a graphics adapter.
+//! Helpers for tests: comparison of images, the folder of real data files, damaged input, and skipping without a graphics adapter.
 
 mod compare;
 mod data;
+pub mod fuzz;
 pub mod suite;
 
 pub use compare::{Flip, flip, mean_color};

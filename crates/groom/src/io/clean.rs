@@ -1,7 +1,5 @@
 //! Drops and counts the strands of a file that cannot be drawn.
 
-use std::collections::BTreeMap;
-
 use glam::Vec3;
 use lovelock_base::statistics::upper_median_by;
 
@@ -82,15 +80,15 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
         common_up: format.common_up,
         is_in_metres: format.states_unit,
         first_point: Vec::with_capacity(strands + 1),
-        points: Vec::with_capacity(raw.points.len()),
-        thickness: raw.thickness.as_ref().map(|values| Vec::with_capacity(values.len())),
-        transparency: raw.transparency.as_ref().map(|values| Vec::with_capacity(values.len())),
-        colours: raw.colours.as_ref().map(|values| Vec::with_capacity(values.len())),
+        points: raw.points,
+        thickness: raw.thickness,
+        transparency: raw.transparency,
+        colours: raw.colours,
         default_thickness: raw.default_thickness,
         default_transparency: raw.default_transparency,
         default_colour: raw.default_colour,
         both_ends_pinned: raw.both_ends_pinned,
-        dropped: BTreeMap::new(),
+        dropped: raw.dropped,
         notes: raw.notes,
         bounds: Bounds::EMPTY,
     };
@@ -105,7 +103,8 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
             default
         }
     };
-    let mut end = 0;
+    // What is kept moves toward the start of the same arrays, so that memory holds the hair once.
+    let (mut end, mut kept) = (0, 0);
     for (&count, fault) in raw.point_counts.iter().zip(&faults) {
         let start = end;
         end += count as usize;
@@ -113,25 +112,30 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
             continue;
         }
         for i in start..end {
-            if i > start && raw.points[i] == raw.points[i - 1] {
+            if i > start && file.points[i] == file.points[i - 1] {
                 repeated += 1;
                 continue;
             }
-            file.bounds.include(raw.points[i]);
-            file.points.push(raw.points[i]);
-            if let (Some(from), Some(to)) = (&raw.thickness, &mut file.thickness) {
-                to.push(finite(from[i], raw.default_thickness.unwrap_or(0.0)));
+            file.bounds.include(file.points[i]);
+            file.points[kept] = file.points[i];
+            if let Some(values) = &mut file.thickness {
+                values[kept] = finite(values[i], file.default_thickness.unwrap_or(0.0));
             }
-            if let (Some(from), Some(to)) = (&raw.transparency, &mut file.transparency) {
-                to.push(finite(from[i], raw.default_transparency.unwrap_or(0.0)));
+            if let Some(values) = &mut file.transparency {
+                values[kept] = finite(values[i], file.default_transparency.unwrap_or(0.0));
             }
-            if let (Some(from), Some(to)) = (&raw.colours, &mut file.colours) {
-                let default = raw.default_colour.unwrap_or([0.5; 3]);
-                to.push(std::array::from_fn(|k| finite(from[i][k], default[k])));
+            if let Some(values) = &mut file.colours {
+                let (value, default) = (values[i], file.default_colour.unwrap_or([0.5; 3]));
+                values[kept] = std::array::from_fn(|k| finite(value[k], default[k]));
             }
+            kept += 1;
         }
-        file.first_point.push(file.points.len() as u32);
+        file.first_point.push(kept as u32);
     }
+    shorten(&mut file.points, kept);
+    file.thickness.iter_mut().for_each(|values| shorten(values, kept));
+    file.transparency.iter_mut().for_each(|values| shorten(values, kept));
+    file.colours.iter_mut().for_each(|values| shorten(values, kept));
 
     report(&mut file, &faults, repeated, non_finite, raw.trailing_bytes);
     if file.strands() == 0 {
@@ -142,6 +146,11 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
         return Err(HairFileError::NothingToDraw { name: name.to_owned(), reason });
     }
     Ok(file)
+}
+
+fn shorten<T>(values: &mut Vec<T>, length: usize) {
+    values.truncate(length);
+    values.shrink_to_fit();
 }
 
 /// Marks strands that are far from the groom, or that have no length compared with it.

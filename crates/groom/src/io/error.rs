@@ -14,7 +14,7 @@ pub enum HairFileError {
         source: std::io::Error,
     },
     /// The file contradicts itself, its format or its own size.
-    #[error("{name}: byte {offset}: found {found}, wanted {wanted}")]
+    #[error("{name}: byte {offset}: found {}, wanted {wanted}", in_one_line(found))]
     Malformed {
         /// The file.
         name: String,
@@ -33,4 +33,29 @@ pub enum HairFileError {
         /// Why no strands are left.
         reason: String,
     },
+}
+
+/// Text of a file as a part of one line: control characters become blanks, and long text is cut.
+fn in_one_line(text: &str) -> String {
+    const LONGEST: usize = 300;
+    let cut = text.chars().nth(LONGEST).is_some();
+    let line = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c });
+    line.chain(cut.then_some('…')).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HairFileError;
+
+    #[test]
+    fn messages_are_one_line_whatever_a_file_contains() {
+        let found = format!("a\r\nb\u{7}{}", "c".repeat(1000));
+        let error = HairFileError::Malformed { name: "a.usda".into(), offset: 3, found, wanted: "d".into() };
+        let line = error.to_string();
+        assert!(
+            line.starts_with("a.usda: byte 3: found a  b ccc") && line.ends_with("c…, wanted d"),
+            "{line}"
+        );
+        assert!(line.len() < 400 && !line.contains(['\n', '\r', '\u{7}']));
+    }
 }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::units::UpAxis;
 
+/// The most points that a file may have by showing the same ones in several places.
+pub(super) const MOST_COPIED_POINTS: usize = 1 << 25;
+
 /// A box aligned with the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
@@ -52,6 +55,8 @@ pub(super) struct RawHair {
     pub(super) default_colour: Option<[f32; 3]>,
     pub(super) both_ends_pinned: bool,
     pub(super) trailing_bytes: u64,
+    /// Counts of what the reader left out, by kind.
+    pub(super) dropped: BTreeMap<String, u64>,
     pub(super) notes: Vec<String>,
 }
 
@@ -70,6 +75,7 @@ impl RawHair {
             default_colour: None,
             both_ends_pinned: false,
             trailing_bytes: 0,
+            dropped: BTreeMap::new(),
             notes: Vec::new(),
         }
     }

@@ -43,10 +43,12 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
     let up = guess_up(file, &roots);
     let facing = guess_facing(file, up);
     let span = roots.span();
+    // Roots closer together than the rounding of the hair's coordinates are in one place.
+    let apart = 1e-6 * file.bounds.size().max_element();
     let across = "0.09 to 0.30 m across";
     let (metres_per_unit, unit, reason) = if file.is_in_metres {
         (1.0, Some(Unit::Metre), "The file says its unit.".to_owned())
-    } else if span > 0.0 {
+    } else if span > apart {
         let named = Unit::NAMED
             .into_iter()
             .find(|unit| unit.metres().is_some_and(|metres| (0.09..=0.30).contains(&(metres * span))));

@@ -1,26 +1,35 @@
-//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, and curves of USD.
+//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, curves of USD, lines of glTF and OBJ, curves of pbrt, and
+//! USC-HairSalon's `.data`.
 //!
 //! A [`HairFile`] contains the strands of a file, in the file's own unit and axes, without those that cannot be drawn
 //! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
 //! hairstyle of it. Each format is a [`HairFormat`] in the table [`HAIR_FORMATS`].
 
+mod basis;
 mod bytes;
+mod chain;
 mod clean;
 mod error;
 mod file;
 mod format;
+mod gltf;
 mod guess;
+mod obj;
+mod pbrt;
 mod registry;
 mod root_shape;
 mod source;
 mod tressfx;
 mod units;
+mod usc;
 mod usd;
+mod words;
 mod yuksel;
 
 pub use error::HairFileError;
 pub use file::{Bounds, HairFile};
 pub use format::HairFormat;
+pub use gltf::gltf_holds_lines;
 pub(crate) use guess::guess_facing;
 pub use guess::{UnitGuess, guess_units};
 pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes};

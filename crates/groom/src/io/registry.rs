@@ -6,10 +6,19 @@ use super::clean::clean;
 use super::file::HairFile;
 use super::format::HairFormat;
 use super::source::Source;
-use super::{HairFileError, tressfx, usd, yuksel};
+use super::{HairFileError, gltf, obj, pbrt, tressfx, usc, usd, yuksel};
 
 /// Every hair format that can be read. A new format is a file or folder beside this one, and an entry here.
-pub static HAIR_FORMATS: [&HairFormat; 3] = [&yuksel::FORMAT, &tressfx::FORMAT, &usd::FORMAT];
+pub static HAIR_FORMATS: [&HairFormat; 8] = [
+    &yuksel::FORMAT,
+    &tressfx::FORMAT,
+    &usd::FORMAT,
+    &gltf::BINARY,
+    &gltf::TEXT,
+    &obj::FORMAT,
+    &pbrt::FORMAT,
+    &usc::FORMAT,
+];
 
 impl HairFormat {
     /// The format whose files have the extension of `path`, in any case.
@@ -23,9 +32,12 @@ impl HairFormat {
         HAIR_FORMATS.into_iter().find(|format| format.magics.iter().any(|magic| start.starts_with(magic)))
     }
 
-    /// The format of a hair file that begins with `start`.
-    fn of_start(start: &[u8]) -> Option<&'static Self> {
-        Self::of_magic(start).or_else(|| HAIR_FORMATS.into_iter().find(|format| (format.may_begin)(start)))
+    /// The format of a hair file of this name that begins with `start`. Where the start fits several formats, the name
+    /// decides.
+    fn of_start(name: &str, start: &[u8]) -> Option<&'static Self> {
+        let fits = |format: &&'static Self| (format.may_begin)(start);
+        let by_name = || Self::of_path(Path::new(name)).filter(fits);
+        Self::of_magic(start).or_else(by_name).or_else(|| HAIR_FORMATS.into_iter().find(fits))
     }
 
     /// The extensions of all formats, without the dot.
@@ -55,7 +67,7 @@ pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileErro
 }
 
 fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
-    let Some(format) = HairFormat::of_start(source.start()) else {
+    let Some(format) = HairFormat::of_start(name, source.start()) else {
         let found = match source.start().first_chunk::<4>() {
             Some(start) => format!("`{}`", start.escape_ascii()),
             None => format!("a file of {} bytes", source.start().len()),
@@ -131,6 +143,6 @@ mod tests {
                 assert_eq!(HairFormat::of_path(Path::new(&name)), Some(format), "{name}");
             }
         }
-        assert_eq!(HairFormat::of_path(Path::new("a.obj")), None);
+        assert_eq!(HairFormat::of_path(Path::new("a.stl")), None);
     }
 }

@@ -2,20 +2,20 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
 
 use super::HairFileError;
 
-/// Bytes that are read from a file before its format is recognised.
-const START: u64 = 64;
+/// Bytes that are read from a file before its format is recognised: enough for the comments at the head of a text.
+const START: u64 = 4096;
 
 /// Where the bytes of a hair file are.
 pub(super) enum Source<'a> {
     /// In memory.
     Memory(&'a [u8]),
-    /// In a file of `length` bytes. `start` contains the bytes read so far.
-    File { file: File, length: u64, start: Vec<u8> },
+    /// In a file of `length` bytes. `start` contains the bytes read so far; `folder` is where files that it refers to lie.
+    File { file: File, length: u64, start: Vec<u8>, folder: PathBuf },
 }
 
 impl<'a> Source<'a> {
@@ -26,12 +26,13 @@ impl<'a> Source<'a> {
             let mut start = Vec::new();
             file.by_ref().take(START).read_to_end(&mut start)?;
             let length = file.metadata()?.len();
-            Ok(Self::File { file, length, start })
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            Ok(Self::File { file, length, start, folder: folder.unwrap_or(Path::new(".")).to_owned() })
         };
         open().map_err(|source| HairFileError::Io { name: name.to_owned(), source })
     }
 
-    /// The first bytes: up to 64 of a file, or all of those in memory.
+    /// The first bytes: up to 4096 of a file, or all of those in memory.
     pub(super) fn start(&self) -> &[u8] {
         match self {
             Self::Memory(data) => data,
@@ -71,4 +72,39 @@ impl<'a> Source<'a> {
             }
         }
     }
+
+    /// The folder of the file; none for bytes in memory.
+    pub(super) fn folder(&self) -> Option<PathBuf> {
+        match self {
+            Self::Memory(_) => None,
+            Self::File { folder, .. } => Some(folder.clone()),
+        }
+    }
+
+    /// A reader of all bytes that holds a part of them.
+    pub(super) fn into_reader(self) -> Box<dyn BufRead + 'a> {
+        match self {
+            Self::Memory(data) => Box::new(data),
+            Self::File { file, start, .. } => {
+                Box::new(std::io::Cursor::new(start).chain(BufReader::with_capacity(1 << 18, file)))
+            }
+        }
+    }
+}
+
+/// Opens a file that another one in `folder` refers to by `relative`. It must lie in that folder or below, even through
+/// links. The error is the reason, for a sentence.
+pub(super) fn open_beside(folder: Option<&Path>, relative: &Path) -> Result<File, String> {
+    use std::path::Component;
+    let folder = folder.ok_or("there is no folder to look in")?;
+    if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+        return Err("only files in the folder of the file and below are read".to_owned());
+    }
+    let path = folder.join(relative);
+    let read = |error: std::io::Error| error.to_string();
+    let (folder, real) = (folder.canonicalize().map_err(read)?, path.canonicalize().map_err(read)?);
+    if !real.starts_with(&folder) {
+        return Err("only files in the folder of the file and below are read".to_owned());
+    }
+    File::open(&real).map_err(read)
 }

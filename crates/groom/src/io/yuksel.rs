@@ -92,18 +92,15 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     };
     let default_colour = [file.f32(28), file.f32(32), file.f32(36)];
     Ok(RawHair {
-        version: None,
-        point_counts,
-        points: triples(positions, 12).map(Into::into).collect(),
         thickness: thickness.map(floats),
         transparency: transparency.map(floats),
         colours: colours.map(|array| triples(array, 12).collect()),
         default_thickness: Some(file.f32(20)).filter(|value| value.is_finite()),
         default_transparency: Some(file.f32(24)).filter(|value| value.is_finite()),
         default_colour: Some(default_colour).filter(|colour| colour.iter().all(|value| value.is_finite())),
-        both_ends_pinned: false,
         trailing_bytes: file.len() - offset,
         notes,
+        ..RawHair::new(point_counts, triples(positions, 12).map(Into::into).collect())
     })
 }
 

@@ -112,7 +112,8 @@ fn other_files_are_refused() {
         (b"".as_slice(), "a file of 0 bytes"),
         (b"HA", "a file of 2 bytes"),
         (b"\x89PNG\r\n\x1a\n", r"`\x89PNG`"),
-        (b"glTF\x02\x00\x00\x00", "`glTF`"),
+        (b"glTF\x02\x00\x00\x00", "a file of 8 bytes, wanted the header of a chunk"),
+        (b"GIF89a..", "`GIF8`, wanted `HAIR` (Yuksel)"),
         (b"HAIR", "a file of 4 bytes, wanted 128 bytes"),
     ] {
         assert!(refusal(bytes).contains(found), "{}", refusal(bytes));
@@ -120,7 +121,7 @@ fn other_files_are_refused() {
     // 5.0 and 2.9 are unknown versions.
     assert!(
         refusal(&tressfx(5.0, 1, 4))
-            .contains("wanted `HAIR` (Yuksel), a version from 3.0 to 4.9 as a float (TressFX), or `#usda`")
+            .contains("wanted `HAIR` (Yuksel), a version from 3.0 to 4.9 as a float (TressFX), `#usda`")
     );
     assert!(refusal(&tressfx(2.9, 1, 4)).contains("wanted"));
     let missing = load_hair(std::path::Path::new("no/such/file.hair")).expect_err("no such file");
@@ -240,6 +241,11 @@ fn groups_of_any_size_give_a_finite_guess() {
         let guess = guess_units(&file);
         assert!((0.05..0.5).contains(&guess.size_m.max_element()), "{scale}: {guess:?}");
     }
+    // Roots that are apart by the smallest number.
+    let mut strands = hanging(&[4, 4]);
+    strands.iter_mut().flatten().for_each(|point| point[0] *= f32::from_bits(1));
+    let file = load_hair_bytes("by hand", &YukselFile::new(strands).bytes()).expect("a sound file");
+    assert!(guess_units(&file).size_m.is_finite());
     let one = YukselFile::new(hanging(&[2])).bytes();
     let guess = guess_units(&load_hair_bytes("by hand", &one).expect("a sound file"));
     assert!(guess.metres_per_unit.is_finite() && guess.metres_per_unit > 0.0);

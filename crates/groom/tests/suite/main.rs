@@ -5,7 +5,9 @@ mod common;
 #[path = "../common/motion.rs"]
 mod motion;
 
+mod damaged_hair;
 mod growing;
 mod hair_files;
+mod hair_round_trips;
 mod interpolation;
 mod strand_bounds;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use lovelock_groom::HairFormat;
+use lovelock_groom::{HairFormat, gltf_holds_lines};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -17,7 +17,7 @@ pub enum FileKind {
     Hair,
     /// glTF 2: `.glb`, `.gltf`.
     Character,
-    /// BVH.
+    /// BVH or VMD.
     Motion,
     /// A project.
     Project,
@@ -63,9 +63,14 @@ impl FileKind {
     /// Endings of such files, for dialogs, without the dot.
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            Self::Hair => HairFormat::all_extensions(),
+            // A glTF is a character unless it holds lines, see `Self::of`.
+            Self::Hair => {
+                let mut all = HairFormat::all_extensions();
+                all.retain(|extension| !Self::Character.extensions().contains(extension));
+                all
+            }
             Self::Character => vec!["glb", "gltf"],
-            Self::Motion => vec!["bvh"],
+            Self::Motion => vec!["bvh", "vmd"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
@@ -94,6 +99,8 @@ impl FileKind {
         // A style is a project with fewer sections: only its name tells it apart.
         let kind = match (Self::by_content(&start), by_name) {
             (Some(Self::Project), Some(Self::Style)) => by_name,
+            // Lines are hair, whatever else the file holds.
+            (Some(Self::Character), _) if gltf_holds_lines(path) => Some(Self::Hair),
             (by_content, _) => by_content.or(by_name),
         };
         kind.ok_or_else(|| {
@@ -116,9 +123,6 @@ impl FileKind {
 
     /// The kind by the first bytes of a file, if they are unambiguous.
     fn by_content(start: &[u8]) -> Option<Self> {
-        if HairFormat::of_magic(start).is_some() {
-            return Some(Self::Hair);
-        }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             // The start of every chunk in `record::take`.
@@ -126,12 +130,15 @@ impl FileKind {
             [0x76, 0x2f, 0x31, 0x01, ..] | [b'#', b'?', ..] => return Some(Self::Surroundings),
             _ => {}
         }
+        if HairFormat::of_magic(start).is_some() {
+            return Some(Self::Hair);
+        }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
         let begins = |word: &str| {
             text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
         };
         let holds = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
-        if begins("HIERARCHY") {
+        if begins("HIERARCHY") || start.starts_with(b"Vocaloid Motion Data") {
             Some(Self::Motion)
         } else if begins("{") && holds(b"\"asset\"") {
             Some(Self::Character)

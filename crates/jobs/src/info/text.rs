@@ -55,6 +55,7 @@ impl fmt::Display for Info {
                     format_args!("{} of {:.5} s, {duration:.2} s in all", motion.frames, motion.frame_secs),
                 )?;
                 line(f, "unit", format_args!("{} m", motion.unit_metres))?;
+                line(f, "height", format_args!("{:.2} m", motion.height_m))?;
                 remarks(f, &motion.dropped, &motion.notes)
             }
             Content::Project(project) => {

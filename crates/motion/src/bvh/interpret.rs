@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     LengthUnit, MotionSettings, RootPosition, UpAxis,
-    humanoid::{Role, Side},
+    humanoid::{Humanoid, Role, Side},
 };
 
 /// How a joint's position channels combine with its OFFSET.
@@ -36,17 +36,23 @@ pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -
         notes: raw.notes.clone(),
         unit_metres: 1.0,
         up: UpAxis::Y,
+        format: "BVH".into(),
         ..MotionFile::default()
     };
     let rest = joint_position_meaning(raw);
     decode(raw, rest, &mut motion);
-    let probe = Probe::new(&motion);
+    let figure = motion.humanoid();
+    if rest == PositionMeaning::Replace {
+        overrule_offsets(raw, &figure, &mut motion);
+    }
+    let probe = Probe::new(&motion, &figure);
     motion.up = match settings.up {
         UpAxis::Auto => probe.up,
         chosen => chosen,
     };
     choose_root(raw, settings.root, &probe, &mut motion);
-    choose_unit(settings.unit, probe.height, &mut motion);
+    choose_unit(settings.unit, &probe, &mut motion);
+    motion.height_metres = probe.height * motion.unit_metres * ADULT_HEIGHT / ADULT;
     convert(&mut motion);
     motion
 }
@@ -136,11 +142,42 @@ fn decode(raw: &RawMotion, below_root: PositionMeaning, motion: &mut MotionFile)
     }
 }
 
+/// Where position channels overrule the OFFSET of a joint below the hips, its bone is as long as these say: the mean
+/// replaces the OFFSET, so that the resting figure is the one that dances.
+fn overrule_offsets(raw: &RawMotion, figure: &Humanoid, motion: &mut MotionFile) {
+    let count = motion.joints.len();
+    let Some(hips) = figure.get(Role::Hips) else { return };
+    let step = (motion.frames / Probe::FRAMES).max(1);
+    let mut overruled = 0;
+    for j in hips + 1..count {
+        let moves = raw.joints[j].channels.iter().any(|channel| matches!(channel, Channel::Position(_)));
+        let below = std::iter::successors(Some(j), |&j| motion.joints[j].parent).any(|j| j == hips);
+        if !moves || !below {
+            continue;
+        }
+        let (mut sum, mut frames) = (Vec3::ZERO, 0.0);
+        for frame in (0..motion.frames).step_by(step) {
+            sum += motion.positions[frame * count + j];
+            frames += 1.0;
+        }
+        let (mean, offset) = (sum / frames, motion.joints[j].offset);
+        if mean.distance(offset) > 0.1 * mean.length().max(offset.length()) {
+            motion.joints[j].offset = mean;
+            overruled += 1;
+        }
+    }
+    if overruled > 0 {
+        motion.notes.push(format!("the positions of {overruled} joints overrule their offsets"));
+    }
+}
+
 /// Observations about the figure over some frames of the motion, in the file's own unit and axes.
 struct Probe {
     up: UpAxis,
     /// Distance from the feet to the head along the bones; 0 if unknown.
     height: f32,
+    /// Whether the height is that of a figure whose head and feet were found.
+    is_figure: bool,
     /// Lowest point of any joint over the observed frames, along Y and along Z.
     lowest: [f32; 2],
 }
@@ -149,8 +186,7 @@ impl Probe {
     /// Number of frames that suffices to distinguish a lying figure from a standing one.
     const FRAMES: usize = 48;
 
-    fn new(motion: &MotionFile) -> Self {
-        let figure = motion.humanoid();
+    fn new(motion: &MotionFile, figure: &Humanoid) -> Self {
         let head = figure.get(Role::Head).or(figure.get(Role::Neck));
         let feet: Vec<usize> = Side::BOTH
             .iter()
@@ -177,19 +213,27 @@ impl Probe {
         }
         let direction = if upward == Vec3::ZERO { spread } else { upward };
         let up = if direction.z.abs() > direction.y.abs() { UpAxis::Z } else { UpAxis::Y };
-        let path = |mut j: usize| {
-            let mut length = 0.0;
-            while let Some(parent) = motion.joints[j].parent {
-                length += motion.joints[j].offset.length();
-                j = parent;
-            }
-            length
+        // Along the bones as they are posed, up to the hips: what is above them, such as a root on the floor, is no part
+        // of the figure.
+        let hips = figure.get(Role::Hips);
+        let count = motion.joints.len();
+        let length = |j: usize| {
+            let frames = (0..motion.frames).step_by(step);
+            let (sum, frames) = frames.fold((0.0, 0.0), |(sum, frames), frame| {
+                (sum + motion.positions[frame * count + j].length(), frames + 1.0_f32)
+            });
+            sum / frames.max(1.0)
+        };
+        let path = |joint: usize| {
+            let up = std::iter::successors(Some(joint), |&j| motion.joints[j].parent);
+            let bones = up.take_while(|&j| Some(j) != hips && motion.joints[j].parent.is_some());
+            bones.map(length).sum::<f32>()
         };
         let height = match (head, feet.iter().map(|&f| path(f)).reduce(f32::max)) {
             (Some(head), Some(leg)) => path(head) + leg,
             _ => spread.max_element() / motion.frames.div_ceil(step).max(1) as f32,
         };
-        Self { up, height, lowest }
+        Self { up, height, is_figure: head.is_some() && !feet.is_empty(), lowest }
     }
 }
 
@@ -227,28 +271,49 @@ fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &m
     }
 }
 
-fn choose_unit(setting: LengthUnit, height: f32, motion: &mut MotionFile) {
-    /// Distance from the feet to the head joint of an adult, metres.
-    const ADULT: f32 = 1.5;
+/// Distance from the feet to the head joint of an adult, and the height of that adult, metres.
+const ADULT: f32 = 1.5;
+const ADULT_HEIGHT: f32 = 1.75;
+
+fn choose_unit(setting: LengthUnit, probe: &Probe, motion: &mut MotionFile) {
+    /// Heights at which a unit is believed, metres. Centimetres and metres are so common that children count, too.
+    const COMMON: std::ops::Range<f32> = 0.9..2.3;
+    const RARE: std::ops::Range<f32> = 1.4..2.1;
     if let Some(metres) = setting.metres() {
         motion.unit_metres = metres;
         return;
     }
     let candidates = [
-        LengthUnit::Centimetres,
-        LengthUnit::Metres,
-        LengthUnit::Decimetres,
-        LengthUnit::Millimetres,
-        LengthUnit::Inches,
-        LengthUnit::Cmu,
+        (LengthUnit::Centimetres, COMMON),
+        (LengthUnit::Metres, COMMON),
+        (LengthUnit::Decimetres, RARE),
+        (LengthUnit::Millimetres, RARE),
+        (LengthUnit::Inches, RARE),
+        (LengthUnit::Cmu, RARE),
     ];
-    let error = |unit: &LengthUnit| (height * unit.metres().unwrap_or(1.0) / ADULT).ln().abs();
-    let best = candidates.into_iter().min_by(|a, b| error(a).total_cmp(&error(b))).filter(|_| height > 0.0);
-    let unit = best.unwrap_or(LengthUnit::Centimetres);
-    motion.unit_metres = unit.metres().unwrap_or(0.01);
+    let height = probe.height;
+    let metres = |unit: LengthUnit| unit.metres().unwrap_or(1.0);
+    let error = |unit: LengthUnit| (height * metres(unit) / ADULT).ln().abs();
+    let believed = candidates.into_iter().filter(|(unit, heights)| {
+        !probe.is_figure || heights.contains(&(height * metres(*unit) * ADULT_HEIGHT / ADULT))
+    });
+    let best = believed.map(|(unit, _)| unit).min_by(|a, b| error(*a).total_cmp(&error(*b)));
+    let interpreted = match best.filter(|_| height > 0.0) {
+        Some(unit) => {
+            motion.unit_metres = metres(unit);
+            format!("interpreted as {}", unit.label())
+        }
+        None if probe.is_figure && height > 1e-6 => {
+            motion.unit_metres = ADULT / height;
+            "in no usual unit; scaled to an adult".to_owned()
+        }
+        None => {
+            motion.unit_metres = metres(LengthUnit::Centimetres);
+            "interpreted as centimetres".to_owned()
+        }
+    };
     motion.notes.push(format!(
-        "from foot to head the figure is {height:.1} units; interpreted as {}: {:.2} m",
-        unit.label(),
+        "from foot to head the figure is {height:.1} units; {interpreted}: {:.2} m",
         height * motion.unit_metres
     ));
 }

@@ -138,6 +138,10 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 if kind == "END" {
                     open.push(None);
                 } else {
+                    if parent.is_none() && !raw.joints.is_empty() {
+                        let problem = format!("a second root, `{name}`; expected the motion of one figure");
+                        return Err(cursor.error(problem));
+                    }
                     open.push(Some(raw.joints.len()));
                     raw.joints.push(RawJoint { name, parent, ..RawJoint::default() });
                 }

@@ -113,7 +113,8 @@ fn real_files() {
     for (file, joints, frames, frame_secs, unit, up) in [
         ("assimp_Boxing_Toes", 21, 3070, 0.01, 0.01, UpAxis::Y),
         ("cmu1_jumping_jacks", 31, 125, 0.03333, 0.0254 / 0.45, UpAxis::Y),
-        ("fair1_dab", 27, 339, 0.033_333_3, 0.0254, UpAxis::Z),
+        // In no unit: scaled until it is as tall as an adult.
+        ("fair1_dab", 27, 339, 0.033_333_3, 0.0354, UpAxis::Z),
         ("jesse_dance", 60, 1007, 0.01, 0.01, UpAxis::Y),
         ("mh_tpose", 173, 1, 0.041_667, 0.1, UpAxis::Z),
         ("mh_walk1", 75, 14, 0.041_667, 0.1, UpAxis::Z),
@@ -121,7 +122,7 @@ fn real_files() {
         let motion = load_motion(&data.join("motion").join(file).with_extension("bvh")).unwrap();
         let info = motion.info();
         assert_eq!((info.joints, info.frames, info.frame_secs), (joints, frames, frame_secs), "{file}");
-        assert!((info.unit_metres - unit).abs() < 1e-6 && motion.up == up, "{file} {:?}", info.notes);
+        assert!((info.unit_metres - unit).abs() < 1e-4 && motion.up == up, "{file} {:?}", info.notes);
         assert!(info.dropped.is_empty(), "{file}");
         // After conversion the root is about a leg's length above the lowest joint.
         let mut world = Vec::new();

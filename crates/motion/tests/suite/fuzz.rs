@@ -4,6 +4,7 @@
 use crate::common;
 
 use lovelock_motion::{MotionSettings, load_character_bytes, load_motion_bytes};
+use lovelock_testkit::fuzz::damaged;
 use proptest::prelude::*;
 
 /// A small skinned, morphed and animated figure: a valid file to corrupt.
@@ -127,4 +128,61 @@ fn truncated_real_files_are_handled() {
     for k in 0..40 {
         let _ = load_motion_bytes("cmu", &bytes[..bytes.len() * k / 40], MotionSettings::default());
     }
+}
+
+/// The document of [`glb`] with its buffer as a data URI.
+fn gltf() -> Vec<u8> {
+    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let glb = glb();
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+    let mut text = String::from("data:application/octet-stream;base64,");
+    for three in glb[20 + length + 8..].chunks(3) {
+        let word =
+            three.iter().fold(0_u32, |word, &byte| word << 8 | u32::from(byte)) << (8 * (3 - three.len()));
+        text.extend((0..=three.len()).map(|k| char::from(DIGITS[(word >> (18 - 6 * k) & 63) as usize])));
+    }
+    document["buffers"][0]["uri"] = text.into();
+    document.to_string().into_bytes()
+}
+
+fn reads_character(name: &str, bytes: &[u8]) -> bool {
+    let character = match load_character_bytes(name, bytes, None) {
+        Ok(character) => character,
+        Err(error) => {
+            assert!(!error.to_string().contains('\n'), "{error}");
+            return false;
+        }
+    };
+    assert!(character.body.mesh.positions.iter().all(|p| p.is_finite()));
+    true
+}
+
+#[test]
+fn damaged_character_glb() {
+    damaged("glb", &[glb()], 3000, |bytes| reads_character("a.glb", bytes));
+}
+
+#[test]
+fn damaged_character_gltf() {
+    damaged("gltf", &[gltf()], 3000, |bytes| reads_character("a.gltf", bytes));
+}
+
+#[test]
+fn damaged_motion_bvh() {
+    let positions = BVH.replace("CHANNELS 3 ", "CHANNELS 6 Xposition Yposition Zposition ");
+    let positions = positions.replace("4 5 6\n", "0 60 0 4 5 6\n").replace("4 5 7\n", "0 60 0 4 5 7\n");
+    damaged("bvh", &[BVH.into(), positions.into_bytes()], 3000, |bytes| {
+        let motion = match load_motion_bytes("a.bvh", bytes, MotionSettings::default()) {
+            Ok(motion) => motion,
+            Err(error) => {
+                assert!(!error.to_string().contains('\n'), "{error}");
+                return false;
+            }
+        };
+        let count = motion.joints.len() * motion.frames;
+        assert!(motion.rotations.len() == count && motion.positions.len() == count);
+        assert!(motion.rotations.iter().all(|q| q.is_finite()) && motion.info().height_m.is_finite());
+        true
+    });
 }

@@ -4,9 +4,11 @@
 mod common;
 
 mod bvh;
+mod bvh_found;
 mod characters;
 mod clips;
 mod collide;
 mod fuzz;
 mod retargeting;
 mod rolls;
+mod vmd;

@@ -156,6 +156,9 @@ impl Asset {
         }
         let segments = self.array(&segments, UNSIGNED_INT, "SCALAR", Some(ELEMENT_ARRAY_BUFFER), Value::Null);
         let colors = self.colors(&scene.colors);
+        // glTF knows no width of lines; several programs read half of it from this attribute.
+        let radii: Vec<f32> = scene.widths.iter().map(|width| 0.5 * width).collect();
+        let radii = self.array(&radii, FLOAT, "SCALAR", Some(ARRAY_BUFFER), Value::Null);
         // Scales of a node: hidden, shown while its frame lasts, hidden.
         let shown = |keys: &[f32]| keys.iter().map(|&key| [key; 3]).collect::<Vec<_>>();
         let [at_first, at_last, between] = [&[1.0, 0.0][..], &[0.0, 1.0], &[0.0, 1.0, 0.0]]
@@ -173,7 +176,7 @@ impl Asset {
                 "name": format!("Hair of frame {number}"),
                 "primitives": [{
                     "mode": LINES, "indices": segments, "material": 0,
-                    "attributes": { "POSITION": positions, "COLOR_0": colors },
+                    "attributes": { "POSITION": positions, "COLOR_0": colors, "_RADIUS": radii },
                 }],
             }));
             let mut node = json!({ "name": format!("Hair {number}"), "mesh": self.meshes.len() - 1 });

@@ -4,7 +4,6 @@
 //! transforms of all ancestors of a prim are applied. Cubic curves become polylines. References, payloads, sublayers
 //! and variants are ignored, and a note says so.
 
-mod basis;
 mod crate_bytes;
 mod crate_file;
 mod crate_value;
@@ -15,11 +14,11 @@ mod value;
 use glam::{DMat4, Vec3};
 
 use super::HairFileError;
+use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::source::Source;
-use super::units::UpAxis;
-use basis::{Shape, Spread};
+use super::units::{UpAxis, display_from_linear};
 use crate_file::{CRATE_MAGIC, CrateLayer};
 use text::TextLayer;
 use value::Value;
@@ -100,7 +99,9 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
             None => all_widths = false,
         }
         match curves.colours {
-            Some(of_prim) => colours.extend(of_prim.iter().map(|&colour| display(colour))),
+            Some(of_prim) => {
+                colours.extend(of_prim.iter().map(|colour| colour.to_array().map(display_from_linear)));
+            }
             None => all_colours = false,
         }
         if raw.points.len() > MOST_POINTS {
@@ -144,7 +145,7 @@ impl Curves {
         let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
         let counts = layer.attribute(prim, "curveVertexCounts", points.len())?;
         let counts = counts.map_or_else(Vec::new, Value::into_ints);
-        let shape = Shape::read(layer, prim)?;
+        let shape = shape(layer, prim)?;
         let sum =
             counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(usize::try_from(count).ok()?));
         if sum != Some(points.len()) {
@@ -194,12 +195,34 @@ impl Curves {
     }
 }
 
-/// From linear sRGB, as in USD, to display values, as in hair files.
-fn display(colour: Vec3) -> [f32; 3] {
-    colour.to_array().map(|v| {
-        let v = v.clamp(0.0, 1.0);
-        if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
-    })
+/// Basis and wrap of a prim's curves.
+fn shape(layer: &mut impl Layer, prim: usize) -> Result<Shape, HairFileError> {
+    let mut word = |name: &str, fallback: &str| {
+        let value = layer.attribute(prim, name, 1)?;
+        Ok(value.as_ref().and_then(Value::token).unwrap_or(fallback).to_owned())
+    };
+    let (kind, basis, wrap) =
+        (word("type", "cubic")?, word("basis", "bezier")?, word("wrap", "nonperiodic")?);
+    let basis = match (kind.as_str(), basis.as_str()) {
+        ("linear", _) => Basis::Linear,
+        ("cubic", "bezier") => Basis::Bezier,
+        ("cubic", "bspline") => Basis::Bspline,
+        ("cubic", "catmullRom") => Basis::CatmullRom,
+        _ => {
+            let found = format!("{}: {kind} curves of basis {basis}", layer.path(prim));
+            return Err(layer.malformed(found, "linear, or cubic of bezier, bspline or catmullRom"));
+        }
+    };
+    let wrap = match wrap.as_str() {
+        "nonperiodic" => Wrap::Nonperiodic,
+        "periodic" => Wrap::Periodic,
+        "pinned" => Wrap::Pinned,
+        _ => {
+            let found = format!("{}: wrap {wrap}", layer.path(prim));
+            return Err(layer.malformed(found, "nonperiodic, periodic or pinned"));
+        }
+    };
+    Ok(Shape::new(basis, wrap))
 }
 
 #[cfg(test)]

@@ -1,0 +1,136 @@
+//! Documents built by hand, with every spelling of a line.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use super::gltf_holds_lines;
+use crate::{HairFile, load_hair, load_hair_bytes};
+
+/// Nine points on the X axis as floats, radii, and a few lists of indices: 9 x 12 bytes, 9 x 4, then 8 x u16.
+fn buffer() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for i in 0..9 {
+        bytes.extend([i as f32, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
+    }
+    bytes.extend((0..9).flat_map(|i| (0.001 * i as f32).to_le_bytes()));
+    bytes.extend([0_u16, 1, 1, 2, 4, 5, 5, 6].into_iter().flat_map(u16::to_le_bytes));
+    bytes
+}
+
+fn document(primitive: &Value, uri: &str) -> Value {
+    json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [
+            { "translation": [0, 1, 0], "scale": [0.1, 0.1, 0.1], "children": [1] },
+            { "rotation": [0, 0, 0.5_f64.sqrt(), 0.5_f64.sqrt()], "mesh": 0 },
+        ],
+        "meshes": [{ "primitives": [primitive] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 9, "type": "VEC3" },
+            { "bufferView": 0, "byteOffset": 108, "componentType": 5126, "count": 9, "type": "SCALAR" },
+            { "bufferView": 0, "byteOffset": 144, "componentType": 5123, "count": 8, "type": "SCALAR" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 160 }],
+        "buffers": [{ "byteLength": 160, "uri": uri }],
+    })
+}
+
+fn data_uri() -> String {
+    format!("data:application/octet-stream;base64,{}", STANDARD.encode(buffer()))
+}
+
+fn load(primitive: &Value) -> HairFile {
+    let text = document(primitive, &data_uri()).to_string();
+    load_hair_bytes("a.gltf", text.as_bytes()).expect("hair")
+}
+
+/// Where point `i` of the buffer lies: a tenth of it, turned from X to Y, a metre up.
+fn place(i: usize) -> Vec3 {
+    Vec3::new(0.0, 1.0 + 0.1 * i as f32, 0.0)
+}
+
+fn are_close(found: &[Vec3], wanted: &[usize]) {
+    assert_eq!(found.len(), wanted.len());
+    for (found, &wanted) in found.iter().zip(wanted) {
+        assert!(found.distance(place(wanted)) < 1e-6, "{found} for {wanted}");
+    }
+}
+
+#[test]
+fn every_mode_gives_its_strands() {
+    let lines = load(&json!({ "mode": 1, "indices": 2, "attributes": { "POSITION": 0, "_RADIUS": 1 } }));
+    assert_eq!((lines.first_point.clone(), lines.is_in_metres), (vec![0, 3, 6], true));
+    are_close(lines.strand(0), &[0, 1, 2]);
+    are_close(lines.strand(1), &[4, 5, 6]);
+    // The width is twice the radius, in metres of the scene.
+    let widths = lines.thickness.expect("widths");
+    assert!((widths[5] - 0.1 * 2.0 * 0.006).abs() < 1e-7, "{widths:?}");
+
+    let strip = load(&json!({ "mode": 3, "attributes": { "POSITION": 0 } }));
+    are_close(strip.strand(0), &[0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    assert!(strip.thickness.is_none());
+    let ring = load(&json!({ "mode": 2, "attributes": { "POSITION": 0 } }));
+    are_close(ring.strand(0), &[0, 1, 2, 3, 4, 5, 6, 7, 8, 0]);
+    // Without indices: (0, 1), (2, 3), (4, 5), (6, 7), none of which touch.
+    assert_eq!(load(&json!({ "mode": 1, "attributes": { "POSITION": 0 } })).strands(), 4);
+}
+
+#[test]
+fn buffers_beside_the_file_are_found_and_others_are_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("hair.gltf");
+    std::fs::write(dir.path().join("hair 1.bin"), buffer()).expect("a file");
+    let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
+    std::fs::write(&path, document(&strip, "hair%201.bin").to_string()).expect("a file");
+    assert!(gltf_holds_lines(&path));
+    assert_eq!(load_hair(&path).expect("hair").points.len(), 9);
+    for uri in ["gone.bin", "../hair.bin", "/etc/hostname", "http://a/b.bin", "data:,x"] {
+        std::fs::write(&path, document(&strip, uri).to_string()).expect("a file");
+        let error = load_hair(&path).expect_err(uri).to_string();
+        assert!(error.contains("buffer 0 in") && !error.contains('\n'), "{error}");
+    }
+    // The control: a surface is no hair.
+    let surface = json!({ "attributes": { "POSITION": 0 } });
+    std::fs::write(&path, document(&surface, &data_uri()).to_string()).expect("a file");
+    assert!(!gltf_holds_lines(&path));
+    assert!(load_hair(&path).expect_err("no lines").to_string().contains("no lines, and 1 primitives"));
+}
+
+#[test]
+fn contradictions_are_refused() {
+    let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
+    let lines = json!({ "mode": 1, "indices": 2, "attributes": { "POSITION": 0 } });
+    for (primitive, place, value, found) in [
+        (&strip, "/accessors/0/count", json!(90), "accessor 0 of 90 elements in 160 bytes"),
+        (&strip, "/accessors/0/count", json!(1_u64 << 60), "elements"),
+        (&strip, "/accessors/0/type", json!("MAT9"), "type `MAT9`"),
+        (&strip, "/accessors/0/componentType", json!(1), "component type 1"),
+        (&strip, "/bufferViews/0/byteLength", json!(161), "outside its buffer view"),
+        (&strip, "/bufferViews/0/byteStride", json!(0), "elements in"),
+        (&strip, "/buffers/0/byteLength", json!(161), "buffer 0 of 160 bytes"),
+        (&lines, "/accessors/0/count", json!(6), "the index 6"),
+        (&strip, "/nodes", json!([]), "no lines"),
+    ] {
+        let mut text = document(primitive, &data_uri());
+        *text.pointer_mut(place).unwrap_or(&mut Value::Null) = value.clone();
+        if place.ends_with("byteStride") {
+            text["bufferViews"][0]["byteStride"] = value;
+        }
+        let error = load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect_err(found).to_string();
+        assert!(error.starts_with("a.gltf: ") && error.contains(found), "{place}: {error}");
+    }
+    // A cycle of nodes ends.
+    let mut text = document(&strip, &data_uri());
+    text["nodes"][1]["children"] = json!([0, 1]);
+    assert_eq!(load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect("hair").strands(), 1);
+    // A mesh shown in very many nodes is refused before it fills memory.
+    let mut text = document(&strip, &data_uri());
+    text["accessors"][0] = json!({ "componentType": 5126, "count": 1 << 24, "type": "VEC3" });
+    text["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }, { "mesh": 0 }]);
+    text["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
+    let error = load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect_err("too many").to_string();
+    assert!(error.contains("33554432 points at most"), "{error}");
+}

@@ -1,0 +1,173 @@
+//! Damaged hair files of every format give hair or an error, never a panic.
+
+use crate::common::YukselFile;
+
+use std::io::Write;
+use std::path::Path;
+
+use lovelock_groom::{
+    HairFile, HairFileError, HairFormat, ImportSettings, guess_units, hair_info, load_hair_bytes,
+};
+use lovelock_testkit::fuzz::damaged;
+use openusd::usdc::CrateWriter;
+
+/// Two linear strands with colours and a cubic one, in a group that moves.
+const STAGE: &str = "#usda 1.0\n(\n metersPerUnit = 0.01\n upAxis = \"Z\"\n)\ndef Xform \"w\"\n{\n\
+    double3 xformOp:translate = (10, 0, 100)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n\
+    def BasisCurves \"a\"\n{\nuniform token type = \"linear\"\nint[] curveVertexCounts = [2, 3]\n\
+    point3f[] points = [(0, 0, 1), (0, 0, 2), (1, 0, 0), (1, 1, 0), (1, 1, 1)]\n\
+    float[] widths = [0.5, 0.25] (\n interpolation = \"uniform\"\n)\n\
+    color3f[] primvars:displayColor = [(0.2, 0.1, 0.05)]\n}\n\
+    def BasisCurves \"b\"\n{\nuniform token basis = \"bspline\"\nuniform token wrap = \"pinned\"\n\
+    int[] curveVertexCounts = [4]\npoint3f[] points = [(0, 0, 0), (0, 1, 0), (0, 2, 1), (0, 3, 0)]\n}\n}\n";
+
+const OBJ: &str = "# lines\no hair\nv 0 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 2 0 1 0 0\nv 0 2 1 1 0 0\nl 1 2\nl 2 3\nl -4 -3 -2 -1\nf 1 2 3\n";
+
+const PBRT: &str = "Translate 1 2 3\nAttributeBegin\nScale 2 2 2 Rotate 30 0 0 1\nObjectBegin \"a\"\nShape \"curve\" \"point3 P\" [ 0 0 0 \
+    0 1 0 0 2 1 1 3 0 ] \"float width0\" 0.1\nObjectEnd\nObjectInstance \"a\"\nAttributeEnd # comment\nShape \"curve\" \
+    \"string basis\" \"bspline\" \"integer degree\" [ 2 ] \"point P\" [ 0 0 0 0 1 0 1 2 0 2 3 1 ]\nInclude \"no.pbrt\"\n";
+
+/// A stage as a binary crate.
+fn usd_crate() -> Vec<u8> {
+    let data = openusd::usda::parse(STAGE).expect("a stage");
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    CrateWriter::write(&data, &mut bytes).expect("a crate");
+    bytes.into_inner()
+}
+
+/// Strands of different lengths with every array.
+fn yuksel() -> Vec<u8> {
+    let strand = |points: usize, x: f32| (0..points).map(|i| [x, 0.5, -(i as f32)]).collect();
+    let mut file = YukselFile::new(vec![strand(4, 0.0), strand(7, 1.0), strand(2, 2.0)]);
+    file.thickness = Some(|i| i as f32);
+    file.transparency = Some(|_| 0.5);
+    file.colours = Some(|i| [i as f32 * 0.1, 0.0, 1.0]);
+    file.uvs = true;
+    file.bytes()
+}
+
+fn hair(points: usize) -> HairFile {
+    let strand = |x: f32| (0..points).map(|i| [x, 0.5, -(i as f32)]).collect();
+    let mut file = YukselFile::new(vec![strand(0.0), strand(1.0), strand(2.0)]);
+    file.thickness = Some(|i| 0.01 * i as f32 + 0.01);
+    file.colours = Some(|i| [i as f32 * 0.05, 0.0, 1.0]);
+    load_hair_bytes("a.hair", &file.bytes()).expect("hair").in_metres(&ImportSettings::default())
+}
+
+fn written(extension: &str) -> Vec<u8> {
+    let format = HairFormat::of_path(Path::new("a").with_extension(extension).as_path()).expect("a format");
+    format.write.expect("a format that is written")(&hair(5)).expect(extension)
+}
+
+/// A `.tfx` of version 3: positions of three floats at byte 296.
+fn tfx3() -> Vec<u8> {
+    let mut bytes: Vec<u8> = 3.0_f32.to_le_bytes().to_vec();
+    bytes.extend([3_u32, 4, 2, 0].into_iter().flat_map(u32::to_le_bytes));
+    bytes.resize(144, 0);
+    bytes.extend(296_u32.to_le_bytes());
+    bytes.resize(296, 0);
+    bytes.extend((0..36).flat_map(|i| (i as f32 * i as f32).to_le_bytes()));
+    bytes
+}
+
+fn usc(words_per_point: usize) -> Vec<u8> {
+    let mut bytes = 3_i32.to_le_bytes().to_vec();
+    for strand in 0..3 {
+        bytes.extend((strand + 2_i32).to_le_bytes());
+        for i in 0..(strand + 2) as usize * words_per_point {
+            bytes.extend((1.0 + i as f32 * 0.1).to_le_bytes());
+        }
+    }
+    bytes
+}
+
+fn packed(text: &str) -> Vec<u8> {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    encoder.write_all(text.as_bytes()).expect("memory");
+    encoder.finish().expect("memory")
+}
+
+/// Reads bytes and checks what a `HairFile` guarantees. Returns whether they were accepted.
+fn reads(name: &str, bytes: &[u8]) -> bool {
+    let file = match load_hair_bytes(name, bytes) {
+        Ok(file) => file,
+        Err(error) => {
+            let line = error.to_string();
+            assert!(!line.contains('\n') && line.len() < 2000, "{line}");
+            assert!(!matches!(error, HairFileError::Io { .. }) || line.starts_with(name), "{line}");
+            return false;
+        }
+    };
+    assert!(file.strands() > 0 && file.first_point[0] == 0);
+    assert_eq!(file.first_point[file.strands()] as usize, file.points.len());
+    for strand in 0..file.strands() {
+        let points = file.strand(strand);
+        assert!(points.len() >= 2 && points.iter().all(|p| p.is_finite()));
+        assert!(points.array_windows().all(|[a, b]| a != b));
+    }
+    let points = file.points.len();
+    assert!(file.thickness.as_ref().is_none_or(|values| values.len() == points));
+    assert!(file.colours.as_ref().is_none_or(|values| values.len() == points));
+    // A small file does not become a huge one: a scene may repeat what it holds.
+    assert!(points <= 1 << 26, "{points} points of {} bytes", bytes.len());
+    let guess = guess_units(&file);
+    assert!(guess.metres_per_unit.is_finite() && guess.metres_per_unit > 0.0, "{guess:?}");
+    let info = hair_info(&file, &ImportSettings::default());
+    assert!(info.bounds_m.min.is_finite() && info.bounds_m.max.is_finite(), "{info:?}");
+    true
+}
+
+/// Runs the damaged copies of files of one format through its reader.
+fn run(name: &str, sound: &[Vec<u8>]) {
+    damaged(name, sound, 3000, |bytes| reads(&format!("a.{name}"), bytes));
+}
+
+#[test]
+fn damaged_hair_yuksel() {
+    run("hair", &[yuksel(), written("hair")]);
+}
+
+#[test]
+fn damaged_hair_tressfx() {
+    run("tfx", &[written("tfx"), tfx3()]);
+}
+
+#[test]
+fn damaged_hair_usd_text() {
+    run("usda", &[STAGE.into()]);
+}
+
+#[test]
+fn damaged_hair_usd_crate() {
+    run("usdc", &[usd_crate()]);
+}
+
+#[test]
+fn damaged_hair_gltf() {
+    run("gltf", &[written("gltf")]);
+}
+
+#[test]
+fn damaged_hair_glb() {
+    run("glb", &[written("glb")]);
+}
+
+#[test]
+fn damaged_hair_obj() {
+    run("obj", &[OBJ.into(), written("obj")]);
+}
+
+#[test]
+fn damaged_hair_pbrt() {
+    run("pbrt", &[PBRT.into(), written("pbrt")]);
+}
+
+#[test]
+fn damaged_hair_compressed() {
+    run("gz", &[packed(PBRT)]);
+}
+
+#[test]
+fn damaged_hair_usc() {
+    run("data", &[usc(3), usc(4)]);
+}
