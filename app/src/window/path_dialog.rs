@@ -61,7 +61,7 @@ impl Purpose {
             Self::Sequence => "Record images to a folder",
             Self::Preview => "Record an animated preview",
             Self::Resume => "Resume the images in a folder",
-            Self::Curves => "Export curves: .usdc, .usda or .glb",
+            Self::Curves => "Export curves: .usdc, .usda, .abc or .glb",
             Self::ExportStyle => "Export the style",
             Self::SaveStrokes => "Save the strokes of the brushes",
             Self::Picture => "Save the image",

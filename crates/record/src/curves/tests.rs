@@ -52,6 +52,7 @@ fn dance(frames: u64, curves: u32) -> Dance {
             first_point,
             widths: (0..points).map(|i| 1e-4 + 1e-6 * i as f32).collect(),
             colors: (0..points).map(|i| Vec3::new(0.2, 0.01 * (i % 50) as f32, 0.05)).collect(),
+            are_guides: false,
             body: Some(body),
         },
         frames: (0..frames).map(|frame| (0..points).map(|i| at(frame, i)).collect()).collect(),
@@ -249,7 +250,7 @@ fn skin_of(glb: &gltf::Gltf, blob: &[u8], clip: &gltf::Animation<'_>, secs: f32)
 #[test]
 fn a_full_disk_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    for name in ["a.usda", "a.usdc", "a.glb"] {
+    for name in ["a.usda", "a.usdc", "a.glb", "a.abc"] {
         let path = folder.path().join(name);
         fs::write(&path, b"old").expect("a file");
         let error = dance(3, 9).write_with(&path, &small_disk(1000)).expect_err(name);
@@ -269,7 +270,7 @@ fn invalid_requests_are_refused() {
         assert!(error.is_request() && error.to_string().contains(wanted), "{error}");
     };
     let good = || dance(3, 4);
-    refused(&good(), "a.abc", "the name must end in .usda");
+    refused(&good(), "a.obj", "the name must end in .usda");
     let change = |change: &dyn Fn(&mut Dance)| {
         let mut dance = good();
         change(&mut dance);
@@ -280,8 +281,11 @@ fn invalid_requests_are_refused() {
     refused(&change(&|dance| dance.scene.widths.truncate(3)), "a.glb", "differ in length");
     refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames; must be the 4 of its settings");
     refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "more frames than the 2");
-    refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; must have 14");
-    for name in ["a.usda", "a.usdc", "a.glb"] {
+    for name in ["a.glb", "a.abc"] {
+        refused(&change(&|dance| dance.frames[1].truncate(13)), name, "a frame of 13 points; must have 14");
+    }
+    refused(&change(&|dance| dance.scene.frames = 4), "a.abc", "3 frames; must be the 4 of its settings");
+    for name in ["a.usda", "a.usdc", "a.glb", "a.abc"] {
         refused(&change(&|dance| dance.scene.frames = 1 << 30), name, "--frames");
     }
     // So many curves that a few frames are too large.
