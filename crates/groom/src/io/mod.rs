@@ -1,9 +1,10 @@
-//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, and curves of USD.
+//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, and curves of USD and Alembic.
 //!
 //! A [`HairFile`] contains the strands of a file, in the file's own unit and axes, without those that cannot be drawn
 //! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
 //! hairstyle of it. Each format is a [`HairFormat`] in the table [`HAIR_FORMATS`].
 
+mod alembic;
 mod basis;
 mod bytes;
 mod clean;

@@ -6,10 +6,11 @@ use super::clean::clean;
 use super::file::HairFile;
 use super::format::HairFormat;
 use super::source::Source;
-use super::{HairFileError, tressfx, usd, yuksel};
+use super::{HairFileError, alembic, tressfx, usd, yuksel};
 
 /// Every hair format that can be read. A new format is a file or folder beside this one, and an entry here.
-pub static HAIR_FORMATS: [&HairFormat; 3] = [&yuksel::FORMAT, &tressfx::FORMAT, &usd::FORMAT];
+pub static HAIR_FORMATS: [&HairFormat; 4] =
+    [&yuksel::FORMAT, &tressfx::FORMAT, &usd::FORMAT, &alembic::FORMAT];
 
 impl HairFormat {
     /// The format whose files have the extension of `path`, in any case.

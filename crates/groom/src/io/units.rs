@@ -1,4 +1,4 @@
-//! Unit and axes of hair files.
+//! Unit, axes and colour space of hair files.
 
 use glam::{Mat3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -172,4 +172,10 @@ pub(crate) fn rotation_to_head_axes(up: UpAxis, facing: Facing) -> Quat {
 /// +Y where Z is up, +Z where Y is.
 pub(super) fn usual_facing(up: UpAxis) -> Facing {
     if up == UpAxis::Z { Facing::PlusY } else { Facing::PlusZ }
+}
+
+/// From linear sRGB, as in USD and glTF, to display values, as in hair files.
+pub(super) fn display_from_linear(v: f32) -> f32 {
+    let v = v.clamp(0.0, 1.0);
+    if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
 }

@@ -18,7 +18,7 @@ use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::source::Source;
-use super::units::UpAxis;
+use super::units::{UpAxis, display_from_linear};
 use crate_file::{CRATE_MAGIC, CrateLayer};
 use text::TextLayer;
 use value::Value;
@@ -99,7 +99,9 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
             None => all_widths = false,
         }
         match curves.colours {
-            Some(of_prim) => colours.extend(of_prim.iter().map(|&colour| display(colour))),
+            Some(of_prim) => {
+                colours.extend(of_prim.iter().map(|colour| colour.to_array().map(display_from_linear)))
+            }
             None => all_colours = false,
         }
         if raw.points.len() > MOST_POINTS {
@@ -221,14 +223,6 @@ fn shape(layer: &mut impl Layer, prim: usize) -> Result<Shape, HairFileError> {
         }
     };
     Ok(Shape::new(basis, wrap))
-}
-
-/// From linear sRGB, as in USD, to display values, as in hair files.
-fn display(colour: Vec3) -> [f32; 3] {
-    colour.to_array().map(|v| {
-        let v = v.clamp(0.0, 1.0);
-        if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
-    })
 }
 
 #[cfg(test)]
