@@ -55,6 +55,16 @@ impl Fault {
 
 /// Keeps the strands that can be drawn.
 pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<HairFile, HairFileError> {
+    clean_keeping(name, format, raw, None)
+}
+
+/// As [`clean`]. Puts the index of each point that is kept into `kept`.
+pub(super) fn clean_keeping(
+    name: &str,
+    format: &HairFormat,
+    raw: RawHair,
+    mut kept: Option<&mut Vec<u32>>,
+) -> Result<HairFile, HairFileError> {
     let strands = raw.point_counts.len();
     let mut faults: Vec<Option<Fault>> = Vec::with_capacity(strands);
     let mut first = 0;
@@ -119,6 +129,9 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
             }
             file.bounds.include(raw.points[i]);
             file.points.push(raw.points[i]);
+            if let Some(kept) = &mut kept {
+                kept.push(i as u32);
+            }
             if let (Some(from), Some(to)) = (&raw.thickness, &mut file.thickness) {
                 to.push(finite(from[i], raw.default_thickness.unwrap_or(0.0)));
             }

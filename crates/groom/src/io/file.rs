@@ -53,6 +53,8 @@ pub(super) struct RawHair {
     pub(super) both_ends_pinned: bool,
     pub(super) trailing_bytes: u64,
     pub(super) notes: Vec<String>,
+    /// Which points of the file are here, if the reader left some out.
+    pub(super) left_out: Option<Vec<bool>>,
 }
 
 impl RawHair {
@@ -71,6 +73,7 @@ impl RawHair {
             both_ends_pinned: false,
             trailing_bytes: 0,
             notes: Vec::new(),
+            left_out: None,
         }
     }
 }

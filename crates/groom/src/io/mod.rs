@@ -7,10 +7,12 @@
 mod alembic;
 mod basis;
 mod bytes;
+mod cache;
 mod clean;
 mod error;
 mod file;
 mod format;
+mod frames;
 mod guess;
 mod registry;
 mod root_shape;
@@ -20,6 +22,7 @@ mod units;
 mod usd;
 mod yuksel;
 
+pub use cache::CurveCache;
 pub use error::HairFileError;
 pub use file::{Bounds, HairFile};
 pub use format::HairFormat;

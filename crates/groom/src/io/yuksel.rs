@@ -103,6 +103,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         default_colour: Some(default_colour).filter(|colour| colour.iter().all(|value| value.is_finite())),
         both_ends_pinned: false,
         trailing_bytes: file.len() - offset,
+        left_out: None,
         notes,
     })
 }

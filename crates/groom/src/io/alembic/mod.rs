@@ -2,6 +2,7 @@
 //!
 //! The transforms of all ancestors are applied. Cubic curves become polylines. Alembic states neither unit nor up axis.
 
+mod frames;
 mod objects;
 mod shape;
 mod transform;
@@ -14,6 +15,7 @@ use super::HairFileError;
 use super::basis::Spread;
 use super::file::RawHair;
 use super::format::HairFormat;
+use super::frames::CurveFrames;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use objects::{CurveObject, visit};
@@ -37,14 +39,45 @@ const MOST_POINTS: usize = 1 << 28;
 const MOST_SHARING: u64 = 8;
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
-    let named = |error| named(name, error);
     let bytes = match source {
         Source::Memory(data) => Bytes::Memory(data),
         Source::File { file, length, .. } => Bytes::File { file, length },
     };
-    let mut archive = Archive::open(bytes).map_err(named)?;
+    let mut archive = Archive::open(bytes).map_err(|error| named(name, error))?;
+    read_archive(name, &mut archive, &mut |_| {})
+}
+
+/// The curves of a file over time, and the hair at the first time.
+pub(super) fn frames(
+    name: &str,
+    source: Source<'_>,
+) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+    let Source::File { file, length, .. } = source else {
+        return Err(HairFileError::Io {
+            name: name.to_owned(),
+            source: std::io::ErrorKind::Unsupported.into(),
+        });
+    };
+    let mut archive = Archive::open(Bytes::File { file, length }).map_err(|error| named(name, error))?;
+    let mut objects = Vec::new();
+    let raw = read_archive(name, &mut archive, &mut |object| objects.push(object))?;
+    let frames = frames::Frames::new(name, archive, objects).map_err(|error| named(name, error))?;
+    Ok((Box::new(frames), raw))
+}
+
+fn read_archive(
+    name: &str,
+    archive: &mut Archive<'_>,
+    seen: &mut dyn FnMut(CurveObject),
+) -> Result<RawHair, HairFileError> {
+    let named = |error| named(name, error);
     let mut hair = Hair::new();
-    visit(&mut archive, &mut |archive, object| hair.add(archive, &object)).map_err(named)?;
+    visit(archive, &mut |archive, object| {
+        hair.add(archive, &object)?;
+        seen(object);
+        Ok(())
+    })
+    .map_err(named)?;
     if hair.objects == 0 {
         return Err(named(AlembicError::Malformed {
             offset: 0,
@@ -226,6 +259,7 @@ impl Hair {
         }
         let of_curves: Vec<bool> = self.guides.iter().map(|is_guide| !is_guide).collect();
         keep(&mut self.raw.point_counts, &of_curves);
+        self.raw.left_out = Some(of_points);
         self.raw
     }
 }
