@@ -41,8 +41,8 @@ pub use guides::{GuideFrame, Guides};
 pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, Rope, StrandSet, Wisp};
 pub use import::{
-    HairInfo, ImportError, ImportSettings, ImportedInPlace, PlacedGroom, Placement, hair_info, import,
-    import_around, import_in_place, place,
+    HairInfo, ImportError, ImportSettings, ImportedInPlace, PlacedGroom, Placement, hair_info, hair_look,
+    import, import_around, import_in_place, place,
 };
 pub use interpolate::interpolate;
 pub use io::{

@@ -23,7 +23,7 @@ use lovelock_base::settings::Settings;
 use thiserror::Error;
 
 use crate::frame::widest_radii;
-use crate::{Guides, HairFile, Hairstyle, MotionFactors, Obstacle, Scalp, Wisp};
+use crate::{Guides, HairFile, HairLook, Hairstyle, MotionFactors, Obstacle, Scalp, Wisp};
 
 pub use info::{HairInfo, hair_info};
 pub use place::{PlacedGroom, place};
@@ -167,6 +167,11 @@ fn hairstyle_of(
         look: colour::look(file),
     };
     (style, order, followed)
+}
+
+/// The look of a file's hair: melanin from its colour, if it has one.
+pub fn hair_look(file: &HairFile) -> HairLook {
+    colour::look(file)
 }
 
 /// Length of a polyline, metres.

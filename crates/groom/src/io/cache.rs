@@ -6,13 +6,14 @@ use glam::Vec3;
 use lovelock_alembic::OGAWA_MAGIC;
 
 use super::clean::clean_keeping;
-use super::file::{Bounds, HairFile};
+use super::file::{Bounds, HairFile, RawHair};
+use super::format::HairFormat;
 use super::frames::CurveFrames;
 use super::source::Source;
 use super::units::{Facing, Unit, UpAxis, rotation_to_head_axes};
 use super::{HairFileError, alembic, guess_units, usd};
 
-/// The curves of an Alembic archive or a USD stage over time, in metres with Y up.
+/// The curves of an Alembic archive or of a USD stage over time, in metres with Y up.
 ///
 /// The file stays open, and two of its times are in memory. Between them points move in straight lines.
 pub struct CurveCache {
@@ -52,7 +53,7 @@ impl CurveCache {
     /// As [`load_hair`](super::load_hair), for files of other formats, and for curves whose number or points change over time.
     pub fn open(path: &Path, unit: Unit, up: UpAxis) -> Result<Self, HairFileError> {
         let name = path.display().to_string();
-        let Some((frames, raw, of_file)) = open(&name, path)? else {
+        let Some((frames, raw, format)) = open(&name, path)? else {
             return Err(HairFileError::Malformed {
                 name,
                 offset: 0,
@@ -60,7 +61,6 @@ impl CurveCache {
                 wanted: "curves over time, in Alembic or USD".to_owned(),
             });
         };
-        let format = if of_file { &usd::FORMAT } else { &alembic::FORMAT };
         let whole = raw.points.len();
         let guides = raw.left_out.clone();
         let mut kept = Vec::new();
@@ -72,7 +72,7 @@ impl CurveCache {
             kept.clear();
         }
         let metres_per_unit = unit.metres().unwrap_or_else(|| guess_units(&hair).metres_per_unit);
-        // Without a statement Y points up, as in both formats by convention: hair that flies says nothing about it.
+        // Without a statement Y points up, as is usual in both formats: hair that flies says nothing about it.
         let up = if up == UpAxis::Z { UpAxis::Z } else { UpAxis::Y };
         let mut cache = Self {
             name,
@@ -164,17 +164,20 @@ fn in_metres(point: Vec3, metres_per_unit: f32, up: UpAxis) -> Vec3 {
     if up == UpAxis::Z { rotation_to_head_axes(UpAxis::Z, Facing::MinusY) * point } else { point }
 }
 
-/// The curves of a file over time, its hair at the first time, and whether it is USD; `None` for other formats.
-#[expect(clippy::type_complexity, reason = "used here alone")]
-fn open(
-    name: &str,
-    path: &Path,
-) -> Result<Option<(Box<dyn CurveFrames>, super::file::RawHair, bool)>, HairFileError> {
+/// Curves over time, the hair at the first time, and the format.
+type Opened = (Box<dyn CurveFrames>, RawHair, &'static HairFormat);
+
+/// The content of a file; `None` for formats without curves over time.
+fn open(name: &str, path: &Path) -> Result<Option<Opened>, HairFileError> {
     let source = Source::open(name, path)?;
     let start = source.start();
     if start.starts_with(OGAWA_MAGIC) {
         let (frames, raw) = alembic::frames(name, source)?;
-        return Ok(Some((frames, raw, false)));
+        return Ok(Some((frames, raw, &alembic::FORMAT)));
+    }
+    if usd::FORMAT.magics.iter().any(|magic| start.starts_with(magic)) {
+        let (frames, raw) = usd::frames(name, source)?;
+        return Ok(Some((frames, raw, &usd::FORMAT)));
     }
     Ok(None)
 }
