@@ -9,6 +9,8 @@ use super::value::{Value, half};
 const IS_ARRAY: u64 = 1 << 63;
 const IS_INLINED: u64 = 1 << 62;
 const IS_COMPRESSED: u64 = 1 << 61;
+/// The most times of an attribute, if they are compressed.
+const MOST_TIMES: usize = 1 << 20;
 const PAYLOAD: u64 = (1 << 48) - 1;
 
 /// Value types by their numbers in a crate.
@@ -98,12 +100,20 @@ impl CrateValues<'_> {
     pub(super) fn times(&mut self, samples: u64) -> Result<Vec<f64>, HairFileError> {
         let Some((times, ..)) = self.samples(samples)? else { return Ok(Vec::new()) };
         let value = self.file.u64(times)?;
-        if value >> 48 & 0xff != kind::DOUBLE_VECTOR {
-            return Ok(Vec::new());
-        }
         let at = value & PAYLOAD;
-        let count = self.file.u64(at)?;
-        let bytes = self.file.bytes(at.saturating_add(8), count.saturating_mul(8), "bytes of times")?;
+        // Pixar writes a vector, the `openusd` library an array.
+        let (count, start) = match value >> 48 & 0xff {
+            kind::DOUBLE_VECTOR => (self.file.u64(at)?, at.saturating_add(8)),
+            kind::DOUBLE if value & (IS_ARRAY | IS_COMPRESSED) == IS_ARRAY => self.length(at)?,
+            kind::DOUBLE if value & IS_ARRAY != 0 => {
+                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else {
+                    return Ok(Vec::new());
+                };
+                return Ok(times.into_iter().map(f64::from).collect());
+            }
+            _ => return Ok(Vec::new()),
+        };
+        let bytes = self.file.bytes(start, count.saturating_mul(8), "bytes of times")?;
         Ok(bytes.as_chunks::<8>().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect())
     }
 
