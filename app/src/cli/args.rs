@@ -132,7 +132,7 @@ pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
     /// Output. A name that ends in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation alone, in `.usdc`,
-    /// `.usd`, `.usda` or `.glb` the hair as animated curves with the body; any other name is a folder of PNG or EXR files with a
+    /// `.usd`, `.usda`, `.abc` or `.glb` the hair as animated curves with the body; any other name is a folder of PNG or EXR files with a
     /// manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
@@ -186,10 +186,10 @@ pub(crate) struct Record {
     /// take begins there.
     #[arg(long, conflicts_with = "seamless")]
     pub(crate) dance_time: bool,
-    /// Curves in a .usdc, .usda or .glb file: guides or strands; strands in USD and guides in glTF if none is given.
+    /// Curves in a .usdc, .usda, .abc or .glb file: guides or strands; strands in USD and Alembic and guides in glTF if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) curves: Option<lovelock_jobs::record::CurveSource>,
-    /// Leave the body out of a .usdc, .usda or .glb file.
+    /// Leave the body out of a .usdc, .usda, .abc or .glb file.
     #[arg(long)]
     pub(crate) no_body: bool,
 }

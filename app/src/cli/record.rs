@@ -48,7 +48,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
         if given {
             let out = request.out.display();
             return Err(ProjectError::option(format!(
-                "{option}: found the output {out}; must end in .usdc, .usd, .usda or .glb"
+                "{option}: found the output {out}; must end in .usdc, .usd, .usda, .glb or .abc"
             )));
         }
     }

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use lovelock_base::settings::Settings;
+use lovelock_groom::CurveCache;
 use lovelock_jobs::info::FileKind;
 use lovelock_jobs::presets::style_named;
 use lovelock_panes::sheet::Sheet;
@@ -13,7 +14,7 @@ use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{CompareSection, Contender, load_project_with};
 use lovelock_project::styles::StyleParts;
 use lovelock_session::progress::Progress;
-use lovelock_session::take::project_of_take;
+use lovelock_session::take::{project_of_cache, project_of_take};
 
 use super::args::{Assignment, SourceArguments};
 use super::bar::Bar;
@@ -36,6 +37,13 @@ impl Source {
             Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
                 access.pick(path);
                 project_of_take(path)?
+            }
+            Some(path) if CurveCache::times_in(path).is_some() => {
+                access.pick(path);
+                (
+                    Self::around(task, &mut access).and_then(|around| project_of_cache(&around, path))?,
+                    Vec::new(),
+                )
             }
             Some(path) => {
                 access.set_project(Some(path));
@@ -104,6 +112,20 @@ impl Source {
         Ok(Self { project, access, name: names.join(", "), named })
     }
 
+    /// The project that curves are played with: the default one, with the body and the motion of the command line.
+    fn around(task: &SourceArguments, access: &mut Access) -> Result<Project, ProjectError> {
+        let mut project = Project::default();
+        if let Some(path) = &task.body {
+            required(path, access)?;
+            project.set_body_file(path);
+        }
+        if let Some(path) = &task.motion {
+            required(path, access)?;
+            project.set_motion_file(path);
+        }
+        Ok(project)
+    }
+
     /// Adds a pane per take beside the project; returns the layout of the panes.
     pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, ProjectError> {
         let most = CompareSection::MOST_PANES - 1;
@@ -118,6 +140,7 @@ impl Source {
         for take in takes {
             match FileKind::of(take)? {
                 FileKind::Take => {}
+                FileKind::Hair if CurveCache::times_in(take).is_some() => {}
                 kind => {
                     let message = format!(
                         "--beside {}: a {} file, and a take was wanted",

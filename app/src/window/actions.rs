@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lovelock_groom::Preset;
+use lovelock_groom::{CurveCache, Preset};
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
@@ -11,7 +11,7 @@ use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSecti
 use lovelock_project::styles::StyleParts;
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
-use lovelock_session::take::project_of_take;
+use lovelock_session::take::{project_of_cache, project_of_take};
 
 use crate::cli::Assignment;
 
@@ -44,6 +44,9 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
         FileKind::Project => {
             (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
             opened.project_path = Some(path.to_owned());
+        }
+        FileKind::Hair if CurveCache::times_in(path).is_some() => {
+            opened.project = project_of_cache(&opened.project, path)?;
         }
         FileKind::Hair => opened.project.set_hair_file(path),
         FileKind::Character => opened.project.set_body_file(path),

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use lovelock_groom::CurveCache;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::files::FileRef;
 use lovelock_project::project::{Contender, load_project_with, save_project};
-use lovelock_session::take::project_of_take;
+use lovelock_session::take::{project_of_cache, project_of_take};
 
 use super::{Pending, Window, notices, remember};
 
@@ -18,6 +19,7 @@ impl Window {
                 self.pending = Some(Pending::Open(path.to_owned()));
             }
             Ok(FileKind::Project) => self.open_project(path),
+            Ok(FileKind::Hair) if CurveCache::times_in(path).is_some() => self.open_take(path),
             Ok(FileKind::Take) => {
                 self.open_take(path);
                 // Saving must not write the take's project to the file of the previous project.
@@ -46,9 +48,16 @@ impl Window {
         self.session.reload(&project);
     }
 
-    /// Plays a take with the project that it was recorded from. One undo step restores the previous project.
+    /// Plays a take with the project that it was recorded from, or curves over time with the body and the motion of this one. One
+    /// undo step restores the previous project.
     pub(super) fn open_take(&mut self, path: &Path) {
-        match project_of_take(path) {
+        let opened = match FileKind::of(path) {
+            Ok(FileKind::Hair) => {
+                project_of_cache(self.history.project(), path).map(|project| (project, Vec::new()))
+            }
+            _ => project_of_take(path),
+        };
+        match opened {
             Ok((take, problems)) => {
                 self.session.pick(path);
                 self.change("take", |project| *project = take);
@@ -63,7 +72,7 @@ impl Window {
     /// Adds a pane that shows a take, rendered with the settings of the project.
     pub(super) fn compare_with(&mut self, path: &Path) {
         match FileKind::of(path) {
-            Ok(FileKind::Take) => {
+            Ok(kind) if kind == FileKind::Take || CurveCache::times_in(path).is_some() => {
                 self.session.pick(path);
                 let file = FileRef::new(path);
                 self.change("compare", |project| {

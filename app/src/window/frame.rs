@@ -394,7 +394,7 @@ impl Window {
                 dialog.about(self.recording_in_words())
             }
             Purpose::Curves => dialog.about(
-                "USD holds all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
+                "USD and Alembic hold all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
                     .to_owned(),
             ),
             Purpose::Open

@@ -61,7 +61,7 @@ impl Purpose {
             Self::Sequence => "Record images to a folder",
             Self::Preview => "Record an animated preview",
             Self::Resume => "Resume the images in a folder",
-            Self::Curves => "Export curves: .usdc, .usda or .glb",
+            Self::Curves => "Export curves: .usdc, .usda, .abc or .glb",
             Self::ExportStyle => "Export the style",
             Self::SaveStrokes => "Save the strokes of the brushes",
             Self::Picture => "Save the image",
@@ -223,7 +223,11 @@ impl PathDialog {
         // Some systems require that the dialog is created on the window's thread.
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &readable()).pick_file()),
-            Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),
+            Purpose::Beside => Box::pin(
+                dialog
+                    .add_filter("Take or curves", &["take", "part", "abc", "usdc", "usd", "usda"])
+                    .pick_file(),
+            ),
             Purpose::Surroundings => {
                 let extensions = FileKind::Surroundings.extensions();
                 Box::pin(dialog.add_filter("Surroundings", &extensions).pick_file())

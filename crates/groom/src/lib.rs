@@ -41,11 +41,12 @@ pub use guides::{GuideFrame, Guides};
 pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, Rope, StrandSet, Wisp};
 pub use import::{
-    HairInfo, ImportError, ImportSettings, PlacedGroom, Placement, hair_info, import, import_around, place,
+    HairInfo, ImportError, ImportSettings, ImportedInPlace, PlacedGroom, Placement, hair_info, hair_look,
+    import, import_around, import_in_place, place,
 };
 pub use interpolate::interpolate;
 pub use io::{
-    Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis,
+    Bounds, CurveCache, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis,
     gltf_holds_lines, guess_units, load_hair, load_hair_bytes,
 };
 pub use look::{HairLook, HairShading};

@@ -103,6 +103,7 @@ fn write_curves(hair: &HairFile, out: &Path) -> Result<u64, RecordError> {
             .colours
             .as_ref()
             .map_or_else(|| vec![linear(&usual); points], |colours| colours.iter().map(linear).collect()),
+        are_guides: false,
         body: None,
     };
     let axis = |k: usize| hair.points.iter().map(|point| point[k]).collect::<Vec<_>>();

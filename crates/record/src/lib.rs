@@ -16,7 +16,7 @@
 //! [`TakeWriter`] records the simulation itself, and [`TakeReader`] plays it back. A take is written as `NAME.part`; whatever
 //! ends the recording, the frames written so far are kept and can be played.
 //!
-//! [`CurveWriter`] exports the hair and the body to other programs, as USD or glTF.
+//! [`CurveWriter`] exports the hair and the body to other programs, as USD, glTF or Alembic.
 //!
 //! [`read_film`] and [`FilmReader`] read films back without any other program.
 

@@ -67,7 +67,7 @@ impl Dance {
         report_progress(progress, Progress::Loading { what: "opening the take".to_owned() })?;
         let path =
             access.read(Place::Take, file).map_err(|problem| ProjectError::input(&file.path, problem))?;
-        let (mut player, mut problems) = TakePlayer::open(&path, access)?;
+        let (mut player, mut problems) = TakePlayer::open_for(&path, access, project)?;
         let mut light = SurroundingsLoader::default();
         let picture = light.load(project, access, &mut problems);
         problems.extend(light.notes());
@@ -156,6 +156,12 @@ impl Dance {
             Source::Simulated { scene, clock, seam, .. } => {
                 let frame_secs = clock.step_secs * f64::from(clock.steps_per_frame);
                 *seam = Some(Seam::of(scene, frames, frame_secs)?);
+            }
+            Source::Take { player, .. } if player.is_cache() => {
+                return Err(ProjectError::option(format!(
+                    "a seamless loop: {} holds curves, and only a simulation or a take can be blended",
+                    player.path().display()
+                )));
             }
             Source::Take { player, fps, seam } => {
                 let frame_secs = 1.0 / *fps;

@@ -142,7 +142,7 @@ impl Worker {
         if !self.open.as_ref().is_some_and(same) {
             let path = request.access.read(Place::Take, file);
             let path = path.map_err(|problem| ProjectError::input(&file.path, problem))?;
-            let (player, _) = TakePlayer::open(&path, &request.access)?;
+            let (player, _) = TakePlayer::open_for(&path, &request.access, &request.project)?;
             self.open = Some((file.path.clone(), request.access.clone(), Box::new(player)));
         }
         let Some((.., player)) = &mut self.open else { return Ok(()) };

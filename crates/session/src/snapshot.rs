@@ -32,6 +32,8 @@ pub struct FrameSnapshot {
     pub skin: Skin,
     /// The guides, world space.
     pub guides: GuideFrame,
+    /// The strands, world space, where they do not follow the guides: those of a cache of curves.
+    pub strands: Option<Strands>,
     /// Measurements of the last step.
     pub report: StepReport,
     /// The deepest point of the style at rest inside the body, if any.
@@ -43,8 +45,12 @@ pub struct FrameSnapshot {
 }
 
 impl FrameSnapshot {
-    /// Interpolates the strands on the CPU. Rendering does not need this.
+    /// Interpolates the strands on the CPU, or copies those that are given. Rendering does not need this.
     pub fn interpolate(&self, strands: &mut Strands) {
+        if let Some(given) = &self.strands {
+            strands.clone_from(given);
+            return;
+        }
         interpolate(&self.scene.style, &self.guides, strands);
     }
 
@@ -62,7 +68,7 @@ impl FrameSnapshot {
     pub fn frame_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
         FrameInput {
             style: &self.scene.style,
-            hair: HairPose::Guides(&self.guides),
+            hair: self.strands.as_ref().map_or(HairPose::Guides(&self.guides), HairPose::Strands),
             guides: Some(&self.guides),
             look: self.look(project),
             body: Some((&self.scene.body, &self.skin)),

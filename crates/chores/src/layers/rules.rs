@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     (
         "app",
         &[
@@ -68,9 +68,10 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("brush", &["style", "groom", "base"]),
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
-    ("record", &["groom", "base"]),
+    ("record", &["groom", "alembic", "base"]),
     ("motion", &["base"]),
-    ("groom", &["appearance", "base"]),
+    ("groom", &["appearance", "alembic", "base"]),
+    ("alembic", &[]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
     ("metrics", &["base"]),
@@ -85,7 +86,8 @@ const ARROWS: [(&str, &[&str]); 23] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 13] = [
+const WITHOUT_WGPU: [&str; 14] = [
+    "alembic",
     "appearance",
     "base",
     "brush",
@@ -252,7 +254,7 @@ mod tests {
             ("lovelock-project → lovelock-session", "project may use render"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
             ("lovelock-groom → lovelock-motion", "groom may use appearance, base"),
-            ("lovelock-record → lovelock-session", "record may use groom, base"),
+            ("lovelock-record → lovelock-session", "record may use groom, alembic, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
             ("lovelock-render ⇢ lovelock-metrics", "render may use"),

@@ -14,20 +14,22 @@ const APART: f32 = 0.0015;
 const UNEVEN: f32 = 1e-4;
 const MOST_ROUNDS: usize = 64;
 
-/// Three guides per wisp, in the order of the wisps.
-pub(super) fn choose(groom: &PlacedGroom, wisps: &[Vec<u32>], points_per_guide: usize) -> Guides {
-    let chosen: Vec<[Vec<Vec3>; 3]> =
+/// Three guides per wisp, in the order of the wisps, and the strand that each was made of.
+pub(super) fn choose(groom: &PlacedGroom, wisps: &[Vec<u32>], points_per_guide: usize) -> (Guides, Vec<u32>) {
+    let chosen: Vec<([Vec<Vec3>; 3], [u32; 3])> =
         wisps.par_iter().map(|members| guides_of(groom, members, points_per_guide)).collect();
     let mut guides = Guides { points_per_guide, ..Guides::default() };
-    for guide in chosen.iter().flatten() {
+    for guide in chosen.iter().flat_map(|(guides, _)| guides) {
         guides.push(guide);
     }
-    guides
+    (guides, chosen.into_iter().flat_map(|(_, strands)| strands).collect())
 }
 
-fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> [Vec<Vec3>; 3] {
+fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> ([Vec<Vec3>; 3], [u32; 3]) {
     let strands: Vec<&[Vec3]> = members.iter().map(|&member| groom.strand(member as usize)).collect();
     let chosen = triangle(&ordinary(&strands));
+    let member = |chosen: &[Vec3]| strands.iter().position(|strand| std::ptr::eq(*strand, chosen));
+    let made_of = chosen.map(|chosen| member(chosen).map_or(members[0], |at| members[at]));
     let mut guides = chosen.map(|strand| equally_spaced(strand, points));
     // Guides in one place span no triangle, so they are moved apart, as if the wisp had a small width.
     let along = (guides[0][points - 1] - guides[0][0]).normalize_or(Vec3::Y);
@@ -38,7 +40,7 @@ fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> [Vec<Vec3>;
             guides[later].iter_mut().for_each(|point| *point += APART * direction);
         }
     }
-    guides
+    (guides, made_of)
 }
 
 /// The strands closest to the wisp's mean by root, middle and tip.
@@ -111,7 +113,7 @@ fn equally_spaced(strand: &[Vec3], count: usize) -> Vec<Vec3> {
 }
 
 /// `count` points at equal lengths along a polyline, including its ends.
-fn spaced_along(line: &[Vec3], count: usize) -> Vec<Vec3> {
+pub(super) fn spaced_along(line: &[Vec3], count: usize) -> Vec<Vec3> {
     let total = length(line);
     let (mut link, mut before) = (0, 0.0);
     let mut points: Vec<Vec3> = (0..count)

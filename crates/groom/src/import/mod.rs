@@ -23,7 +23,7 @@ use lovelock_base::settings::Settings;
 use thiserror::Error;
 
 use crate::frame::widest_radii;
-use crate::{HairFile, Hairstyle, MotionFactors, Obstacle, Scalp, Wisp};
+use crate::{Guides, HairFile, HairLook, Hairstyle, MotionFactors, Obstacle, Scalp, Wisp};
 
 pub use info::{HairInfo, hair_info};
 pub use place::{PlacedGroom, place};
@@ -72,17 +72,67 @@ pub fn import_around(
     Ok(hairstyle_of(file, settings, scalp, &groom).0)
 }
 
-/// The hairstyle of a placed groom, and the index in the groom of each of its strands.
+/// A hairstyle whose strands are moved by others than its guides: see [`import_in_place`].
+#[derive(Clone, Debug)]
+pub struct ImportedInPlace {
+    /// The hairstyle. Its look is that of the file.
+    pub style: Hairstyle,
+    /// The strand of the file that each of its strands is.
+    pub strands: Vec<u32>,
+    /// The strand of the file that each of its guides follows.
+    pub guides: Vec<u32>,
+}
+
+impl ImportedInPlace {
+    /// Lets the guides follow the strands of the file, whose points are given.
+    pub fn follow(&self, first_point: &[u32], points: &[Vec3], guides: &mut Guides) {
+        let per = self.style.guides.points_per_guide;
+        for (guide, &strand) in self.guides.iter().enumerate() {
+            let span = first_point[strand as usize] as usize..first_point[strand as usize + 1] as usize;
+            for (i, point) in guides::spaced_along(&points[span], per).into_iter().enumerate() {
+                let at = guide * per + i;
+                (guides.x[at], guides.y[at], guides.z[at]) = (point.x, point.y, point.z);
+            }
+        }
+    }
+}
+
+/// Makes a hairstyle of a hair file in metres whose points are where the head is at rest already: nothing is fitted or moved.
+///
+/// # Errors
+/// The groom is implausibly small or large.
+pub fn import_in_place(
+    file: &HairFile,
+    settings: &ImportSettings,
+    scalp: &Scalp,
+    points: Vec<Vec3>,
+) -> Result<ImportedInPlace, ImportError> {
+    let size_m = file.bounds.size().max_element();
+    if !(1e-5..=1e3).contains(&size_m) {
+        return Err(ImportError::Size { name: file.name.clone(), size_m });
+    }
+    let groom = PlacedGroom {
+        first_point: file.first_point.clone(),
+        points,
+        metres_per_unit: 1.0,
+        fitted_scale: 1.0,
+        mean_root_gap_m: 0.0,
+    };
+    let (style, strands, guides) = hairstyle_of(file, settings, scalp, &groom);
+    Ok(ImportedInPlace { style, strands, guides })
+}
+
+/// The hairstyle of a placed groom, and the index in the groom of each of its strands and of each of its guides.
 fn hairstyle_of(
     file: &HairFile,
     settings: &ImportSettings,
     scalp: &Scalp,
     groom: &PlacedGroom,
-) -> (Hairstyle, Vec<u32>) {
+) -> (Hairstyle, Vec<u32>, Vec<u32>) {
     let settings = settings.clamped();
     let wisps = cluster::cluster(groom, settings.wisps_for(groom.strands()), settings.seed);
     let points_per_guide = settings.points_per_guide_for(&groom.first_point);
-    let guides = guides::choose(groom, &wisps, points_per_guide);
+    let (guides, followed) = guides::choose(groom, &wisps, points_per_guide);
     let order: Vec<u32> = wisps.iter().flatten().copied().collect();
     let mut first_strand = 0;
     let mut guide = 0;
@@ -116,7 +166,12 @@ fn hairstyle_of(
         strands,
         look: colour::look(file),
     };
-    (style, order)
+    (style, order, followed)
+}
+
+/// The look of a file's hair: melanin from its colour, if it has one.
+pub fn hair_look(file: &HairFile) -> HairLook {
+    colour::look(file)
 }
 
 /// Length of a polyline, metres.

@@ -76,7 +76,7 @@ fn worst_error(style: &Hairstyle, order: &[u32], groom: &PlacedGroom) -> f32 {
 fn reconstruct(file: &HairFile, settings: &ImportSettings) -> (Hairstyle, f32) {
     let scalp = PlainHead.scalp(24);
     let groom = place(file, settings, &scalp, None).expect("a place on the head");
-    let (style, order) = hairstyle_of(file, settings, &scalp, &groom);
+    let (style, order, _) = hairstyle_of(file, settings, &scalp, &groom);
     style.check().expect("a sound hairstyle");
     assert_eq!(style.strands.count(), file.strands());
     let mut seen = order.clone();
@@ -111,7 +111,7 @@ fn a_changed_offset_is_seen_by_the_error() {
     let file = hair(&wavy_cap(60, 20.0));
     let (scalp, settings) = (PlainHead.scalp(24), ImportSettings::default());
     let groom = place(&file, &settings, &scalp, None).expect("a place on the head");
-    let (mut style, order) = hairstyle_of(&file, &settings, &scalp, &groom);
+    let (mut style, order, _) = hairstyle_of(&file, &settings, &scalp, &groom);
     style.strands.offset_normal[100] += 0.002;
     assert!(worst_error(&style, &order, &groom) > 0.01);
 }
@@ -138,7 +138,7 @@ fn all_strands_follow_a_turn_of_the_head_rigidly() {
     let file = hair(&wavy_cap(200, 20.0));
     let (scalp, settings) = (PlainHead.scalp(24), ImportSettings::default());
     let groom = place(&file, &settings, &scalp, None).expect("a place on the head");
-    let (style, order) = hairstyle_of(&file, &settings, &scalp, &groom);
+    let (style, order, _) = hairstyle_of(&file, &settings, &scalp, &groom);
     let turn =
         Affine3A::from_rotation_translation(Quat::from_euler(glam::EulerRot::XYZ, 0.4, 2.0, -0.7), Vec3::ONE);
     let mut strands = Strands::default();
@@ -358,7 +358,7 @@ fn strands_follow_their_guides() {
     for (name, file) in files {
         let (scalp, settings) = (PlainHead.scalp(24), ImportSettings::default());
         let groom = place(&file, &settings, &scalp, None).expect("a place on the head");
-        let (style, order) = hairstyle_of(&file, &settings, &scalp, &groom);
+        let (style, order, _) = hairstyle_of(&file, &settings, &scalp, &groom);
         let mut frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
         for i in 0..frame.guides.x.len() {
             let p = breeze(Vec3::new(frame.guides.x[i], frame.guides.y[i], frame.guides.z[i]));

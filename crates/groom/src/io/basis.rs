@@ -75,6 +75,11 @@ impl Shape {
         }
     }
 
+    /// Whether the points of the polylines are the control points.
+    pub(super) fn keeps_points(self) -> bool {
+        self.basis == Basis::Linear && self.wrap != Wrap::Periodic
+    }
+
     /// Number of polyline points of a curve with this many control points; 0 if it has no span.
     pub(super) fn polyline_points(self, points: usize) -> usize {
         match self.spans(points) {

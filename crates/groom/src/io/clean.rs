@@ -53,6 +53,16 @@ impl Fault {
 
 /// Keeps the strands that can be drawn.
 pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<HairFile, HairFileError> {
+    clean_keeping(name, format, raw, None)
+}
+
+/// As [`clean`]. Puts the index of each point that is kept into `indices`.
+pub(super) fn clean_keeping(
+    name: &str,
+    format: &HairFormat,
+    raw: RawHair,
+    mut indices: Option<&mut Vec<u32>>,
+) -> Result<HairFile, HairFileError> {
     let strands = raw.point_counts.len();
     let mut faults: Vec<Option<Fault>> = Vec::with_capacity(strands);
     let mut first = 0;
@@ -118,6 +128,9 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
             }
             file.bounds.include(file.points[i]);
             file.points[kept] = file.points[i];
+            if let Some(indices) = &mut indices {
+                indices.push(i as u32);
+            }
             if let Some(values) = &mut file.thickness {
                 values[kept] = finite(values[i], file.default_thickness.unwrap_or(0.0));
             }

@@ -58,6 +58,8 @@ pub(super) struct RawHair {
     /// Counts of what the reader left out, by kind.
     pub(super) dropped: BTreeMap<String, u64>,
     pub(super) notes: Vec<String>,
+    /// Which points of the file are here, if the reader left some out.
+    pub(super) left_out: Option<Vec<bool>>,
 }
 
 impl RawHair {
@@ -77,6 +79,7 @@ impl RawHair {
             trailing_bytes: 0,
             dropped: BTreeMap::new(),
             notes: Vec::new(),
+            left_out: None,
         }
     }
 }

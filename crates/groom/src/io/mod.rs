@@ -1,17 +1,20 @@
-//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, curves of USD, lines of glTF and OBJ, curves of pbrt, and
+//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, curves of USD and Alembic, lines of glTF and OBJ, curves of pbrt, and
 //! USC-HairSalon's `.data`.
 //!
 //! A [`HairFile`] contains the strands of a file, in the file's own unit and axes, without those that cannot be drawn
 //! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
 //! hairstyle of it. Each format is a [`HairFormat`] in the table [`HAIR_FORMATS`].
 
+mod alembic;
 mod basis;
 mod bytes;
+mod cache;
 mod chain;
 mod clean;
 mod error;
 mod file;
 mod format;
+mod frames;
 mod gltf;
 mod guess;
 mod obj;
@@ -26,6 +29,7 @@ mod usd;
 mod words;
 mod yuksel;
 
+pub use cache::CurveCache;
 pub use error::HairFileError;
 pub use file::{Bounds, HairFile};
 pub use format::HairFormat;

@@ -6,13 +6,14 @@ use super::clean::clean;
 use super::file::HairFile;
 use super::format::HairFormat;
 use super::source::Source;
-use super::{HairFileError, gltf, obj, pbrt, tressfx, usc, usd, yuksel};
+use super::{HairFileError, alembic, gltf, obj, pbrt, tressfx, usc, usd, yuksel};
 
 /// Every hair format that can be read. A new format is a file or folder beside this one, and an entry here.
-pub static HAIR_FORMATS: [&HairFormat; 8] = [
+pub static HAIR_FORMATS: [&HairFormat; 9] = [
     &yuksel::FORMAT,
     &tressfx::FORMAT,
     &usd::FORMAT,
+    &alembic::FORMAT,
     &gltf::BINARY,
     &gltf::TEXT,
     &obj::FORMAT,

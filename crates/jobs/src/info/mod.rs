@@ -14,7 +14,7 @@ pub use take::{RegrownInfo, TakeInfo};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lovelock_groom::{HairInfo, ImportSettings, hair_info, load_hair};
+use lovelock_groom::{CurveCache, HairInfo, ImportSettings, hair_info, load_hair};
 use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
@@ -97,7 +97,10 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
     }
     let content = match FileKind::of(path)? {
         FileKind::Hair => {
-            let file = load_hair(path).map_err(|error| refuse(&error))?;
+            let mut file = load_hair(path).map_err(|error| refuse(&error))?;
+            if let Some(times) = CurveCache::times_in(path) {
+                file.notes.push(format!("The curves move: {times} times, which play like a take."));
+            }
             Content::Hair(hair_info(&file, &ImportSettings::default()))
         }
         FileKind::Character => {

@@ -1,4 +1,4 @@
-//! Exports hair and body as animated curves for other programs: USD and glTF.
+//! Exports hair and body as animated curves for other programs: USD, glTF and Alembic.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -61,7 +61,7 @@ impl FromStr for CurveSource {
 pub struct CurveRecordReport {
     /// The file.
     pub out: String,
-    /// `usda`, `usdc` or `glb`.
+    /// `usda`, `usdc`, `glb` or `abc`.
     pub format: String,
     /// `guides` or `strands`.
     pub curves: String,
@@ -104,7 +104,10 @@ pub fn record_curves(
     let (project, _) = project.sanitised();
     let out = &request.out;
     let format = CurveFormat::of(out).ok_or_else(|| {
-        ProjectError::option(format!("{}: wanted a name ending in .usdc, .usd, .usda or .glb", out.display()))
+        ProjectError::option(format!(
+            "{}: wanted a name ending in .usdc, .usd, .usda, .glb or .abc",
+            out.display()
+        ))
     })?;
     refuse_options_of_pictures(request)?;
     let fps = request.fps.unwrap_or(project.recording.fps);
@@ -235,6 +238,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
         first_point: Vec::new(),
         widths: Vec::new(),
         colors: Vec::new(),
+        are_guides: source == CurveSource::Guides,
         body: None,
     };
     let look = look.clamped();

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use lovelock_groom::Strands;
+use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::{Access, FileRef};
 use lovelock_session::snapshot::FrameSnapshot;
@@ -49,7 +50,7 @@ impl PaneTakes {
         for &pane in &request.panes {
             let Some(source) = wanted(pane) else { continue };
             if !self.held.iter().any(|held| held.pane == pane) {
-                let player = open(&source).map(Box::new).map_err(|error| error.to_string());
+                let player = open(&source, &request.project).map(Box::new).map_err(|error| error.to_string());
                 self.held.push(Held { pane, source, player, instant: None, strands: Strands::default() });
             }
         }
@@ -93,8 +94,8 @@ impl Held {
     }
 }
 
-fn open(source: &Source) -> Result<TakePlayer, ProjectError> {
+fn open(source: &Source, project: &Project) -> Result<TakePlayer, ProjectError> {
     let Source { file, access, .. } = source;
     let path = access.read(Place::Take, file).map_err(|problem| ProjectError::input(&file.path, problem))?;
-    Ok(TakePlayer::open(&path, access)?.0)
+    Ok(TakePlayer::open_for(&path, access, project)?.0)
 }

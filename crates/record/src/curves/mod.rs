@@ -1,9 +1,12 @@
-//! Export of the animated hair and body as USD or glTF curves.
+//! Export of the animated hair and body as USD, glTF or Alembic curves.
 //!
-//! [`CurveWriter`] receives one [`CurveFrame`] after another and stores them in an unnamed file in the output's folder,
-//! because both formats keep all times of an array together. Memory holds one frame and, at the end, one array of the file.
+//! [`CurveWriter`] receives one [`CurveFrame`] after another. Alembic takes them as they come. USD and glTF keep all times of
+//! an array together, so frames are first stored in an unnamed file in the output's folder. Memory holds one frame and, at the
+//! end, one array of the file.
 
+mod abc;
 mod crate_tail;
+mod expected;
 mod glb;
 mod layer;
 mod spool;
@@ -15,6 +18,7 @@ use glam::{Affine3A, Vec3};
 
 use crate::partial::{Opener, create_parent, open_file};
 use crate::{FrameRate, RecordError};
+use abc::AbcWriter;
 use glb::GlbWriter;
 use usd::UsdWriter;
 
@@ -27,11 +31,13 @@ pub enum CurveFormat {
     Usdc,
     /// glTF 2 in one file: `.glb`.
     Glb,
+    /// Alembic in the Ogawa form: `.abc`.
+    Abc,
 }
 
 impl CurveFormat {
     /// File extensions of the formats, without the dot.
-    pub const EXTENSIONS: [&str; 4] = ["usdc", "usd", "usda", "glb"];
+    pub const EXTENSIONS: [&str; 5] = ["usdc", "usd", "usda", "glb", "abc"];
 
     /// The format for the extension of a name, in upper or lower case; none for other extensions.
     pub fn of(path: &Path) -> Option<Self> {
@@ -39,6 +45,7 @@ impl CurveFormat {
             "usda" => Some(Self::Usda),
             "usdc" | "usd" => Some(Self::Usdc),
             "glb" => Some(Self::Glb),
+            "abc" => Some(Self::Abc),
             _ => None,
         }
     }
@@ -49,6 +56,7 @@ impl CurveFormat {
             Self::Usda => "usda",
             Self::Usdc => "usdc",
             Self::Glb => "glb",
+            Self::Abc => "abc",
         }
     }
 }
@@ -68,6 +76,8 @@ pub struct CurveScene {
     pub widths: Vec<f32>,
     /// Colour of each point, linear sRGB.
     pub colors: Vec<Vec3>,
+    /// Whether the curves are guides, which stand for several strands each.
+    pub are_guides: bool,
     /// The body, if it is exported.
     pub body: Option<CurveBody>,
 }
@@ -208,6 +218,8 @@ impl CurveScene {
                     );
                 }
             }
+            // Samples are written apart, each with a length of 64 bits.
+            CurveFormat::Abc => {}
             CurveFormat::Glb => {
                 let bytes = bytes(12, points).saturating_add(64 * points + 128 * vertices);
                 if bytes > MOST_GLB {
@@ -240,6 +252,7 @@ pub struct CurveWriter(Writer);
 enum Writer {
     Usd(UsdWriter),
     Glb(GlbWriter),
+    Abc(Box<AbcWriter>),
 }
 
 impl std::fmt::Debug for CurveWriter {
@@ -261,7 +274,7 @@ impl CurveWriter {
     fn create_with(path: &Path, scene: CurveScene, opener: &Opener) -> Result<Self, RecordError> {
         let format = CurveFormat::of(path).ok_or_else(|| {
             RecordError::request(format!(
-                "{}: unknown format of curves: the name must end in .usda, .usdc, .usd or .glb",
+                "{}: unknown format of curves: the name must end in .usda, .usdc, .usd, .glb or .abc",
                 path.display()
             ))
         })?;
@@ -272,6 +285,7 @@ impl CurveWriter {
                 Writer::Usd(UsdWriter::create(path, scene, format == CurveFormat::Usda, opener)?)
             }
             CurveFormat::Glb => Writer::Glb(GlbWriter::create(path, scene, opener)?),
+            CurveFormat::Abc => Writer::Abc(Box::new(AbcWriter::create(path, scene, opener)?)),
         }))
     }
 
@@ -283,6 +297,7 @@ impl CurveWriter {
         match &mut self.0 {
             Writer::Usd(writer) => writer.push(frame),
             Writer::Glb(writer) => writer.push(frame),
+            Writer::Abc(writer) => writer.push(frame),
         }
     }
 
@@ -294,6 +309,7 @@ impl CurveWriter {
         match self.0 {
             Writer::Usd(writer) => writer.finish(),
             Writer::Glb(writer) => writer.finish(),
+            Writer::Abc(writer) => writer.finish(),
         }
     }
 }

@@ -2,22 +2,19 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::Vec3;
 
+use super::expected::Expected;
 use super::{CurveFrame, CurveScene};
 use crate::RecordError;
 
 /// Frames of equal length in an unnamed file, which the operating system removes when the program ends.
 #[derive(Debug)]
 pub(super) struct Spool {
-    target: PathBuf,
+    expected: Expected,
     file: BufWriter<File>,
-    points: usize,
-    /// Number of vertices of the body; 0 if the body is not stored.
-    vertices: usize,
-    wanted: u64,
     pub(super) frames: u64,
     row: Vec<[f32; 3]>,
 }
@@ -31,63 +28,40 @@ impl Spool {
         };
         let file = tempfile::tempfile_in(folder)
             .map_err(|error| RecordError::io(target, "create a file for its frames", error))?;
-        let body = scene.body.as_ref().filter(|_| with_body);
-        Ok(Self {
-            target: target.to_owned(),
-            file: BufWriter::with_capacity(1 << 18, file),
-            points: scene.points(),
-            vertices: body.map_or(0, |body| body.bind_positions.len()),
-            wanted: scene.frames,
-            frames: 0,
-            row: Vec::new(),
-        })
+        let expected = Expected::of(target, scene, with_body);
+        Ok(Self { expected, file: BufWriter::with_capacity(1 << 18, file), frames: 0, row: Vec::new() })
     }
 
     pub(super) fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
-        let refuse = |what: String| Err(RecordError::request(format!("{}: {what}", self.target.display())));
-        if self.frames == self.wanted {
-            return refuse(format!("more frames than the {} of its settings", self.wanted));
-        }
+        self.expected.check(self.frames, frame)?;
         let [x, y, z] = frame.points;
-        if [x, y, z].iter().any(|axis| axis.len() != self.points) {
-            return refuse(format!("a frame of {} points; must have {}", x.len(), self.points));
-        }
         let body = frame.body.map_or([&[][..], &[][..]], |body| [body.positions, body.normals]);
-        if self.vertices > 0 && body.iter().any(|array| array.len() != self.vertices) {
-            return refuse(format!("a body of {} vertices; must have {}", body[0].len(), self.vertices));
-        }
         self.row.clear();
         self.row.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]));
         let mut write = || {
             self.file.write_all(bytemuck::cast_slice(&self.row))?;
-            if self.vertices > 0 {
+            if self.expected.vertices > 0 {
                 self.file.write_all(bytemuck::cast_slice::<Vec3, u8>(body[0]))?;
                 self.file.write_all(bytemuck::cast_slice::<Vec3, u8>(body[1]))?;
             }
             Ok(())
         };
-        let frame = self.frames;
-        write().map_err(|error| RecordError::io(&self.target, format!("write frame {frame}"), error))?;
+        let (frame, target) = (self.frames, &self.expected.target);
+        write().map_err(|error| RecordError::io(target, format!("write frame {frame}"), error))?;
         self.frames += 1;
         Ok(())
     }
 
     /// Ends writing and checks that all frames have arrived.
     pub(super) fn close(&mut self) -> Result<(), RecordError> {
-        if self.frames != self.wanted {
-            return Err(RecordError::request(format!(
-                "{}: {} frames; must be the {} of its settings",
-                self.target.display(),
-                self.frames,
-                self.wanted
-            )));
-        }
-        self.file.flush().map_err(|error| RecordError::io(&self.target, "write its frames", error))
+        self.expected.complete(self.frames)?;
+        let target = &self.expected.target;
+        self.file.flush().map_err(|error| RecordError::io(target, "write its frames", error))
     }
 
     /// Reads vectors of one frame, starting at index `first`: the points of the curves, then the body's positions, then its normals.
     pub(super) fn read(&mut self, frame: u64, first: usize, into: &mut [[f32; 3]]) -> io::Result<()> {
-        let length = self.points + 2 * self.vertices;
+        let length = self.expected.points + 2 * self.expected.vertices;
         let triple = frame * length as u64 + first as u64;
         let file = self.file.get_mut();
         file.seek(SeekFrom::Start(12 * triple))?;
@@ -96,11 +70,11 @@ impl Spool {
 
     /// Indices of the body's first position and first normal.
     pub(super) fn body_at(&self) -> [usize; 2] {
-        [self.points, self.points + self.vertices]
+        [self.expected.points, self.expected.points + self.expected.vertices]
     }
 
     pub(super) fn vertices(&self) -> usize {
-        self.vertices
+        self.expected.vertices
     }
 }
 

@@ -2,6 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
+use lovelock_alembic::{Archive, Compound, Object, Source};
 use lovelock_groom::{HairFile, load_hair, load_hair_bytes};
 
 use super::*;
@@ -52,6 +53,7 @@ fn dance(frames: u64, curves: u32) -> Dance {
             first_point,
             widths: (0..points).map(|i| 1e-4 + 1e-6 * i as f32).collect(),
             colors: (0..points).map(|i| Vec3::new(0.2, 0.01 * (i % 50) as f32, 0.05)).collect(),
+            are_guides: false,
             body: Some(body),
         },
         frames: (0..frames).map(|frame| (0..points).map(|i| at(frame, i)).collect()).collect(),
@@ -96,10 +98,10 @@ fn farthest(file: &HairFile, points: &[Vec3]) -> f32 {
 }
 
 #[test]
-fn usd_comes_back_through_our_own_importer() {
+fn usd_and_alembic_come_back_through_our_own_importer() {
     let folder = tempfile::tempdir().expect("a folder");
     let dance = dance(5, 40);
-    for name in ["a.usda", "b.usdc", "ü c.USD"] {
+    for name in ["a.usda", "b.usdc", "ü c.USD", "d.abc"] {
         let path = folder.path().join("new").join(name);
         let report = dance.write(&path).expect(name);
         assert_eq!((report.frames, report.bytes), (5, fs::metadata(&path).expect("a file").len()), "{name}");
@@ -115,7 +117,7 @@ fn usd_comes_back_through_our_own_importer() {
         assert!((colours[0][0] - 0.484_53).abs() < 1e-3, "{name}: {:?} is sRGB of 0.2", colours[0]);
     }
     let left = fs::read_dir(folder.path().join("new")).expect("a folder").count();
-    assert_eq!(left, 3, "only the files");
+    assert_eq!(left, 4, "only the files");
 }
 
 #[test]
@@ -130,7 +132,7 @@ fn a_crate_has_a_version_that_older_programs_read() {
 #[test]
 fn broken_files_are_refused_or_read_without_a_panic() {
     let folder = tempfile::tempdir().expect("a folder");
-    for name in ["a.usda", "b.usdc"] {
+    for name in ["a.usda", "b.usdc", "c.abc"] {
         let path = folder.path().join(name);
         dance(2, 6).write(&path).expect(name);
         let whole = fs::read(&path).expect("a file");
@@ -155,6 +157,80 @@ fn broken_files_are_refused_or_read_without_a_panic() {
             broken[at] = whole[at];
         }
         assert!(refused > whole.len() / 10, "{name}: {refused} changes are refused");
+    }
+}
+
+/// The child of an object in an archive.
+fn child(archive: &mut Archive<'_>, of: &Object, name: &str) -> Object {
+    let children = archive.children(of).expect("children");
+    children.into_iter().find(|child| child.name == name).expect(name)
+}
+
+/// The properties of a schema, and its parameters.
+fn schema(archive: &mut Archive<'_>, object: &Object, name: &str) -> [Compound; 2] {
+    let properties = archive.properties(object).expect("properties");
+    let schema = archive.compound(properties.get(name).expect(name)).expect("a compound");
+    let parameters = archive.compound(schema.get(".arbGeomParams").expect("parameters")).expect("a compound");
+    [schema, parameters]
+}
+
+fn sample(archive: &mut Archive<'_>, of: &Compound, name: &str, sample: u64) -> Vec<f64> {
+    archive.few(of.get(name).expect(name), sample, 1 << 16).expect(name)
+}
+
+#[test]
+fn alembic_holds_every_frame_exactly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.abc");
+    let mut dance = dance(4, 9);
+    dance.scene.are_guides = true;
+    dance.write(&path).expect("a file");
+    let bytes = fs::read(&path).expect("a file");
+    let mut archive = Archive::open(Source::Memory(&bytes)).expect("an archive");
+    assert!(archive.metadata().contains("FramesPerTimeUnit=30.000000;"), "{}", archive.metadata());
+    let top = archive.top();
+    let root = child(&mut archive, &top, "Lovelock");
+    let [_, about] = schema(&mut archive, &root, ".xform");
+    assert_eq!(sample(&mut archive, &about, "groom_version_major", 0), [1.0]);
+    assert_eq!(sample(&mut archive, &about, "groom_version_minor", 0), [5.0]);
+    let hair = child(&mut archive, &root, "Hair");
+    let strands = child(&mut archive, &hair, "Strands_0");
+    let [curves, parameters] = schema(&mut archive, &strands, ".geom");
+    let points = curves.get("P").expect("points").clone();
+    assert_eq!((points.samples, archive.times(&points).secs(3)), (4, 15.0 / 30.0));
+    let wide = |values: &[Vec3]| values.iter().flat_map(|p| p.to_array().map(f64::from)).collect::<Vec<_>>();
+    for (frame, wanted) in dance.frames.iter().enumerate() {
+        let read = sample(&mut archive, &curves, "P", frame as u64);
+        assert_eq!(read, wide(wanted), "frame {frame}");
+        assert_ne!(read, wide(&dance.frames[(frame + 1) % 4]), "negative control");
+    }
+    let counts: Vec<f64> = dance.scene.counts().map(f64::from).collect();
+    assert_eq!(sample(&mut archive, &curves, "nVertices", 3), counts);
+    // Written once for all frames.
+    let counts = curves.get("nVertices").expect("counts");
+    assert!(counts.is_constant() && counts.samples == 4);
+    assert_eq!(sample(&mut archive, &curves, "curveBasisAndType", 0), [1.0, 0.0, 0.0, 0.0]);
+    let widths: Vec<f64> = dance.scene.widths.iter().copied().map(f64::from).collect();
+    assert_eq!(sample(&mut archive, &curves, "width", 3), widths);
+    assert_eq!(sample(&mut archive, &parameters, "groom_width", 0), widths);
+    assert_eq!(sample(&mut archive, &parameters, "groom_color", 0), wide(&dance.scene.colors));
+    assert_eq!(sample(&mut archive, &parameters, "groom_guide", 0), [1.0; 9]);
+    assert_eq!(sample(&mut archive, &parameters, "groom_id", 0)[8], 8.0);
+    assert_eq!(sample(&mut archive, &parameters, "groom_group_id", 0), [0.0]);
+    let uv = sample(&mut archive, &parameters, "groom_root_uv", 0);
+    assert!(uv.len() == 18 && uv.iter().all(|v| (0.0..=1.0).contains(v)), "{uv:?}");
+    let low = sample(&mut archive, &curves, ".selfBnds", 2)[1];
+    let lowest = dance.frames[2].iter().fold(f32::INFINITY, |low, p| low.min(p.y));
+    assert!(low < f64::from(lowest) && low > f64::from(lowest) - 1e-3, "{low} for {lowest}");
+
+    let body = child(&mut archive, &root, "Body");
+    let [mesh, colours] = schema(&mut archive, &body, ".geom");
+    assert_eq!(sample(&mut archive, &mesh, ".faceIndices", 0), [2.0, 1.0, 0.0], "clockwise");
+    assert_eq!(sample(&mut archive, &mesh, ".faceCounts", 0), [3.0]);
+    assert_eq!(sample(&mut archive, &mesh, "N", 3)[..3], [0.0, 0.0, 1.0]);
+    assert_eq!(sample(&mut archive, &colours, "Cd", 0).len(), 9);
+    for frame in 0..4 {
+        assert_eq!(sample(&mut archive, &mesh, "P", frame as u64), wide(&dance.skinned(frame)));
     }
 }
 
@@ -249,7 +325,7 @@ fn skin_of(glb: &gltf::Gltf, blob: &[u8], clip: &gltf::Animation<'_>, secs: f32)
 #[test]
 fn a_full_disk_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    for name in ["a.usda", "a.usdc", "a.glb"] {
+    for name in ["a.usda", "a.usdc", "a.glb", "a.abc"] {
         let path = folder.path().join(name);
         fs::write(&path, b"old").expect("a file");
         let error = dance(3, 9).write_with(&path, &small_disk(1000)).expect_err(name);
@@ -269,7 +345,7 @@ fn invalid_requests_are_refused() {
         assert!(error.is_request() && error.to_string().contains(wanted), "{error}");
     };
     let good = || dance(3, 4);
-    refused(&good(), "a.abc", "the name must end in .usda");
+    refused(&good(), "a.obj", "the name must end in .usda");
     let change = |change: &dyn Fn(&mut Dance)| {
         let mut dance = good();
         change(&mut dance);
@@ -280,8 +356,11 @@ fn invalid_requests_are_refused() {
     refused(&change(&|dance| dance.scene.widths.truncate(3)), "a.glb", "differ in length");
     refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames; must be the 4 of its settings");
     refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "more frames than the 2");
-    refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; must have 14");
-    for name in ["a.usda", "a.usdc", "a.glb"] {
+    for name in ["a.glb", "a.abc"] {
+        refused(&change(&|dance| dance.frames[1].truncate(13)), name, "a frame of 13 points; must have 14");
+    }
+    refused(&change(&|dance| dance.scene.frames = 4), "a.abc", "3 frames; must be the 4 of its settings");
+    for name in ["a.usda", "a.usdc", "a.glb", "a.abc"] {
         refused(&change(&|dance| dance.scene.frames = 1 << 30), name, "--frames");
     }
     // So many curves that a few frames are too large.

@@ -84,6 +84,7 @@ impl Engine {
                 world_from_head: Affine3A::IDENTITY,
                 guides: scene.style.guides.clone(),
             },
+            strands: None,
             report,
             rest_inside,
             totals,

@@ -1,13 +1,18 @@
 //! Takes: recorded simulations.
 //!
 //! [`TakeRecording`] writes what an [`Engine`](crate::engine::Engine) does; [`TakePlayer`] makes [`FrameSnapshot`](crate::snapshot::FrameSnapshot)s
-//! of a take without simulating, so that everything that renders a simulation can render a take.
+//! of a take without simulating, so that everything that renders a simulation can render a take. It plays curves over time of
+//! other programs ([`lovelock_groom::CurveCache`]) as well.
 
+mod cache;
+mod player;
 mod playing;
 mod recording;
 mod transport;
 
-pub use playing::TakePlayer;
+pub(crate) use cache::holds_curves;
+pub use cache::project_of_cache;
+pub use player::TakePlayer;
 pub use recording::{TakeProgress, TakeRecording};
 pub(crate) use transport::TakeTransport;
 
@@ -20,9 +25,14 @@ use lovelock_record::{TakeHeader, TakeReader};
 
 /// The project that a take was recorded from, set to play the take. Also returns problems of the project's text.
 ///
+/// For curves over time it is the default project, set to play them.
+///
 /// # Errors
 /// If the file is not a take, is of a newer version, or has no frames.
 pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), ProjectError> {
+    if holds_curves(path) {
+        return Ok((project_of_cache(&Project::default(), path)?, Vec::new()));
+    }
     let mut reader = TakeReader::open(path)?;
     let start = reader.nearest(0).unwrap_or(0);
     let text = match reader.project_at(start) {
@@ -45,6 +55,8 @@ fn start_on_timeline(header: &TakeHeader, project: &Project) -> f64 {
     if project.motion.looping && length > 0.0 { start.rem_euclid(length) } else { start }
 }
 
+#[cfg(test)]
+mod cache_tests;
 #[cfg(test)]
 mod regrown_tests;
 #[cfg(test)]

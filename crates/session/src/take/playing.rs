@@ -1,4 +1,4 @@
-//! Playing a take: the snapshot at a time.
+//! Playing a recorded simulation: the snapshot at a time.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::totals::Totals;
 const MOST_SCENES: usize = 8;
 
 /// A take opened for playing, with its scene.
-pub struct TakePlayer {
+pub(super) struct RecordedPlayer {
     reader: TakeReader,
     access: Access,
     loader: SceneLoader,
@@ -51,12 +51,12 @@ pub struct TakePlayer {
     notices: Vec<String>,
 }
 
-impl TakePlayer {
+impl RecordedPlayer {
     /// Opens a take and loads its scene. Problems say what has changed, is missing or is damaged.
     ///
     /// # Errors
     /// If the file is not a take, is of a newer version, has no frames, or its guides no longer fit the hair.
-    pub fn open(path: &Path, access: &Access) -> Result<(Self, Vec<Problem>), ProjectError> {
+    pub(super) fn open(path: &Path, access: &Access) -> Result<(Self, Vec<Problem>), ProjectError> {
         let mut reader = TakeReader::open(path)?;
         let start = reader.nearest(0).unwrap_or(0);
         let text = reader.project_at(start).unwrap_or_else(|_| Arc::from(reader.header().project.as_str()));
@@ -102,33 +102,33 @@ impl TakePlayer {
     }
 
     /// The file.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         self.reader.path()
     }
 
     /// The header of the take.
-    pub fn header(&self) -> &TakeHeader {
+    pub(super) fn header(&self) -> &TakeHeader {
         self.reader.header()
     }
 
     /// Known damage of the take.
-    pub fn condition(&self) -> TakeCondition {
+    pub(super) fn condition(&self) -> TakeCondition {
         self.reader.condition()
     }
 
     /// The project at the first frame.
-    pub fn project(&self) -> &Project {
+    pub(super) fn project(&self) -> &Project {
         &self.first
     }
 
     /// The scene of the last snapshot.
-    pub fn scene(&self) -> &Arc<Scene> {
+    pub(super) fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
     /// Sets the picture of the surroundings that gives light from all directions, and notes about it. A take records none.
     /// Returns whether it is another picture than before.
-    pub fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
+    pub(super) fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
         let others = self.surroundings.0.as_ref().map(Arc::as_ptr) != picture.as_ref().map(Arc::as_ptr);
         self.surroundings = (picture, notes);
         for at in 0..self.scenes.len() {
@@ -153,28 +153,28 @@ impl TakePlayer {
     }
 
     /// Number of frames.
-    pub fn frames(&self) -> u64 {
+    pub(super) fn frames(&self) -> u64 {
         self.reader.frames()
     }
 
     /// Length of a frame, seconds.
-    pub fn frame_secs(&self) -> f64 {
+    pub(super) fn frame_secs(&self) -> f64 {
         1.0 / self.header().frames_per_second.as_f64()
     }
 
     /// Time from the first frame to the last one, seconds.
-    pub fn duration_secs(&self) -> f64 {
+    pub(super) fn duration_secs(&self) -> f64 {
         self.header().secs_of(self.frames() - 1)
     }
 
     /// Counts time, and the timeline, from the start of the original motion instead of the start of the take.
-    pub fn count_on_dance(&mut self) {
+    pub(super) fn count_on_dance(&mut self) {
         let secs = self.header().start_secs;
         self.origin_secs = if secs.is_finite() { secs.max(0.0) } else { 0.0 };
     }
 
-    /// Time of the first frame, seconds: 0, or its time in the original motion after [`TakePlayer::count_on_dance`].
-    pub fn origin_secs(&self) -> f64 {
+    /// Time of the first frame, seconds: 0, or its time in the original motion after [`RecordedPlayer::count_on_dance`].
+    pub(super) fn origin_secs(&self) -> f64 {
         self.origin_secs
     }
 
@@ -182,7 +182,7 @@ impl TakePlayer {
     ///
     /// # Errors
     /// If the frames around it are damaged or cannot be read.
-    pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, ProjectError> {
+    pub(super) fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, ProjectError> {
         let watch = Stopwatch::start();
         let secs = secs - self.origin_secs;
         let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
@@ -213,6 +213,7 @@ impl TakePlayer {
             pose: Pose::default(),
             skin: Skin::default(),
             guides: GuideFrame::clone(&frame.guides),
+            strands: None,
             report,
             rest_inside: None,
             totals: Totals::default(),
@@ -254,7 +255,7 @@ impl TakePlayer {
     }
 
     /// Notices about lost frames since the last call.
-    pub fn notices(&mut self) -> Vec<String> {
+    pub(super) fn notices(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notices)
     }
 

@@ -6,7 +6,7 @@ use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_record::{MOST_ERROR_M, TakeFrame, TakeReader, TakeWriter};
 
-use super::playing::TakePlayer;
+use super::TakePlayer;
 use super::tests::folder;
 use crate::testing::{farthest, guides, played, recorded, regrown, small_project};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lovelock_project::error::ProjectError;
 
-use super::playing::TakePlayer;
+use super::player::TakePlayer;
 use crate::snapshot::FrameSnapshot;
 
 /// A take and the current position in it.

@@ -227,7 +227,7 @@ impl LoadState {
         let mut untaken = None;
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
-            match access.read(Place::Take, file).map(|path| TakePlayer::open(&path, access)) {
+            match access.read(Place::Take, file).map(|path| TakePlayer::open_for(&path, access, project)) {
                 Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(ProjectError::Cancelled),
                 Ok(Ok((mut player, mut problems))) => {
                     progress("loading the surroundings", 0.9);

@@ -43,6 +43,8 @@ pub(super) struct CrateLayer<'a> {
     /// Properties by their prim and name.
     properties: HashMap<(u32, u32), u32>,
     root: u32,
+    /// The time code of values; the first one of each attribute if there is none.
+    time: Option<f64>,
 }
 
 impl<'a> CrateLayer<'a> {
@@ -54,6 +56,7 @@ impl<'a> CrateLayer<'a> {
             nodes: Vec::new(),
             properties: HashMap::new(),
             root: 0,
+            time: None,
         };
         let head = layer.values.file.bytes(0, 24, "bytes of header")?;
         layer.values.version = [head[8], head[9], head[10]];
@@ -267,8 +270,8 @@ impl Layer for CrateLayer<'_> {
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError> {
         let Some(property) = self.property(prim, name) else { return Ok(None) };
         if let Some(samples) = self.field(property, "timeSamples")
-            && let Some(first) = self.values.first_sample(samples)?
-            && let Some(value) = self.values.value(first, most)?
+            && let Some(chosen) = self.values.sample(samples, self.time)?
+            && let Some(value) = self.values.value(chosen, most)?
         {
             return Ok(Some(value));
         }
@@ -276,6 +279,15 @@ impl Layer for CrateLayer<'_> {
             Some(value) => self.values.value(value, most),
             None => Ok(None),
         }
+    }
+
+    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError> {
+        let samples = self.property(prim, name).and_then(|property| self.field(property, "timeSamples"));
+        samples.map_or(Ok(Vec::new()), |samples| self.values.times(samples))
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.time = Some(time);
     }
 
     fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {

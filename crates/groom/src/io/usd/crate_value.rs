@@ -9,6 +9,8 @@ use super::value::{Value, half};
 const IS_ARRAY: u64 = 1 << 63;
 const IS_INLINED: u64 = 1 << 62;
 const IS_COMPRESSED: u64 = 1 << 61;
+/// The most times of an attribute, if they are compressed.
+const MOST_TIMES: usize = 1 << 20;
 const PAYLOAD: u64 = (1 << 48) - 1;
 
 /// Value types by their numbers in a crate.
@@ -28,6 +30,7 @@ mod kind {
     pub(super) const VEC3H: u64 = 25;
     pub(super) const TOKEN_VECTOR: u64 = 41;
     pub(super) const TIME_SAMPLES: u64 = 46;
+    pub(super) const DOUBLE_VECTOR: u64 = 48;
 }
 
 /// The numbers that vectors and arrays consist of.
@@ -66,8 +69,8 @@ pub(super) struct CrateValues<'a> {
 }
 
 impl CrateValues<'_> {
-    /// The value of the first time sample; `None` without samples.
-    pub(super) fn first_sample(&mut self, samples: u64) -> Result<Option<u64>, HairFileError> {
+    /// Positions of the times and of the values of time samples, and the number of values; `None` without samples.
+    fn samples(&mut self, samples: u64) -> Result<Option<(u64, u64, u64)>, HairFileError> {
         if samples >> 48 & 0xff != kind::TIME_SAMPLES {
             return Ok(None);
         }
@@ -76,10 +79,42 @@ impl CrateValues<'_> {
         let times = at.wrapping_add(self.file.u64(at)?);
         let at = times.saturating_add(8);
         let values = at.wrapping_add(self.file.u64(at)?);
-        if self.file.u64(values)? == 0 {
-            return Ok(None);
-        }
-        self.file.u64(values.saturating_add(8)).map(Some)
+        let count = self.file.u64(values)?;
+        Ok((count > 0).then_some((times, values.saturating_add(8), count)))
+    }
+
+    /// The value of the last time sample that is not after `time`, or of the first one; `None` without samples.
+    pub(super) fn sample(&mut self, samples: u64, time: Option<f64>) -> Result<Option<u64>, HairFileError> {
+        let Some((_, values, count)) = self.samples(samples)? else { return Ok(None) };
+        let index = match time {
+            None => 0,
+            Some(time) => {
+                let times = self.times(samples)?;
+                (times.partition_point(|&at| at <= time) as u64).saturating_sub(1).min(count - 1)
+            }
+        };
+        self.file.u64(values.saturating_add(8 * index)).map(Some)
+    }
+
+    /// The times of time samples, as codes; none without samples.
+    pub(super) fn times(&mut self, samples: u64) -> Result<Vec<f64>, HairFileError> {
+        let Some((times, ..)) = self.samples(samples)? else { return Ok(Vec::new()) };
+        let value = self.file.u64(times)?;
+        let at = value & PAYLOAD;
+        // Pixar writes a vector, the `openusd` library an array.
+        let (count, start) = match value >> 48 & 0xff {
+            kind::DOUBLE_VECTOR => (self.file.u64(at)?, at.saturating_add(8)),
+            kind::DOUBLE if value & (IS_ARRAY | IS_COMPRESSED) == IS_ARRAY => self.length(at)?,
+            kind::DOUBLE if value & IS_ARRAY != 0 => {
+                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else {
+                    return Ok(Vec::new());
+                };
+                return Ok(times.into_iter().map(f64::from).collect());
+            }
+            _ => return Ok(Vec::new()),
+        };
+        let bytes = self.file.bytes(start, count.saturating_mul(8), "bytes of times")?;
+        Ok(bytes.as_chunks::<8>().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect())
     }
 
     /// Reads a value; `None` for types that curves and transforms do not have. Compressed arrays may have at most

@@ -7,6 +7,7 @@
 mod crate_bytes;
 mod crate_file;
 mod crate_value;
+mod frames;
 mod text;
 mod transform;
 mod value;
@@ -17,6 +18,7 @@ use super::HairFileError;
 use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
+use super::frames::CurveFrames;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use crate_file::{CRATE_MAGIC, CrateLayer};
@@ -52,7 +54,13 @@ trait Layer {
     /// Path of a prim, for messages.
     fn path(&self, prim: usize) -> String;
 
-    /// Value of an attribute at its first time sample, otherwise its default. `most` limits the length of compressed
+    /// The time codes of an attribute's samples; none without samples.
+    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError>;
+
+    /// Lets [`Self::attribute`] return the values at a time code.
+    fn set_time(&mut self, time: f64);
+
+    /// Value of an attribute at its first time sample or at the time that is set, otherwise its default. `most` limits the length of compressed
     /// arrays.
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError>;
 
@@ -74,6 +82,17 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         return read_layer(&mut CrateLayer::open(name, source)?);
     }
     read_layer(&mut TextLayer::parse(name, &source.into_bytes(name)?)?)
+}
+
+/// The curves of a stage over time, and the hair at the first time.
+pub(super) fn frames(
+    name: &str,
+    source: Source<'static>,
+) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+    if source.start().starts_with(CRATE_MAGIC) {
+        return frames::open(CrateLayer::open(name, source)?);
+    }
+    frames::open(TextLayer::parse(name, &source.into_bytes(name)?)?)
 }
 
 fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {

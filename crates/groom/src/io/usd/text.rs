@@ -21,6 +21,8 @@ pub(super) struct TextLayer {
     name: String,
     data: Data,
     prims: Vec<Path>,
+    /// The time code of values; the first one of each attribute if there is none.
+    time: Option<f64>,
 }
 
 impl TextLayer {
@@ -54,7 +56,7 @@ impl TextLayer {
                     .map(|(path, _)| path.clone())
                     .collect();
                 prims.sort_by(|a, b| a.as_str().cmp(b.as_str()));
-                return Ok(Self { name: name.to_owned(), data, prims });
+                return Ok(Self { name: name.to_owned(), data, prims, time: None });
             }
             Ok(Err(error)) => format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" "),
             Err(_) => "text that cannot be parsed".to_owned(),
@@ -128,14 +130,29 @@ impl Layer for TextLayer {
 
     fn attribute(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, HairFileError> {
         let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(None) };
-        let first = match self.field(&path, "timeSamples") {
+        let chosen = match self.field(&path, "timeSamples") {
             Some(Sdf::TimeSamples(samples)) => {
-                samples.iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value)
+                let time = self.time.unwrap_or(f64::NEG_INFINITY);
+                let before = samples.iter().filter(|(at, _)| *at <= time).max_by(|a, b| a.0.total_cmp(&b.0));
+                let first = || samples.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+                before.or_else(first).map(|(_, value)| value)
             }
             _ => None,
         };
-        let value = first.and_then(value_of);
+        let value = chosen.and_then(value_of);
         Ok(value.or_else(|| self.field(&path, "default").and_then(value_of)))
+    }
+
+    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError> {
+        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(Vec::new()) };
+        Ok(match self.field(&path, "timeSamples") {
+            Some(Sdf::TimeSamples(samples)) => samples.iter().map(|(time, _)| *time).collect(),
+            _ => Vec::new(),
+        })
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.time = Some(time);
     }
 
     fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {

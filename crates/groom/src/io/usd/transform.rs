@@ -31,6 +31,22 @@ pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, Hai
     Ok(transform)
 }
 
+/// The time codes at which the transform of a prim or of an ancestor changes.
+pub(super) fn times(layer: &mut impl Layer, prim: usize) -> Result<Vec<f64>, HairFileError> {
+    let mut times = Vec::new();
+    let mut at = Some(prim);
+    for _ in 0..DEEPEST {
+        let Some(prim) = at else { break };
+        let order =
+            layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
+        for op in order.iter().take(MOST_OPS) {
+            times.extend(layer.times(prim, op.strip_prefix("!invert!").unwrap_or(op))?);
+        }
+        at = layer.parent(prim);
+    }
+    Ok(times)
+}
+
 /// The transform operations of one prim, and whether they reset the transforms of its ancestors.
 fn own(layer: &mut impl Layer, prim: usize) -> Result<(DMat4, bool), HairFileError> {
     let order = layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);

@@ -2,9 +2,12 @@
 
 use std::time::SystemTime;
 
+use lovelock_groom::ImportSettings;
 use lovelock_project::Project;
 use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{BodySection, HairSection, MotionSection, SurroundingsSection};
+
+use crate::take::holds_curves;
 
 /// The inputs of a scene. Changes of other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +17,8 @@ pub(super) enum SceneInputs {
     Take {
         file: FileRef,
         version: Option<(u64, SystemTime)>,
+        /// Body, motion and how curves are read: curves of another program bring none.
+        around: Option<Box<(BodySection, MotionSection, ImportSettings)>>,
         surroundings: SurroundingsSection,
         access: Access,
     },
@@ -27,7 +32,8 @@ impl SceneInputs {
             Some(file) => {
                 let data = std::fs::metadata(&file.path).ok();
                 let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
-                Self::Take { file, version, surroundings, access }
+                let around = holds_curves(&file.path).then(|| Box::new((body, motion, hair.import)));
+                Self::Take { file, version, around, surroundings, access }
             }
             None => Self::Simulated(Box::new((body, motion, hair, surroundings, access))),
         }

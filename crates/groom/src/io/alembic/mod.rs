@@ -1,0 +1,274 @@
+//! Curves of Alembic archives in the Ogawa form, at the first time of each.
+//!
+//! The transforms of all ancestors are applied. Cubic curves become polylines. Alembic states neither unit nor up axis.
+
+mod frames;
+mod objects;
+mod shape;
+mod transform;
+mod values;
+
+use glam::{DMat4, Vec3};
+use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes};
+
+use super::HairFileError;
+use super::basis::Spread;
+use super::file::RawHair;
+use super::format::HairFormat;
+use super::frames::CurveFrames;
+use super::source::Source;
+use super::units::{UpAxis, display_from_linear};
+use objects::{CurveObject, visit};
+
+pub(super) static FORMAT: HairFormat = HairFormat {
+    label: "Alembic curves",
+    extensions: &["abc"],
+    signature: "`Ogawa` (Alembic)",
+    states_unit: false,
+    common_up: UpAxis::Y,
+    // The older form is recognised too, so that the refusal can name it.
+    magics: &[OGAWA_MAGIC, HDF5_MAGIC],
+    may_begin: |_| false,
+    read,
+    write: None,
+};
+
+/// The most points of all polylines.
+const MOST_POINTS: usize = 1 << 28;
+/// How often the points of a file may be used by objects that share them.
+const MOST_SHARING: u64 = 8;
+
+fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
+    let bytes = match source {
+        Source::Memory(data) => Bytes::Memory(data),
+        Source::File { file, length, .. } => Bytes::File { file, length },
+    };
+    let mut archive = Archive::open(bytes).map_err(|error| named(name, error))?;
+    read_archive(name, &mut archive, &mut |_| {})
+}
+
+/// The curves of a file over time, and the hair at the first time.
+pub(super) fn frames(
+    name: &str,
+    source: Source<'_>,
+) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+    let Source::File { file, length, .. } = source else {
+        return Err(HairFileError::Io {
+            name: name.to_owned(),
+            source: std::io::ErrorKind::Unsupported.into(),
+        });
+    };
+    let mut archive = Archive::open(Bytes::File { file, length }).map_err(|error| named(name, error))?;
+    let mut objects = Vec::new();
+    let raw = read_archive(name, &mut archive, &mut |object| objects.push(object))?;
+    let frames = frames::Frames::new(name, archive, objects).map_err(|error| named(name, error))?;
+    Ok((Box::new(frames), raw))
+}
+
+fn read_archive(
+    name: &str,
+    archive: &mut Archive<'_>,
+    seen: &mut dyn FnMut(CurveObject),
+) -> Result<RawHair, HairFileError> {
+    let named = |error| named(name, error);
+    let mut hair = Hair::new();
+    visit(archive, &mut |archive, object| {
+        hair.add(archive, &object)?;
+        seen(object);
+        Ok(())
+    })
+    .map_err(named)?;
+    if hair.objects == 0 {
+        return Err(named(AlembicError::Malformed {
+            offset: 0,
+            found: "an archive without curves".to_owned(),
+            wanted: "one object of curves or more",
+        }));
+    }
+    Ok(hair.finish())
+}
+
+/// The error with the name of its file.
+fn named(name: &str, error: AlembicError) -> HairFileError {
+    let name = name.to_owned();
+    match error {
+        AlembicError::Io(source) => HairFileError::Io { name, source },
+        AlembicError::Malformed { offset, found, wanted } => {
+            HairFileError::Malformed { name, offset, found, wanted: wanted.to_owned() }
+        }
+    }
+}
+
+fn refused(object: &CurveObject, found: impl std::fmt::Display, wanted: &'static str) -> AlembicError {
+    AlembicError::Malformed { offset: 0, found: format!("{}: {found}", object.path), wanted }
+}
+
+/// The curves so far.
+struct Hair {
+    raw: RawHair,
+    objects: u64,
+    /// Control points so far.
+    controls: u64,
+    /// Width and colour of each point, while all objects have them.
+    widths: Option<Vec<f32>>,
+    colours: Option<Vec<[f32; 3]>>,
+    /// Whether each curve is a guide of Unreal's grooms, which stands for others.
+    guides: Vec<bool>,
+}
+
+impl Hair {
+    fn new() -> Self {
+        Self {
+            raw: RawHair::new(Vec::new(), Vec::new()),
+            objects: 0,
+            controls: 0,
+            widths: Some(Vec::new()),
+            colours: Some(Vec::new()),
+            guides: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, archive: &mut Archive<'_>, object: &CurveObject) -> Result<(), AlembicError> {
+        self.objects += 1;
+        if object.points.samples == 0 {
+            self.raw.notes.push(format!("{}: curves without samples were left out.", object.path));
+            return Ok(());
+        }
+        let secs = archive.times(&object.points).secs(0);
+        let counts = object.counts(archive, secs)?;
+        let shape = shape::of(archive, object, secs, &mut self.raw.notes)?;
+        let controls = archive.elements(&object.points, 0)?;
+        if counts.iter().map(|&count| count as u64).sum::<u64>() != controls {
+            let found = format!("{controls} points in {} curves", counts.len());
+            return Err(refused(object, found, "as many points as nVertices add up to"));
+        }
+        self.controls += controls;
+        let made = counts
+            .iter()
+            .fold(self.raw.points.len(), |sum, &count| sum.saturating_add(shape.polyline_points(count)));
+        // Objects may share their points; a small file could then ask for any amount of memory.
+        if made > MOST_POINTS || 12 * self.controls > MOST_SHARING * archive.length() + (1 << 20) {
+            return Err(refused(
+                object,
+                format!("{made} points"),
+                "268435456 at most, and few that are shared",
+            ));
+        }
+        let transform = transform::to_archive(archive, object, secs)?;
+        let scale = transform.determinant().abs().cbrt() as f32;
+        self.add_points(archive, object, &counts, shape, transform)?;
+        self.raw.point_counts.extend(counts.iter().map(|&count| shape.polyline_points(count) as u32));
+
+        // Widths and colours are of use only if every object has them.
+        if let Some(mut widths) = self.widths.take()
+            && let Some(values) = &object.width
+            && values::spread(
+                archive,
+                object,
+                values,
+                secs,
+                &counts,
+                shape,
+                &mut self.raw.notes,
+                &mut |[v]| {
+                    widths.push(v * scale);
+                },
+            )?
+        {
+            self.widths = Some(widths);
+        }
+        if let Some(mut colours) = self.colours.take()
+            && let Some(values) = &object.colour
+            && values::spread(
+                archive,
+                object,
+                values,
+                secs,
+                &counts,
+                shape,
+                &mut self.raw.notes,
+                &mut |v: [f32; 3]| {
+                    colours.push(v.map(display_from_linear));
+                },
+            )?
+        {
+            self.colours = Some(colours);
+        }
+        self.add_guides(archive, object, counts.len())
+    }
+
+    fn add_points(
+        &mut self,
+        archive: &mut Archive<'_>,
+        object: &CurveObject,
+        counts: &[usize],
+        shape: super::basis::Shape,
+        transform: DMat4,
+    ) -> Result<(), AlembicError> {
+        let placed = |point: [f32; 3]| transform.transform_point3(Vec3::from(point).as_dvec3()).as_vec3();
+        let out = &mut self.raw.points;
+        if shape.keeps_points() {
+            out.reserve_exact(counts.iter().sum());
+            return archive.vectors(&object.points, 0, &mut |point| out.push(placed(point)));
+        }
+        let mut controls = Vec::with_capacity(counts.iter().sum());
+        archive.vectors(&object.points, 0, &mut |point: [f32; 3]| controls.push(placed(point)))?;
+        out.extend(shape.spread(Spread::Vertex, &controls, counts));
+        Ok(())
+    }
+
+    /// Notes which curves are guides: one value for all, or one for each.
+    fn add_guides(
+        &mut self,
+        archive: &mut Archive<'_>,
+        object: &CurveObject,
+        curves: usize,
+    ) -> Result<(), AlembicError> {
+        let start = self.guides.len();
+        if let Some(guides) = object.guides.as_ref().filter(|guides| guides.samples > 0) {
+            let count = archive.elements(guides, 0)?;
+            if count == 1 || count == curves as u64 {
+                archive.vectors(guides, 0, &mut |[flag]: [f32; 1]| self.guides.push(flag != 0.0))?;
+            }
+        }
+        let last = self.guides[start..].first().copied().filter(|_| self.guides.len() == start + 1);
+        self.guides.resize(start + curves, last.unwrap_or(false));
+        Ok(())
+    }
+
+    /// Leaves guides out, unless there is nothing else.
+    fn finish(mut self) -> RawHair {
+        self.raw.thickness = self.widths;
+        self.raw.colours = self.colours;
+        let guides = self.guides.iter().filter(|&&is_guide| is_guide).count();
+        if guides == 0 || guides == self.guides.len() {
+            return self.raw;
+        }
+        self.raw
+            .notes
+            .push(format!("Left out {guides} guides (groom_guide), which stand for the other curves."));
+        let of_points: Vec<bool> = (self.guides.iter().zip(&self.raw.point_counts))
+            .flat_map(|(&is_guide, &count)| std::iter::repeat_n(!is_guide, count as usize))
+            .collect();
+        keep(&mut self.raw.points, &of_points);
+        for array in self.raw.thickness.iter_mut() {
+            keep(array, &of_points);
+        }
+        for array in self.raw.colours.iter_mut() {
+            keep(array, &of_points);
+        }
+        let of_curves: Vec<bool> = self.guides.iter().map(|is_guide| !is_guide).collect();
+        keep(&mut self.raw.point_counts, &of_curves);
+        self.raw.left_out = Some(of_points);
+        self.raw
+    }
+}
+
+/// Keeps the marked elements.
+fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
+    let mut marks = marks.iter();
+    values.retain(|_| marks.next().is_some_and(|&kept| kept));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,167 @@
+//! The objects of an archive that are curves, with the transforms above them.
+
+use std::sync::Arc;
+
+use lovelock_alembic::{AlembicError, Archive, Compound, Object, Property, metadata_value};
+
+use super::refused;
+
+/// The deepest nesting of objects.
+const DEEPEST: usize = 128;
+
+/// The schemas of curves and of transforms.
+const CURVES: &str = "AbcGeom_Curve_v2";
+const TRANSFORM: &str = "AbcGeom_Xform_v3";
+
+/// Names of parameters that give curves their colour, the first one that is there.
+const COLOURS: [&str; 6] = ["groom_color", "Cd", "displayColor", "Cs", "color", "rgb"];
+
+/// An object of curves.
+pub(super) struct CurveObject {
+    /// Its path, for messages.
+    pub(super) path: String,
+    pub(super) points: Property,
+    pub(super) counts: Property,
+    pub(super) basis: Option<Property>,
+    pub(super) knots: Option<Property>,
+    pub(super) width: Option<Values>,
+    pub(super) colour: Option<Values>,
+    pub(super) guides: Option<Property>,
+    /// The transforms above it, innermost first.
+    pub(super) above: Option<Arc<Above>>,
+}
+
+/// A parameter of geometry.
+pub(super) struct Values {
+    pub(super) name: String,
+    pub(super) values: Property,
+    /// Indices of `values`.
+    pub(super) indices: Option<Property>,
+    /// The name of its interpolation as in USD.
+    pub(super) scope: Option<&'static str>,
+}
+
+/// A transform and those above it.
+pub(super) struct Above {
+    pub(super) inherits: Option<Property>,
+    pub(super) operations: Option<Property>,
+    pub(super) values: Option<Property>,
+    pub(super) above: Option<Arc<Above>>,
+}
+
+impl CurveObject {
+    /// Number of control points of each curve.
+    pub(super) fn counts(&self, archive: &mut Archive<'_>, secs: f64) -> Result<Vec<usize>, AlembicError> {
+        if self.counts.samples == 0 {
+            return Err(refused(self, "nVertices without samples", "the number of points of each curve"));
+        }
+        let (sample, ..) = archive.times(&self.counts).around(secs, self.counts.samples);
+        let mut counts = Vec::new();
+        let mut wrong = None;
+        archive.vectors(&self.counts, sample, &mut |[count]: [f32; 1]| {
+            if count < 0.0 {
+                wrong = Some(count);
+            }
+            counts.push(count as usize);
+        })?;
+        match wrong {
+            Some(count) => Err(refused(self, format!("a curve of {count} points"), "no negative number")),
+            None => Ok(counts),
+        }
+    }
+}
+
+/// Gives every object of curves to `take`, in the order of the archive.
+pub(super) fn visit(
+    archive: &mut Archive<'_>,
+    take: &mut dyn FnMut(&mut Archive<'_>, CurveObject) -> Result<(), AlembicError>,
+) -> Result<(), AlembicError> {
+    let mut waiting: Vec<(Object, String, Option<Arc<Above>>, usize)> =
+        vec![(archive.top(), String::new(), None, 0)];
+    while let Some((object, path, above, depth)) = waiting.pop() {
+        if depth > DEEPEST {
+            return Err(AlembicError::Malformed {
+                offset: 0,
+                found: format!("{path}: objects nested more than {DEEPEST} times"),
+                wanted: "fewer",
+            });
+        }
+        let above = if object.has_schema(TRANSFORM) {
+            let transform = schema(archive, &object, ".xform")?;
+            let get = |name| transform.get(name).cloned();
+            Some(Arc::new(Above {
+                inherits: get(".inherits"),
+                operations: get(".ops"),
+                values: get(".vals"),
+                above,
+            }))
+        } else {
+            above
+        };
+        if object.has_schema(CURVES)
+            && let Some(curves) = curves(archive, &object, &path, above.clone())?
+        {
+            take(archive, curves)?;
+        }
+        for child in archive.children(&object)?.into_iter().rev() {
+            let path = format!("{path}/{}", child.name);
+            waiting.push((child, path, above.clone(), depth + 1));
+        }
+    }
+    Ok(())
+}
+
+fn schema(archive: &mut Archive<'_>, object: &Object, name: &str) -> Result<Compound, AlembicError> {
+    match archive.properties(object)?.get(name) {
+        Some(property) => archive.compound(property),
+        None => Ok(Compound::default()),
+    }
+}
+
+fn curves(
+    archive: &mut Archive<'_>,
+    object: &Object,
+    path: &str,
+    above: Option<Arc<Above>>,
+) -> Result<Option<CurveObject>, AlembicError> {
+    let geometry = schema(archive, object, ".geom")?;
+    let (Some(points), Some(counts)) = (geometry.get("P"), geometry.get("nVertices")) else {
+        return Ok(None);
+    };
+    let parameters = match geometry.get(".arbGeomParams") {
+        Some(property) => archive.compound(property)?,
+        None => Compound::default(),
+    };
+    let colour = COLOURS.iter().find_map(|name| parameters.get(name));
+    let width = geometry.get("width").or_else(|| parameters.get("groom_width"));
+    Ok(Some(CurveObject {
+        path: path.to_owned(),
+        points: points.clone(),
+        counts: counts.clone(),
+        basis: geometry.get("curveBasisAndType").cloned(),
+        knots: geometry.get(".knots").cloned(),
+        width: values(archive, width)?,
+        colour: values(archive, colour)?,
+        guides: parameters.get("groom_guide").filter(|guides| guides.ty.pod.bytes() > 0).cloned(),
+        above,
+    }))
+}
+
+/// A parameter as values, or as values and indices.
+fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Option<Values>, AlembicError> {
+    let Some(property) = property else { return Ok(None) };
+    let scope = match metadata_value(&property.metadata, "geoScope") {
+        Some("con") => Some("constant"),
+        Some("uni") => Some("uniform"),
+        Some("var" | "fvr") => Some("varying"),
+        Some("vtx") => Some("vertex"),
+        _ => None,
+    };
+    let inner = archive.compound(property)?;
+    let values = inner.get(".vals").unwrap_or(property);
+    if values.samples == 0 || values.ty.pod.bytes() == 0 {
+        return Ok(None);
+    }
+    let indices = inner.get(".indices").filter(|indices| indices.samples > 0).cloned();
+    Ok(Some(Values { name: property.name.clone(), values: values.clone(), indices, scope }))
+}

@@ -1,0 +1,183 @@
+//! Curves over time: a simulation that was made elsewhere.
+
+use std::path::Path;
+
+use glam::Vec3;
+use lovelock_alembic::OGAWA_MAGIC;
+
+use super::clean::clean_keeping;
+use super::file::{Bounds, HairFile, RawHair};
+use super::format::HairFormat;
+use super::frames::CurveFrames;
+use super::source::Source;
+use super::units::{Facing, Unit, UpAxis, rotation_to_head_axes};
+use super::{HairFileError, alembic, guess_units, usd};
+
+/// The curves of an Alembic archive or of a USD stage over time, in metres with Y up.
+///
+/// The file stays open, and two of its times are in memory. Between them points move in straight lines.
+pub struct CurveCache {
+    name: String,
+    frames: Box<dyn CurveFrames>,
+    hair: HairFile,
+    /// Metres per unit, and the axis of the file that points up.
+    metres_per_unit: f32,
+    up: UpAxis,
+    /// Which points of the file those of `hair` are; empty for all of them.
+    kept: Vec<u32>,
+    /// The points of the last two times that were asked for, with the index of each.
+    held: [(usize, Vec<Vec3>); 2],
+    read: Vec<Vec3>,
+}
+
+impl std::fmt::Debug for CurveCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CurveCache").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// No time is in memory.
+const NONE: usize = usize::MAX;
+
+impl CurveCache {
+    /// Number of times of the curves in a file; `None` for a file without curves over time: of another format, or with one time.
+    pub fn times_in(path: &Path) -> Option<usize> {
+        let name = path.display().to_string();
+        let (frames, ..) = open(&name, path).ok().flatten()?;
+        Some(frames.times().len()).filter(|&times| times > 1)
+    }
+
+    /// Opens a file. A unit or an up axis that is `Auto` is that of the file, or guessed.
+    ///
+    /// # Errors
+    /// As [`load_hair`](super::load_hair), for files of other formats, and for curves whose number or points change over time.
+    pub fn open(path: &Path, unit: Unit, up: UpAxis) -> Result<Self, HairFileError> {
+        let name = path.display().to_string();
+        let Some((frames, raw, format)) = open(&name, path)? else {
+            return Err(HairFileError::Malformed {
+                name,
+                offset: 0,
+                found: "a file of another format".to_owned(),
+                wanted: "curves over time, in Alembic or USD".to_owned(),
+            });
+        };
+        let whole = raw.points.len();
+        let guides = raw.left_out.clone();
+        let mut kept = Vec::new();
+        let mut hair = clean_keeping(&name, format, raw, Some(&mut kept))?;
+        if let Some(of_points) = guides {
+            let places: Vec<u32> = (0..).zip(&of_points).filter(|(_, kept)| **kept).map(|(i, _)| i).collect();
+            kept.iter_mut().for_each(|point| *point = places[*point as usize]);
+        } else if kept.len() == whole {
+            kept.clear();
+        }
+        let metres_per_unit = unit.metres().unwrap_or_else(|| guess_units(&hair).metres_per_unit);
+        // Without a statement Y points up, as is usual in both formats: hair that flies says nothing about it.
+        let up = if up == UpAxis::Z { UpAxis::Z } else { UpAxis::Y };
+        let mut cache = Self {
+            name,
+            frames,
+            hair: hair.clone(),
+            metres_per_unit,
+            up,
+            kept,
+            held: [(NONE, Vec::new()), (NONE, Vec::new())],
+            read: Vec::new(),
+        };
+        let mut points = std::mem::take(&mut hair.points);
+        points.iter_mut().for_each(|point| *point = cache.in_metres(*point));
+        hair.bounds = Bounds::EMPTY;
+        points.iter().for_each(|&point| hair.bounds.include(point));
+        hair.points = points;
+        hair.thickness.iter_mut().flatten().for_each(|width| *width *= metres_per_unit);
+        hair.default_thickness = hair.default_thickness.map(|width| width * metres_per_unit);
+        hair.is_in_metres = true;
+        cache.hair = hair;
+        Ok(cache)
+    }
+
+    /// The times of the file, seconds, ascending; at least one.
+    pub fn times(&self) -> &[f64] {
+        self.frames.times()
+    }
+
+    /// The curves at the first time, in metres with Y up.
+    pub fn hair(&self) -> &HairFile {
+        &self.hair
+    }
+
+    /// Replaces `out` by the points of [`Self::hair`] at a time, which is clamped to the times of the file; metres, Y up.
+    ///
+    /// # Errors
+    /// For a file that cannot be read or contradicts itself at that time.
+    pub fn points_at(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
+        let times = self.frames.times();
+        let after = times.partition_point(|&time| time <= secs);
+        let (from, to) = (after.saturating_sub(1), after.min(times.len() - 1));
+        let (start, end) = (times[from], times[to]);
+        let t = if end > start { ((secs - start) / (end - start)).clamp(0.0, 1.0) as f32 } else { 0.0 };
+        let near = self.hold(from, to)?;
+        let far = if t > 0.0 { self.hold(to, from)? } else { near };
+        let (near, far) = (&self.held[near].1, &self.held[far].1);
+        out.clear();
+        out.extend(near.iter().zip(far).map(|(a, b)| a.lerp(*b, t)));
+        Ok(())
+    }
+
+    /// Brings a time into memory, in place of any but `other`. Returns where it is.
+    fn hold(&mut self, index: usize, other: usize) -> Result<usize, HairFileError> {
+        if let Some(held) = self.held.iter().position(|(held, _)| *held == index) {
+            return Ok(held);
+        }
+        let place = self.held.iter().position(|(held, _)| *held != other).unwrap_or(0);
+        let secs = self.frames.times()[index];
+        self.held[place].0 = NONE;
+        self.frames.points(secs, &mut self.read)?;
+        let (metres, up) = (self.metres_per_unit, self.up);
+        let (read, points) = (&self.read, &mut self.held[place].1);
+        points.clear();
+        if self.kept.is_empty() {
+            points.extend(read.iter().map(|&point| in_metres(point, metres, up)));
+        } else {
+            points.extend(self.kept.iter().map(|&i| in_metres(read[i as usize], metres, up)));
+        }
+        if let Some(point) = points.iter().find(|point| !point.is_finite()) {
+            return Err(HairFileError::Malformed {
+                name: self.name.clone(),
+                offset: 0,
+                found: format!("a point at {point} at {secs} s"),
+                wanted: "finite coordinates".to_owned(),
+            });
+        }
+        self.held[place].0 = index;
+        Ok(place)
+    }
+
+    fn in_metres(&self, point: Vec3) -> Vec3 {
+        in_metres(point, self.metres_per_unit, self.up)
+    }
+}
+
+/// A point in metres with Y up. Where Z points up, the face looks along -Y, as in modellers.
+fn in_metres(point: Vec3, metres_per_unit: f32, up: UpAxis) -> Vec3 {
+    let point = point * metres_per_unit;
+    if up == UpAxis::Z { rotation_to_head_axes(UpAxis::Z, Facing::MinusY) * point } else { point }
+}
+
+/// Curves over time, the hair at the first time, and the format.
+type Opened = (Box<dyn CurveFrames>, RawHair, &'static HairFormat);
+
+/// The content of a file; `None` for formats without curves over time.
+fn open(name: &str, path: &Path) -> Result<Option<Opened>, HairFileError> {
+    let source = Source::open(name, path)?;
+    let start = source.start();
+    if start.starts_with(OGAWA_MAGIC) {
+        let (frames, raw) = alembic::frames(name, source)?;
+        return Ok(Some((frames, raw, &alembic::FORMAT)));
+    }
+    if usd::FORMAT.magics.iter().any(|magic| start.starts_with(magic)) {
+        let (frames, raw) = usd::frames(name, source)?;
+        return Ok(Some((frames, raw, &usd::FORMAT)));
+    }
+    Ok(None)
+}

@@ -1,0 +1,25 @@
+//! Curves over time in a file.
+
+use glam::Vec3;
+
+use super::HairFileError;
+
+/// The curves of a file at its times. The number of their points does not change.
+pub(super) trait CurveFrames: Send {
+    /// The times at which something changes, seconds, ascending; at least one.
+    fn times(&self) -> &[f64];
+
+    /// Replaces `out` by the points of all polylines at a time, in the order of the file and in its unit and axes.
+    fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError>;
+}
+
+/// Sorted times without those that are equal up to rounding.
+pub(super) fn merged(mut times: Vec<f64>) -> Vec<f64> {
+    times.retain(|time| time.is_finite());
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|later, before| *later - *before < 1e-6);
+    if times.is_empty() {
+        times.push(0.0);
+    }
+    times
+}

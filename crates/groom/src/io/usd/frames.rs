@@ -1,0 +1,83 @@
+//! The curves of a stage over time.
+
+use glam::{DMat4, Vec3};
+
+use super::{Layer, Value, read_layer, shape, stage_transform, transform};
+use crate::io::HairFileError;
+use crate::io::basis::{Shape, Spread};
+use crate::io::file::RawHair;
+use crate::io::frames::{CurveFrames, merged};
+
+/// The most times of a file.
+const MOST_TIMES: usize = 1 << 20;
+
+struct Frames<L> {
+    layer: L,
+    /// Each prim with the number of control points of its curves.
+    prims: Vec<(usize, Vec<usize>, Shape)>,
+    metres_from_stage: DMat4,
+    codes_per_sec: f64,
+    times: Vec<f64>,
+}
+
+/// The curves of a layer over time, and the hair at the first time.
+pub(super) fn open<L: Layer + Send + 'static>(
+    mut layer: L,
+) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+    let raw = read_layer(&mut layer)?;
+    let metres_from_stage = stage_transform(&mut layer, &mut Vec::new())?;
+    let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
+    let codes_per_sec = rate.unwrap_or(24.0);
+    if !(1e-3..=1e6).contains(&codes_per_sec) {
+        return Err(layer.malformed(format!("timeCodesPerSecond {codes_per_sec}"), "0.001 to 1000000"));
+    }
+    let (mut prims, mut times) = (Vec::new(), Vec::new());
+    for prim in layer.curves()? {
+        if layer.times(prim, "curveVertexCounts")?.len() > 1 {
+            let found = format!("{}: curves whose number of points changes", layer.path(prim));
+            return Err(layer.malformed(found, "the same ones at all times"));
+        }
+        times.extend(layer.times(prim, "points")?);
+        times.extend(transform::times(&mut layer, prim)?);
+        if times.len() > MOST_TIMES {
+            return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
+        }
+        let counts = layer.attribute(prim, "curveVertexCounts", usize::MAX)?;
+        let counts = counts.map_or_else(Vec::new, Value::into_ints);
+        // `read_layer` has refused negative ones.
+        let counts = counts.into_iter().map(|count| count.max(0) as usize).collect();
+        let shape = shape(&mut layer, prim)?;
+        prims.push((prim, counts, shape));
+    }
+    let times = merged(times.into_iter().map(|code| code / codes_per_sec).collect());
+    Ok((Box::new(Frames { layer, prims, metres_from_stage, codes_per_sec, times }), raw))
+}
+
+impl<L: Layer + Send> CurveFrames for Frames<L> {
+    fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
+        out.clear();
+        let layer = &mut self.layer;
+        // With a tolerance for the division by the rate.
+        layer.set_time(secs * self.codes_per_sec + 1e-4);
+        for (prim, counts, shape) in &self.prims {
+            let transform = self.metres_from_stage * transform::to_stage(layer, *prim)?;
+            let points = layer.attribute(*prim, "points", usize::MAX)?;
+            let points = points.map_or_else(Vec::new, Value::into_vectors);
+            if points.len() != counts.iter().sum::<usize>() {
+                let found = format!("{}: {} points at {secs} s", layer.path(*prim), points.len());
+                return Err(layer.malformed(found, "as many as at the first time"));
+            }
+            let placed = |p: &Vec3| transform.transform_point3(p.as_dvec3()).as_vec3();
+            if shape.keeps_points() {
+                out.extend(points.iter().map(placed));
+            } else {
+                out.extend(shape.spread(Spread::Vertex, &points, counts).iter().map(placed));
+            }
+        }
+        Ok(())
+    }
+}
