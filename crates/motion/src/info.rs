@@ -91,7 +91,7 @@ impl MotionFile {
     /// The summary for the command line.
     pub fn info(&self) -> MotionInfo {
         MotionInfo {
-            format: "BVH".into(),
+            format: self.format.clone(),
             dropped: self.dropped.clone(),
             notes: self.notes.clone(),
             joints: self.joints.len(),

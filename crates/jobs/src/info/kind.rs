@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use lovelock_groom::HairFormat;
+use lovelock_motion::is_fbx;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -15,9 +16,9 @@ use lovelock_record::TAKE_EXTENSION;
 pub enum FileKind {
     /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
     Hair,
-    /// glTF 2: `.glb`, `.gltf`.
+    /// glTF 2, VRM or FBX.
     Character,
-    /// BVH.
+    /// BVH, or motion of VRM.
     Motion,
     /// A project.
     Project,
@@ -64,8 +65,8 @@ impl FileKind {
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
             Self::Hair => HairFormat::all_extensions(),
-            Self::Character => vec!["glb", "gltf"],
-            Self::Motion => vec!["bvh"],
+            Self::Character => vec!["glb", "gltf", "vrm", "fbx"],
+            Self::Motion => vec!["bvh", "vrma"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
@@ -92,8 +93,9 @@ impl FileKind {
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
         let by_name = Self::by_extension(path);
         // A style is a project with fewer sections: only its name tells it apart.
+        // Motion of VRM is glTF without a body.
         let kind = match (Self::by_content(&start), by_name) {
-            (Some(Self::Project), Some(Self::Style)) => by_name,
+            (Some(Self::Project), Some(Self::Style)) | (Some(Self::Character), Some(Self::Motion)) => by_name,
             (by_content, _) => by_content.or(by_name),
         };
         kind.ok_or_else(|| {
@@ -121,6 +123,7 @@ impl FileKind {
         }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
+            _ if is_fbx(start) => return Some(Self::Character),
             // The start of every chunk in `record::take`.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
             [0x76, 0x2f, 0x31, 0x01, ..] | [b'#', b'?', ..] => return Some(Self::Surroundings),

@@ -36,6 +36,7 @@ pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -
         notes: raw.notes.clone(),
         unit_metres: 1.0,
         up: UpAxis::Y,
+        format: "BVH".into(),
         ..MotionFile::default()
     };
     let rest = joint_position_meaning(raw);

@@ -6,14 +6,11 @@
 mod interpret;
 mod parse;
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{MotionError, MotionSettings, UpAxis, error::read_file, humanoid::Humanoid};
-
-/// Size of the largest file that is read.
-const FILE_LIMIT: u64 = 1 << 30;
+use crate::{MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
 
 /// One joint of a motion file.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +48,10 @@ pub struct MotionFile {
     pub unit_metres: f32,
     /// The axis that pointed up in the file.
     pub up: UpAxis,
+    /// The format, such as `BVH`.
+    pub format: String,
+    /// Names of the clips of the file; empty for a format that holds one motion.
+    pub clips: Vec<String>,
 }
 
 impl MotionFile {
@@ -84,32 +85,8 @@ impl MotionFile {
     }
 }
 
-/// Loads a BVH file, guessing what it does not specify.
-///
-/// # Errors
-/// If the text is not BVH (the error contains the line), or the file has no joints or no frames.
-pub fn load_motion(path: &Path) -> Result<MotionFile, MotionError> {
-    load_motion_with(path, MotionSettings::default())
-}
-
-/// Loads a BVH file.
-///
-/// # Errors
-/// As [`load_motion`].
-pub fn load_motion_with(path: &Path, settings: MotionSettings) -> Result<MotionFile, MotionError> {
-    let bytes = read_file(path, FILE_LIMIT)?;
-    load_motion_bytes(&path.display().to_string(), &bytes, settings)
-}
-
-/// Loads a BVH file from bytes; `name` is used in messages.
-///
-/// # Errors
-/// As [`load_motion`].
-pub fn load_motion_bytes(
-    name: &str,
-    bytes: &[u8],
-    settings: MotionSettings,
-) -> Result<MotionFile, MotionError> {
+/// Reads a BVH file from bytes; `name` is used in messages.
+pub(crate) fn read(name: &str, bytes: &[u8], settings: MotionSettings) -> Result<MotionFile, MotionError> {
     let raw = parse::parse(name, bytes)?;
     Ok(interpret::interpret(name, &raw, settings))
 }

@@ -68,10 +68,12 @@ pub(crate) struct Humanoid {
 
 impl Humanoid {
     pub(crate) fn of_skeleton(skeleton: &Skeleton) -> Self {
-        Self::new(
-            &skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
-            &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
-        )
+        let names: Vec<&str> = if skeleton.named.is_empty() {
+            skeleton.joints.iter().map(|j| j.name.as_str()).collect()
+        } else {
+            (0..skeleton.joints.len()).map(|j| skeleton.named.get(&j).map_or("", String::as_str)).collect()
+        };
+        Self::new(&names, &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>())
     }
 
     /// The joint of a role.

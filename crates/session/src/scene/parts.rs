@@ -132,8 +132,17 @@ pub(super) fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MotionKey {
     Rest,
-    Clip { name: String, shape: Shape },
-    File { stamp: Stamp, settings: MotionSettings, shape: Shape },
+    Clip {
+        name: String,
+        shape: Shape,
+    },
+    /// A motion file, and the clip of it that is wanted if it has several.
+    File {
+        stamp: Stamp,
+        settings: MotionSettings,
+        clip: String,
+        shape: Shape,
+    },
 }
 
 /// The part of a clip that is played, and the blend at its end.
@@ -181,7 +190,7 @@ impl MotionKey {
             (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), shape }),
             (MotionSource::File, Some(file)) => {
                 let stamp = Stamp::of(&access.read(Place::Motion, file)?);
-                Ok(Self::File { stamp, settings: section.settings, shape })
+                Ok(Self::File { stamp, settings: section.settings, clip: section.clip.clone(), shape })
             }
             (MotionSource::File, None) => {
                 Err(Problem::not_loaded(Place::Motion, "no motion file is set; pick one"))
@@ -219,9 +228,9 @@ impl MotionKey {
                     }),
                 }
             }
-            Self::File { stamp, settings, shape } => {
+            Self::File { stamp, settings, clip: wanted, shape } => {
                 let refuse = |error| Problem::not_loaded(Place::Motion, error);
-                let file = load_motion_with(&stamp.path, *settings).map_err(refuse)?;
+                let file = load_motion_with(&stamp.path, *settings, wanted).map_err(refuse)?;
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
                 Ok(MotionPart {
                     clip: Some(shape.applied(&Arc::new(clip), &part.body)),
