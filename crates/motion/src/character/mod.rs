@@ -31,3 +31,8 @@ pub struct Character {
     /// Metres per unit of the file.
     pub unit_metres: f32,
 }
+
+/// What an error adds about a file without a body that has clips.
+pub(crate) fn only_motion(clips: usize) -> &'static str {
+    if clips > 0 { " (a clip without a body is opened by *Motion file*)" } else { "" }
+}

@@ -13,7 +13,7 @@ use ufbx::{
     LoadOpts, Scene, SpaceConversion,
 };
 
-use crate::character::{Axes, Character, Draft};
+use crate::character::{Axes, Character, Draft, only_motion};
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -60,7 +60,7 @@ pub(crate) fn read(
     if needs_mesh && mesh.triangles.is_empty() {
         return Err(MotionError::Empty {
             file: file.to_owned(),
-            found: describe(&scene, bytes),
+            found: describe(&scene, bytes) + only_motion(scene.anim_stacks.len()),
             wanted: "a mesh of triangles",
         });
     }

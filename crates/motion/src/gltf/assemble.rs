@@ -13,7 +13,7 @@ use super::{
     skin::read_skin,
     vrm::Vrm,
 };
-use crate::character::{Axes, Character, Draft, WornHair};
+use crate::character::{Axes, Character, Draft, WornHair, only_motion};
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -112,7 +112,7 @@ pub(super) fn assemble(
     }
     let (mesh, skin_data) = surface.finish(palette);
     if needs_mesh && mesh.triangles.is_empty() {
-        let found = describe_contents(document, &dropped);
+        let found = describe_contents(document, &dropped) + only_motion(document.animations.len());
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
     let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };

@@ -7,6 +7,7 @@ mod bvh;
 mod characters;
 mod clips;
 mod collide;
+mod fbx;
 mod fuzz;
 mod retargeting;
 mod rolls;
