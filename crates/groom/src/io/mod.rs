@@ -4,6 +4,7 @@
 //! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
 //! hairstyle of it. Each format is a [`HairFormat`] in the table [`HAIR_FORMATS`].
 
+mod basis;
 mod bytes;
 mod clean;
 mod error;

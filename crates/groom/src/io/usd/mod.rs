@@ -4,7 +4,6 @@
 //! transforms of all ancestors of a prim are applied. Cubic curves become polylines. References, payloads, sublayers
 //! and variants are ignored, and a note says so.
 
-mod basis;
 mod crate_bytes;
 mod crate_file;
 mod crate_value;
@@ -15,11 +14,11 @@ mod value;
 use glam::{DMat4, Vec3};
 
 use super::HairFileError;
+use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::source::Source;
 use super::units::UpAxis;
-use basis::{Shape, Spread};
 use crate_file::{CRATE_MAGIC, CrateLayer};
 use text::TextLayer;
 use value::Value;
@@ -144,7 +143,7 @@ impl Curves {
         let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
         let counts = layer.attribute(prim, "curveVertexCounts", points.len())?;
         let counts = counts.map_or_else(Vec::new, Value::into_ints);
-        let shape = Shape::read(layer, prim)?;
+        let shape = shape(layer, prim)?;
         let sum =
             counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(usize::try_from(count).ok()?));
         if sum != Some(points.len()) {
@@ -192,6 +191,36 @@ impl Curves {
             colours,
         })
     }
+}
+
+/// Basis and wrap of a prim's curves.
+fn shape(layer: &mut impl Layer, prim: usize) -> Result<Shape, HairFileError> {
+    let mut word = |name: &str, fallback: &str| {
+        let value = layer.attribute(prim, name, 1)?;
+        Ok(value.as_ref().and_then(Value::token).unwrap_or(fallback).to_owned())
+    };
+    let (kind, basis, wrap) =
+        (word("type", "cubic")?, word("basis", "bezier")?, word("wrap", "nonperiodic")?);
+    let basis = match (kind.as_str(), basis.as_str()) {
+        ("linear", _) => Basis::Linear,
+        ("cubic", "bezier") => Basis::Bezier,
+        ("cubic", "bspline") => Basis::Bspline,
+        ("cubic", "catmullRom") => Basis::CatmullRom,
+        _ => {
+            let found = format!("{}: {kind} curves of basis {basis}", layer.path(prim));
+            return Err(layer.malformed(found, "linear, or cubic of bezier, bspline or catmullRom"));
+        }
+    };
+    let wrap = match wrap.as_str() {
+        "nonperiodic" => Wrap::Nonperiodic,
+        "periodic" => Wrap::Periodic,
+        "pinned" => Wrap::Pinned,
+        _ => {
+            let found = format!("{}: wrap {wrap}", layer.path(prim));
+            return Err(layer.malformed(found, "nonperiodic, periodic or pinned"));
+        }
+    };
+    Ok(Shape::new(basis, wrap))
 }
 
 /// From linear sRGB, as in USD, to display values, as in hair files.

@@ -2,22 +2,22 @@
 
 use glam::Vec3;
 
-use super::{HairFileError, Layer, Value};
-
 /// Line segments per span of a cubic curve; a Bézier span covers three control points.
 const PIECES: usize = 4;
 const BEZIER_PIECES: usize = 8;
 
+/// The basis of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Basis {
+pub(super) enum Basis {
     Linear,
     Bezier,
     Bspline,
     CatmullRom,
 }
 
+/// What a curve does at its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wrap {
+pub(super) enum Wrap {
     Nonperiodic,
     Periodic,
     Pinned,
@@ -44,33 +44,8 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub(super) fn read(layer: &mut impl Layer, prim: usize) -> Result<Self, HairFileError> {
-        let mut word = |name: &str, fallback: &str| {
-            let value = layer.attribute(prim, name, 1)?;
-            Ok(value.as_ref().and_then(Value::token).unwrap_or(fallback).to_owned())
-        };
-        let (kind, basis, wrap) =
-            (word("type", "cubic")?, word("basis", "bezier")?, word("wrap", "nonperiodic")?);
-        let basis = match (kind.as_str(), basis.as_str()) {
-            ("linear", _) => Basis::Linear,
-            ("cubic", "bezier") => Basis::Bezier,
-            ("cubic", "bspline") => Basis::Bspline,
-            ("cubic", "catmullRom") => Basis::CatmullRom,
-            _ => {
-                let found = format!("{}: {kind} curves of basis {basis}", layer.path(prim));
-                return Err(layer.malformed(found, "linear, or cubic of bezier, bspline or catmullRom"));
-            }
-        };
-        let wrap = match wrap.as_str() {
-            "nonperiodic" => Wrap::Nonperiodic,
-            "periodic" => Wrap::Periodic,
-            "pinned" => Wrap::Pinned,
-            _ => {
-                let found = format!("{}: wrap {wrap}", layer.path(prim));
-                return Err(layer.malformed(found, "nonperiodic, periodic or pinned"));
-            }
-        };
-        Ok(Self { basis, wrap })
+    pub(super) fn new(basis: Basis, wrap: Wrap) -> Self {
+        Self { basis, wrap }
     }
 
     /// Number of spans of a curve with this many control points; leftover points at its end belong to none.
@@ -234,7 +209,7 @@ mod tests {
     use super::*;
 
     fn shape(basis: Basis, wrap: Wrap) -> Shape {
-        Shape { basis, wrap }
+        Shape::new(basis, wrap)
     }
 
     /// Control points on the line x = i: every correct basis gives x between its controls.
