@@ -1,4 +1,4 @@
-//! Bodies and motion: glTF, VRM, FBX, BVH, retargeting, poses and colliders.
+//! Bodies and motion: glTF, VRM, FBX, USD, BVH, retargeting, poses and colliders.
 //!
 //! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, with the face of
 //! the rest pose toward +Z; loaders convert.
@@ -28,6 +28,7 @@ mod seam;
 mod settings;
 mod skinning;
 mod surface;
+mod usd;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
@@ -56,3 +57,4 @@ pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_plac
 pub use seam::Seam;
 pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, OwnHair, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};
+pub use usd::{UsdContent, usd_content};

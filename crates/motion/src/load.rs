@@ -5,12 +5,12 @@ use std::path::Path;
 use crate::character::Character;
 use crate::error::read_file;
 use crate::recorded::motion_of;
-use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf};
+use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf, usd};
 
 /// Size of the largest file that is read.
 const FILE_LIMIT: u64 = 2 << 30;
 
-/// Loads a character with automatic unit and axes: glTF, VRM or FBX.
+/// Loads a character with automatic unit and axes: glTF, VRM, FBX or USD.
 ///
 /// # Errors
 /// If the file cannot be read, is truncated, refers outside itself or its folder, needs an unsupported
@@ -66,6 +66,9 @@ fn read_figure(
     if fbx::is_fbx(bytes) {
         return fbx::read(name, bytes, settings, needs_mesh);
     }
+    if usd::is_usd(bytes) {
+        return usd::read(name, bytes, settings, needs_mesh);
+    }
     if bytes.starts_with(b"HIERARCHY") {
         let problem = "is BVH, which holds motion and no body; open it as a motion file";
         return Err(MotionError::malformed(name, "the file", problem));
@@ -80,7 +83,7 @@ fn refuse_empty(name: &str, bytes: &[u8]) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// Loads a motion file, guessing what it does not specify: BVH, or the first clip of a glTF, VRM animation or FBX file.
+/// Loads a motion file, guessing what it does not specify: BVH, or the first clip of a glTF, VRM animation, FBX or USD file.
 ///
 /// # Errors
 /// If the file is of another kind or broken (the error contains the line or place), or has no joints or no frames.

@@ -1,6 +1,6 @@
 //! Meshes as pieces of the surface: triangles, normals, weights and blend shapes.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3};
 use ufbx::{BlendShape, Mesh, Node, Scene, SkinDeformer};
@@ -8,7 +8,7 @@ use ufbx::{BlendShape, Mesh, Node, Scene, SkinDeformer};
 use super::nodes::Nodes;
 use super::{affine, vec3};
 use crate::character::WornHair;
-use crate::surface::{CLAY, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightCounts};
+use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightCounts};
 use crate::{BodySettings, MotionError};
 
 /// The shapes of each channel by the number of its element: one list for each node that shows the mesh.
@@ -92,20 +92,16 @@ impl Reader<'_> {
     fn mesh(&mut self, node: &Node, mesh: &Mesh, notes: &mut Vec<String>) -> Result<(), MotionError> {
         let refuse = |problem: String| MotionError::malformed(self.file, "the meshes", problem);
         let weights = self.weights(node, mesh, notes)?;
-        let corners = Corners::new(mesh);
-        let mut piece = Piece { color: Vec3::ONE, triangles: corners.triangles, ..Piece::default() };
+        let mut corners = split(mesh);
+        let mut piece =
+            Piece { color: Vec3::ONE, triangles: std::mem::take(&mut corners.triangles), ..Piece::default() };
         for (&(vertex, material), &normal) in corners.vertices.iter().zip(&corners.normals) {
             piece.positions.push(mesh.vertices.get(vertex).map_or(Vec3::NAN, |&p| vec3(p)));
             piece.normals.push(normal);
             piece.colors.push(color(mesh, material));
             piece.weights.push(weights.get(vertex).copied().unwrap_or(VertexWeights::rigid(0)));
         }
-        let mut copies: Vec<Vec<u32>> = vec![Vec::new(); mesh.num_vertices];
-        for (copy, &(vertex, _)) in corners.vertices.iter().enumerate() {
-            if let Some(of_vertex) = copies.get_mut(vertex) {
-                of_vertex.push(copy as u32);
-            }
-        }
+        let copies = corners.copies(mesh.num_vertices);
         for deformer in &mesh.blend_deformers {
             for channel in &deformer.channels {
                 let first = self.surface.morphs();
@@ -199,43 +195,26 @@ impl Reader<'_> {
     }
 }
 
-/// The vertices of a mesh, split where normals or materials differ, and its triangles between them.
-struct Corners {
-    /// Vertex of the file and material of each.
-    vertices: Vec<(usize, u32)>,
-    normals: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Corners {
-    fn new(mesh: &Mesh) -> Self {
-        let mut corners = Self { vertices: Vec::new(), normals: Vec::new(), triangles: Vec::new() };
-        let mut known: HashMap<(usize, u32, [i16; 3]), u32> = HashMap::with_capacity(mesh.num_vertices);
-        let mut indices = vec![0_u32; (mesh.max_face_triangles * 3).max(3)];
-        for (f, &face) in mesh.faces.iter().enumerate() {
-            if face.num_indices < 3 || mesh.face_hole.get(f).copied().unwrap_or(false) {
-                continue;
-            }
-            let material = mesh.face_material.get(f).copied().unwrap_or(0);
-            let count = mesh.triangulate_face(&mut indices, face) as usize;
-            for triangle in indices[..(count * 3).min(indices.len())].as_chunks::<3>().0 {
-                let placed = triangle.map(|index| {
-                    let index = index as usize;
-                    let vertex = mesh.vertex_indices.get(index).map_or(usize::MAX, |&v| v as usize);
-                    let normal = normal(mesh, index);
-                    // Steps of half a degree: exporters write the same normal with different rounding.
-                    let rounded = (normal * 127.0).round().to_array().map(|c| c as i16);
-                    *known.entry((vertex, material, rounded)).or_insert_with(|| {
-                        corners.vertices.push((vertex, material));
-                        corners.normals.push(normal);
-                        corners.vertices.len() as u32 - 1
-                    })
-                });
-                corners.triangles.push(placed);
-            }
+/// Splits a mesh into triangles.
+fn split(mesh: &Mesh) -> Corners {
+    let mut corners = Corners::default();
+    let mut indices = vec![0_u32; (mesh.max_face_triangles * 3).max(3)];
+    for (f, &face) in mesh.faces.iter().enumerate() {
+        if face.num_indices < 3 || mesh.face_hole.get(f).copied().unwrap_or(false) {
+            continue;
         }
-        corners
+        let material = mesh.face_material.get(f).copied().unwrap_or(0);
+        let count = mesh.triangulate_face(&mut indices, face) as usize;
+        for triangle in indices[..(count * 3).min(indices.len())].as_chunks::<3>().0 {
+            let placed = triangle.map(|index| {
+                let index = index as usize;
+                let vertex = mesh.vertex_indices.get(index).map_or(usize::MAX, |&v| v as usize);
+                corners.corner(vertex, material, normal(mesh, index))
+            });
+            corners.triangles.push(placed);
+        }
     }
+    corners
 }
 
 /// The normal at a corner; zero if the file has none.

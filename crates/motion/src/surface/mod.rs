@@ -1,5 +1,6 @@
 //! A surface under construction: the triangles of all meshes of a file, in bind space.
 
+mod corners;
 mod normals;
 mod weights;
 
@@ -8,6 +9,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::{Mesh, MorphTarget, SkinData};
+pub(crate) use corners::Corners;
 use normals::fill_normals;
 pub(crate) use weights::{Palette, VertexWeights, WeightCounts};
 
