@@ -44,7 +44,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         let on = body.source == BodySource::File;
         if ui
             .selectable_label(on, "Character file…")
-            .on_hover_text("Loads a character: .glb, .gltf, .vrm or .fbx.")
+            .on_hover_text("Loads a character: .glb, .gltf, .vrm, .fbx, .usd or .usdz.")
             .clicked()
         {
             if body.file.is_some() && !on {

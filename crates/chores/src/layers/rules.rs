@@ -69,8 +69,9 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
-    ("motion", &["base"]),
-    ("groom", &["appearance", "base"]),
+    ("motion", &["usd", "base"]),
+    ("groom", &["appearance", "usd", "base"]),
+    ("usd", &["base"]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
     ("metrics", &["base"]),
@@ -85,7 +86,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 13] = [
+const WITHOUT_WGPU: [&str; 14] = [
     "appearance",
     "base",
     "brush",
@@ -96,6 +97,7 @@ const WITHOUT_WGPU: [&str; 13] = [
     "style",
     "record",
     "metrics",
+    "usd",
     "testkit",
     "xtask",
     "chores",
@@ -251,7 +253,7 @@ mod tests {
             ("lovelock → lovelock-gpu", "app may use jobs, study"),
             ("lovelock-project → lovelock-session", "project may use render"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
-            ("lovelock-groom → lovelock-motion", "groom may use appearance, base"),
+            ("lovelock-groom → lovelock-motion", "groom may use appearance, usd, base"),
             ("lovelock-record → lovelock-session", "record may use groom, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use lovelock_groom::HairFormat;
-use lovelock_motion::is_fbx;
+use lovelock_motion::{UsdContent, is_fbx, usd_content};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -16,7 +16,7 @@ use lovelock_record::TAKE_EXTENSION;
 pub enum FileKind {
     /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
     Hair,
-    /// glTF 2, VRM or FBX.
+    /// glTF 2, VRM, FBX or USD.
     Character,
     /// BVH, or motion of VRM.
     Motion,
@@ -65,7 +65,7 @@ impl FileKind {
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
             Self::Hair => HairFormat::all_extensions(),
-            Self::Character => vec!["glb", "gltf", "vrm", "fbx"],
+            Self::Character => vec!["glb", "gltf", "vrm", "fbx", "usdc", "usda", "usd", "usdz"],
             Self::Motion => vec!["bvh", "vrma"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
@@ -96,6 +96,14 @@ impl FileKind {
         // Motion of VRM is glTF without a body.
         let kind = match (Self::by_content(&start), by_name) {
             (Some(Self::Project), Some(Self::Style)) | (Some(Self::Character), Some(Self::Motion)) => by_name,
+            // A stage holds hair, a body or motion; only its prims tell.
+            (Some(Self::Hair), _) if start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda") => {
+                Some(match usd_content(path) {
+                    UsdContent::Character => Self::Character,
+                    UsdContent::Motion => Self::Motion,
+                    UsdContent::Other => Self::Hair,
+                })
+            }
             (by_content, _) => by_content.or(by_name),
         };
         kind.ok_or_else(|| {

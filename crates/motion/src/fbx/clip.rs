@@ -20,6 +20,7 @@ const MEMORY_LIMIT: usize = 2 << 30;
 /// Reads every animation stack that moves a joint or a morph target.
 pub(super) fn read_clips(
     file: &str,
+    bytes: &[u8],
     scene: &Scene,
     nodes: &Nodes,
     morphs: &MorphsOfChannels,
@@ -35,7 +36,8 @@ pub(super) fn read_clips(
             resample_rate: RATE,
             ..BakeOpts::default()
         };
-        let baked = ufbx::bake_anim(scene, &stack.anim, options).map_err(|error| refuse(file, &error))?;
+        let baked =
+            ufbx::bake_anim(scene, &stack.anim, options).map_err(|error| refuse(file, bytes, &error))?;
         let mut clip = Clip { name: stack.element.name.to_string(), ..Clip::default() };
         clip.joints = joints(&baked, nodes);
         clip.morphs = morph_tracks(&baked, morphs);

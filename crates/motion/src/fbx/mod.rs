@@ -38,7 +38,8 @@ pub(crate) fn read(
     settings: BodySettings,
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
-    let scene = ufbx::load_memory(bytes, options(bytes.len(), needs_mesh)).map_err(|e| refuse(file, &e))?;
+    let scene =
+        ufbx::load_memory(bytes, options(bytes.len(), needs_mesh)).map_err(|e| refuse(file, bytes, &e))?;
     let mut notes = warnings(&scene);
     let mut dropped = std::collections::BTreeMap::new();
     let nodes = nodes::Nodes::new(file, &scene, needs_mesh)?;
@@ -64,7 +65,7 @@ pub(crate) fn read(
             wanted: "a mesh of triangles",
         });
     }
-    let clips = clip::read_clips(file, &scene, &nodes, &morphs, &mut notes)?;
+    let clips = clip::read_clips(file, bytes, &scene, &nodes, &morphs, &mut notes)?;
     let metadata = &scene.metadata;
     let format = format!(
         "FBX {}.{} ({})",
@@ -108,11 +109,17 @@ fn options(file_bytes: usize, needs_mesh: bool) -> LoadOpts<'static> {
 }
 
 /// The library's error as a sentence.
-fn refuse(file: &str, error: &ufbx::Error) -> MotionError {
+fn refuse(file: &str, bytes: &[u8], error: &ufbx::Error) -> MotionError {
     let description: &str = &error.description;
     let problem = match error.type_ {
         ErrorType::UnsupportedVersion => {
-            "has a version that is not read; export it as FBX 2011 to 2020 (versions 7.1 to 7.7)".to_owned()
+            // A binary file states its version after its signature.
+            let stated = bytes.get(23..).and_then(|rest| rest.first_chunk::<4>());
+            let stated = stated.filter(|_| bytes.starts_with(b"Kaydara FBX Binary"));
+            let version = stated.map_or_else(String::new, |four| format!(" ({})", u32::from_le_bytes(*four)));
+            format!(
+                "has a version{version} that is not read; export it as FBX 2011 to 2020 (versions 7100 to 7700)"
+            )
         }
         ErrorType::TruncatedFile => "ends too early; it was cut off, copy or export it again".to_owned(),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit => {

@@ -11,3 +11,5 @@ mod fbx;
 mod fuzz;
 mod retargeting;
 mod rolls;
+mod usd;
+mod vrm;
