@@ -127,8 +127,10 @@ fn read_motion(
     let ends_in = |ending: &str| {
         Path::new(name).extension().is_some_and(|e| e.to_string_lossy().eq_ignore_ascii_case(ending))
     };
-    let is_figure =
-        fbx::is_fbx(bytes) || bytes.starts_with(b"glTF") || ["gltf", "vrma"].into_iter().any(ends_in);
+    let is_figure = fbx::is_fbx(bytes)
+        || usd::is_usd(bytes)
+        || bytes.starts_with(b"glTF")
+        || ["gltf", "vrma"].into_iter().any(ends_in);
     if !is_figure {
         return bvh::read(name, bytes, settings);
     }

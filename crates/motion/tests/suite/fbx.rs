@@ -105,7 +105,7 @@ fn refusals_are_sentences() {
         (&whole[..20], "is damaged"),
         (&whole[..200], "cut off"),
         (&whole[..whole.len() / 2], "cut off"),
-        (&b"; FBX 7.4.0 project file\n"[..], "without a usable triangle"),
+        (&b"; FBX 7.4.0 project file\n"[..], "no FBX document"),
         (&b"; FBX 7.4.0 project file\nObjects: {\n"[..], "x.fbx"),
     ] {
         let error = refused(bytes);

