@@ -175,10 +175,10 @@ fn warnings(scene: &Scene) -> Vec<String> {
 /// What a file without triangles contains.
 fn describe(scene: &Scene, bytes: &[u8]) -> String {
     let encrypted = b"EncryptionType";
-    // The value follows the name: `I` and an integer in binary files, `: 1` in text.
+    // The value follows the name: a letter and an integer in binary files, `: 1` in text.
     let at = bytes.windows(encrypted.len()).position(|window| window == encrypted);
     let value = at.map(|at| &bytes[at + encrypted.len()..]).and_then(|rest| match rest {
-        [b'I', low, ..] => Some(*low),
+        [b'I' | b'L' | b'Y', low, ..] => Some(*low),
         [b':', text @ ..] => text.trim_ascii_start().first().map(|digit| digit.wrapping_sub(b'0')),
         _ => None,
     });

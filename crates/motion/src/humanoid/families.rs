@@ -105,7 +105,7 @@ fn biped_of_3ds_max() {
         "Bip01 {} Thigh\n  Bip01 {} Calf\n    Bip01 {} Foot\n      Bip01 {} Toe0\n        Bip01 {} Toe0Nub\n";
     let arms = "Bip01 {} Clavicle\n  Bip01 {} UpperArm\n    Bip01 {} Forearm\n      Bip01 {} Hand\n        Bip01 {} Finger0\n      Bip01 {} ForeTwist\n";
     let indented = |text: &str, by: usize| {
-        both(text, sides).lines().map(|line| format!("{}{line}\n", " ".repeat(by))).collect::<String>()
+        both(text, sides).lines().fold(String::new(), |all, line| all + &" ".repeat(by) + line + "\n")
     };
     // Arms hang on the neck, and legs on the lowest joint of the spine.
     let trunk = "Bip01\n  Bip01 Footsteps\n  Bip01 Pelvis\n    Bip01 Spine\n";
@@ -256,8 +256,10 @@ fn miku_miku_dance() {
     let limbs = ["{}肩", "{}腕", "{}ひじ", "{}手首", "{}足", "{}ひざ", "{}足首", "{}つま先"];
     check(&text, ["グルーブ", "首", "頭"], limbs, sides);
     // Newer models have copies of the legs that carry the surface.
-    let copies = text.replace("    左足ＩＫ", "    左足ＩＫ")
-        + &both("        {}足D\n          {}ひざD\n            {}足首D\n              {}足先EX\n", sides);
+    let copies =
+        both("        {}足D\n          {}ひざD\n            {}足首D\n              {}足先EX\n", sides)
+            + "  左足ＩＫ";
+    let copies = text.replace("  左足ＩＫ", &copies);
     let (names, parents) = tree(&copies);
     let figure = Humanoid::new(&names, &parents);
     assert_eq!(figure.get(Role::Shin(Side::Left)).map(|j| names[j]), Some("左ひざD"));

@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         let mut clip = Clip::default();
         for &(animation, skeleton) in group {
             if clip.name.is_empty() {
-                clip.name = layer.path(animation).rsplit('/').next().unwrap_or_default().to_owned();
+                layer.path(animation).rsplit('/').next().unwrap_or_default().clone_into(&mut clip.name);
             }
             let names = tokens(layer, animation, "joints")?;
             let vectors = |value: Value| value.into_vectors();

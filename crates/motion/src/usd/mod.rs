@@ -1,6 +1,6 @@
 //! Characters and clips from USD stages: `Skeleton`, `SkelAnimation`, and meshes that are bound to skeletons.
 //!
-//! Joints, bind transforms and weights follow the schema UsdSkel (<https://openusd.org/release/api/_usd_skel__schemas.html>). One file
+//! Joints, bind transforms and weights follow the schema `UsdSkel` (<https://openusd.org/release/api/_usd_skel__schemas.html>). One file
 //! is read: what it refers to in others, and variants, are left out, and a note says so.
 
 mod clip;
@@ -147,18 +147,15 @@ pub(crate) fn read(
 
 /// The transform from the stage to metres with Y up, and the metres per unit.
 fn stage_transform(layer: &mut dyn Layer, notes: &mut Vec<String>) -> Result<(DMat4, f32), MotionError> {
-    let metres = match layer.metadata("metersPerUnit")? {
-        Some(value) => {
-            let found = value.numbers().first().copied().unwrap_or(f64::NAN);
-            if !(1e-9..=1e9).contains(&found) {
-                return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9").into());
-            }
-            found
+    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
+        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
+        if !(1e-9..=1e9).contains(&found) {
+            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9").into());
         }
-        None => {
-            notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
-            0.01
-        }
+        found
+    } else {
+        notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
+        0.01
     };
     let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
     let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };

@@ -223,7 +223,9 @@ pub fn figure(space: Space) -> Vec<Node> {
 /// The text form.
 pub fn text(nodes: &[Node]) -> String {
     let mut out = String::from("; FBX 7.4.0 project file\n");
-    nodes.iter().for_each(|node| write_text(node, &mut out));
+    for node in nodes {
+        write_text(node, &mut out);
+    }
     out
 }
 
@@ -242,10 +244,14 @@ fn write_text(node: &Node, out: &mut String) {
             Floats(v) => list(v.iter().map(|n| format!("{n:?}")).collect()),
         })
         .collect();
-    *out += &format!("{}: {}", node.name, values.join(", "));
+    *out += node.name;
+    *out += ": ";
+    *out += &values.join(", ");
     if !node.children.is_empty() {
         *out += " {\n";
-        node.children.iter().for_each(|child| write_text(child, out));
+        for child in &node.children {
+            write_text(child, out);
+        }
         *out += "}";
     }
     *out += "\n";
@@ -255,7 +261,9 @@ fn write_text(node: &Node, out: &mut String) {
 pub fn binary(nodes: &[Node]) -> Vec<u8> {
     let mut out = b"Kaydara FBX Binary  \0\x1a\0".to_vec();
     out.extend(7400_u32.to_le_bytes());
-    nodes.iter().for_each(|node| write_binary(node, &mut out));
+    for node in nodes {
+        write_binary(node, &mut out);
+    }
     out.extend([0; 13]);
     out
 }
@@ -300,7 +308,9 @@ fn write_binary(node: &Node, out: &mut Vec<u8>) {
     }
     let value_bytes = out.len() - of_values;
     if !node.children.is_empty() {
-        node.children.iter().for_each(|child| write_binary(child, out));
+        for child in &node.children {
+            write_binary(child, out);
+        }
         out.extend([0; 13]);
     }
     let end = out.len();

@@ -1,4 +1,4 @@
-//! The standard names of joints of MikuMikuDance.
+//! The standard names of joints of `MikuMikuDance`.
 
 use super::{Label, Part, Side};
 
