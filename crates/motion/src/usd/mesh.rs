@@ -172,7 +172,11 @@ impl Reader<'_> {
         }
         let mut counts = WeightCounts::default();
         let mut found: Vec<(u16, f32)> = Vec::new();
-        let otherwise = binds.iter().flatten().copied().next().unwrap_or(0);
+        // Without any usable joint the mesh follows the stage.
+        let otherwise = match binds.iter().flatten().next() {
+            Some(&bind) => bind,
+            None => self.palette.add(0, geometry).ok_or_else(too_many)?,
+        };
         let weights = (0..points)
             .map(|point| {
                 found.clear();
