@@ -85,7 +85,7 @@ pub(crate) struct SourceArguments {
     /// Character file to use instead of the project's body.
     #[arg(long, value_name = "FILE")]
     pub(crate) body: Option<PathBuf>,
-    /// Motion file (BVH) to use instead of the project's motion.
+    /// Motion file (BVH, VRM animation, or another character with a clip) to use instead of the project's motion.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
     /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that gives light from all directions.

@@ -270,6 +270,8 @@ impl Window {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
             // Another kind of file is a problem of the surroundings, which the loader reports.
+            Purpose::Body => self.open_part(path, |project| project.set_body_file(path)),
+            Purpose::Motion => self.open_part(path, |project| project.set_motion_file(path)),
             Purpose::Surroundings => self.open_part(path, |project| project.set_surroundings_file(path)),
             Purpose::SaveProject => self.save_to(path),
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume | Purpose::Curves => {

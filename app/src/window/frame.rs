@@ -90,7 +90,7 @@ impl Window {
                 timeline::TimelineRequest::Rate(rate) => self.session.set_rate(rate),
                 timeline::TimelineRequest::Trim => self.change("trim", Project::trim_to_points),
                 timeline::TimelineRequest::Untrim => self.change("trim", Project::trim_nothing),
-                timeline::TimelineRequest::PickMotion => self.open_path_dialog(Purpose::Open),
+                timeline::TimelineRequest::PickMotion => self.open_path_dialog(Purpose::Motion),
             }
         }
         let mut palette = std::mem::take(&mut self.palette);
@@ -370,7 +370,7 @@ impl Window {
             .and_then(std::path::Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
-            Purpose::Open | Purpose::Beside | Purpose::Surroundings => folder,
+            Purpose::Open | Purpose::Beside | Purpose::Body | Purpose::Motion | Purpose::Surroundings => folder,
             Purpose::SaveProject => self
                 .project_path
                 .clone()
@@ -399,6 +399,8 @@ impl Window {
             ),
             Purpose::Open
             | Purpose::Beside
+            | Purpose::Body
+            | Purpose::Motion
             | Purpose::Surroundings
             | Purpose::SaveProject
             | Purpose::ExportStyle

@@ -19,6 +19,10 @@ pub(crate) enum Purpose {
     Open,
     /// Comparing with a take.
     Beside,
+    /// The body, from a character file.
+    Body,
+    /// The motion, from a motion file or from a character's clip.
+    Motion,
     /// Light from a picture of the surroundings.
     Surroundings,
     /// Saving the project.
@@ -55,6 +59,8 @@ impl Purpose {
         match self {
             Self::Open => "Open a project, take, hairstyle, character, motion or surroundings",
             Self::Beside => "Compare with a take",
+            Self::Body => "Body from a character file",
+            Self::Motion => "Motion from a motion file, or from a clip of another character",
             Self::Surroundings => "Light from a picture of the surroundings: .hdr or .exr",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
@@ -70,7 +76,7 @@ impl Purpose {
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Surroundings => "Open file",
+            Self::Open | Self::Body | Self::Motion | Self::Surroundings => "Open file",
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle | Self::SaveStrokes => {
                 "Save file"
@@ -83,7 +89,13 @@ impl Purpose {
     /// The extension that is added if none is given.
     fn extension(self) -> Option<&'static str> {
         match self {
-            Self::Open | Self::Beside | Self::Surroundings | Self::Sequence | Self::Resume => None,
+            Self::Open
+            | Self::Beside
+            | Self::Body
+            | Self::Motion
+            | Self::Surroundings
+            | Self::Sequence
+            | Self::Resume => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Preview => Some("apng"),
@@ -228,6 +240,14 @@ impl PathDialog {
                     .add_filter("Take or curves", &["take", "part", "abc", "usdc", "usd", "usda"])
                     .pick_file(),
             ),
+            Purpose::Body => {
+                Box::pin(dialog.add_filter("Character", &FileKind::Character.extensions()).pick_file())
+            }
+            Purpose::Motion => {
+                let kinds = [FileKind::Motion, FileKind::Character];
+                let extensions: Vec<_> = kinds.into_iter().flat_map(FileKind::extensions).collect();
+                Box::pin(dialog.add_filter("Motion", &extensions).pick_file())
+            }
             Purpose::Surroundings => {
                 let extensions = FileKind::Surroundings.extensions();
                 Box::pin(dialog.add_filter("Surroundings", &extensions).pick_file())

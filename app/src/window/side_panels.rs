@@ -73,8 +73,10 @@ impl Window {
                 }
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);
-                    let ask = panels::body::ui(ui, project, &self.session.body);
-                    asked = asked.or(ask.map(|_| Purpose::Open));
+                    asked = asked.or(panels::body::ui(ui, project, &self.session.body).map(|ask| match ask {
+                        panels::body::BodyRequest::PickBody => Purpose::Body,
+                        panels::body::BodyRequest::PickMotion => Purpose::Motion,
+                    }));
                 });
             });
         });

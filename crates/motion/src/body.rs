@@ -1,5 +1,7 @@
 //! A character: a skeleton and the meshes that it deforms.
 
+use std::collections::BTreeMap;
+
 use glam::{Affine3A, Quat, Vec3};
 
 /// One joint of a skeleton.
@@ -24,6 +26,9 @@ pub struct Skeleton {
     pub joints: Vec<Joint>,
     /// World transform of each joint in the rest pose.
     pub world_at_rest: Vec<Affine3A>,
+    /// The bones of a person that the file itself assigns to joints, by their names in VRM, such as `leftUpperArm`. Where this is not
+    /// empty, names of joints say nothing.
+    pub named: BTreeMap<usize, String>,
 }
 
 impl Skeleton {

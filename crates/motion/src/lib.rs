@@ -1,4 +1,4 @@
-//! Bodies and motion: glTF, BVH, VMD, retargeting, poses and colliders.
+//! Bodies and motion: glTF, VRM, FBX, USD, BVH, VMD, retargeting, poses and colliders.
 //!
 //! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, with the face of
 //! the rest pose toward +Z; loaders convert.
@@ -6,11 +6,13 @@
 mod backflip;
 mod body;
 mod bvh;
+mod character;
 mod clip;
 mod collide;
 mod collider;
 mod distance;
 mod error;
+mod fbx;
 mod field;
 mod gltf;
 mod head;
@@ -18,17 +20,21 @@ mod humanoid;
 mod info;
 mod load;
 mod pose;
+mod recorded;
 mod retarget;
 mod sample;
 mod scalp;
 mod seam;
 mod settings;
 mod skinning;
+mod surface;
+mod usd;
 mod vmd;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
 pub use bvh::{MotionFile, MotionJoint};
+pub use character::Character;
 pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Track};
 pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
@@ -36,18 +42,20 @@ pub use collide::{
 pub use collider::{Collider, ColliderShape, PlacedCollider};
 pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
+pub use fbx::is_fbx;
 pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
-pub use gltf::{
-    Character, gltf_reference, load_character, load_character_bytes, load_character_bytes_with,
-    load_character_with,
-};
+pub use gltf::gltf_reference;
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
-pub use load::{load_motion, load_motion_bytes, load_motion_with};
+pub use load::{
+    load_character, load_character_bytes, load_character_bytes_with, load_character_with, load_motion,
+    load_motion_bytes, load_motion_with,
+};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;
 pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_place, raise_hairline};
 pub use seam::Seam;
-pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, RootPosition, UpAxis};
+pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, OwnHair, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};
+pub use usd::{UsdContent, usd_content};

@@ -1,28 +1,108 @@
-//! Recognises the format of a motion file by its first bytes and calls its reader.
+//! Recognises the format of a file by its first bytes and calls its reader.
 
 use std::path::Path;
 
+use crate::character::Character;
 use crate::error::read_file;
-use crate::{MotionError, MotionFile, MotionSettings, bvh, vmd};
+use crate::recorded::motion_of;
+use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf, usd, vmd};
 
 /// Size of the largest file that is read.
-const FILE_LIMIT: u64 = 1 << 30;
+const FILE_LIMIT: u64 = 2 << 30;
 
-/// Loads a motion file, guessing what it does not specify: BVH or VMD.
+/// Loads a character with automatic unit and axes: glTF, VRM, FBX or USD.
 ///
 /// # Errors
-/// If the file is of another kind or broken (the error contains the line or byte), or has no joints or no frames.
-pub fn load_motion(path: &Path) -> Result<MotionFile, MotionError> {
-    load_motion_with(path, MotionSettings::default())
+/// If the file cannot be read, is truncated, refers outside itself or its folder, needs an unsupported
+/// extension, or contains no triangle.
+pub fn load_character(path: &Path) -> Result<Character, MotionError> {
+    load_character_with(path, BodySettings::default())
 }
 
-/// Loads a motion file.
+/// Loads a character.
+///
+/// # Errors
+/// As [`load_character`].
+pub fn load_character_with(path: &Path, settings: BodySettings) -> Result<Character, MotionError> {
+    let bytes = read_file(path, FILE_LIMIT)?;
+    load_character_bytes_with(&path.display().to_string(), &bytes, path.parent(), settings)
+}
+
+/// Loads a character from bytes. `name` is used in messages. Other files with buffers are searched in
+/// `base_dir` and its subfolders, and refused without it.
+///
+/// # Errors
+/// As [`load_character`].
+pub fn load_character_bytes(
+    name: &str,
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+) -> Result<Character, MotionError> {
+    load_character_bytes_with(name, bytes, base_dir, BodySettings::default())
+}
+
+/// Loads a character from bytes with a chosen unit and axis.
+///
+/// # Errors
+/// As [`load_character`].
+pub fn load_character_bytes_with(
+    name: &str,
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+    settings: BodySettings,
+) -> Result<Character, MotionError> {
+    read_figure(name, bytes, base_dir, settings, true)
+}
+
+/// Reads a character, or with `needs_mesh` unset the joints and clips of a file that may have no mesh.
+fn read_figure(
+    name: &str,
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+    settings: BodySettings,
+    needs_mesh: bool,
+) -> Result<Character, MotionError> {
+    refuse_empty(name, bytes)?;
+    if fbx::is_fbx(bytes) {
+        return fbx::read(name, bytes, settings, needs_mesh);
+    }
+    if usd::is_usd(bytes) {
+        return usd::read(name, bytes, settings, needs_mesh);
+    }
+    if bytes.starts_with(b"HIERARCHY") {
+        let problem = "is BVH, which holds motion and no body; open it as a motion file";
+        return Err(MotionError::malformed(name, "the file", problem));
+    }
+    gltf::read(name, bytes, base_dir, settings, needs_mesh)
+}
+
+fn refuse_empty(name: &str, bytes: &[u8]) -> Result<(), MotionError> {
+    if bytes.is_empty() {
+        return Err(MotionError::malformed(name, "the file", "is empty (0 bytes)"));
+    }
+    Ok(())
+}
+
+/// Loads a motion file, guessing what it does not specify: BVH, VMD, or the first clip of a glTF, VRM animation, FBX or USD file.
+///
+/// # Errors
+/// If the file is of another kind or broken (the error contains the line or place), or has no joints or no frames.
+pub fn load_motion(path: &Path) -> Result<MotionFile, MotionError> {
+    load_motion_with(path, MotionSettings::default(), "")
+}
+
+/// Loads a motion file. Of a file with several clips, that called `clip` is loaded, otherwise the first.
 ///
 /// # Errors
 /// As [`load_motion`].
-pub fn load_motion_with(path: &Path, settings: MotionSettings) -> Result<MotionFile, MotionError> {
+pub fn load_motion_with(
+    path: &Path,
+    settings: MotionSettings,
+    clip: &str,
+) -> Result<MotionFile, MotionError> {
     let bytes = read_file(path, FILE_LIMIT)?;
-    load_motion_bytes(&path.display().to_string(), &bytes, settings)
+    let name = path.display().to_string();
+    read_motion(&name, &bytes, path.parent(), settings, clip)
 }
 
 /// Loads a motion file from bytes; `name` is used in messages.
@@ -34,5 +114,30 @@ pub fn load_motion_bytes(
     bytes: &[u8],
     settings: MotionSettings,
 ) -> Result<MotionFile, MotionError> {
-    if vmd::is_vmd(bytes) { vmd::read(name, bytes) } else { bvh::read(name, bytes, settings) }
+    read_motion(name, bytes, None, settings, "")
+}
+
+fn read_motion(
+    name: &str,
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+    settings: MotionSettings,
+    clip: &str,
+) -> Result<MotionFile, MotionError> {
+    if vmd::is_vmd(bytes) {
+        return vmd::read(name, bytes);
+    }
+    let ends_in = |ending: &str| {
+        Path::new(name).extension().is_some_and(|e| e.to_string_lossy().eq_ignore_ascii_case(ending))
+    };
+    let is_figure = fbx::is_fbx(bytes)
+        || usd::is_usd(bytes)
+        || bytes.starts_with(b"glTF")
+        || ["gltf", "vrma"].into_iter().any(ends_in);
+    if !is_figure {
+        return bvh::read(name, bytes, settings);
+    }
+    let of_file = BodySettings { unit: settings.unit, up: settings.up, ..BodySettings::default() };
+    let figure = read_figure(name, bytes, base_dir, of_file, false)?;
+    motion_of(name, figure, clip)
 }

@@ -83,6 +83,17 @@ pub enum Facing {
     MinusX,
 }
 
+/// What becomes of the hair that a character was made with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OwnHair {
+    /// Meshes and materials that are hair by their names, and by the spring bones of a VRM file, are left out.
+    #[default]
+    Hidden,
+    /// They are part of the body.
+    Shown,
+}
+
 /// How to interpret a character file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
@@ -93,6 +104,8 @@ pub struct BodySettings {
     pub up: UpAxis,
     /// The direction that the rest pose faces; it is rotated to +Z.
     pub facing: Facing,
+    /// The hair that is part of the model.
+    pub own_hair: OwnHair,
 }
 
 /// How the root position of a BVH row is interpreted.
@@ -170,6 +183,17 @@ impl Choices for Facing {
     }
 }
 
+impl Choices for OwnHair {
+    const ALL: &'static [Self] = &[Self::Hidden, Self::Shown];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Hidden => ("hidden", "Hidden"),
+            Self::Shown => ("shown", "Shown"),
+        }
+    }
+}
+
 impl Choices for RootPosition {
     const ALL: &'static [Self] = &[Self::Auto, Self::Absolute, Self::Added];
 
@@ -190,6 +214,11 @@ impl Settings for BodySettings {
             field!(Self, facing),
             "Facing",
             "The axis of the file along which the figure looks.",
+        ),
+        Setting::choice::<OwnHair>(
+            field!(Self, own_hair),
+            "Model's hair",
+            "Whether the hair that the character was made with is part of the body.",
         ),
     ];
 }

@@ -44,7 +44,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         let on = body.source == BodySource::File;
         if ui
             .selectable_label(on, "Character file…")
-            .on_hover_text("Loads a glTF 2 character: .glb or .gltf.")
+            .on_hover_text("Loads a character: .glb, .gltf, .vrm, .fbx, .usd or .usdz.")
             .clicked()
         {
             if body.file.is_some() && !on {
@@ -58,7 +58,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         if let Some(file) = &project.body.file {
             note(ui, file.path.display().to_string());
         }
-        settings(ui, &["unit", "up", "facing"], &mut project.body.settings, &BodySettings::default());
+        settings(ui, &["unit", "up", "facing", "own_hair"], &mut project.body.settings, &BodySettings::default());
     }
     let chosen = project.body.head_joint.clone().unwrap_or_else(|| format!("{} (guess)", loaded.head));
     ui.horizontal(|ui| {
@@ -99,7 +99,7 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
         let on = motion.source == MotionSource::File;
         if ui
             .selectable_label(on, "Motion file…")
-            .on_hover_text("Loads a BVH motion and retargets it to this body.")
+            .on_hover_text("Loads a motion and retargets it to this body: .bvh or .vrma, or a clip of another character.")
             .clicked()
         {
             if motion.file.is_some() && !on {

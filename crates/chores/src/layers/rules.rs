@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 24] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     (
         "app",
         &[
@@ -69,9 +69,10 @@ const ARROWS: [(&str, &[&str]); 24] = [
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "alembic", "base"]),
-    ("motion", &["base"]),
-    ("groom", &["appearance", "alembic", "base"]),
+    ("motion", &["usd", "base"]),
+    ("groom", &["appearance", "alembic", "usd", "base"]),
     ("alembic", &[]),
+    ("usd", &["base"]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
     ("metrics", &["base"]),
@@ -86,7 +87,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 14] = [
+const WITHOUT_WGPU: [&str; 16] = [
     "alembic",
     "appearance",
     "base",
@@ -98,6 +99,7 @@ const WITHOUT_WGPU: [&str; 14] = [
     "style",
     "record",
     "metrics",
+    "usd",
     "testkit",
     "xtask",
     "chores",
@@ -253,7 +255,7 @@ mod tests {
             ("lovelock → lovelock-gpu", "app may use jobs, study"),
             ("lovelock-project → lovelock-session", "project may use render"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
-            ("lovelock-groom → lovelock-motion", "groom may use appearance, base"),
+            ("lovelock-groom → lovelock-motion", "groom may use appearance, alembic, usd, base"),
             ("lovelock-record → lovelock-session", "record may use groom, alembic, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),

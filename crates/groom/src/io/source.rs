@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use super::HairFileError;
@@ -37,27 +37,6 @@ impl<'a> Source<'a> {
         match self {
             Self::Memory(data) => data,
             Self::File { start, .. } => start,
-        }
-    }
-
-    /// Length of the file, bytes.
-    pub(super) fn len(&self) -> u64 {
-        match self {
-            Self::Memory(data) => data.len() as u64,
-            Self::File { length, .. } => *length,
-        }
-    }
-
-    /// `count` bytes from `at` on, which lie within [`Self::len`].
-    pub(super) fn read_at(&mut self, name: &str, at: u64, count: u64) -> Result<Vec<u8>, HairFileError> {
-        match self {
-            Self::Memory(data) => Ok(data[at as usize..(at + count) as usize].to_vec()),
-            Self::File { file, .. } => {
-                let mut bytes = vec![0; count as usize];
-                let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
-                read.map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
-                Ok(bytes)
-            }
         }
     }
 

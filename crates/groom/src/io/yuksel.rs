@@ -99,7 +99,6 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         default_transparency: Some(file.f32(24)).filter(|value| value.is_finite()),
         default_colour: Some(default_colour).filter(|colour| colour.iter().all(|value| value.is_finite())),
         trailing_bytes: file.len() - offset,
-        left_out: None,
         notes,
         ..RawHair::new(point_counts, triples(positions, 12).map(Into::into).collect())
     })

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use lovelock_groom::{HairFormat, gltf_holds_lines};
+use lovelock_motion::{UsdContent, is_fbx, usd_content};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -15,9 +16,9 @@ use lovelock_record::TAKE_EXTENSION;
 pub enum FileKind {
     /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
     Hair,
-    /// glTF 2: `.glb`, `.gltf`.
+    /// glTF 2, VRM, FBX or USD.
     Character,
-    /// BVH or VMD.
+    /// BVH, VMD, or motion of VRM.
     Motion,
     /// A project.
     Project,
@@ -63,14 +64,9 @@ impl FileKind {
     /// Endings of such files, for dialogs, without the dot.
     pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            // A glTF is a character unless it holds lines, see `Self::of`.
-            Self::Hair => {
-                let mut all = HairFormat::all_extensions();
-                all.retain(|extension| !Self::Character.extensions().contains(extension));
-                all
-            }
-            Self::Character => vec!["glb", "gltf"],
-            Self::Motion => vec!["bvh", "vmd"],
+            Self::Hair => HairFormat::all_extensions(),
+            Self::Character => vec!["glb", "gltf", "vrm", "fbx", "usdc", "usda", "usd", "usdz"],
+            Self::Motion => vec!["bvh", "vmd", "vrma"],
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
@@ -97,10 +93,19 @@ impl FileKind {
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
         let by_name = Self::by_extension(path);
         // A style is a project with fewer sections: only its name tells it apart.
+        // Motion of VRM is glTF without a body.
         let kind = match (Self::by_content(&start), by_name) {
-            (Some(Self::Project), Some(Self::Style)) => by_name,
             // Lines are hair, whatever else the file holds.
             (Some(Self::Character), _) if gltf_holds_lines(path) => Some(Self::Hair),
+            (Some(Self::Project), Some(Self::Style)) | (Some(Self::Character), Some(Self::Motion)) => by_name,
+            // A stage holds hair, a body or motion; only its prims tell.
+            (Some(Self::Hair), _) if start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda") => {
+                Some(match usd_content(path) {
+                    UsdContent::Character => Self::Character,
+                    UsdContent::Motion => Self::Motion,
+                    UsdContent::Other => Self::Hair,
+                })
+            }
             (by_content, _) => by_content.or(by_name),
         };
         kind.ok_or_else(|| {
@@ -118,6 +123,10 @@ impl FileKind {
     /// The kind by file extension.
     pub fn by_extension(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        // A glTF is a character unless it holds lines, which its content tells.
+        if ["glb", "gltf"].contains(&ending.as_str()) {
+            return Some(Self::Character);
+        }
         Self::ALL.into_iter().find(|kind| kind.extensions().contains(&ending.as_str()))
     }
 
@@ -125,6 +134,7 @@ impl FileKind {
     fn by_content(start: &[u8]) -> Option<Self> {
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
+            _ if is_fbx(start) => return Some(Self::Character),
             // The start of every chunk in `record::take`.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
             [0x76, 0x2f, 0x31, 0x01, ..] | [b'#', b'?', ..] => return Some(Self::Surroundings),

@@ -52,9 +52,19 @@ pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -
     };
     choose_root(raw, settings.root, &probe, &mut motion);
     choose_unit(settings.unit, &probe, &mut motion);
-    motion.height_metres = probe.height * motion.unit_metres * ADULT_HEIGHT / ADULT;
+    motion.height_metres = standing(probe.height) * motion.unit_metres;
     convert(&mut motion);
     motion
+}
+
+/// Height of the figure of a motion that is in metres, with skull and soles.
+pub(crate) fn height_of(motion: &MotionFile) -> f32 {
+    standing(Probe::new(motion, &motion.humanoid()).height)
+}
+
+/// The height of a figure with skull and soles, from that of its bones.
+fn standing(bones: f32) -> f32 {
+    bones * ADULT_HEIGHT / ADULT
 }
 
 fn joint(raw: &RawJoint) -> MotionJoint {

@@ -12,6 +12,8 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::{MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
 
+pub(crate) use interpret::height_of;
+
 /// One joint of a motion file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionJoint {
@@ -53,6 +55,8 @@ pub struct MotionFile {
     /// Height of the figure as it is posed, metres: the bones from the feet to the head, and the usual share of skull and
     /// soles.
     pub height_metres: f32,
+    /// Names of the clips of the file; empty for a format that holds one motion.
+    pub clips: Vec<String>,
 }
 
 impl MotionFile {

@@ -1,35 +1,34 @@
-//! Assembles a body and its clips: nodes, surface, rest pose, unit, head.
+//! Assembles a body and its clips from the nodes, meshes and animations of a document.
 
-use std::{
-    collections::{BTreeMap, HashMap},
-    path::Path,
-    sync::Arc,
-};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use glam::{Affine3A, Vec3};
+use glam::Affine3A;
 
 use super::{
-    Character,
     accessor::Accessors,
-    axes::turn_to_face,
     clip::{Targets, read_clip},
-    document::{Document, Mesh as MeshEntry},
-    mesh::{Binding, Surface},
+    document::{Document, Mesh as MeshEntry, Primitive},
+    mesh::{Binding, read_primitive},
     nodes::Tree,
-    skin::{Palette, read_skin},
+    skin::read_skin,
+    vrm::Vrm,
 };
-use crate::{Body, BodySettings, Clip, LengthUnit, MotionError, guess_head, skinning::update_rest_surface};
+use crate::character::{Axes, Character, Draft, WornHair, only_motion};
+use crate::surface::{Palette, Surface};
+use crate::{BodySettings, MotionError};
 
-/// A file whose largest extent exceeds this many units is not in metres.
-const GIANT: f32 = 10.0;
-
-pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<Character, MotionError> {
+pub(super) fn assemble(
+    accessors: &Accessors,
+    settings: BodySettings,
+    needs_mesh: bool,
+) -> Result<Character, MotionError> {
     let (file, document) = (accessors.file, accessors.document);
     let mut dropped = BTreeMap::new();
     let mut notes = Vec::new();
     let tree = Tree::new(file, document, &mut dropped, &mut notes)?;
 
-    let mut wanted = vec![false; document.nodes.len()];
+    // Without a surface every node may be a joint.
+    let mut wanted = vec![!needs_mesh; document.nodes.len()];
     let mut is_joint = vec![false; document.nodes.len()];
     for &n in &tree.order {
         let node = &document.nodes[n];
@@ -51,18 +50,22 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
             }
         }
     }
-    let mesh_nodes = wanted.iter().filter(|w| **w).count();
+    let mesh_nodes = tree.order.iter().filter(|&&n| wanted[n]).count();
+    let vrm = Vrm::of(document);
+    for &node in vrm.iter().flat_map(|vrm| vrm.bones.keys()) {
+        wanted[node] = true;
+    }
     let joints = match is_joint.iter().filter(|j| **j).count() {
         0 => mesh_nodes,
         some => some,
     };
-    let (skeleton, joint_of_node) = tree.skeleton(file, document, wanted, &mut dropped)?;
+    let (mut skeleton, joint_of_node) = tree.skeleton(file, document, wanted, &mut dropped)?;
 
-    let worn = worn_hair(document, &tree.order);
-    if !worn.is_empty() {
-        let names: Vec<String> = worn.iter().map(|&n| format!("`{}`", name_of(document, n))).collect();
-        notes.push(format!("left out, because it is hair: {}", names.join(", ")));
-    }
+    let hair = if needs_mesh {
+        hair_parts(accessors, vrm.as_ref(), &tree.order, settings, &mut notes)?
+    } else {
+        BTreeSet::new()
+    };
     let mut palette = Palette::default();
     let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
     let mut surface = Surface::default();
@@ -70,12 +73,16 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     for &n in &tree.order {
         let node = &document.nodes[n];
         let Some(mesh) = node.mesh.map(|m| &document.meshes[m]) else { continue };
-        if worn.contains(&n) {
+        if !needs_mesh {
             continue;
         }
         let count = mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
         let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or_default();
-        let first_morph = surface.add_morphs(&morph_names(mesh), weights, count);
+        let (first_morph, names) = (surface.morphs(), morph_names(mesh));
+        for t in 0..count {
+            let name = names.get(t).cloned().unwrap_or_else(|| format!("morph {t}"));
+            surface.add_morph(name, weights.get(t).copied().unwrap_or(0.0));
+        }
         if count > 0 {
             morphs_of_node.insert(n, (first_morph, count));
         }
@@ -93,24 +100,21 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
             0
         };
         let binding = node.skin.map_or(Binding::Rigid(rigid), |s| Binding::Skin(&skins[&s]));
-        for primitive in &mesh.primitives {
-            surface.add(accessors, primitive, &binding, first_morph, &mut dropped)?;
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            if hair.contains(&(n, p)) {
+                continue;
+            }
+            if let Some(piece) = read_primitive(accessors, primitive, &binding, first_morph, &mut dropped)? {
+                let too_many = |problem| MotionError::malformed(file, "the meshes", problem);
+                surface.add(piece, &mut dropped).map_err(too_many)?;
+            }
         }
     }
-    surface.skin.palette = palette.binds;
-    let (mesh, skin_data) = surface.finish();
-    if mesh.triangles.is_empty() {
-        let found = describe_contents(document, &dropped);
+    let (mesh, skin_data) = surface.finish(palette);
+    if needs_mesh && mesh.triangles.is_empty() {
+        let found = describe_contents(document, &dropped) + only_motion(document.animations.len());
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
-    let stem =
-        Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
-    let mut body = Body { name: stem, skeleton, mesh, skin: skin_data, head_joint: 0 };
-    update_rest_surface(&mut body);
-    if !body.mesh.positions.iter().all(|p| p.is_finite() && p.max_element() < 1e12) {
-        return Err(MotionError::malformed(file, "the scene", "its transforms move vertices to infinity"));
-    }
-
     let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };
     let mut times = HashMap::new();
     let mut clips = Vec::new();
@@ -123,64 +127,86 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         }
     }
 
-    let unit_metres = choose_unit(&body, settings.unit, &mut notes);
-    if unit_metres != 1.0 {
-        rescale(&mut body, &mut clips, unit_metres);
-    }
-    turn_to_face(&mut body, &mut clips, settings, &mut notes);
-    fix_winding(&mut body);
-    body.head_joint = guess_head(&body.skeleton, &body.mesh);
-    for clip in &mut clips {
-        clip.detect_loop(&body);
+    if let Some(vrm) = vrm {
+        let joint = |node: usize| joint_of_node.get(node).copied().flatten();
+        skeleton.named =
+            vrm.bones.into_iter().filter_map(|(node, bone)| Some((joint(node)?, bone))).collect();
     }
     note_textures(document, &mut notes);
-    Ok(Character {
-        body: Arc::new(body),
-        clips: clips.into_iter().map(Arc::new).collect(),
-        dropped,
-        notes,
-        format: String::new(),
+    Draft {
+        file,
+        skeleton,
+        mesh,
+        skin: skin_data,
+        clips,
         joints,
         skins: document.skins.len(),
-        unit_metres,
-    })
-}
-
-/// The name of a node with a mesh: its own, or that of the mesh.
-fn name_of(document: &Document, node: usize) -> &str {
-    let node = &document.nodes[node];
-    let of_mesh = node.mesh.and_then(|m| document.meshes[m].name.as_deref());
-    node.name.as_deref().or(of_mesh).unwrap_or_default()
-}
-
-/// The nodes whose mesh is the hair that a character was made with, by the names of node and mesh: other hair grows in its place. None
-/// if that would leave nothing.
-fn worn_hair(document: &Document, order: &[usize]) -> Vec<usize> {
-    let with_mesh: Vec<usize> = order.iter().copied().filter(|&n| document.nodes[n].mesh.is_some()).collect();
-    let hair = |n: &usize| {
-        let node = &document.nodes[*n];
-        let of_mesh = node.mesh.and_then(|m| document.meshes[m].name.as_deref());
-        node.name.as_deref().is_some_and(names_hair) || of_mesh.is_some_and(names_hair)
-    };
-    let worn: Vec<usize> = with_mesh.iter().copied().filter(hair).collect();
-    if worn.len() == with_mesh.len() { Vec::new() } else { worn }
-}
-
-/// Whether one of the words of a name says hair. Words end at signs, digits and before capitals.
-fn names_hair(name: &str) -> bool {
-    const HAIR: [&str; 7] = ["hair", "hairs", "wig", "ponytail", "hairstyle", "haircut", "bangs"];
-    let mut words = vec![String::new()];
-    let mut was_small = false;
-    for c in name.chars() {
-        if !c.is_alphabetic() || (c.is_uppercase() && was_small) {
-            words.push(String::new());
-        }
-        if let (true, Some(word)) = (c.is_alphabetic(), words.last_mut()) {
-            word.extend(c.to_lowercase());
-        }
-        was_small = c.is_lowercase();
+        dropped,
+        notes,
     }
-    words.iter().any(|word| HAIR.contains(&word.as_str()))
+    .finish(Axes { settings, usual_unit_metres: 1.0 })
+}
+
+/// The primitives, by node and number, that are the hair that the character was made with.
+fn hair_parts(
+    accessors: &Accessors,
+    vrm: Option<&Vrm>,
+    order: &[usize],
+    settings: BodySettings,
+    notes: &mut Vec<String>,
+) -> Result<BTreeSet<(usize, usize)>, MotionError> {
+    let document = accessors.document;
+    let swinging = vrm.map_or_else(BTreeSet::new, |vrm| vrm.hair_nodes(document));
+    let mut worn = WornHair::new(settings);
+    let mut parts = Vec::new();
+    for &n in order {
+        let node = &document.nodes[n];
+        let Some(mesh) = node.mesh.and_then(|m| document.meshes.get(m)) else { continue };
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let material = primitive.material.and_then(|m| document.materials.get(m));
+            let names =
+                [node.name.as_deref(), mesh.name.as_deref(), material.and_then(|m| m.name.as_deref())];
+            let names: Vec<&str> = names.into_iter().flatten().collect();
+            let joints = node.skin.and_then(|s| document.skins.get(s)).map_or(&[][..], |s| &s.joints);
+            if joints.iter().any(|joint| swinging.contains(joint))
+                && share_of(accessors, primitive, joints, &swinging)? > MOSTLY
+            {
+                worn.offer_hair(names.first().copied().unwrap_or("a mesh on joints of hair"));
+            } else {
+                worn.offer(&names);
+            }
+            parts.push((n, p));
+        }
+    }
+    let hair = parts.into_iter().zip(worn.decide(notes)).filter(|(_, is_hair)| *is_hair);
+    Ok(hair.map(|(part, _)| part).collect())
+}
+
+/// A mesh of which more than this share follows joints of hair is hair.
+const MOSTLY: f32 = 0.5;
+
+/// The share of the weights of a primitive that some nodes have.
+fn share_of(
+    accessors: &Accessors,
+    primitive: &Primitive,
+    joints: &[usize],
+    nodes: &BTreeSet<usize>,
+) -> Result<f32, MotionError> {
+    let attribute = |name: &str| primitive.attributes.get(name).copied();
+    let (Some(of_joints), Some(of_weights)) = (attribute("JOINTS_0"), attribute("WEIGHTS_0")) else {
+        return Ok(0.0);
+    };
+    let (mut theirs, mut all) = (0.0, 0.0);
+    let weights = accessors.read::<4>(of_weights)?;
+    for (joint, weight) in accessors.read_indices::<4>(of_joints)?.iter().zip(&weights) {
+        for (&joint, &weight) in joint.iter().zip(weight).filter(|(_, w)| **w > 0.0 && w.is_finite()) {
+            all += weight;
+            if joints.get(joint as usize).is_some_and(|node| nodes.contains(node)) {
+                theirs += weight;
+            }
+        }
+    }
+    Ok(if all > 0.0 { theirs / all } else { 0.0 })
 }
 
 fn describe_contents(document: &Document, dropped: &BTreeMap<String, u64>) -> String {
@@ -211,87 +237,5 @@ fn note_textures(document: &Document, notes: &mut Vec<String>) {
         notes.push(format!(
             "{textured} materials have textures, which are ignored; only their base colour is used"
         ));
-    }
-}
-
-/// Flips the triangles that the rest pose mirrors, so that all are counter-clockwise from outside.
-fn fix_winding(body: &mut Body) {
-    let mirrors: Vec<bool> = body
-        .skin
-        .palette
-        .iter()
-        .map(|bind| {
-            let world = body.skeleton.world_at_rest[usize::from(bind.joint)];
-            (world.matrix3 * bind.joint_from_bind.matrix3).determinant() < 0.0
-        })
-        .collect();
-    if mirrors.contains(&true) {
-        for triangle in &mut body.mesh.triangles {
-            if mirrors[usize::from(body.skin.binds[triangle[0] as usize][0])] {
-                triangle.swap(1, 2);
-            }
-        }
-    }
-}
-
-/// Metres per unit. glTF specifies metres, but a figure of more than ten of them was exported in centimetres
-/// or millimetres.
-fn choose_unit(body: &Body, unit: LengthUnit, notes: &mut Vec<String>) -> f32 {
-    let size = extent(&body.mesh.positions).max_element();
-    if let Some(metres) = unit.metres() {
-        return metres;
-    }
-    let guess = if size > 100.0 * GIANT {
-        LengthUnit::Millimetres
-    } else if size > GIANT {
-        LengthUnit::Centimetres
-    } else {
-        return 1.0;
-    };
-    let metres = guess.metres().unwrap_or(1.0);
-    notes.push(format!(
-        "the figure is {size:.0} units long; interpreted as {}: {:.2} m",
-        guess.label(),
-        size * metres
-    ));
-    metres
-}
-
-fn extent(positions: &[Vec3]) -> Vec3 {
-    let low = positions.iter().fold(Vec3::INFINITY, |a, &b| a.min(b));
-    let high = positions.iter().fold(Vec3::NEG_INFINITY, |a, &b| a.max(b));
-    (high - low).max(Vec3::ZERO)
-}
-
-/// Multiplies every length by `scale`. Scales and rotations stay: the transform `W` of a joint becomes
-/// `S W S^-1`.
-fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
-    for joint in &mut body.skeleton.joints {
-        joint.translation *= scale;
-    }
-    body.skeleton.update_rest();
-    for bind in &mut body.skin.palette {
-        bind.joint_from_bind.translation *= scale;
-    }
-    let morphs = body.skin.morphs.iter_mut().flat_map(|m| &mut m.positions);
-    body.skin.positions.iter_mut().chain(morphs).for_each(|p| *p *= scale);
-    update_rest_surface(body);
-    for track in clips.iter_mut().flat_map(|c| &mut c.joints).filter_map(|j| j.translation.as_mut()) {
-        track.values.iter_mut().for_each(|v| *v *= scale);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::names_hair;
-
-    #[test]
-    fn hair_is_known_by_its_name() {
-        for name in ["Hair", "hair_01", "Mesh.Hair", "LongHair", "FemaleWig2", "head-hair"] {
-            assert!(names_hair(name), "{name}");
-        }
-        for name in ["Chair", "Body", "Hairy", "wiggle", ""] {
-            assert!(!names_hair(name), "{name}");
-        }
     }
 }

@@ -89,11 +89,11 @@ pub(super) fn load(
             return Err(MotionError::malformed(file, place, problem));
         }
         total += bytes.len() as u64;
-        if total > super::FILE_LIMIT {
+        if total > super::BUFFER_LIMIT {
             return Err(MotionError::malformed(
                 file,
                 place,
-                format!("all buffers together exceed {} bytes", super::FILE_LIMIT),
+                format!("all buffers together exceed {} bytes", super::BUFFER_LIMIT),
             ));
         }
         buffers.push(bytes);
@@ -126,7 +126,7 @@ fn fetch(
     let path = resolve(file, uri, folder)?;
     let read = |source| MotionError::Read { file: format!("{file}: {place}: {}", path.display()), source };
     let mut bytes = Vec::new();
-    let limit = buffer.byte_length.min(super::FILE_LIMIT);
+    let limit = buffer.byte_length.min(super::BUFFER_LIMIT);
     std::fs::File::open(&path).map_err(read)?.take(limit).read_to_end(&mut bytes).map_err(read)?;
     Ok(bytes)
 }

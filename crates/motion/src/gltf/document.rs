@@ -12,6 +12,7 @@ use serde_json::Value;
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Document {
     pub(super) extensions_required: Vec<String>,
+    pub(super) extensions: BTreeMap<String, Value>,
     pub(super) scene: Option<usize>,
     pub(super) scenes: Vec<Scene>,
     pub(super) nodes: Vec<Node>,
@@ -158,6 +159,7 @@ pub(super) struct Buffer {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Material {
+    pub(super) name: Option<String>,
     pub(super) pbr_metallic_roughness: Pbr,
 }
 

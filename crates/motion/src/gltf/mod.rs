@@ -6,88 +6,35 @@
 
 mod accessor;
 mod assemble;
-mod axes;
 mod buffers;
 mod clip;
 mod document;
 mod mesh;
 mod nodes;
-mod normals;
 mod skin;
+mod vrm;
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::path::Path;
 
 pub use buffers::gltf_reference;
 
-use crate::{Body, BodySettings, Clip, MotionError, error::read_file};
+use crate::character::Character;
+use crate::{BodySettings, MotionError};
 
-/// Largest file, and largest total size of buffers, that is read.
-const FILE_LIMIT: u64 = 2 << 30;
+/// Largest total size of buffers that is read.
+const BUFFER_LIMIT: u64 = 2 << 30;
 
 /// The extension for meshes compressed with Draco.
 const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// A character file: a body, its clips, and what was lost.
-#[derive(Clone, Debug, Default)]
-pub struct Character {
-    /// The body.
-    pub body: Arc<Body>,
-    /// Its clips; may be empty.
-    pub clips: Vec<Arc<Clip>>,
-    /// Counts of what was left out; empty if everything was read.
-    pub dropped: BTreeMap<String, u64>,
-    /// Guesses and other remarks, as sentences.
-    pub notes: Vec<String>,
-    /// The format, such as `glTF 2.0 (binary)`.
-    pub format: String,
-    /// Joints used by skins; all nodes with meshes if there is no skin.
-    pub joints: usize,
-    /// Number of skins.
-    pub skins: usize,
-    /// Metres per unit of the file.
-    pub unit_metres: f32,
-}
-
-/// Loads a `.glb` or `.gltf` file with automatic unit and axis.
-///
-/// # Errors
-/// If the file cannot be read, is truncated, refers outside itself or its folder, needs an unsupported
-/// extension, or contains no triangle.
-pub fn load_character(path: &Path) -> Result<Character, MotionError> {
-    load_character_with(path, BodySettings::default())
-}
-
-/// Loads a `.glb` or `.gltf` file.
-///
-/// # Errors
-/// As [`load_character`].
-pub fn load_character_with(path: &Path, settings: BodySettings) -> Result<Character, MotionError> {
-    let bytes = read_file(path, FILE_LIMIT)?;
-    load_character_bytes_with(&path.display().to_string(), &bytes, path.parent(), settings)
-}
-
-/// Loads a character from bytes. `name` is used in messages. Other files with buffers are searched in
-/// `base_dir` and its subfolders, and refused without it.
-///
-/// # Errors
-/// As [`load_character`].
-pub fn load_character_bytes(
-    name: &str,
-    bytes: &[u8],
-    base_dir: Option<&Path>,
-) -> Result<Character, MotionError> {
-    load_character_bytes_with(name, bytes, base_dir, BodySettings::default())
-}
-
-/// Loads a character from bytes with a chosen unit and axis.
-///
-/// # Errors
-/// As [`load_character`].
-pub fn load_character_bytes_with(
+/// Reads a glTF document. `name` is used in messages. Other files with buffers are searched in `base_dir` and its subfolders, and
+/// refused without it. Without `needs_mesh` a file without a body is read too, and meshes are left out.
+pub(crate) fn read(
     name: &str,
     bytes: &[u8],
     base_dir: Option<&Path>,
     settings: BodySettings,
+    needs_mesh: bool,
 ) -> Result<Character, MotionError> {
     let container = buffers::open(name, bytes)?;
     let document: document::Document = serde_json::from_slice(container.json).map_err(|e| {
@@ -100,8 +47,11 @@ pub fn load_character_bytes_with(
     }
     let buffers = buffers::load(name, &document, container.bin, base_dir)?;
     let accessors = accessor::Accessors::new(name, &document, &buffers);
-    let mut character = assemble::assemble(&accessors, settings)?;
-    container.format.clone_into(&mut character.format);
+    let mut character = assemble::assemble(&accessors, settings, needs_mesh)?;
+    character.format = match vrm::Vrm::of(&document) {
+        Some(vrm) => format!("{}, {}", vrm.format, container.format),
+        None => container.format.to_owned(),
+    };
     Ok(character)
 }
 
@@ -118,7 +68,7 @@ fn is_harmless(extension: &str) -> bool {
         "EXT_texture_avif",
         "MSFT_texture_dds",
     ];
-    KNOWN.contains(&extension) || extension.starts_with("KHR_materials_")
+    KNOWN.contains(&extension) || ["KHR_materials_", "VRM"].iter().any(|prefix| extension.starts_with(prefix))
 }
 
 /// The error for an unsupported extension, with advice.

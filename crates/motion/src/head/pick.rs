@@ -7,12 +7,15 @@ use crate::{
 
 /// Guesses the joint that carries the head.
 ///
-/// It is the joint named head that moves some of the surface, and of several the one that moves most. If no
+/// It is the joint that the file says it is, otherwise the joint named head that moves some of the surface, and of several the one that moves most. If no
 /// name helps, it is the joint that moves the topmost part of the rest pose.
 pub fn guess_head(skeleton: &Skeleton, mesh: &Mesh) -> usize {
     let count = skeleton.joints.len();
     if count == 0 {
         return 0;
+    }
+    if let Some((&head, _)) = skeleton.named.iter().find(|(_, bone)| *bone == "head") {
+        return head;
     }
     let mut weight = vec![0.0_f64; count];
     for (joints, weights) in mesh.joints.iter().zip(&mesh.weights) {

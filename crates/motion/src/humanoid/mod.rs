@@ -1,5 +1,7 @@
 //! The roles of the joints of a figure, derived from their names and their tree.
 
+#[cfg(test)]
+mod families;
 mod names;
 
 use std::collections::BTreeMap;
@@ -68,10 +70,12 @@ pub(crate) struct Humanoid {
 
 impl Humanoid {
     pub(crate) fn of_skeleton(skeleton: &Skeleton) -> Self {
-        Self::new(
-            &skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
-            &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
-        )
+        let names: Vec<&str> = if skeleton.named.is_empty() {
+            skeleton.joints.iter().map(|j| j.name.as_str()).collect()
+        } else {
+            (0..skeleton.joints.len()).map(|j| skeleton.named.get(&j).map_or("", String::as_str)).collect()
+        };
+        Self::new(&names, &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>())
     }
 
     /// The joint of a role.
@@ -86,7 +90,14 @@ impl Humanoid {
 
     /// Finds the roles of joints by their names and parents.
     pub(crate) fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
-        let labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
+        let mut labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
+        // Of a whole rig of Rigify only the joints that deform the surface are a figure; the rest are controls.
+        let deforms = |name: &str| name.starts_with("DEF-");
+        if names.iter().filter(|name| deforms(name)).count() >= 10 {
+            for (label, _) in labels.iter_mut().zip(names).filter(|(_, name)| !deforms(name)) {
+                *label = None;
+            }
+        }
         let depth = depths(parents);
         // The best joint for a part: not a helper, the lowest number, then the deepest (`LHipJoint` above
         // `LeftHip`).
@@ -140,6 +151,11 @@ impl Humanoid {
         let legs = meet(find(&joints, Role::Thigh(Side::Left)), find(&joints, Role::Thigh(Side::Right)));
         let arms =
             meet(find(&joints, Role::UpperArm(Side::Left)), find(&joints, Role::UpperArm(Side::Right)));
+        if let (None, Some(arms)) = (find(&joints, Role::Head), arms)
+            && let Some(head) = end_of_spine(&labels, parents, arms)
+        {
+            joints.insert(Role::Head, head);
+        }
         let head = find(&joints, Role::Head).or_else(|| best(&[Part::Neck], None));
         let hips = meet(legs, head).or_else(|| best(&[Part::Hips], None));
         let mut figure = Self { joints, ..Self::default() };
@@ -171,9 +187,14 @@ impl Humanoid {
             return;
         }
         let is_neck = |j: &usize| labels[*j].as_ref().is_some_and(|l| l.part == Part::Neck);
-        // Everything above the arms is neck. If the arms are unknown, a name decides, or else the last joint.
+        // Everything above the arms is neck. If the arms are unknown, a name decides, or else the last joint. Arms that hang on the neck
+        // itself (3ds Max) make it no part of the chest.
         let chest = self.get(Role::Chest).and_then(|c| path.iter().position(|&j| j == c));
         let split = match chest {
+            Some(c) if is_neck(&path[c]) => {
+                self.joints.insert(Role::Chest, if c > 0 { path[c - 1] } else { hips });
+                c
+            }
             Some(c) => c + 1,
             None => path.iter().position(is_neck).unwrap_or(path.len().saturating_sub(1)),
         };
@@ -183,6 +204,25 @@ impl Humanoid {
             self.joints.insert(Role::Neck, neck);
         }
     }
+}
+
+/// The last joint of a spine whose joints are numbered from the hips to the head, if it goes on by two above the arms.
+fn end_of_spine(labels: &[Option<Label>], parents: &[Option<usize>], arms: usize) -> Option<usize> {
+    let is_spine = |j: usize| labels[j].as_ref().is_some_and(|l| l.part == Part::Spine && l.side.is_none());
+    let above = |mut j: usize| {
+        let mut joints = 0;
+        while let Some(parent) = parents[j] {
+            joints += usize::from(is_spine(j));
+            if parent == arms {
+                return Some(joints);
+            }
+            j = parent;
+        }
+        None
+    };
+    let of_spine = (0..labels.len()).filter(|&j| is_spine(j));
+    let (joints, head) = of_spine.filter_map(|j| Some((above(j)?, j))).max()?;
+    (joints >= 2).then_some(head)
 }
 
 fn depths(parents: &[Option<usize>]) -> Vec<usize> {

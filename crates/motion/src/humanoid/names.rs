@@ -1,5 +1,7 @@
 //! Parsing of joint names: side, numbers, and body part.
 
+mod japanese;
+
 /// Left or right from the figure's own view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
@@ -36,6 +38,8 @@ pub(crate) enum Part {
     Shin,
     Foot,
     Toe,
+    /// A joint of the trunk; rigs that number it from the hips to the head name no head.
+    Spine,
 }
 
 /// A parsed name.
@@ -50,7 +54,7 @@ pub(crate) struct Label {
 }
 
 /// Words without meaning for the part.
-const NOISE: [&str; 22] = [
+const NOISE: [&str; 24] = [
     "mixamorig",
     "bip",
     "biped",
@@ -73,10 +77,13 @@ const NOISE: [&str; 22] = [
     "bn",
     "human",
     "character",
+    // The middle (Advanced Skeleton) and the upper of two joints of a limb (Daz).
+    "m",
+    "bend",
 ];
 
 /// Words of joints that carry no limb.
-const OTHERS: [&str; 34] = [
+const OTHERS: [&str; 42] = [
     "end",
     "nub",
     "tip",
@@ -111,11 +118,23 @@ const OTHERS: [&str; 34] = [
     "top",
     "in",
     "fingers",
+    // Controls of Rigify.
+    "fk",
+    "tweak",
+    "parent",
+    "mch",
+    "vis",
+    "ctrl",
+    "control",
+    "pivot",
 ];
 
 /// Parses a name; `None` if it names no limb, hips, neck or head.
 pub(crate) fn label(name: &str) -> Option<Label> {
     let local = name.rsplit([':', '|']).next().unwrap_or(name);
+    if let Some(label) = japanese::label(local) {
+        return Some(label);
+    }
     let (mut side, mut numbers, mut words) = (None, Vec::new(), Vec::new());
     for token in tokens(local) {
         if let Ok(number) = token.parse::<u32>() {
@@ -144,7 +163,8 @@ pub(crate) fn label(name: &str) -> Option<Label> {
         }
     }
     let part = part(&word, side.is_some())?;
-    Some(Label { part, side, numbers, helper: local.starts_with("__") })
+    let helper = local.starts_with("__") || local.starts_with("ORG");
+    Some(Label { part, side, numbers, helper })
 }
 
 /// Whether the joint distributes a limb's roll, such as `forearm_twist_l` or `lThighTwist`.
@@ -155,10 +175,11 @@ pub(crate) fn is_twist(name: &str) -> bool {
 fn part(word: &str, sided: bool) -> Option<Part> {
     Some(match (word, sided) {
         ("hips" | "hip" | "pelvis" | "cog" | "hipscenter", false) => Part::Hips,
+        ("spine", false) => Part::Spine,
         ("neck" | "lowerneck" | "upperneck" | "necklower" | "neckupper", false) => Part::Neck,
         ("head" | "skull", false) => Part::Head,
-        ("clavicle" | "clav" | "collar" | "collarbone", true) => Part::Clavicle,
-        ("shoulder", true) => Part::Shoulder,
+        ("clavicle" | "clav" | "collar" | "collarbone" | "scapula", true) => Part::Clavicle,
+        ("shoulder" | "shldr", true) => Part::Shoulder,
         ("upperarm" | "uparm" | "arm" | "armupper" | "bicep" | "uarm", true) => Part::UpperArm,
         ("forearm" | "lowerarm" | "loarm" | "lowarm" | "armlower" | "elbow", true) => Part::Forearm,
         ("hand" | "wrist", true) => Part::Hand,
@@ -227,6 +248,11 @@ mod tests {
             ("lowerneck", Neck, None),
             ("foot_r", Foot, r),
             ("CC_Base_L_Foot", Foot, l),
+            ("lThighBend", Thigh, l),
+            ("Scapula_R", Clavicle, r),
+            ("DEF-spine.006", Spine, None),
+            ("左ひざ", Shin, l),
+            ("足首.R", Foot, r),
         ] {
             let found = label(name).unwrap_or_else(|| panic!("{name}"));
             assert_eq!((found.part, found.side), (part, side), "{name}");
@@ -241,6 +267,10 @@ mod tests {
             "node 3",
             "",
             "eye.L",
+            "thigh_ik.L",
+            "upper_arm_fk.R",
+            "左足ＩＫ",
+            "左腕捩",
         ] {
             assert_eq!(label(name), None, "{name}");
         }

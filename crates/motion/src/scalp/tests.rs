@@ -79,7 +79,7 @@ fn ball(size: f32, lift: f32) -> Body {
         rotation: glam::Quat::IDENTITY,
         scale: Vec3::ONE,
     };
-    let mut skeleton = crate::Skeleton { joints: vec![joint], world_at_rest: Vec::new() };
+    let mut skeleton = crate::Skeleton { joints: vec![joint], ..crate::Skeleton::default() };
     skeleton.update_rest();
     Body { skeleton, mesh, ..Body::default() }
 }

@@ -1,4 +1,6 @@
-//! The location of the real files.
+//! The location of the real files, and files that tests write.
+
+pub mod fbx;
 
 use std::path::PathBuf;
 

@@ -4,7 +4,7 @@ use crate::common;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use lovelock_motion::{
     Body, Clip, MotionError, Pose, Skin, load_character, load_motion, pose_at, retarget, skin,
 };
@@ -161,4 +161,68 @@ fn figures_that_do_not_correspond_are_refused() {
         matches!(error, MotionError::Retarget { .. }) && error.to_string().contains("of the body"),
         "{error}"
     );
+}
+
+/// Joints of the dancer whose motion every figure has.
+const LIMBS: [&str; 13] = [
+    "hips",
+    "head",
+    "upper_arm_l",
+    "upper_arm_r",
+    "forearm_l",
+    "forearm_r",
+    "hand_l",
+    "hand_r",
+    "thigh_l",
+    "thigh_r",
+    "shin_l",
+    "shin_r",
+    "foot_l",
+];
+
+#[test]
+fn a_clip_of_one_character_moves_another() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    let dancer = load_character(&path).unwrap();
+    let motion = load_motion(&path).unwrap();
+    assert_eq!(motion.name, dancer.clips[0].name);
+    // On its own figure it is the same, up to the direction of the start.
+    let clip = retarget(&motion, &dancer.body).unwrap();
+    let limbs = LIMBS.map(|name| joint(&dancer.body, &[name]));
+    let (mut own, mut again) = (Pose::default(), Pose::default());
+    let turn =
+        |pose: &Pose, joint: usize| Quat::from_mat3a(&pose.world_from_joint[joint].matrix3).normalize();
+    let at = |secs: f64, own: &mut Pose, again: &mut Pose| {
+        pose_at(&dancer.body, Some(&dancer.clips[0]), secs, own);
+        pose_at(&dancer.body, Some(&clip), secs, again);
+    };
+    at(0.0, &mut own, &mut again);
+    let start = turn(&again, limbs[0]) * turn(&own, limbs[0]).conjugate();
+    let mut moved = 0.0_f32;
+    for k in 0..40 {
+        at(f64::from(k) * 0.21, &mut own, &mut again);
+        for (limb, name) in limbs.into_iter().zip(LIMBS) {
+            let off = turn(&again, limb).angle_between(start * turn(&own, limb)).to_degrees();
+            assert!(off < 1.0, "{name} at {k}: {off} degrees");
+        }
+        let rest = Quat::from_mat3a(&dancer.body.skeleton.world_at_rest[limbs[2]].matrix3);
+        moved = moved.max(turn(&own, limbs[2]).angle_between(rest));
+    }
+    assert!(moved > 0.5, "control: the arm moves by {moved}");
+    let Some(data) = common::data_dir() else { return };
+    let body = load_character(&data.join("characters/mh_body.glb")).unwrap().body;
+    let clip = retarget(&motion, &body).unwrap();
+    let m = measure(&body, &clip);
+    println!(
+        "head up {:.2}, grounded {:.2}, lowest {:.3} m, knees {:.2}",
+        m.head_up, m.grounded, m.lowest, m.knees
+    );
+    // The dance has a deep bow.
+    assert!(m.head_up > 0.9 && m.grounded > 0.5 && m.knees > 0.97 && m.start_turn < 1.0);
+    assert!((clip.duration_secs - dancer.clips[0].duration_secs).abs() < 0.05);
+    // A figure without names is refused with a sentence.
+    let fox = load_motion(&data.join("characters/Fox.glb")).unwrap();
+    assert!(fox.notes.iter().any(|note| note.contains("clips")), "{:?}", fox.notes);
+    let error = retarget(&fox, &body).expect_err("a fox").to_string();
+    assert!(error.contains("no joint name matches"), "{error}");
 }

@@ -30,7 +30,7 @@ pub enum BodySource {
 pub struct BodySection {
     /// Where it comes from.
     pub source: BodySource,
-    /// A character file: glTF, binary or text.
+    /// A character file: glTF, VRM, FBX or USD.
     pub file: Option<FileRef>,
     /// Unit and up axis of that file.
     pub settings: BodySettings,
@@ -101,9 +101,10 @@ pub enum MotionSource {
 pub struct MotionSection {
     /// Where the motion comes from.
     pub source: MotionSource,
-    /// Name of one of the body's clips; its first one where empty.
+    /// Name of one of the body's clips; its first one where empty. With a motion file that has several clips, the name of one of
+    /// those; the first of the file where it has none of that name.
     pub clip: String,
-    /// A motion file (BVH), retargeted to the body.
+    /// A motion file (BVH, glTF, VRM animation, FBX or USD), retargeted to the body.
     pub file: Option<FileRef>,
     /// Unit, axis and root position of that file.
     pub settings: MotionSettings,

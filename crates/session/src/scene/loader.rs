@@ -96,7 +96,7 @@ impl SceneLoader {
     ) -> Result<(Arc<Scene>, Vec<Problem>), ProjectError> {
         let (project, mut problems) = project.sanitised();
         control.at("loading the body", 0.0)?;
-        let body = self.body(&project, access, &mut problems)?;
+        let body = self.body(&project, access, &mut problems, control)?;
         control.at("loading the motion", 0.3)?;
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("creating the hair", 0.5)?;
@@ -148,6 +148,7 @@ impl SceneLoader {
         project: &Project,
         access: &Access,
         problems: &mut Vec<Problem>,
+        control: &mut LoadControl<'_>,
     ) -> Result<Arc<BodyPart>, ProjectError> {
         let wanted = BodyKey::of(&project.body, access);
         if let (Ok(key), Some(kept)) = (&wanted, &self.body)
@@ -155,7 +156,10 @@ impl SceneLoader {
         {
             return Ok(Arc::clone(&kept.part));
         }
-        let loaded = wanted.and_then(|key| key.load().map(|part| (key, part)));
+        let loaded = match wanted {
+            Ok(key) => key.load_in_steps(&mut |what, done| control.at(what, done))?.map(|part| (key, part)),
+            Err(problem) => Err(problem),
+        };
         let (key, part) = match (loaded, &self.body) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {

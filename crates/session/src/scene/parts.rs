@@ -9,7 +9,7 @@ use lovelock_motion::{
     Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
     fit_colliders, joint_paths, load_character_with, load_motion_with, retarget,
 };
-use lovelock_project::error::{Place, Problem, ProblemKind};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, BodySource, MotionSection, MotionSource};
 
@@ -73,12 +73,26 @@ impl BodyKey {
         Self { file: None, head_joint: None }
     }
 
+    /// As [`BodyKey::load_in_steps`], in one go.
     pub(super) fn load(&self) -> Result<BodyPart, Problem> {
+        let loaded = self.load_in_steps(&mut |_, _| Ok(()));
+        loaded.unwrap_or_else(|error| Err(Problem::not_loaded(Place::Body, error)))
+    }
+
+    /// Loads the body. `step` is called before each part of the work with its name and the share of the whole load that is done; its
+    /// error, such as that the load was cancelled, ends the load.
+    pub(super) fn load_in_steps(
+        &self,
+        step: &mut dyn FnMut(&str, f32) -> Result<(), ProjectError>,
+    ) -> Result<Result<BodyPart, Problem>, ProjectError> {
         let character = match &self.file {
             None => dancer(),
             Some((stamp, settings)) => load_character_with(&stamp.path, *settings),
         };
-        let character = character.map_err(|error| Problem::not_loaded(Place::Body, error))?;
+        let character = match character {
+            Ok(character) => character,
+            Err(error) => return Ok(Err(Problem::not_loaded(Place::Body, error))),
+        };
         let mut notes = file_notes(Place::Body, &character.dropped, &character.notes);
         let Character { mut body, clips, .. } = character;
         if let Some(name) = &self.head_joint {
@@ -95,15 +109,13 @@ impl BodyKey {
                 )),
             }
         }
+        step("measuring the body", 0.08)?;
         let rest = RestDistance::new(&body);
-        Ok(BodyPart {
-            colliders: fit_colliders(&body).into(),
-            field: BodyField::new(&body, &rest).map(Arc::new),
-            rest: Arc::new(rest),
-            clips: clips.into(),
-            body,
-            notes,
-        })
+        step("fitting shapes to the body", 0.18)?;
+        let colliders = fit_colliders(&body).into();
+        step("measuring head and shoulders", 0.22)?;
+        let field = BodyField::new(&body, &rest).map(Arc::new);
+        Ok(Ok(BodyPart { colliders, field, rest: Arc::new(rest), clips: clips.into(), body, notes }))
     }
 }
 
@@ -132,8 +144,17 @@ pub(super) fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MotionKey {
     Rest,
-    Clip { name: String, shape: Shape },
-    File { stamp: Stamp, settings: MotionSettings, shape: Shape },
+    Clip {
+        name: String,
+        shape: Shape,
+    },
+    /// A motion file, and the clip of it that is wanted if it has several.
+    File {
+        stamp: Stamp,
+        settings: MotionSettings,
+        clip: String,
+        shape: Shape,
+    },
 }
 
 /// The part of a clip that is played, and the blend at its end.
@@ -181,7 +202,7 @@ impl MotionKey {
             (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), shape }),
             (MotionSource::File, Some(file)) => {
                 let stamp = Stamp::of(&access.read(Place::Motion, file)?);
-                Ok(Self::File { stamp, settings: section.settings, shape })
+                Ok(Self::File { stamp, settings: section.settings, clip: section.clip.clone(), shape })
             }
             (MotionSource::File, None) => {
                 Err(Problem::not_loaded(Place::Motion, "no motion file is set; pick one"))
@@ -219,9 +240,9 @@ impl MotionKey {
                     }),
                 }
             }
-            Self::File { stamp, settings, shape } => {
+            Self::File { stamp, settings, clip: wanted, shape } => {
                 let refuse = |error| Problem::not_loaded(Place::Motion, error);
-                let file = load_motion_with(&stamp.path, *settings).map_err(refuse)?;
+                let file = load_motion_with(&stamp.path, *settings, wanted).map_err(refuse)?;
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
                 Ok(MotionPart {
                     clip: Some(shape.applied(&Arc::new(clip), &part.body)),

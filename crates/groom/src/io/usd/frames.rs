@@ -1,8 +1,10 @@
 //! The curves of a stage over time.
 
 use glam::{DMat4, Vec3};
+use lovelock_usd::Value;
 
-use super::{Layer, Value, read_layer, shape, stage_transform, transform};
+use super::stage::Stage;
+use super::{read_layer, shape, stage_transform};
 use crate::io::HairFileError;
 use crate::io::basis::{Shape, Spread};
 use crate::io::file::RawHair;
@@ -11,8 +13,8 @@ use crate::io::frames::{CurveFrames, merged};
 /// The most times of a file.
 const MOST_TIMES: usize = 1 << 20;
 
-struct Frames<L> {
-    layer: L,
+struct Frames {
+    layer: Stage<'static>,
     /// Each prim with the number of control points of its curves.
     prims: Vec<(usize, Vec<usize>, Shape)>,
     metres_from_stage: DMat4,
@@ -21,8 +23,8 @@ struct Frames<L> {
 }
 
 /// The curves of a layer over time, and the hair at the first time.
-pub(super) fn open<L: Layer + Send + 'static>(
-    mut layer: L,
+pub(super) fn open(
+    mut layer: Stage<'static>,
 ) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
     let raw = read_layer(&mut layer)?;
     let metres_from_stage = stage_transform(&mut layer, &mut Vec::new())?;
@@ -38,7 +40,7 @@ pub(super) fn open<L: Layer + Send + 'static>(
             return Err(layer.malformed(found, "the same ones at all times"));
         }
         times.extend(layer.times(prim, "points")?);
-        times.extend(transform::times(&mut layer, prim)?);
+        times.extend(layer.transform_times(prim)?);
         if times.len() > MOST_TIMES {
             return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
         }
@@ -53,7 +55,7 @@ pub(super) fn open<L: Layer + Send + 'static>(
     Ok((Box::new(Frames { layer, prims, metres_from_stage, codes_per_sec, times }), raw))
 }
 
-impl<L: Layer + Send> CurveFrames for Frames<L> {
+impl CurveFrames for Frames {
     fn times(&self) -> &[f64] {
         &self.times
     }
@@ -64,7 +66,7 @@ impl<L: Layer + Send> CurveFrames for Frames<L> {
         // With a tolerance for the division by the rate.
         layer.set_time(secs * self.codes_per_sec + 1e-4);
         for (prim, counts, shape) in &self.prims {
-            let transform = self.metres_from_stage * transform::to_stage(layer, *prim)?;
+            let transform = self.metres_from_stage * layer.to_stage(*prim)?;
             let points = layer.attribute(*prim, "points", usize::MAX)?;
             let points = points.map_or_else(Vec::new, Value::into_vectors);
             if points.len() != counts.iter().sum::<usize>() {

@@ -4,15 +4,11 @@
 //! transforms of all ancestors of a prim are applied. Cubic curves become polylines. References, payloads, sublayers
 //! and variants are ignored, and a note says so.
 
-mod crate_bytes;
-mod crate_file;
-mod crate_value;
 mod frames;
-mod text;
-mod transform;
-mod value;
+mod stage;
 
 use glam::{DMat4, Vec3};
+use lovelock_usd::{CRATE_MAGIC, TEXT_MAGIC, Value};
 
 use super::HairFileError;
 use super::basis::{Basis, Shape, Spread, Wrap};
@@ -21,9 +17,7 @@ use super::format::HairFormat;
 use super::frames::CurveFrames;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
-use crate_file::{CRATE_MAGIC, CrateLayer};
-use text::TextLayer;
-use value::Value;
+use stage::Stage;
 
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "USD BasisCurves",
@@ -37,51 +31,11 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     write: None,
 };
 
-/// The first bytes of a text file.
-const TEXT_MAGIC: &[u8] = b"#usda";
-
 /// The most points of all polylines.
 const MOST_POINTS: usize = 1 << 28;
 
-/// The content of a stage in one file. Prims are numbers that the layer assigns.
-trait Layer {
-    /// The active prims of type `BasisCurves`, in the order of their paths.
-    fn curves(&mut self) -> Result<Vec<usize>, HairFileError>;
-
-    /// The parent of a prim.
-    fn parent(&self, prim: usize) -> Option<usize>;
-
-    /// Path of a prim, for messages.
-    fn path(&self, prim: usize) -> String;
-
-    /// The time codes of an attribute's samples; none without samples.
-    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError>;
-
-    /// Lets [`Self::attribute`] return the values at a time code.
-    fn set_time(&mut self, time: f64);
-
-    /// Value of an attribute at its first time sample or at the time that is set, otherwise its default. `most` limits the length of compressed
-    /// arrays.
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError>;
-
-    /// The interpolation of an attribute over a prim, if the file states it.
-    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError>;
-
-    /// A metadata field of the stage.
-    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError>;
-
-    /// Whether the file refers to other files or to variants.
-    fn composes(&self) -> bool;
-
-    /// An error about this file.
-    fn malformed(&self, found: String, wanted: &str) -> HairFileError;
-}
-
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
-    if source.start().starts_with(CRATE_MAGIC) {
-        return read_layer(&mut CrateLayer::open(name, source)?);
-    }
-    read_layer(&mut TextLayer::parse(name, &source.into_bytes(name)?)?)
+    read_layer(&mut Stage::open(name, source)?)
 }
 
 /// The curves of a stage over time, and the hair at the first time.
@@ -89,13 +43,10 @@ pub(super) fn frames(
     name: &str,
     source: Source<'static>,
 ) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
-    if source.start().starts_with(CRATE_MAGIC) {
-        return frames::open(CrateLayer::open(name, source)?);
-    }
-    frames::open(TextLayer::parse(name, &source.into_bytes(name)?)?)
+    frames::open(Stage::open(name, source)?)
 }
 
-fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
+fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     let mut raw = RawHair::new(Vec::new(), Vec::new());
     let metres_from_stage = stage_transform(layer, &mut raw.notes)?;
     let prims = layer.curves()?;
@@ -108,7 +59,7 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
     let (mut widths, mut colours) = (Vec::new(), Vec::new());
     let (mut all_widths, mut all_colours) = (true, true);
     for prim in prims {
-        let transform = metres_from_stage * transform::to_stage(layer, prim)?;
+        let transform = metres_from_stage * layer.to_stage(prim)?;
         let curves = Curves::read(layer, prim, &mut raw.notes)?;
         let scale = transform.determinant().abs().cbrt() as f32;
         raw.point_counts.extend(&curves.counts);
@@ -133,7 +84,7 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
 }
 
 /// The transform from the stage to metres with Y up.
-fn stage_transform(layer: &mut impl Layer, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
+fn stage_transform(layer: &mut Stage<'_>, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
     let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
         let found = value.numbers().first().copied().unwrap_or(f64::NAN);
         if !(1e-9..=1e9).contains(&found) {
@@ -159,7 +110,7 @@ struct Curves {
 }
 
 impl Curves {
-    fn read(layer: &mut impl Layer, prim: usize, notes: &mut Vec<String>) -> Result<Self, HairFileError> {
+    fn read(layer: &mut Stage<'_>, prim: usize, notes: &mut Vec<String>) -> Result<Self, HairFileError> {
         let path = layer.path(prim);
         let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
         let counts = layer.attribute(prim, "curveVertexCounts", points.len())?;
@@ -215,7 +166,7 @@ impl Curves {
 }
 
 /// Basis and wrap of a prim's curves.
-fn shape(layer: &mut impl Layer, prim: usize) -> Result<Shape, HairFileError> {
+fn shape(layer: &mut Stage<'_>, prim: usize) -> Result<Shape, HairFileError> {
     let mut word = |name: &str, fallback: &str| {
         let value = layer.attribute(prim, name, 1)?;
         Ok(value.as_ref().and_then(Value::token).unwrap_or(fallback).to_owned())

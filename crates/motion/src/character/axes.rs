@@ -79,6 +79,8 @@ fn insert_root(body: &mut Body, clips: &mut [Clip], name: &str, rotation: Quat) 
     let root = Joint { name: name.into(), parent: None, translation: Vec3::ZERO, rotation, scale: Vec3::ONE };
     body.skeleton.joints.insert(0, root);
     body.skeleton.update_rest();
+    let named = std::mem::take(&mut body.skeleton.named);
+    body.skeleton.named = named.into_iter().map(|(joint, bone)| (joint + 1, bone)).collect();
     body.skin.palette.iter_mut().for_each(|bind| bind.joint += 1);
     body.mesh.joints.iter_mut().flatten().for_each(|joint| *joint += 1);
     clips.iter_mut().flat_map(|c| &mut c.joints).for_each(|tracks| tracks.joint += 1);

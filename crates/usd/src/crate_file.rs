@@ -7,15 +7,16 @@
 
 use std::collections::HashMap;
 
-use super::crate_bytes::{CrateBytes, u64_of};
-use super::crate_value::CrateValues;
-use super::transform::DEEPEST;
-use super::value::Value;
-use super::{HairFileError, Layer};
-use crate::io::source::Source;
+use crate::Source;
+use crate::crate_bytes::{CrateBytes, u64_of};
+use crate::crate_value::CrateValues;
+use crate::layer::sample_at;
+use crate::transform::DEEPEST;
+use crate::value::Value;
+use crate::{Layer, UsdError};
 
 /// The first bytes of a crate.
-pub(super) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
+pub(crate) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
 
 const NOTHING: u32 = u32::MAX;
 
@@ -33,7 +34,7 @@ struct Node {
     spec_type: u32,
 }
 
-pub(super) struct CrateLayer<'a> {
+pub(crate) struct CrateLayer<'a> {
     values: CrateValues<'a>,
     /// Token and value of each field.
     fields: Vec<(u32, u64)>,
@@ -48,7 +49,7 @@ pub(super) struct CrateLayer<'a> {
 }
 
 impl<'a> CrateLayer<'a> {
-    pub(super) fn open(name: &str, source: Source<'a>) -> Result<Self, HairFileError> {
+    pub(crate) fn open(name: &str, source: Source<'a>) -> Result<Self, UsdError> {
         let mut layer = Self {
             values: CrateValues { file: CrateBytes::new(name, source), version: [0; 3], tokens: Vec::new() },
             fields: Vec::new(),
@@ -95,7 +96,7 @@ impl<'a> CrateLayer<'a> {
         Ok(layer)
     }
 
-    fn read_tokens(&mut self, at: u64) -> Result<(), HairFileError> {
+    fn read_tokens(&mut self, at: u64) -> Result<(), UsdError> {
         let (count, length) = (self.values.file.u64(at)?, self.values.file.u64(at + 8)?);
         let (text, _) = self.values.file.unpacked(at + 16, length, length)?;
         if text.len() as u64 != length || text.last().is_some_and(|&byte| byte != 0) {
@@ -117,7 +118,7 @@ impl<'a> CrateLayer<'a> {
         Ok(())
     }
 
-    fn read_fields(&mut self, at: u64) -> Result<(), HairFileError> {
+    fn read_fields(&mut self, at: u64) -> Result<(), UsdError> {
         let (at, count) = self.values.file.counted(at)?;
         let (tokens, at) = self.values.file.ints(at, count)?;
         let (values, _) = self.values.file.unpacked(at, 8 * count, 8 * count)?;
@@ -126,7 +127,7 @@ impl<'a> CrateLayer<'a> {
     }
 
     /// Reads the path tree: each entry is followed by its children and states the distance to its next sibling.
-    fn read_paths(&mut self, at: u64) -> Result<(), HairFileError> {
+    fn read_paths(&mut self, at: u64) -> Result<(), UsdError> {
         let (start, count) = self.values.file.counted(at)?;
         let (start, encoded) = self.values.file.counted(start)?;
         let (indices, next) = self.values.file.ints(start, encoded)?;
@@ -174,7 +175,7 @@ impl<'a> CrateLayer<'a> {
         Ok(())
     }
 
-    fn read_specs(&mut self, at: u64) -> Result<(), HairFileError> {
+    fn read_specs(&mut self, at: u64) -> Result<(), UsdError> {
         let (start, count) = self.values.file.counted(at)?;
         let (paths, next) = self.values.file.ints(start, count)?;
         let (fieldsets, next) = self.values.file.ints(next, count)?;
@@ -196,7 +197,7 @@ impl<'a> CrateLayer<'a> {
     }
 
     /// The stored value of a field of a spec.
-    fn field(&self, node: u32, name: &str) -> Option<u64> {
+    fn field_of(&self, node: u32, name: &str) -> Option<u64> {
         let start = self.nodes.get(node as usize)?.fieldset as usize;
         let run = self.fieldsets.get(start..)?.iter().take_while(|&&field| field != NOTHING);
         let mut fields = run.filter_map(|&field| self.fields.get(field as usize));
@@ -210,8 +211,8 @@ impl<'a> CrateLayer<'a> {
         self.properties.get(&(prim as u32, token as u32)).copied()
     }
 
-    fn token_of(&mut self, node: u32, field: &str) -> Result<Option<String>, HairFileError> {
-        let Some(value) = self.field(node, field) else { return Ok(None) };
+    fn token_of(&mut self, node: u32, field: &str) -> Result<Option<String>, UsdError> {
+        let Some(value) = self.field_of(node, field) else { return Ok(None) };
         Ok(match self.values.value(value, 1)? {
             Some(Value::Token(token)) => Some(token),
             _ => None,
@@ -219,10 +220,10 @@ impl<'a> CrateLayer<'a> {
     }
 
     /// Whether a prim is defined and active.
-    fn is_on(&mut self, node: u32) -> Result<bool, HairFileError> {
+    fn is_on(&mut self, node: u32) -> Result<bool, UsdError> {
         // `def`; `over` and `class` define nothing that is drawn.
-        let defined = self.field(node, "specifier").is_some_and(|value| value as u8 == 0);
-        let active = match self.field(node, "active") {
+        let defined = self.field_of(node, "specifier").is_some_and(|value| value as u8 == 0);
+        let active = match self.field_of(node, "active") {
             Some(value) => self.values.value(value, 1)? != Some(Value::Bool(false)),
             None => true,
         };
@@ -231,24 +232,32 @@ impl<'a> CrateLayer<'a> {
 }
 
 impl Layer for CrateLayer<'_> {
-    fn curves(&mut self) -> Result<Vec<usize>, HairFileError> {
-        let mut curves = Vec::new();
+    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
+        let mut found = Vec::new();
         for node in 0..self.nodes.len() as u32 {
-            let is_prim = self.nodes[node as usize].spec_type == PRIM;
-            if !is_prim || self.token_of(node, "typeName")?.as_deref() != Some("BasisCurves") {
+            if self.nodes[node as usize].spec_type != PRIM {
                 continue;
             }
+            let Some(kind) = self.token_of(node, "typeName")?.filter(|kind| types.contains(&kind.as_str()))
+            else {
+                continue;
+            };
             let (mut at, mut on) = (node, true);
             while on && at != NOTHING && at != self.root {
                 on = self.is_on(at)?;
                 at = self.nodes[at as usize].parent;
             }
             if on {
-                curves.push((self.path(node as usize), node as usize));
+                found.push((self.path(node as usize), node as usize, kind));
             }
         }
-        curves.sort();
-        Ok(curves.into_iter().map(|(_, prim)| prim).collect())
+        found.sort();
+        Ok(found.into_iter().map(|(_, prim, kind)| (prim, kind)).collect())
+    }
+
+    fn prim_at(&mut self, path: &str) -> Option<usize> {
+        let is_prim = |node: &usize| self.nodes[*node].spec_type == PRIM;
+        (0..self.nodes.len()).filter(is_prim).find(|&node| self.path(node) == path)
     }
 
     fn parent(&self, prim: usize) -> Option<usize> {
@@ -267,38 +276,67 @@ impl Layer for CrateLayer<'_> {
         names.iter().rev().fold(String::new(), |path, name| path + "/" + name)
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError> {
-        let Some(property) = self.property(prim, name) else { return Ok(None) };
-        if let Some(samples) = self.field(property, "timeSamples")
-            && let Some(chosen) = self.values.sample(samples, self.time)?
-            && let Some(value) = self.values.value(chosen, most)?
-        {
+    fn set_time(&mut self, time: f64) {
+        self.time = Some(time);
+    }
+
+    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
+        let sample = match self.time {
+            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
+            None => 0,
+        };
+        if let Some(value) = self.sample(prim, name, sample, most)? {
             return Ok(Some(value));
         }
-        match self.field(property, "default") {
+        match self.property(prim, name).and_then(|property| self.field_of(property, "default")) {
             Some(value) => self.values.value(value, most),
             None => Ok(None),
         }
     }
 
-    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError> {
-        let samples = self.property(prim, name).and_then(|property| self.field(property, "timeSamples"));
-        samples.map_or(Ok(Vec::new()), |samples| self.values.times(samples))
+    fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError> {
+        match self.property(prim, name).and_then(|property| self.field_of(property, "timeSamples")) {
+            Some(samples) => self.values.times(samples),
+            None => Ok(Vec::new()),
+        }
     }
 
-    fn set_time(&mut self, time: f64) {
-        self.time = Some(time);
+    fn sample(
+        &mut self,
+        prim: usize,
+        name: &str,
+        sample: usize,
+        most: usize,
+    ) -> Result<Option<Value>, UsdError> {
+        let samples = self.property(prim, name).and_then(|property| self.field_of(property, "timeSamples"));
+        let Some(samples) = samples else { return Ok(None) };
+        match self.values.samples(samples)? {
+            Some((first, count)) if (sample as u64) < count => {
+                let value = self.values.file.u64(first + 8 * sample as u64)?;
+                self.values.value(value, most)
+            }
+            _ => Ok(None),
+        }
     }
 
-    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
-        match self.property(prim, name) {
-            Some(property) => self.token_of(property, "interpolation"),
+    fn field(&mut self, prim: usize, attribute: &str, field: &str) -> Result<Option<Value>, UsdError> {
+        match self.property(prim, attribute).and_then(|property| self.field_of(property, field)) {
+            Some(value) => self.values.value(value, 1),
             None => Ok(None),
         }
     }
 
-    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
-        match self.field(self.root, name) {
+    fn targets(&mut self, prim: usize, relationship: &str) -> Result<Vec<String>, UsdError> {
+        let list =
+            self.property(prim, relationship).and_then(|property| self.field_of(property, "targetPaths"));
+        let Some(list) = list else { return Ok(Vec::new()) };
+        let paths = self.values.paths(list)?;
+        let known = paths.into_iter().filter(|&path| (path as usize) < self.nodes.len());
+        Ok(known.map(|path| self.path(path as usize)).collect())
+    }
+
+    fn metadata(&mut self, name: &str) -> Result<Option<Value>, UsdError> {
+        match self.field_of(self.root, name) {
             Some(value) => self.values.value(value, 1),
             None => Ok(None),
         }
@@ -311,7 +349,7 @@ impl Layer for CrateLayer<'_> {
         })
     }
 
-    fn malformed(&self, found: String, wanted: &str) -> HairFileError {
+    fn malformed(&self, found: String, wanted: &str) -> UsdError {
         self.values.file.at(0, found, wanted)
     }
 }

@@ -1,7 +1,7 @@
 //! Reads bytes of a crate at checked positions.
 
-use super::HairFileError;
-use crate::io::source::Source;
+use crate::Source;
+use crate::UsdError;
 
 /// The most paths, fields or specs of a crate.
 const MOST_ENTRIES: u64 = 1 << 24;
@@ -9,19 +9,19 @@ const MOST_ENTRIES: u64 = 1 << 24;
 const BEST_RATIO: u64 = 255;
 
 /// The bytes of a crate.
-pub(super) struct CrateBytes<'a> {
+pub(crate) struct CrateBytes<'a> {
     /// The file's name, for messages.
     name: String,
     source: Source<'a>,
 }
 
 impl<'a> CrateBytes<'a> {
-    pub(super) fn new(name: &str, source: Source<'a>) -> Self {
+    pub(crate) fn new(name: &str, source: Source<'a>) -> Self {
         Self { name: name.to_owned(), source }
     }
 
     /// Reads a count, checks it against the size of the file, and returns it with the position after it.
-    pub(super) fn counted(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
+    pub(crate) fn counted(&mut self, at: u64) -> Result<(u64, u64), UsdError> {
         let count = self.u64(at)?;
         // Four compressed integers take at least one byte.
         if count > MOST_ENTRIES || count / 4 > self.source.len().saturating_mul(BEST_RATIO) {
@@ -36,7 +36,7 @@ impl<'a> CrateBytes<'a> {
 
     /// Reads compressed integers, stored as differences from the previous one; returns them with the position after
     /// them.
-    pub(super) fn ints(&mut self, at: u64, count: u64) -> Result<(Vec<u32>, u64), HairFileError> {
+    pub(crate) fn ints(&mut self, at: u64, count: u64) -> Result<(Vec<u32>, u64), UsdError> {
         let codes = count.div_ceil(4);
         // If all differences equal the common one, no bytes follow the codes.
         let [least, most] = if count == 0 { [0; 2] } else { [4 + codes, 4 + codes + 4 * count] };
@@ -69,12 +69,7 @@ impl<'a> CrateBytes<'a> {
 
     /// Reads a compressed block that unpacks to between `least` and `most` bytes; returns it with the position after
     /// it.
-    pub(super) fn unpacked(
-        &mut self,
-        at: u64,
-        least: u64,
-        most: u64,
-    ) -> Result<(Vec<u8>, u64), HairFileError> {
+    pub(crate) fn unpacked(&mut self, at: u64, least: u64, most: u64) -> Result<(Vec<u8>, u64), UsdError> {
         let length = self.u64(at)?;
         let block = self.bytes(at + 8, length, "bytes of a compressed block")?;
         let next = at + 8 + length;
@@ -101,12 +96,17 @@ impl<'a> CrateBytes<'a> {
         Ok((out, next))
     }
 
-    pub(super) fn u64(&mut self, at: u64) -> Result<u64, HairFileError> {
+    /// Length of the file, bytes.
+    pub(crate) fn len(&self) -> u64 {
+        self.source.len()
+    }
+
+    pub(crate) fn u64(&mut self, at: u64) -> Result<u64, UsdError> {
         Ok(u64_of(&self.bytes(at, 8, "bytes of a number")?))
     }
 
     /// `count` bytes at `at`, if the file contains them.
-    pub(super) fn bytes(&mut self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, HairFileError> {
+    pub(crate) fn bytes(&mut self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, UsdError> {
         let length = self.source.len();
         if at.checked_add(count).is_none_or(|end| end > length) {
             return Err(self.at(at, format!("a file of {length} bytes"), &format!("{count} {what}")));
@@ -114,11 +114,11 @@ impl<'a> CrateBytes<'a> {
         self.source.read_at(&self.name, at, count)
     }
 
-    pub(super) fn at(&self, offset: u64, found: String, wanted: &str) -> HairFileError {
-        HairFileError::Malformed { name: self.name.clone(), offset, found, wanted: wanted.to_owned() }
+    pub(crate) fn at(&self, offset: u64, found: String, wanted: &str) -> UsdError {
+        UsdError::Malformed { name: self.name.clone(), offset, found, wanted: wanted.to_owned() }
     }
 }
 
-pub(super) fn u64_of(bytes: &[u8]) -> u64 {
+pub(crate) fn u64_of(bytes: &[u8]) -> u64 {
     bytes.first_chunk::<8>().map_or(0, |&eight| u64::from_le_bytes(eight))
 }

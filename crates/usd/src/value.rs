@@ -1,10 +1,10 @@
-//! Values of attributes that curves and transforms have.
+//! Values of attributes that curves, meshes, skeletons and transforms have.
 
 use glam::Vec3;
 
 /// A value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub enum Value {
     /// A token.
     Token(String),
     /// An array of tokens.
@@ -19,39 +19,72 @@ pub(super) enum Value {
     Floats(Vec<f32>),
     /// An array of vectors of three.
     Vectors(Vec<Vec3>),
+    /// An array of quaternions, the real part first.
+    Quaternions(Vec<[f32; 4]>),
+    /// An array of matrices of 4 by 4, row after row.
+    Matrices(Vec<[f64; 16]>),
 }
 
 impl Value {
-    pub(super) fn token(&self) -> Option<&str> {
+    /// The token; `None` for another value.
+    pub fn token(&self) -> Option<&str> {
         match self {
             Self::Token(token) => Some(token),
             _ => None,
         }
     }
 
-    pub(super) fn numbers(&self) -> &[f64] {
+    /// The numbers of one number, vector, quaternion or matrix; empty for another value.
+    pub fn numbers(&self) -> &[f64] {
         match self {
             Self::Numbers(numbers) => numbers,
             _ => &[],
         }
     }
 
-    pub(super) fn into_tokens(self) -> Vec<String> {
+    /// The tokens; empty for another value.
+    pub fn into_tokens(self) -> Vec<String> {
         match self {
             Self::Tokens(tokens) => tokens,
             _ => Vec::new(),
         }
     }
 
-    pub(super) fn into_ints(self) -> Vec<i32> {
+    /// The integers; empty for another value.
+    pub fn into_ints(self) -> Vec<i32> {
         match self {
             Self::Ints(ints) => ints,
             _ => Vec::new(),
         }
     }
 
+    /// The numbers of an array, or of one number or vector; empty for another value.
+    pub fn into_floats(self) -> Vec<f32> {
+        match self {
+            Self::Floats(floats) => floats,
+            Self::Numbers(numbers) => numbers.into_iter().map(|number| number as f32).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The quaternions, the real part first; empty for another value.
+    pub fn into_quaternions(self) -> Vec<[f32; 4]> {
+        match self {
+            Self::Quaternions(quaternions) => quaternions,
+            _ => Vec::new(),
+        }
+    }
+
+    /// The matrices, row after row; empty for another value.
+    pub fn into_matrices(self) -> Vec<[f64; 16]> {
+        match self {
+            Self::Matrices(matrices) => matrices,
+            _ => Vec::new(),
+        }
+    }
+
     /// Vectors, or numbers repeated in each component of a vector.
-    pub(super) fn into_vectors(self) -> Vec<Vec3> {
+    pub fn into_vectors(self) -> Vec<Vec3> {
         match self {
             Self::Vectors(vectors) => vectors,
             Self::Floats(floats) => floats.into_iter().map(Vec3::splat).collect(),
@@ -66,7 +99,7 @@ impl Value {
 }
 
 /// Converts a half-precision number (IEEE 754 binary16).
-pub(super) fn half(bits: u16) -> f32 {
+pub(crate) fn half(bits: u16) -> f32 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff));
     match exponent {

@@ -2,21 +2,24 @@
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::{HairFileError, Layer, Value};
+use crate::{Layer, UsdError, Value};
 
 /// The deepest nesting of prims.
-pub(super) const DEEPEST: usize = 128;
+pub(crate) const DEEPEST: usize = 128;
 
 /// The most transform operations of one prim.
 const MOST_OPS: usize = 256;
 
-/// The transform from a prim's own space to the stage: its operations and those of all its ancestors.
-pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, HairFileError> {
+/// The transform from a prim's own space to the stage: its operations and those of all its ancestors, at their first time samples.
+///
+/// # Errors
+/// If an operation is unknown or the result is not finite.
+pub fn to_stage(layer: &mut dyn Layer, prim: usize) -> Result<DMat4, UsdError> {
     let mut transform = DMat4::IDENTITY;
     let mut at = Some(prim);
     for _ in 0..DEEPEST {
         let Some(prim) = at else { break };
-        let (own, resets) = own(layer, prim)?;
+        let (own, resets) = own_transform(layer, prim)?;
         transform = own * transform;
         if resets {
             break;
@@ -32,7 +35,10 @@ pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, Hai
 }
 
 /// The time codes at which the transform of a prim or of an ancestor changes.
-pub(super) fn times(layer: &mut impl Layer, prim: usize) -> Result<Vec<f64>, HairFileError> {
+///
+/// # Errors
+/// If the file contradicts itself.
+pub fn transform_times(layer: &mut dyn Layer, prim: usize) -> Result<Vec<f64>, UsdError> {
     let mut times = Vec::new();
     let mut at = Some(prim);
     for _ in 0..DEEPEST {
@@ -40,7 +46,7 @@ pub(super) fn times(layer: &mut impl Layer, prim: usize) -> Result<Vec<f64>, Hai
         let order =
             layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
         for op in order.iter().take(MOST_OPS) {
-            times.extend(layer.times(prim, op.strip_prefix("!invert!").unwrap_or(op))?);
+            times.extend(layer.sample_times(prim, op.strip_prefix("!invert!").unwrap_or(op))?);
         }
         at = layer.parent(prim);
     }
@@ -48,7 +54,10 @@ pub(super) fn times(layer: &mut impl Layer, prim: usize) -> Result<Vec<f64>, Hai
 }
 
 /// The transform operations of one prim, and whether they reset the transforms of its ancestors.
-fn own(layer: &mut impl Layer, prim: usize) -> Result<(DMat4, bool), HairFileError> {
+///
+/// # Errors
+/// As [`to_stage`].
+pub fn own_transform(layer: &mut dyn Layer, prim: usize) -> Result<(DMat4, bool), UsdError> {
     let order = layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
     let (mut transform, mut resets) = (DMat4::IDENTITY, false);
     for op in order.iter().take(MOST_OPS) {

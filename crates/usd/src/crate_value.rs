@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::HairFileError;
-use super::crate_bytes::{CrateBytes, u64_of};
-use super::value::{Value, half};
+use crate::UsdError;
+use crate::crate_bytes::{CrateBytes, u64_of};
+use crate::value::{Value, half};
 
 const IS_ARRAY: u64 = 1 << 63;
 const IS_INLINED: u64 = 1 << 62;
@@ -15,22 +15,23 @@ const PAYLOAD: u64 = (1 << 48) - 1;
 
 /// Value types by their numbers in a crate.
 mod kind {
-    pub(super) const BOOL: u64 = 1;
-    pub(super) const INT: u64 = 3;
-    pub(super) const HALF: u64 = 7;
-    pub(super) const FLOAT: u64 = 8;
-    pub(super) const DOUBLE: u64 = 9;
-    pub(super) const TOKEN: u64 = 11;
-    pub(super) const MATRIX4D: u64 = 15;
-    pub(super) const QUATD: u64 = 16;
-    pub(super) const QUATF: u64 = 17;
-    pub(super) const QUATH: u64 = 18;
-    pub(super) const VEC3D: u64 = 23;
-    pub(super) const VEC3F: u64 = 24;
-    pub(super) const VEC3H: u64 = 25;
-    pub(super) const TOKEN_VECTOR: u64 = 41;
-    pub(super) const TIME_SAMPLES: u64 = 46;
-    pub(super) const DOUBLE_VECTOR: u64 = 48;
+    pub(crate) const BOOL: u64 = 1;
+    pub(crate) const INT: u64 = 3;
+    pub(crate) const HALF: u64 = 7;
+    pub(crate) const FLOAT: u64 = 8;
+    pub(crate) const DOUBLE: u64 = 9;
+    pub(crate) const TOKEN: u64 = 11;
+    pub(crate) const MATRIX4D: u64 = 15;
+    pub(crate) const QUATD: u64 = 16;
+    pub(crate) const QUATF: u64 = 17;
+    pub(crate) const QUATH: u64 = 18;
+    pub(crate) const VEC3D: u64 = 23;
+    pub(crate) const VEC3F: u64 = 24;
+    pub(crate) const VEC3H: u64 = 25;
+    pub(crate) const PATH_LIST: u64 = 34;
+    pub(crate) const TOKEN_VECTOR: u64 = 41;
+    pub(crate) const TIME_SAMPLES: u64 = 46;
+    pub(crate) const DOUBLE_VECTOR: u64 = 48;
 }
 
 /// The numbers that vectors and arrays consist of.
@@ -61,16 +62,16 @@ impl Number {
 }
 
 /// Reads values of a crate, with the tokens that they refer to.
-pub(super) struct CrateValues<'a> {
-    pub(super) file: CrateBytes<'a>,
+pub(crate) struct CrateValues<'a> {
+    pub(crate) file: CrateBytes<'a>,
     /// Version of the crate: major, minor, patch.
-    pub(super) version: [u8; 3],
-    pub(super) tokens: Vec<String>,
+    pub(crate) version: [u8; 3],
+    pub(crate) tokens: Vec<String>,
 }
 
 impl CrateValues<'_> {
-    /// Positions of the times and of the values of time samples, and the number of values; `None` without samples.
-    fn samples(&mut self, samples: u64) -> Result<Option<(u64, u64, u64)>, HairFileError> {
+    /// The values of time samples: the position of the first one, and their number, which fits into the file.
+    pub(crate) fn samples(&mut self, samples: u64) -> Result<Option<(u64, u64)>, UsdError> {
         if samples >> 48 & 0xff != kind::TIME_SAMPLES {
             return Ok(None);
         }
@@ -80,46 +81,63 @@ impl CrateValues<'_> {
         let at = times.saturating_add(8);
         let values = at.wrapping_add(self.file.u64(at)?);
         let count = self.file.u64(values)?;
-        Ok((count > 0).then_some((times, values.saturating_add(8), count)))
+        let first = values.saturating_add(8);
+        let fits = count.checked_mul(8).and_then(|bytes| first.checked_add(bytes));
+        if fits.is_none_or(|end| end > self.file.len()) {
+            return Err(self.file.at(
+                values,
+                format!("{count} time samples"),
+                "as many as the file can hold",
+            ));
+        }
+        Ok(Some((first, count)))
     }
 
-    /// The value of the last time sample that is not after `time`, or of the first one; `None` without samples.
-    pub(super) fn sample(&mut self, samples: u64, time: Option<f64>) -> Result<Option<u64>, HairFileError> {
-        let Some((_, values, count)) = self.samples(samples)? else { return Ok(None) };
-        let index = match time {
-            None => 0,
-            Some(time) => {
-                let times = self.times(samples)?;
-                (times.partition_point(|&at| at <= time) as u64).saturating_sub(1).min(count - 1)
-            }
-        };
-        self.file.u64(values.saturating_add(8 * index)).map(Some)
-    }
-
-    /// The times of time samples, as codes; none without samples.
-    pub(super) fn times(&mut self, samples: u64) -> Result<Vec<f64>, HairFileError> {
-        let Some((times, ..)) = self.samples(samples)? else { return Ok(Vec::new()) };
+    /// The times of time samples, in time codes.
+    pub(crate) fn times(&mut self, samples: u64) -> Result<Vec<f64>, UsdError> {
+        if samples >> 48 & 0xff != kind::TIME_SAMPLES {
+            return Ok(Vec::new());
+        }
+        let at = samples & PAYLOAD;
+        let times = at.wrapping_add(self.file.u64(at)?);
         let value = self.file.u64(times)?;
-        let at = value & PAYLOAD;
-        // Pixar writes a vector, the `openusd` library an array.
-        let (count, start) = match value >> 48 & 0xff {
-            kind::DOUBLE_VECTOR => (self.file.u64(at)?, at.saturating_add(8)),
+        let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
+        let (count, start) = match kind {
+            kind::DOUBLE_VECTOR if at == 0 => (0, 0),
+            kind::DOUBLE_VECTOR => (self.file.u64(at)?, at + 8),
+            // Pixar writes a vector, the `openusd` library an array.
             kind::DOUBLE if value & (IS_ARRAY | IS_COMPRESSED) == IS_ARRAY => self.length(at)?,
             kind::DOUBLE if value & IS_ARRAY != 0 => {
-                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else {
-                    return Ok(Vec::new());
-                };
+                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else { return Ok(Vec::new()) };
                 return Ok(times.into_iter().map(f64::from).collect());
             }
-            _ => return Ok(Vec::new()),
+            _ => return Err(self.file.at(times, format!("times of type {kind}"), "numbers")),
         };
         let bytes = self.file.bytes(start, count.saturating_mul(8), "bytes of times")?;
-        Ok(bytes.as_chunks::<8>().0.iter().map(|&eight| f64::from_le_bytes(eight)).collect())
+        Ok(bytes.chunks_exact(8).map(|eight| f64::from_bits(u64_of(eight))).collect())
     }
 
-    /// Reads a value; `None` for types that curves and transforms do not have. Compressed arrays may have at most
+    /// The indices of the paths in a list of targets.
+    pub(crate) fn paths(&mut self, value: u64) -> Result<Vec<u32>, UsdError> {
+        let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
+        if kind != kind::PATH_LIST {
+            return Ok(Vec::new());
+        }
+        let bits = self.file.bytes(at, 1, "byte that says which lists follow")?[0];
+        let (mut at, mut paths) = (at + 1, Vec::new());
+        // Explicit, added, prepended and appended ones; deleted and ordered ones come after them.
+        for _ in [1, 2, 5, 6].into_iter().filter(|bit| bits >> bit & 1 == 1) {
+            let count = self.file.u64(at)?;
+            let bytes = self.file.bytes(at + 8, count.saturating_mul(4), "bytes of paths")?;
+            paths.extend(bytes.as_chunks::<4>().0.iter().map(|&four| u32::from_le_bytes(four)));
+            at += 8 + 4 * count;
+        }
+        Ok(paths)
+    }
+
+    /// Reads a value; `None` for types that no reader needs. Compressed arrays may have at most
     /// `most` elements.
-    pub(super) fn value(&mut self, value: u64, most: usize) -> Result<Option<Value>, HairFileError> {
+    pub(crate) fn value(&mut self, value: u64, most: usize) -> Result<Option<Value>, UsdError> {
         let (is_array, is_inlined) = (value & IS_ARRAY != 0, value & IS_INLINED != 0);
         let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
         if kind == kind::TOKEN_VECTOR || is_array && kind == kind::TOKEN {
@@ -161,19 +179,19 @@ impl CrateValues<'_> {
         }))
     }
 
-    fn numbers(&mut self, at: u64, number: Number, count: usize) -> Result<Value, HairFileError> {
+    fn numbers(&mut self, at: u64, number: Number, count: usize) -> Result<Value, UsdError> {
         let bytes = self.file.bytes(at, (count * number.size()) as u64, "bytes of a value")?;
         Ok(Value::Numbers(bytes.chunks_exact(number.size()).map(|bytes| number.of(bytes)).collect()))
     }
 
     /// Quaternions are stored with the real part last.
-    fn quaternion(&mut self, at: u64, number: Number) -> Result<Value, HairFileError> {
+    fn quaternion(&mut self, at: u64, number: Number) -> Result<Value, UsdError> {
         let value = self.numbers(at, number, 4)?;
         let &[x, y, z, w] = value.numbers() else { return Ok(value) };
         Ok(Value::Numbers(vec![w, x, y, z]))
     }
 
-    fn words(&mut self, at: u64, is_array: bool, most: usize) -> Result<Value, HairFileError> {
+    fn words(&mut self, at: u64, is_array: bool, most: usize) -> Result<Value, UsdError> {
         if at == 0 {
             return Ok(Value::Tokens(Vec::new()));
         }
@@ -188,7 +206,7 @@ impl CrateValues<'_> {
         ))
     }
 
-    fn array(&mut self, value: u64, most: usize) -> Result<Option<Value>, HairFileError> {
+    fn array(&mut self, value: u64, most: usize) -> Result<Option<Value>, UsdError> {
         let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
         let (count, start) = if at == 0 { (0, 0) } else { self.length(at)? };
         let compressed = value & IS_COMPRESSED != 0 && count >= if self.version[1] < 7 { 16 } else { 4 };
@@ -215,6 +233,10 @@ impl CrateValues<'_> {
             kind::VEC3H => (Number::Half, 3),
             kind::VEC3F => (Number::Float, 3),
             kind::VEC3D => (Number::Double, 3),
+            kind::QUATH => (Number::Half, 4),
+            kind::QUATF => (Number::Float, 4),
+            kind::QUATD => (Number::Double, 4),
+            kind::MATRIX4D => (Number::Double, 16),
             _ => return Ok(None),
         };
         let size = per * number.size();
@@ -224,14 +246,22 @@ impl CrateValues<'_> {
             Value::Ints(bytes.as_chunks::<4>().0.iter().map(|&four| i32::from_le_bytes(four)).collect())
         } else if per == 1 {
             Value::Floats(items.map(|item| number.of(item) as f32).collect())
+        } else if per == 16 {
+            let whole = |item: &[u8]| std::array::from_fn(|k| number.of(&item[k * number.size()..]));
+            Value::Matrices(items.map(whole).collect())
         } else {
             let part = |item: &[u8], k: usize| number.of(&item[k * number.size()..]) as f32;
+            if per == 4 {
+                // Quaternions are stored with the real part last.
+                let turn = |item: &[u8]| [3, 0, 1, 2].map(|k| part(item, k));
+                return Ok(Some(Value::Quaternions(items.map(turn).collect())));
+            }
             Value::Vectors(items.map(|item| Vec3::new(part(item, 0), part(item, 1), part(item, 2))).collect())
         }))
     }
 
     /// Reads compressed numbers: integers, or indices into a table of few values.
-    fn packed_floats(&mut self, at: u64, count: u64, number: Number) -> Result<Value, HairFileError> {
+    fn packed_floats(&mut self, at: u64, count: u64, number: Number) -> Result<Value, UsdError> {
         let code = self.file.bytes(at, 1, "byte that says how numbers are compressed")?[0];
         match code {
             b'i' => {
@@ -258,7 +288,7 @@ impl CrateValues<'_> {
     }
 
     /// The length of an array, and the position of its elements.
-    fn length(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
+    fn length(&mut self, at: u64) -> Result<(u64, u64), UsdError> {
         // Before version 0.5 the number of dimensions came first; it was always one.
         let at = if self.version[1] < 5 { at + 4 } else { at };
         if self.version[1] < 7 {

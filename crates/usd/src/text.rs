@@ -8,16 +8,17 @@ use openusd::sdf::{AbstractData, Data, Path, SpecType, Specifier, Value as Sdf};
 use openusd::usda::parser::Parser;
 use openusd::usda::token::Token;
 
-use super::transform::DEEPEST;
-use super::value::{Value, half};
-use super::{HairFileError, Layer};
+use crate::layer::sample_at;
+use crate::transform::DEEPEST;
+use crate::value::{Value, half};
+use crate::{Layer, UsdError};
 
 /// The longest text; parsing needs several times as much memory.
 const LONGEST: usize = 512 << 20;
 /// The most statements. The library searches all names of a prim for each one that it adds.
 const MOST_STATEMENTS: usize = 100_000;
 
-pub(super) struct TextLayer {
+pub(crate) struct TextLayer {
     name: String,
     data: Data,
     prims: Vec<Path>,
@@ -26,8 +27,8 @@ pub(super) struct TextLayer {
 }
 
 impl TextLayer {
-    pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Self, HairFileError> {
-        let malformed = |offset: usize, found: String, wanted: &str| HairFileError::Malformed {
+    pub(crate) fn parse(name: &str, bytes: &[u8]) -> Result<Self, UsdError> {
+        let malformed = |offset: usize, found: String, wanted: &str| UsdError::Malformed {
             name: name.to_owned(),
             offset: offset as u64,
             found,
@@ -66,13 +67,22 @@ impl TextLayer {
         Err(malformed(offset, format!("in line {line}: {found}"), "a USD stage as text"))
     }
 
-    fn field(&self, path: &Path, field: &str) -> Option<&Sdf> {
+    fn field_of(&self, path: &Path, field: &str) -> Option<&Sdf> {
         self.data.spec(path).and_then(|spec| spec.get(field))
     }
 
+    /// The time samples of an attribute, ascending.
+    fn samples(&self, prim: usize, name: &str) -> Vec<(f64, &Sdf)> {
+        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Vec::new() };
+        let Some(Sdf::TimeSamples(samples)) = self.field_of(&path, "timeSamples") else { return Vec::new() };
+        let mut samples: Vec<(f64, &Sdf)> = samples.iter().map(|(time, value)| (*time, value)).collect();
+        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        samples
+    }
+
     fn is_off(&self, path: &Path) -> bool {
-        let defined = matches!(self.field(path, "specifier"), Some(Sdf::Specifier(Specifier::Def)));
-        !defined || matches!(self.field(path, "active"), Some(Sdf::Bool(false)))
+        let defined = matches!(self.field_of(path, "specifier"), Some(Sdf::Specifier(Specifier::Def)));
+        !defined || matches!(self.field_of(path, "active"), Some(Sdf::Bool(false)))
     }
 }
 
@@ -102,8 +112,11 @@ fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
 }
 
 impl Layer for TextLayer {
-    fn curves(&mut self) -> Result<Vec<usize>, HairFileError> {
-        let is_curves = |path: &Path| matches!(self.field(path, "typeName"), Some(Sdf::Token(name)) if name.as_str() == "BasisCurves");
+    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
+        let kind = |path: &Path| match self.field_of(path, "typeName") {
+            Some(Sdf::Token(name)) if types.contains(&name.as_str()) => Some(name.as_str().to_owned()),
+            _ => None,
+        };
         let is_on = |path: &Path| {
             let mut at = Some(path.clone());
             std::iter::from_fn(|| {
@@ -116,7 +129,12 @@ impl Layer for TextLayer {
             .all(|path| !self.is_off(&path))
         };
         let prims = self.prims.iter().enumerate();
-        Ok(prims.filter(|(_, path)| is_curves(path) && is_on(path)).map(|(prim, _)| prim).collect())
+        let of_types = prims.filter_map(|(prim, path)| Some((prim, kind(path)?)));
+        Ok(of_types.filter(|(prim, _)| is_on(&self.prims[*prim])).collect())
+    }
+
+    fn prim_at(&mut self, path: &str) -> Option<usize> {
+        self.prims.binary_search_by(|known| known.as_str().cmp(path)).ok()
     }
 
     fn parent(&self, prim: usize) -> Option<usize> {
@@ -128,43 +146,51 @@ impl Layer for TextLayer {
         self.prims[prim].as_str().to_owned()
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, HairFileError> {
-        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(None) };
-        let chosen = match self.field(&path, "timeSamples") {
-            Some(Sdf::TimeSamples(samples)) => {
-                let time = self.time.unwrap_or(f64::NEG_INFINITY);
-                let before = samples.iter().filter(|(at, _)| *at <= time).max_by(|a, b| a.0.total_cmp(&b.0));
-                let first = || samples.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-                before.or_else(first).map(|(_, value)| value)
-            }
-            _ => None,
-        };
-        let value = chosen.and_then(value_of);
-        Ok(value.or_else(|| self.field(&path, "default").and_then(value_of)))
-    }
-
-    fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError> {
-        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(Vec::new()) };
-        Ok(match self.field(&path, "timeSamples") {
-            Some(Sdf::TimeSamples(samples)) => samples.iter().map(|(time, _)| *time).collect(),
-            _ => Vec::new(),
-        })
-    }
-
     fn set_time(&mut self, time: f64) {
         self.time = Some(time);
     }
 
-    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
-        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(None) };
-        Ok(match self.field(&path, "interpolation").and_then(value_of) {
-            Some(Value::Token(token)) => Some(token),
-            _ => None,
-        })
+    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
+        let sample = match self.time {
+            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
+            None => 0,
+        };
+        if let Some(value) = self.sample(prim, name, sample, most)? {
+            return Ok(Some(value));
+        }
+        self.field(prim, name, "default")
     }
 
-    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
-        Ok(self.field(&Path::abs_root(), name).and_then(value_of))
+    fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError> {
+        Ok(self.samples(prim, name).into_iter().map(|(time, _)| time).collect())
+    }
+
+    fn sample(
+        &mut self,
+        prim: usize,
+        name: &str,
+        sample: usize,
+        _: usize,
+    ) -> Result<Option<Value>, UsdError> {
+        Ok(self.samples(prim, name).get(sample).and_then(|(_, value)| value_of(value)))
+    }
+
+    fn field(&mut self, prim: usize, attribute: &str, field: &str) -> Result<Option<Value>, UsdError> {
+        let Ok(path) = self.prims[prim].append_property(attribute.to_owned()) else { return Ok(None) };
+        Ok(self.field_of(&path, field).and_then(value_of))
+    }
+
+    fn targets(&mut self, prim: usize, relationship: &str) -> Result<Vec<String>, UsdError> {
+        let Ok(path) = self.prims[prim].append_property(relationship.to_owned()) else {
+            return Ok(Vec::new());
+        };
+        let Some(Sdf::PathListOp(list)) = self.field_of(&path, "targetPaths") else { return Ok(Vec::new()) };
+        let lists = [&list.explicit_items, &list.added_items, &list.prepended_items, &list.appended_items];
+        Ok(lists.into_iter().flatten().map(|path| path.as_str().to_owned()).collect())
+    }
+
+    fn metadata(&mut self, name: &str) -> Result<Option<Value>, UsdError> {
+        Ok(self.field_of(&Path::abs_root(), name).and_then(value_of))
     }
 
     fn composes(&self) -> bool {
@@ -172,8 +198,8 @@ impl Layer for TextLayer {
         self.data.iter().any(|(path, _)| refers.iter().any(|field| self.data.has_field(path, field)))
     }
 
-    fn malformed(&self, found: String, wanted: &str) -> HairFileError {
-        HairFileError::Malformed { name: self.name.clone(), offset: 0, found, wanted: wanted.to_owned() }
+    fn malformed(&self, found: String, wanted: &str) -> UsdError {
+        UsdError::Malformed { name: self.name.clone(), offset: 0, found, wanted: wanted.to_owned() }
     }
 }
 
@@ -214,6 +240,14 @@ fn value_of(value: &Sdf) -> Option<Value> {
         ),
         Sdf::Vec3fVec(v) => Value::Vectors(v.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect()),
         Sdf::Vec3dVec(v) => Value::Vectors(v.iter().map(|v| vector(v.x, v.y, v.z)).collect()),
+        Sdf::QuathVec(v) => Value::Quaternions(
+            v.iter().map(|q| [q.w, q.x, q.y, q.z].map(|part| half(part.to_bits()))).collect(),
+        ),
+        Sdf::QuatfVec(v) => Value::Quaternions(v.iter().map(|q| [q.w, q.x, q.y, q.z]).collect()),
+        Sdf::QuatdVec(v) => {
+            Value::Quaternions(v.iter().map(|q| [q.w, q.x, q.y, q.z].map(|part| part as f32)).collect())
+        }
+        Sdf::Matrix4dVec(v) => Value::Matrices(v.iter().map(|m| m.0).collect()),
         _ => return None,
     })
 }

@@ -1,0 +1,93 @@
+//! A stage whose errors are those of hair files.
+
+use glam::DMat4;
+use lovelock_usd::{CRATE_MAGIC, Layer, UsdError, Value};
+
+use super::HairFileError;
+use crate::io::source::Source;
+
+/// The content of a stage in one file. Prims are numbers.
+pub(super) struct Stage<'a>(Box<dyn Layer + Send + 'a>);
+
+impl<'a> Stage<'a> {
+    pub(super) fn open(name: &str, source: Source<'a>) -> Result<Self, HairFileError> {
+        let is_crate = source.start().starts_with(CRATE_MAGIC);
+        let source = match source {
+            Source::Memory(data) => lovelock_usd::Source::Memory(data),
+            Source::File { file, length, .. } => lovelock_usd::Source::File(file, length),
+        };
+        lovelock_usd::open(name, source, is_crate).map(Self).map_err(refused)
+    }
+
+    /// The active prims of type `BasisCurves`, in the order of their paths.
+    pub(super) fn curves(&mut self) -> Result<Vec<usize>, HairFileError> {
+        let prims = self.0.prims(&["BasisCurves"]).map_err(refused)?;
+        Ok(prims.into_iter().map(|(prim, _)| prim).collect())
+    }
+
+    /// Path of a prim, for messages.
+    pub(super) fn path(&self, prim: usize) -> String {
+        self.0.path(prim)
+    }
+
+    /// Value of an attribute at its first time sample or at the time that is set, otherwise its default. `most` limits the length of compressed
+    /// arrays.
+    pub(super) fn attribute(
+        &mut self,
+        prim: usize,
+        name: &str,
+        most: usize,
+    ) -> Result<Option<Value>, HairFileError> {
+        self.0.attribute(prim, name, most).map_err(refused)
+    }
+
+    /// Lets [`Self::attribute`] return the values at a time code.
+    pub(super) fn set_time(&mut self, time: f64) {
+        self.0.set_time(time);
+    }
+
+    /// The time codes of an attribute's samples; none without samples.
+    pub(super) fn times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, HairFileError> {
+        self.0.sample_times(prim, name).map_err(refused)
+    }
+
+    /// The time codes at which the transform of a prim or of an ancestor changes.
+    pub(super) fn transform_times(&mut self, prim: usize) -> Result<Vec<f64>, HairFileError> {
+        lovelock_usd::transform_times(&mut *self.0, prim).map_err(refused)
+    }
+
+    /// The interpolation of an attribute over a prim, if the file states it.
+    pub(super) fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
+        let value = self.0.field(prim, name, "interpolation").map_err(refused)?;
+        Ok(value.as_ref().and_then(Value::token).map(str::to_owned))
+    }
+
+    /// A metadata field of the stage.
+    pub(super) fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
+        self.0.metadata(name).map_err(refused)
+    }
+
+    /// The transform from a prim's own space to the stage.
+    pub(super) fn to_stage(&mut self, prim: usize) -> Result<DMat4, HairFileError> {
+        lovelock_usd::to_stage(&mut *self.0, prim).map_err(refused)
+    }
+
+    /// Whether the file refers to other files or to variants.
+    pub(super) fn composes(&self) -> bool {
+        self.0.composes()
+    }
+
+    /// An error about this file.
+    pub(super) fn malformed(&self, found: String, wanted: &str) -> HairFileError {
+        refused(self.0.malformed(found, wanted))
+    }
+}
+
+fn refused(error: UsdError) -> HairFileError {
+    match error {
+        UsdError::Io { name, source } => HairFileError::Io { name, source },
+        UsdError::Malformed { name, offset, found, wanted } => {
+            HairFileError::Malformed { name, offset, found, wanted }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Clips of character files as motion that any other figure can take over.
+
+use glam::{Affine3A, Quat, Vec3};
+
+use crate::bvh::height_of;
+use crate::character::Character;
+use crate::pose::rotation_of;
+use crate::{Clip, MotionError, MotionFile, MotionJoint, Pose, UpAxis, pose_at};
+
+/// Frames per second at which clips are sampled: twice as often as most clips have keys.
+const RATE: f64 = 60.0;
+
+/// Most rotations of a motion: about a gigabyte.
+const LIMIT: usize = 32 << 20;
+
+/// The motion of one clip of a figure. Its zero pose is the figure's rest pose.
+///
+/// Of several clips, that called `wanted` is taken, otherwise the first.
+pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<MotionFile, MotionError> {
+    let named = figure.clips.iter().find(|clip| clip.name == wanted);
+    let Some(clip) = named.or(figure.clips.first()) else {
+        return Err(MotionError::Empty {
+            file: file.to_owned(),
+            found: format!("{} joints and no clip", figure.body.skeleton.joints.len()),
+            wanted: "at least one clip of animation",
+        });
+    };
+    let mut notes = figure.notes;
+    let clips: Vec<String> = figure.clips.iter().map(|clip| clip.name.clone()).collect();
+    if named.is_none() && clips.len() > 1 {
+        let names: Vec<String> = clips.iter().take(20).map(|name| format!("`{name}`")).collect();
+        notes.push(format!("`{}` is played; the file has the clips {}", clip.name, names.join(", ")));
+    }
+    let skeleton = &figure.body.skeleton;
+    let joints: Vec<MotionJoint> = skeleton
+        .joints
+        .iter()
+        .enumerate()
+        .map(|(j, joint)| {
+            let from = joint.parent.map_or(Vec3::ZERO, |p| skeleton.rest_position(p));
+            let name = if skeleton.named.is_empty() {
+                joint.name.clone()
+            } else {
+                skeleton.named.get(&j).cloned().unwrap_or_default()
+            };
+            MotionJoint { name, parent: joint.parent, offset: skeleton.rest_position(j) - from, end: None }
+        })
+        .collect();
+    let duration = playable_secs(clip);
+    let frames = ((duration * RATE).round() as usize + 1).max(1);
+    if frames.saturating_mul(joints.len()) > LIMIT {
+        let problem = format!(
+            "lasts {duration:.0} s with {} joints; at most {:.0} s of them are read",
+            joints.len(),
+            LIMIT as f64 / joints.len() as f64 / RATE
+        );
+        return Err(MotionError::malformed(file, format!("clip `{}`", clip.name), problem));
+    }
+    let frame_secs = if frames > 1 { duration / (frames - 1) as f64 } else { 1.0 / RATE };
+    let mut motion = MotionFile {
+        name: clip.name.clone(),
+        frames,
+        frame_secs,
+        dropped: figure.dropped,
+        notes,
+        unit_metres: figure.unit_metres,
+        up: UpAxis::Y,
+        format: figure.format,
+        clips,
+        ..MotionFile::default()
+    };
+    let at_rest: Vec<Quat> = skeleton.world_at_rest.iter().map(|w| rotation_of(&w.matrix3)).collect();
+    let (mut pose, mut turns) = (Pose::default(), vec![Quat::IDENTITY; joints.len()]);
+    motion.rotations.reserve_exact(frames * joints.len());
+    motion.positions.reserve_exact(frames * joints.len());
+    // The end of a clip would wrap to its start.
+    let held = Clip { duration_secs: duration + 1.0, loop_blend_secs: 0.0, ..(**clip).clone() };
+    for frame in 0..frames {
+        pose_at(&figure.body, Some(&held), frame as f64 * frame_secs, &mut pose);
+        for (j, joint) in joints.iter().enumerate() {
+            let world = &pose.world_from_joint[j];
+            turns[j] = (rotation_of(&world.matrix3) * at_rest[j].conjugate()).normalize();
+            let (turn, from) = joint
+                .parent
+                .map_or((Quat::IDENTITY, Vec3::ZERO), |p| (turns[p], position(&pose.world_from_joint[p])));
+            let mut local = (turn.conjugate() * turns[j]).normalize();
+            // On the same side of the sphere as in the previous frame, so that interpolation does not jump.
+            if let Some(at) = motion.rotations.len().checked_sub(joints.len())
+                && motion.rotations[at].dot(local) < 0.0
+            {
+                local = -local;
+            }
+            motion.rotations.push(local);
+            motion.positions.push(turn.conjugate() * (position(world) - from));
+        }
+    }
+    motion.joints = joints;
+    motion.height_metres = height_of(&motion);
+    Ok(motion)
+}
+
+fn position(transform: &Affine3A) -> Vec3 {
+    transform.translation.into()
+}
+
+/// Duration of the keys of a clip, seconds.
+fn playable_secs(clip: &Clip) -> f64 {
+    let secs = clip.keys_end_secs();
+    if secs.is_finite() { secs } else { 0.0 }
+}

@@ -1,0 +1,317 @@
+//! Meshes as pieces of the surface: triangles, normals, weights and blend shapes.
+
+use std::collections::BTreeMap;
+
+use glam::{Affine3A, DMat4, Vec3};
+use lovelock_usd::{Layer, Value};
+
+use super::skeleton::{Figure, OneSkeleton};
+use super::{MOST_NAMES, affine, affine_of, inherited_target, tokens};
+use crate::MotionError;
+use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightCounts};
+
+/// The morph targets of each skeleton by the name of their shape.
+pub(super) type Shapes = BTreeMap<(usize, String), Vec<usize>>;
+
+/// Whether a mesh is meant to be seen: not hidden, and no stand-in for another.
+pub(super) fn is_shown(layer: &mut dyn Layer, prim: usize) -> Result<bool, MotionError> {
+    let mut at = Some(prim);
+    for _ in 0..256 {
+        let Some(prim) = at else { break };
+        let is = |value: Option<Value>, words: &[&str]| {
+            value.as_ref().and_then(Value::token).is_some_and(|token| words.contains(&token))
+        };
+        if is(layer.attribute(prim, "visibility", 1)?, &["invisible"])
+            || is(layer.attribute(prim, "purpose", 1)?, &["guide", "proxy"])
+        {
+            return Ok(false);
+        }
+        at = layer.parent(prim);
+    }
+    Ok(true)
+}
+
+/// Reads meshes.
+pub(super) struct Reader<'a> {
+    pub(super) file: &'a str,
+    pub(super) figure: &'a Figure,
+    pub(super) surface: &'a mut Surface,
+    pub(super) palette: &'a mut Palette,
+    pub(super) shapes: &'a mut Shapes,
+    pub(super) dropped: &'a mut BTreeMap<String, u64>,
+}
+
+impl Reader<'_> {
+    pub(super) fn mesh(
+        &mut self,
+        layer: &mut dyn Layer,
+        prim: usize,
+        metres_from_stage: DMat4,
+    ) -> Result<(), MotionError> {
+        let path = layer.path(prim);
+        let refuse = |problem: String| MotionError::malformed(self.file, path.clone(), problem);
+        let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
+        let most = points.len().saturating_mul(16).max(1 << 16);
+        let mut ints = |name: &str| -> Result<Vec<i32>, MotionError> {
+            Ok(layer.attribute(prim, name, most)?.map_or_else(Vec::new, Value::into_ints))
+        };
+        let (counts, indices) = (ints("faceVertexCounts")?, ints("faceVertexIndices")?);
+        let sum = counts.iter().try_fold(0_usize, |sum, &count| {
+            usize::try_from(count).ok().and_then(|count| sum.checked_add(count))
+        });
+        if sum != Some(indices.len()) {
+            let problem = format!("{} corners in {} faces that do not add up", indices.len(), counts.len());
+            return Err(refuse(problem));
+        }
+        if let Some(&wrong) =
+            indices.iter().find(|&&i| usize::try_from(i).is_ok_and(|i| i >= points.len()) || i < 0)
+        {
+            return Err(refuse(format!("a corner at point {wrong}; the mesh has {} points", points.len())));
+        }
+        let normals = Normals::read(layer, prim, points.len(), &counts, indices.len())?;
+        let left_handed =
+            layer.attribute(prim, "orientation", 1)?.is_some_and(|o| o.token() == Some("leftHanded"));
+        let mut corners = Corners::default();
+        let mut first = 0;
+        for (face, &count) in counts.iter().enumerate() {
+            let count = count as usize;
+            let at = |k: usize| (indices[first + k] as usize, first + k);
+            for k in 1..count.saturating_sub(1) {
+                let [b, c] = if left_handed { [k + 1, k] } else { [k, k + 1] };
+                let triangle = [0, b, c].map(|k| {
+                    let (point, corner) = at(k);
+                    corners.corner(point, 0, normals.at(face, corner, point))
+                });
+                corners.triangles.push(triangle);
+            }
+            first += count;
+        }
+        let skeleton = inherited_target(layer, prim, "skel:skeleton")?;
+        let skeleton = self.figure.skeletons.iter().find(|of| Some(of.prim) == skeleton);
+        let weights = self.weights(layer, prim, skeleton, points.len(), metres_from_stage)?;
+        let mut piece = Piece {
+            color: color(layer, prim)?,
+            normals: std::mem::take(&mut corners.normals),
+            triangles: std::mem::take(&mut corners.triangles),
+            ..Piece::default()
+        };
+        for &(point, _) in &corners.vertices {
+            piece.positions.push(points[point]);
+            piece.weights.push(weights[point]);
+        }
+        if let Some(skeleton) = skeleton {
+            piece.morphs = self.shapes(layer, prim, skeleton, &corners.copies(points.len()))?;
+        }
+        self.surface.add(piece, self.dropped).map_err(refuse)
+    }
+
+    /// The weights of each point of a mesh. Without a skeleton it follows the stage.
+    fn weights(
+        &mut self,
+        layer: &mut dyn Layer,
+        prim: usize,
+        skeleton: Option<&OneSkeleton>,
+        points: usize,
+        metres_from_stage: DMat4,
+    ) -> Result<Vec<VertexWeights>, MotionError> {
+        let path = layer.path(prim);
+        let refuse = |problem: String| MotionError::malformed(self.file, path.clone(), problem);
+        let too_many = || refuse(format!("more than {} different binds", u16::MAX));
+        let most = points.saturating_mul(64).max(64);
+        let joints = layer.attribute(prim, "primvars:skel:jointIndices", most)?;
+        let joints = joints.map_or_else(Vec::new, Value::into_ints);
+        let amounts = layer.attribute(prim, "primvars:skel:jointWeights", most)?;
+        let amounts = amounts.map_or_else(Vec::new, Value::into_floats);
+        let (Some(skeleton), false) = (skeleton, joints.is_empty()) else {
+            // `metres_from_stage` is the first joint.
+            let _ = metres_from_stage;
+            let in_stage = affine_of(&lovelock_usd::to_stage(layer, prim)?);
+            let bind = self.palette.add(0, in_stage).ok_or_else(too_many)?;
+            return Ok(vec![VertexWeights::rigid(bind); points]);
+        };
+        if joints.len() != amounts.len() {
+            return Err(refuse(format!(
+                "{} joint indices and {} joint weights",
+                joints.len(),
+                amounts.len()
+            )));
+        }
+        let geometry = layer.attribute(prim, "primvars:skel:geomBindTransform", 1)?;
+        let geometry = geometry.and_then(|value| value.numbers().first_chunk::<16>().and_then(affine));
+        let geometry = geometry.unwrap_or(Affine3A::IDENTITY);
+        // A mesh may have an order of joints of its own.
+        let own = tokens(layer, prim, "skel:joints")?;
+        let position = |k: usize| match own.get(k) {
+            Some(name) => skeleton.paths.iter().position(|path| path == name),
+            None if own.is_empty() => Some(k),
+            None => None,
+        };
+        let count = if own.is_empty() { skeleton.joints.len() } else { own.len() };
+        let mut binds = Vec::with_capacity(count);
+        for k in 0..count {
+            let joint = position(k).and_then(|k| Some((*skeleton.joints.get(k)?, skeleton.bind.get(k)?)));
+            binds.push(match joint {
+                Some((joint, bind)) if bind.matrix3.determinant().abs() > 1e-30 => {
+                    Some(self.palette.add(joint, bind.inverse() * geometry).ok_or_else(too_many)?)
+                }
+                _ => None,
+            });
+        }
+        let is_constant = layer
+            .field(prim, "primvars:skel:jointIndices", "interpolation")?
+            .is_some_and(|word| word.token() == Some("constant"));
+        let size = layer.field(prim, "primvars:skel:jointIndices", "elementSize")?;
+        let size = size.and_then(|size| size.numbers().first().copied()).unwrap_or(1.0) as usize;
+        let per_point = match (is_constant, joints.len()) {
+            (true, all) => all,
+            (false, all) if points > 0 && all % points == 0 && all / points != size => all / points,
+            _ => size,
+        };
+        if !is_constant && per_point.checked_mul(points) != Some(joints.len()) {
+            return Err(refuse(format!("{} joint indices for {points} points of {per_point}", joints.len())));
+        }
+        let mut counts = WeightCounts::default();
+        let mut found: Vec<(u16, f32)> = Vec::new();
+        // Without any usable joint the mesh follows the stage.
+        let otherwise = match binds.iter().flatten().next() {
+            Some(&bind) => bind,
+            None => self.palette.add(0, geometry).ok_or_else(too_many)?,
+        };
+        let weights = (0..points)
+            .map(|point| {
+                found.clear();
+                let first = if is_constant { 0 } else { point * per_point };
+                for k in first..first + per_point {
+                    let (joint, amount) = (joints[k], amounts[k]);
+                    if !(amount > 0.0 && amount.is_finite()) {
+                        continue;
+                    }
+                    match usize::try_from(joint).ok().and_then(|joint| binds.get(joint).copied().flatten()) {
+                        Some(bind) => match found.iter_mut().find(|(known, _)| *known == bind) {
+                            Some((_, sum)) => *sum += amount,
+                            None => found.push((bind, amount)),
+                        },
+                        None => counts.unknown_joints += 1,
+                    }
+                }
+                VertexWeights::of(&mut found, otherwise, &mut counts)
+            })
+            .collect();
+        counts.report(self.dropped);
+        Ok(weights)
+    }
+
+    /// The blend shapes of a mesh.
+    fn shapes(
+        &mut self,
+        layer: &mut dyn Layer,
+        prim: usize,
+        skeleton: &OneSkeleton,
+        copies: &[Vec<u32>],
+    ) -> Result<Vec<MorphPiece>, MotionError> {
+        let names = tokens(layer, prim, "skel:blendShapes")?;
+        let targets = layer.targets(prim, "skel:blendShapeTargets")?;
+        let mut pieces = Vec::new();
+        for (name, target) in names.into_iter().zip(targets) {
+            let Some(shape) = layer.prim_at(&target) else { continue };
+            let mut vectors = |attribute: &str| -> Result<Vec<Vec3>, MotionError> {
+                let value = layer.attribute(shape, attribute, copies.len())?;
+                Ok(value.map_or_else(Vec::new, Value::into_vectors))
+            };
+            let (offsets, turns) = (vectors("offsets")?, vectors("normalOffsets")?);
+            let points = layer.attribute(shape, "pointIndices", copies.len())?;
+            let points = points.map(Value::into_ints);
+            let mut moved = Vec::with_capacity(offsets.len());
+            for (k, &offset) in offsets.iter().enumerate() {
+                let point = match &points {
+                    Some(points) => points.get(k).and_then(|&point| usize::try_from(point).ok()),
+                    None => Some(k),
+                };
+                let of_point = point.and_then(|point| copies.get(point)).map_or(&[][..], Vec::as_slice);
+                let turn = turns.get(k).copied().unwrap_or_default();
+                moved.extend(of_point.iter().map(|&copy| (copy, offset, turn)));
+            }
+            let morph = self.surface.add_morph(name.clone(), 0.0);
+            self.shapes.entry((skeleton.prim, name)).or_default().push(morph);
+            pieces.push(MorphPiece { morph, moved });
+        }
+        Ok(pieces)
+    }
+}
+
+/// The normals of a mesh.
+struct Normals {
+    values: Vec<Vec3>,
+    indices: Option<Vec<i32>>,
+    per: Per,
+}
+
+enum Per {
+    None,
+    Face,
+    Corner,
+    Point,
+}
+
+impl Normals {
+    fn read(
+        layer: &mut dyn Layer,
+        prim: usize,
+        points: usize,
+        counts: &[i32],
+        corners: usize,
+    ) -> Result<Self, MotionError> {
+        for name in ["primvars:normals", "normals"] {
+            let Some(values) = layer.attribute(prim, name, corners.max(1))? else { continue };
+            let values = values.into_vectors();
+            let indices = layer.attribute(prim, &format!("{name}:indices"), corners.max(1))?;
+            let indices = indices.map(Value::into_ints);
+            let count = indices.as_ref().map_or(values.len(), Vec::len);
+            let said = layer.field(prim, name, "interpolation")?;
+            let per = match said.as_ref().and_then(Value::token) {
+                Some("faceVarying") if count == corners => Per::Corner,
+                Some("uniform") if count == counts.len() => Per::Face,
+                _ if count == points => Per::Point,
+                _ if count == corners => Per::Corner,
+                _ => continue,
+            };
+            return Ok(Self { values, indices, per });
+        }
+        Ok(Self { values: Vec::new(), indices: None, per: Per::None })
+    }
+
+    fn at(&self, face: usize, corner: usize, point: usize) -> Vec3 {
+        let k = match self.per {
+            Per::None => return Vec3::ZERO,
+            Per::Face => face,
+            Per::Corner => corner,
+            Per::Point => point,
+        };
+        let k = match &self.indices {
+            Some(indices) => indices.get(k).and_then(|&i| usize::try_from(i).ok()),
+            None => Some(k),
+        };
+        k.and_then(|k| self.values.get(k)).map_or(Vec3::ZERO, |normal| normal.normalize_or_zero())
+    }
+}
+
+/// The colour of a mesh: that of its material if it states one, otherwise its display colour.
+fn color(layer: &mut dyn Layer, prim: usize) -> Result<Vec3, MotionError> {
+    if let Some(material) = inherited_target(layer, prim, "material:binding")? {
+        let path = layer.path(material) + "/";
+        for (shader, _) in layer.prims(&["Shader"])? {
+            if !layer.path(shader).starts_with(&path) {
+                continue;
+            }
+            if let Some(value) = layer.attribute(shader, "inputs:diffuseColor", 1)?
+                && let Some(&color) = value.into_vectors().first()
+                && color.is_finite()
+            {
+                return Ok(color);
+            }
+        }
+    }
+    let shown = layer.attribute(prim, "primvars:displayColor", MOST_NAMES)?;
+    let shown = shown.map_or_else(Vec::new, Value::into_vectors);
+    Ok(shown.first().copied().filter(|color| color.is_finite()).unwrap_or(CLAY))
+}

@@ -1,0 +1,196 @@
+//! Characters and clips from USD stages: `Skeleton`, `SkelAnimation`, and meshes that are bound to skeletons.
+//!
+//! Joints, bind transforms and weights follow the schema `UsdSkel` (<https://openusd.org/release/api/_usd_skel__schemas.html>). One file
+//! is read: what it refers to in others, and variants, are left out, and a note says so.
+
+mod clip;
+mod mesh;
+mod package;
+mod skeleton;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::{Affine3A, DMat4, DVec3, Mat3A, Mat4};
+use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value};
+
+use crate::character::{Axes, Character, Draft, WornHair, only_motion};
+use crate::surface::{Palette, Surface};
+use crate::{BodySettings, MotionError};
+
+/// Whether a file is a USD stage or package, by its first bytes.
+pub(crate) fn is_usd(bytes: &[u8]) -> bool {
+    bytes.starts_with(CRATE_MAGIC) || bytes.starts_with(TEXT_MAGIC) || package::is_package(bytes)
+}
+
+/// What a USD file is to this program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UsdContent {
+    /// It has a skeleton or a mesh and no curves.
+    Character,
+    /// It has animation of joints and no body.
+    Motion,
+    /// It has curves, or nothing that is known here.
+    Other,
+}
+
+/// What a USD file contains. Broken files are of the kind [`UsdContent::Other`].
+pub fn usd_content(path: &Path) -> UsdContent {
+    let content = || -> Option<UsdContent> {
+        let mut file = std::fs::File::open(path).ok()?;
+        let mut start = [0; 8];
+        std::io::Read::read_exact(&mut file, &mut start).ok()?;
+        if package::is_package(&start) {
+            return Some(UsdContent::Character);
+        }
+        let length = file.metadata().ok()?.len();
+        let is_crate = start.starts_with(CRATE_MAGIC);
+        let mut layer =
+            lovelock_usd::open(&path.display().to_string(), Source::File(file, length), is_crate).ok()?;
+        let mut holds = |types: &[&str]| layer.prims(types).is_ok_and(|prims| !prims.is_empty());
+        Some(if holds(&["BasisCurves"]) {
+            UsdContent::Other
+        } else if holds(&["Skeleton", "SkelRoot", "Mesh"]) {
+            UsdContent::Character
+        } else if holds(&["SkelAnimation"]) {
+            UsdContent::Motion
+        } else {
+            UsdContent::Other
+        })
+    };
+    content().unwrap_or(UsdContent::Other)
+}
+
+impl From<UsdError> for MotionError {
+    fn from(error: UsdError) -> Self {
+        match error {
+            UsdError::Io { name, source } => Self::Read { file: name, source },
+            UsdError::Malformed { name, offset, found, wanted } => Self::Malformed {
+                file: name,
+                place: format!("byte {offset}"),
+                problem: format!("found {found}, wanted {wanted}"),
+            },
+        }
+    }
+}
+
+/// Reads a USD file. Without `needs_mesh` a file without a body is read too, and meshes are left out.
+pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    settings: BodySettings,
+    needs_mesh: bool,
+) -> Result<Character, MotionError> {
+    let is_package = package::is_package(bytes);
+    let bytes = if is_package { package::first_layer(file, bytes)? } else { bytes };
+    let is_crate = bytes.starts_with(CRATE_MAGIC);
+    let mut stage = lovelock_usd::open(file, Source::Memory(bytes), is_crate)?;
+    let layer = &mut *stage;
+    let mut notes = Vec::new();
+    let mut dropped = BTreeMap::new();
+    if layer.composes() {
+        notes.push("what the file refers to in other files or in variants was left out".to_owned());
+    }
+    let (metres_from_stage, unit_metres) = stage_transform(layer, &mut notes)?;
+    let figure = skeleton::Figure::read(file, layer, metres_from_stage, needs_mesh)?;
+    let (mut surface, mut palette) = (Surface::default(), Palette::default());
+    let mut shapes = BTreeMap::new();
+    let mut meshes = 0;
+    if needs_mesh {
+        let prims = layer.prims(&["Mesh"])?;
+        meshes = prims.len();
+        let mut worn = WornHair::new(settings);
+        let mut parts = Vec::new();
+        for (prim, _) in prims {
+            let path = layer.path(prim);
+            let names: Vec<&str> = path.rsplit('/').take(2).collect();
+            worn.offer(&names);
+            parts.push(prim);
+        }
+        for (prim, is_hair) in parts.into_iter().zip(worn.decide(&mut notes)) {
+            if is_hair || !mesh::is_shown(layer, prim)? {
+                continue;
+            }
+            let mut reader = mesh::Reader {
+                file,
+                figure: &figure,
+                surface: &mut surface,
+                palette: &mut palette,
+                shapes: &mut shapes,
+                dropped: &mut dropped,
+            };
+            reader.mesh(layer, prim, metres_from_stage)?;
+        }
+    }
+    let (mesh, skin) = surface.finish(palette);
+    let animations = layer.prims(&["SkelAnimation"])?;
+    if needs_mesh && mesh.triangles.is_empty() {
+        return Err(MotionError::Empty {
+            file: file.to_owned(),
+            found: format!("{meshes} meshes without a usable triangle{}", only_motion(animations.len())),
+            wanted: "a mesh of triangles",
+        });
+    }
+    let clips = clip::read_clips(file, layer, &figure, &shapes)?;
+    let (joints, skins) = (figure.joints_of_skeletons(), figure.skeletons.len());
+    let skeleton = figure.skeleton;
+    let draft = Draft { file, skeleton, mesh, skin, clips, joints, skins, dropped, notes };
+    let mut character = draft.finish(Axes { settings, usual_unit_metres: unit_metres })?;
+    let form = match (is_package, is_crate) {
+        (true, _) => "package",
+        (false, true) => "binary",
+        (false, false) => "text",
+    };
+    character.format = format!("USD ({form})");
+    Ok(character)
+}
+
+/// The transform from the stage to metres with Y up, and the metres per unit.
+fn stage_transform(layer: &mut dyn Layer, notes: &mut Vec<String>) -> Result<(DMat4, f32), MotionError> {
+    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
+        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
+        if !(1e-9..=1e9).contains(&found) {
+            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9").into());
+        }
+        found
+    } else {
+        notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
+        0.01
+    };
+    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
+    let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
+    Ok((turn * DMat4::from_scale(DVec3::splat(metres)), metres as f32))
+}
+
+/// The matrix of USD, for row vectors, as a transform; `None` if it is not finite.
+fn affine(rows: &[f64; 16]) -> Option<Affine3A> {
+    // USD uses row vectors, so its rows are the columns here.
+    let matrix = DMat4::from_cols_array(rows);
+    matrix.is_finite().then(|| affine_of(&matrix))
+}
+
+fn affine_of(matrix: &DMat4) -> Affine3A {
+    let matrix: Mat4 = matrix.as_mat4();
+    Affine3A { matrix3: Mat3A::from_mat4(matrix), translation: matrix.w_axis.truncate().into() }
+}
+
+/// The tokens of an attribute; empty if it is missing.
+fn tokens(layer: &mut dyn Layer, prim: usize, name: &str) -> Result<Vec<String>, UsdError> {
+    Ok(layer.attribute(prim, name, MOST_NAMES)?.map_or_else(Vec::new, Value::into_tokens))
+}
+
+/// Most joints or shapes that one attribute may name.
+const MOST_NAMES: usize = 1 << 16;
+
+/// The first target of a relationship of a prim or of the nearest prim above it that has one.
+fn inherited_target(layer: &mut dyn Layer, prim: usize, name: &str) -> Result<Option<usize>, UsdError> {
+    let mut at = Some(prim);
+    for _ in 0..256 {
+        let Some(prim) = at else { break };
+        if let Some(path) = layer.targets(prim, name)?.first() {
+            return Ok(layer.prim_at(path));
+        }
+        at = layer.parent(prim);
+    }
+    Ok(None)
+}

@@ -1,0 +1,188 @@
+//! FBX: known positions in every unit and axis, motion alone, and files that are refused.
+
+use glam::Vec3;
+use lovelock_motion::{
+    Character, MotionSettings, Pose, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
+};
+use proptest::prelude::*;
+
+use crate::common::fbx::{Node, Space, Value, binary, figure, text};
+
+const SPACES: [Space; 4] = [
+    Space { z_up: false, unit: 1.0 },
+    Space { z_up: true, unit: 1.0 },
+    Space { z_up: false, unit: 100.0 },
+    Space { z_up: true, unit: 2.54 },
+];
+
+fn load(bytes: &[u8]) -> Character {
+    load_character_bytes("figure.fbx", bytes, None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn at(character: &Character, secs: f64) -> Vec<Vec3> {
+    let (mut pose, mut surface) = (Pose::default(), Skin::default());
+    let clip = character.clips.first().map(AsRef::as_ref);
+    pose_at(&character.body, clip, secs, &mut pose);
+    skin(&character.body, &pose, &mut surface);
+    surface.positions
+}
+
+#[track_caller]
+fn assert_near(found: &[Vec3], expected: [Vec3; 3]) {
+    let off = expected.map(|p| found.iter().map(|q| q.distance(p)).fold(f32::MAX, f32::min));
+    assert!(off.iter().all(|d| *d < 1e-5), "{found:?}, expected {expected:?}");
+}
+
+#[test]
+fn a_figure_is_the_same_in_every_unit_and_axis() {
+    for space in SPACES {
+        let nodes = figure(space);
+        for bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
+            let character = load(&bytes);
+            let info = character.info();
+            assert_eq!((info.joints, info.skins, info.vertices, info.morph_targets), (2, 1, 3, 1));
+            assert_eq!((info.head.as_str(), info.clips.len()), ("head", 1));
+            assert!((info.height_m - 0.1).abs() < 1e-6, "{}", info.height_m);
+            assert!((info.clips[0].duration_secs - 1.0).abs() < 1e-6 && info.clips[0].name == "dance");
+            let head = character.body.skeleton.rest_position(character.body.head_joint);
+            assert!(head.distance(Vec3::new(0.0, 1.5, 0.0)) < 1e-5, "{head}");
+            let (left, front) = (Vec3::new(0.1, 1.5, 0.0), Vec3::new(0.0, 1.5, 0.1));
+            assert_near(&at(&character, 0.0), [left, front, Vec3::new(0.0, 1.6, 0.0)]);
+            // A quarter turn to the left carries the left to the back, and the front to the left.
+            let back = Vec3::new(0.0, 1.5, -0.1);
+            assert_near(&at(&character, 1.0_f64.next_down()), [back, left, Vec3::new(0.0, 1.7, 0.0)]);
+            let half = std::f32::consts::FRAC_1_SQRT_2 * 0.1;
+            let (a, b) = (Vec3::new(half, 1.5, -half), Vec3::new(half, 1.5, half));
+            assert_near(&at(&character, 0.5), [a, b, Vec3::new(0.0, 1.65, 0.0)]);
+        }
+    }
+}
+
+#[test]
+fn a_unit_that_the_user_sets_overrules_that_of_the_file() {
+    let bytes = binary(&figure(SPACES[0]));
+    let settings =
+        lovelock_motion::BodySettings { unit: lovelock_motion::LengthUnit::Decimetres, ..Default::default() };
+    let character = lovelock_motion::load_character_bytes_with("f.fbx", &bytes, None, settings).expect("it");
+    assert!((character.body.height() - 1.0).abs() < 1e-5);
+    assert!((character.unit_metres - 0.1).abs() < 1e-6);
+}
+
+#[test]
+fn a_clip_without_a_body_is_a_motion_and_no_character() {
+    let mut nodes = figure(SPACES[1]);
+    for node in &mut nodes {
+        let is_body = |node: &Node| {
+            ["Geometry", "Deformer"].contains(&node.name)
+                || node.values.iter().any(|v| matches!(v, Value::Text("body", _)))
+        };
+        node.children.retain(|node| !is_body(node));
+    }
+    let bytes = binary(&nodes);
+    let error = load_character_bytes("clip.fbx", &bytes, None).expect_err("no body").to_string();
+    assert!(error.starts_with("clip.fbx: contains") && error.contains("Motion file"), "{error}");
+    let motion = load_motion_bytes("clip.fbx", &bytes, MotionSettings::default()).expect("a motion");
+    let names: Vec<&str> = motion.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!((names, motion.frames), (vec!["hips", "head"], 61));
+    assert_eq!(motion.clips, ["dance"]);
+    let rest = motion.rest();
+    assert!(rest[1].distance(Vec3::new(0.0, 1.5, 0.0)) < 1e-5, "{rest:?}");
+    // Relative to rest the hips turn to the left, and the head goes with them.
+    let mut world = Vec::new();
+    motion.world(60, &mut world);
+    for joint in &world {
+        let forward = joint.transform_vector3(Vec3::Z);
+        assert!(forward.distance(Vec3::X) < 1e-4, "{forward}");
+    }
+}
+
+#[test]
+fn refusals_are_sentences() {
+    let whole = binary(&figure(SPACES[0]));
+    let refused = |bytes: &[u8]| load_character_bytes("x.fbx", bytes, None).expect_err("refused").to_string();
+    for (bytes, says) in [
+        (&[][..], "is empty"),
+        (&whole[..20], "x.fbx: the file: "),
+        (&whole[..200], "cut off"),
+        (&whole[..whole.len() / 2], "cut off"),
+        (&b"; FBX 7.4.0 project file\n"[..], "x.fbx: the file: "),
+        (&b"; FBX 7.4.0 project file\nObjects: {\n"[..], "x.fbx"),
+    ] {
+        let error = refused(bytes);
+        assert!(error.contains(says) && !error.contains('\n'), "{error}");
+    }
+    let mut encrypted = figure(SPACES[0]);
+    encrypted.truncate(1);
+    encrypted[0].children[2].values = vec![Value::Integer(1)];
+    for bytes in [text(&encrypted).into_bytes(), binary(&encrypted)] {
+        let error = refused(&bytes);
+        assert!(error.contains("an encrypted document"), "{error}");
+    }
+}
+
+#[test]
+fn joints_in_a_circle_and_of_no_size_are_survived() {
+    let mut nodes = figure(SPACES[0]);
+    // The hips become a child of the head, which is their child.
+    for link in &mut nodes[3].children {
+        if matches!(link.values[..], [_, Value::Integer(21), Value::Integer(0)]) {
+            link.values[2] = Value::Integer(22);
+        }
+    }
+    let _ = load_character_bytes("circle.fbx", &binary(&nodes), None);
+
+    let mut nodes = figure(SPACES[0]);
+    for model in nodes[2].children.iter_mut().filter(|node| node.name == "Model") {
+        if let Some(properties) = model.children.get_mut(1) {
+            let name = Value::Text("Lcl Scaling", "");
+            let zero = || Value::Number(0.0);
+            let values =
+                vec![name, Value::Text("Lcl Scaling", ""), Value::Text("", ""), Value::Text("A", "")];
+            let values = values.into_iter().chain([zero(), zero(), zero()]).collect();
+            properties.children.push(Node { name: "P", values, children: vec![] });
+        }
+    }
+    let character = load(&binary(&nodes));
+    assert!(at(&character, 0.5).iter().all(|p| p.is_finite()));
+}
+
+/// Whatever comes of a file, it must be finite and in range.
+fn try_load(bytes: &[u8]) {
+    match load_character_bytes("x.fbx", bytes, None) {
+        Ok(character) => {
+            assert!(at(&character, 0.3).iter().all(|p| !p.is_nan()));
+            let count = character.body.skeleton.joints.len();
+            assert!(character.body.mesh.joints.iter().flatten().all(|&j| usize::from(j) < count));
+        }
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+    let _ = load_motion_bytes("x.fbx", bytes, MotionSettings::default());
+}
+
+#[test]
+fn files_cut_anywhere_are_survived() {
+    let nodes = figure(SPACES[1]);
+    for bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
+        for end in (0..bytes.len()).step_by(7) {
+            try_load(&bytes[..end]);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn files_with_other_bytes_are_survived(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let nodes = figure(SPACES[1]);
+        for mut bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
+            for (at, byte) in &changes {
+                let at = at.index(bytes.len());
+                bytes[at] = *byte;
+            }
+            try_load(&bytes);
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! USD: known positions of a small character, motion alone, packages, and files that are refused.
+
+use std::fmt::Write;
+
+use glam::Vec3;
+use lovelock_motion::{
+    Character, MotionSettings, Pose, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
+};
+use proptest::prelude::*;
+
+/// A figure in centimetres with Z up: `hips` at 1 m, `head` 0.5 m above, and a triangle 0.1 m to the left, in front and above of the
+/// head. In one second the hips turn by a quarter to the left, and the shape `open` lifts the third point by 0.1 m. The turn about Z
+/// is `(cos 45°, 0, 0, sin 45°)`.
+const STAGE: &str = r#"#usda 1.0
+(
+    metersPerUnit = 0.01
+    upAxis = "Z"
+    timeCodesPerSecond = 10
+    startTimeCode = 5
+)
+def SkelRoot "figure"
+{
+    def Skeleton "rig" (
+        prepend apiSchemas = ["SkelBindingAPI"]
+    )
+    {
+        uniform token[] joints = ["hips", "hips/head"]
+        uniform matrix4d[] bindTransforms = [
+            ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 100, 1) ),
+            ( (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 150, 1) )
+        ]
+        rel skel:animationSource = </figure/rig/dance>
+
+        def SkelAnimation "dance"
+        {
+            uniform token[] joints = ["hips", "hips/head"]
+            float3[] translations = [(0, 0, 100), (0, 0, 50)]
+            quatf[] rotations.timeSamples = {
+                5: [(1, 0, 0, 0), (1, 0, 0, 0)],
+                15: [(0.70710678, 0, 0, 0.70710678), (1, 0, 0, 0)],
+            }
+            half3[] scales = [(1, 1, 1), (1, 1, 1)]
+            uniform token[] blendShapes = ["open"]
+            float[] blendShapeWeights.timeSamples = {
+                5: [0],
+                15: [1],
+            }
+        }
+    }
+
+    def Mesh "body" (
+        prepend apiSchemas = ["SkelBindingAPI"]
+    )
+    {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(10, 0, 150), (0, -10, 150), (0, 0, 160)]
+        color3f[] primvars:displayColor = [(0.25, 0.5, 0.75)]
+        int[] primvars:skel:jointIndices = [0, 1, 1] (
+            elementSize = 1
+            interpolation = "vertex"
+        )
+        float[] primvars:skel:jointWeights = [1, 1, 1] (
+            elementSize = 1
+            interpolation = "vertex"
+        )
+        rel skel:skeleton = </figure/rig>
+        uniform token[] skel:blendShapes = ["open"]
+        rel skel:blendShapeTargets = </figure/body/open>
+
+        def BlendShape "open"
+        {
+            uniform vector3f[] offsets = [(0, 0, 10)]
+            uniform int[] pointIndices = [2]
+        }
+    }
+}
+"#;
+
+fn crate_of(text: &str) -> Vec<u8> {
+    let data = openusd::usda::parse(text).expect("a stage");
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    openusd::usdc::CrateWriter::write(&data, &mut bytes).expect("a crate");
+    bytes.into_inner()
+}
+
+/// A package with one stored file.
+fn package(name: &str, content: &[u8]) -> Vec<u8> {
+    let mut out = b"PK\x03\x04".to_vec();
+    out.extend([20, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    out.extend((content.len() as u32).to_le_bytes());
+    out.extend((content.len() as u32).to_le_bytes());
+    out.extend((name.len() as u16).to_le_bytes());
+    out.extend(5_u16.to_le_bytes());
+    out.extend(name.as_bytes());
+    out.extend([0; 5]);
+    out.extend(content);
+    out
+}
+
+fn at(character: &Character, secs: f64) -> Vec<Vec3> {
+    let (mut pose, mut surface) = (Pose::default(), Skin::default());
+    pose_at(&character.body, character.clips.first().map(AsRef::as_ref), secs, &mut pose);
+    skin(&character.body, &pose, &mut surface);
+    surface.positions
+}
+
+#[track_caller]
+fn assert_near(found: &[Vec3], expected: [Vec3; 3]) {
+    let off = expected.map(|p| found.iter().map(|q| q.distance(p)).fold(f32::MAX, f32::min));
+    assert!(off.iter().all(|d| *d < 1e-5), "{found:?}, expected {expected:?}");
+}
+
+#[test]
+fn a_figure_moves_alike_from_text_crate_and_package() {
+    let binary = crate_of(STAGE);
+    let packed = package("figure.usdc", &binary);
+    for (bytes, format) in
+        [(STAGE.as_bytes(), "USD (text)"), (&binary[..], "USD (binary)"), (&packed[..], "USD (package)")]
+    {
+        let character = load_character_bytes("figure.usd", bytes, None).unwrap_or_else(|e| panic!("{e}"));
+        let info = character.info();
+        assert_eq!((info.joints, info.skins, info.vertices, info.morph_targets), (2, 1, 3, 1));
+        assert_eq!((info.head.as_str(), info.format.as_str()), ("head", format));
+        assert_eq!(info.clips[0].name, "dance");
+        assert!((info.clips[0].duration_secs - 1.0).abs() < 1e-6);
+        assert_eq!(character.body.mesh.colors[0], Vec3::new(0.25, 0.5, 0.75));
+        let head = character.body.skeleton.rest_position(character.body.head_joint);
+        assert!(head.distance(Vec3::new(0.0, 1.5, 0.0)) < 1e-5, "{head}");
+        let (left, front) = (Vec3::new(0.1, 1.5, 0.0), Vec3::new(0.0, 1.5, 0.1));
+        assert_near(&character.body.mesh.positions, [left, front, Vec3::new(0.0, 1.6, 0.0)]);
+        assert_near(&at(&character, 0.0), [left, front, Vec3::new(0.0, 1.6, 0.0)]);
+        let back = Vec3::new(0.0, 1.5, -0.1);
+        assert_near(&at(&character, 1.0_f64.next_down()), [back, left, Vec3::new(0.0, 1.7, 0.0)]);
+    }
+}
+
+#[test]
+fn animation_without_a_body_is_a_motion() {
+    let begin = STAGE.find("        def SkelAnimation").expect("it");
+    let end = STAGE.find("    def Mesh").expect("it");
+    let mut text = STAGE[..STAGE.find("def SkelRoot").expect("it")].to_owned();
+    let animation = STAGE[begin..end].trim_end().trim_end_matches('}');
+    write!(text, "{animation}").expect("it");
+    for bytes in [text.as_bytes(), &crate_of(&text)] {
+        let error = load_character_bytes("a.usd", bytes, None).expect_err("no body").to_string();
+        assert!(error.contains("0 meshes") && error.contains("Motion file"), "{error}");
+        let motion = load_motion_bytes("a.usd", bytes, MotionSettings::default()).expect("a motion");
+        assert_eq!((motion.frames, motion.clips.as_slice()), (61, &["dance".to_owned()][..]));
+        let mut world = Vec::new();
+        motion.world(60, &mut world);
+        let head = world.last().expect("a joint");
+        assert!(Vec3::from(head.translation).distance(Vec3::new(0.0, 1.5, 0.0)) < 1e-4, "{head:?}");
+        let forward = head.transform_vector3(Vec3::Z);
+        assert!(forward.distance(Vec3::X) < 1e-4, "{forward}");
+    }
+}
+
+#[test]
+fn what_contradicts_itself_is_refused_with_a_reason() {
+    for (from, to, says) in [
+        ("[0, 1, 2]\n        point3f", "[0, 1, 3]\n        point3f", "point 3"),
+        ("faceVertexCounts = [3]", "faceVertexCounts = [4]", "do not add up"),
+        ("faceVertexCounts = [3]", "faceVertexCounts = [-3]", "do not add up"),
+        ("jointWeights = [1, 1, 1]", "jointWeights = [1, 1]", "3 joint indices and 2 joint weights"),
+        (
+            "joints = [\"hips\", \"hips/head\"]\n        uniform",
+            "joints = [\"hips\"]\n        uniform",
+            "for 1 joints",
+        ),
+        ("metersPerUnit = 0.01", "metersPerUnit = 0", "metersPerUnit 0"),
+        ("def Mesh", "def Cube", "0 meshes"),
+    ] {
+        let changed = STAGE.replace(from, to);
+        assert_ne!(changed, STAGE, "{from}");
+        for bytes in [changed.as_bytes(), &crate_of(&changed)] {
+            let error = load_character_bytes("a.usd", bytes, None).expect_err(to).to_string();
+            assert!(error.starts_with("a.usd: ") && error.contains(says) && !error.contains('\n'), "{error}");
+        }
+    }
+    let error =
+        load_character_bytes("a.usdz", &package("a.png", b"x"), None).expect_err("no stage").to_string();
+    assert!(error.contains("does not begin with"), "{error}");
+    let mut packed = package("a.usdc", b"PXR-USDC");
+    packed[8] = 8;
+    let error = load_character_bytes("a.usdz", &packed, None).expect_err("compressed").to_string();
+    assert!(error.contains("is compressed"), "{error}");
+    let cut = &package("a.usda", STAGE.as_bytes())[..200];
+    let error = load_character_bytes("a.usdz", cut, None).expect_err("cut").to_string();
+    assert!(error.contains("ends within"), "{error}");
+}
+
+#[test]
+fn joints_above_themselves_and_of_no_size_are_survived() {
+    for (from, to) in [
+        ("[\"hips\", \"hips/head\"]", "[\"hips/head/hips\", \"hips/head\"]"),
+        ("[\"hips\", \"hips/head\"]", "[\"hips\", \"hips\"]"),
+        ("(1, 1, 1), (1, 1, 1)", "(0, 0, 0), (0, 0, 0)"),
+        (
+            "(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 100, 1)",
+            "(0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0)",
+        ),
+        ("quatf[] rotations.timeSamples", "quatf[] turns.timeSamples"),
+    ] {
+        let changed = STAGE.replace(from, to);
+        assert_ne!(changed, STAGE, "{from}");
+        if let Ok(character) = load_character_bytes("a.usda", changed.as_bytes(), None) {
+            assert!(at(&character, 0.5).iter().all(|p| p.is_finite()), "{to}");
+        }
+    }
+}
+
+fn try_load(bytes: &[u8]) {
+    match load_character_bytes("x.usd", bytes, None) {
+        Ok(character) => assert!(at(&character, 0.3).iter().all(|p| !p.is_nan())),
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+    let _ = load_motion_bytes("x.usd", bytes, MotionSettings::default());
+}
+
+#[test]
+fn files_cut_anywhere_are_survived() {
+    for bytes in [STAGE.as_bytes(), &crate_of(STAGE)] {
+        for end in (0..bytes.len()).step_by(13) {
+            try_load(&bytes[..end]);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn files_with_other_bytes_are_survived(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        for mut bytes in [STAGE.as_bytes().to_vec(), crate_of(STAGE)] {
+            for (at, byte) in &changes {
+                let at = at.index(bytes.len());
+                bytes[at] = *byte;
+            }
+            try_load(&bytes);
+        }
+    }
+}
