@@ -91,6 +91,9 @@ pub(crate) struct SourceArguments {
     /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that gives light from all directions.
     #[arg(long, value_name = "FILE")]
     pub(crate) surroundings: Option<PathBuf>,
+    /// Sound file (WAV, MP3, Ogg Vorbis or FLAC) beside the dance, which films get. `--set sound.offset_secs=1.5` shifts it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sound: Option<PathBuf>,
     /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<Assignment>,

@@ -4,12 +4,14 @@
 
 mod beats;
 mod error;
+mod play;
 mod read;
 mod sound;
 mod waveform;
 
 pub use beats::{Beats, find_beats};
 pub use error::SoundError;
+pub use play::{Player, Target};
 pub use read::{LONGEST_SECS, RATES, SOUND_EXTENSIONS, Source, is_sound, read_sound};
 pub use sound::{RATE, Sound};
 pub use waveform::Waveform;

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     (
         "app",
         &[
@@ -21,6 +21,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "motion",
             "groom",
             "record",
+            "sound",
             "appearance",
             "metrics",
             "base",
@@ -39,6 +40,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "motion",
             "groom",
             "record",
+            "sound",
             "appearance",
             "metrics",
             "base",
@@ -69,6 +71,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "base"]),
+    ("sound", &["base"]),
     ("motion", &["base"]),
     ("groom", &["appearance", "base"]),
     ("gpu", &["base"]),
@@ -85,7 +88,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 13] = [
+const WITHOUT_WGPU: [&str; 14] = [
     "appearance",
     "base",
     "brush",
@@ -93,6 +96,7 @@ const WITHOUT_WGPU: [&str; 13] = [
     "motion",
     "satf",
     "simulation",
+    "sound",
     "style",
     "record",
     "metrics",

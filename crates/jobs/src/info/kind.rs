@@ -27,6 +27,8 @@ pub enum FileKind {
     Take,
     /// A picture of the surroundings: Radiance or `OpenEXR`.
     Surroundings,
+    /// A sound: WAV, MP3, Ogg Vorbis or FLAC.
+    Sound,
 }
 
 /// The kinds of files that can be read, with their extensions, for messages.
@@ -37,7 +39,7 @@ fn readable() -> String {
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Hair,
         Self::Character,
         Self::Motion,
@@ -45,6 +47,7 @@ impl FileKind {
         Self::Style,
         Self::Take,
         Self::Surroundings,
+        Self::Sound,
     ];
 
     /// The name in sentences.
@@ -57,6 +60,7 @@ impl FileKind {
             Self::Style => "style",
             Self::Take => "take",
             Self::Surroundings => "surroundings",
+            Self::Sound => "sound",
         }
     }
 
@@ -70,6 +74,7 @@ impl FileKind {
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
             Self::Surroundings => vec!["hdr", "exr"],
+            Self::Sound => lovelock_sound::SOUND_EXTENSIONS.to_vec(),
         }
     }
 
@@ -118,6 +123,9 @@ impl FileKind {
     fn by_content(start: &[u8]) -> Option<Self> {
         if HairFormat::of_magic(start).is_some() {
             return Some(Self::Hair);
+        }
+        if lovelock_sound::is_sound(start) {
+            return Some(Self::Sound);
         }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),

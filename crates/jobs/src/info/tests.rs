@@ -9,6 +9,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Style(_) => "style",
         Content::Take(_) => "take",
         Content::Surroundings(_) => "surroundings",
+        Content::Sound(_) => "sound",
         Content::HairClusters(_) => "hair-clusters",
     }
 }

@@ -67,6 +67,9 @@ impl fmt::Display for Info {
                 if let Some(surroundings) = &project.surroundings {
                     line(f, "surround", surroundings)?;
                 }
+                if let Some(sound) = &project.sound {
+                    line(f, "sound", sound)?;
+                }
                 line(
                     f,
                     "film",
@@ -103,6 +106,16 @@ impl fmt::Display for Info {
                     None => line(f, "strongest", "no direction stands out")?,
                 }
                 remarks(f, &picture.dropped, &picture.notes)
+            }
+            Content::Sound(sound) => {
+                line(f, "kind", format_args!("sound, {}", sound.format))?;
+                line(f, "duration", format_args!("{:.2} s", sound.duration_secs))?;
+                line(f, "samples", format_args!("{} per second, {} channels", sound.rate, sound.channels))?;
+                match sound.tempo {
+                    Some(tempo) => line(f, "tempo", format_args!("{tempo:.1} beats per minute, {} beats", sound.beats))?,
+                    None => line(f, "tempo", "no regular beat")?,
+                }
+                remarks(f, &sound.dropped, &sound.notes)
             }
             Content::HairClusters(database) => {
                 line(f, "kind", format_args!("database of hair clusters, {}", database.format))?;

@@ -9,6 +9,7 @@ mod options;
 mod pictures;
 mod report;
 mod request;
+mod sound;
 mod take;
 
 pub use curves::{CurveRecordReport, CurveSource, is_curves, record_curves};

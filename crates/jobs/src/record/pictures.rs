@@ -25,6 +25,7 @@ use super::fingerprint;
 use super::options::Options;
 use super::report::RecordReport;
 use super::request::RecordRequest;
+use super::sound::FilmSound;
 
 /// Maximum number of frames whose times are kept for medians.
 const MOST_TIMES: usize = 1 << 20;
@@ -56,11 +57,22 @@ pub fn record(
         dance.close(&frames)?;
     }
 
+    let sound = match job.kind {
+        // The format has no sound.
+        OutputKind::Preview => None,
+        OutputKind::Film | OutputKind::Sequence => {
+            FilmSound::of(&job.project, &request.access, &dance, &frames, &mut problems, progress)?
+        }
+    };
+    let has_sound = sound.is_some();
     let refused = |error: RecordError| job.refused(&error);
     // Created before the sink, so that it is dropped after it.
     let _new_folders = NewFolders::missing_on(&request.out);
     let settings = job.sink_settings(&frames, &dance, &drawer)?;
     let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
+    if let Some(sound) = sound {
+        sink.set_sound(Box::new(sound));
+    }
     let mut begun = false;
     let mut drawn = Drawn::default();
     let total = frames.end - frames.start;
@@ -119,6 +131,7 @@ pub fn record(
         draw: job.project.picture.draw.to_string(),
         transparency: job.project.picture.transparency.to_string(),
         format: job.format().to_owned(),
+        sound: has_sound,
         transparent: job.options.transparent,
         motion_blur: job.options.subframes,
         shutter_degrees: job.options.shutter_degrees,

@@ -139,6 +139,7 @@ fn the_report_has_the_keys_that_were_promised() {
         draw: "strands".to_owned(),
         transparency: "sorted".to_owned(),
         format: "mp4".to_owned(),
+        sound: false,
         transparent: false,
         motion_blur: 1,
         shutter_degrees: 180.0,
