@@ -17,7 +17,7 @@ use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, take, hair, character, motion or surroundings file to open in the window.
+    /// A project, take, hair, character, motion, surroundings or sound file to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -49,7 +49,7 @@ pub(crate) enum Task {
     Compare(Compare),
     /// Measures frames of known scenes, stage by stage, on each backend, beside published figures.
     Bench(Bench),
-    /// Describes the contents of a hair, character, motion, project, take or surroundings file.
+    /// Describes the contents of a hair, character, motion, project, take, surroundings or sound file.
     Info(Info),
     /// Converts a hair file to another format.
     Convert(Convert),

@@ -111,10 +111,11 @@ impl fmt::Display for Info {
                 line(f, "kind", format_args!("sound, {}", sound.format))?;
                 line(f, "duration", format_args!("{:.2} s", sound.duration_secs))?;
                 line(f, "samples", format_args!("{} per second, {} channels", sound.rate, sound.channels))?;
-                match sound.tempo {
-                    Some(tempo) => line(f, "tempo", format_args!("{tempo:.1} beats per minute, {} beats", sound.beats))?,
-                    None => line(f, "tempo", "no regular beat")?,
-                }
+                let tempo = sound.tempo.map_or_else(
+                    || "no regular beat".to_owned(),
+                    |tempo| format!("{tempo:.1} beats per minute, {} beats", sound.beats),
+                );
+                line(f, "tempo", tempo)?;
                 remarks(f, &sound.dropped, &sound.notes)
             }
             Content::HairClusters(database) => {

@@ -26,4 +26,6 @@ mod layered_tests;
 #[cfg(test)]
 mod take_tests;
 #[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
 mod tests;

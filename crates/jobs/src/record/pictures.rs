@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Choices;
 use lovelock_project::Project;
-use lovelock_project::error::ProjectError;
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_record::{
     FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
 };
@@ -51,19 +51,20 @@ pub fn record(
     }
 
     let frames = job.frames(&dance)?;
+    let sound = if job.kind == OutputKind::Preview {
+        let heard = job.project.sound.is_heard();
+        problems
+            .extend(heard.then(|| Problem::new(Place::Sound, ProblemKind::Note, "a preview has no sound")));
+        None
+    } else {
+        FilmSound::of(&job.project, &request.access, &dance, &frames, &mut problems, progress)?
+    };
     // After the checks of the request, because drivers may print to standard error when they are opened.
     let mut drawer = Drawer::open(&job.project, request)?;
     if job.project.recording.seamless {
         dance.close(&frames)?;
     }
 
-    let sound = match job.kind {
-        // The format has no sound.
-        OutputKind::Preview => None,
-        OutputKind::Film | OutputKind::Sequence => {
-            FilmSound::of(&job.project, &request.access, &dance, &frames, &mut problems, progress)?
-        }
-    };
     let has_sound = sound.is_some();
     let refused = |error: RecordError| job.refused(&error);
     // Created before the sink, so that it is dropped after it.

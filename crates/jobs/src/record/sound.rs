@@ -59,7 +59,9 @@ impl FilmSound {
             Ok(read) => read,
             Err(problem) if !problem.is_failure() => return Err(ProjectError::Cancelled),
             Err(problem) => {
-                problems.push(problem.with_fallback("the recording is silent"));
+                let problem = problem.with_fallback("the recording is silent");
+                report_progress(progress, Progress::Loaded { problems: vec![problem.clone()] })?;
+                problems.push(problem);
                 return Ok(None);
             }
         };

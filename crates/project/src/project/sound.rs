@@ -88,7 +88,10 @@ mod tests {
         std::fs::remove_file(&file).expect("removed");
         let (opened, problems) = load_project(&path).expect("opened");
         assert_eq!(opened, project, "the project keeps the name of the file");
-        assert!(problems.len() == 1 && problems[0].place == Place::Sound && problems[0].is_failure(), "{problems:?}");
+        assert!(
+            problems.len() == 1 && problems[0].place == Place::Sound && problems[0].is_failure(),
+            "{problems:?}"
+        );
         project.set_take(dir.path().join("a.take"));
         assert!(project.files().iter().any(|(place, _)| *place == Place::Sound), "a take records no sound");
     }
@@ -99,7 +102,11 @@ mod tests {
         (project.sound.offset_secs, project.sound.gain) = (f64::NAN, 100.0);
         let (clean, problems) = project.sanitised();
         assert_eq!((clean.sound.offset_secs, clean.sound.gain), (0.0, 4.0));
-        assert_eq!(problems.iter().filter(|problem| problem.place == Place::Sound).count(), 2, "{problems:?}");
+        assert_eq!(
+            problems.iter().filter(|problem| problem.place == Place::Sound).count(),
+            2,
+            "{problems:?}"
+        );
         let (old, problems) = parse_project("old.lovelock".as_ref(), "(version: 3)").expect("a project");
         assert_eq!((old.sound, problems.len()), (SoundSection::default(), 0));
     }

@@ -1,4 +1,4 @@
-//! The device on Linux: the sound server, PulseAudio or `PipeWire`, by its own protocol over a socket. No library of the system is needed, so
+//! The device on Linux: the sound server, `PulseAudio` or `PipeWire`, by its own protocol over a socket. No library of the system is needed, so
 //! the program also builds and starts on computers without any sound.
 
 use std::sync::Arc;
