@@ -161,8 +161,8 @@ fn a_sound_is_described_with_its_tempo() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("clicks ü.wav");
     crate::record::testing::click_track(&path);
-    assert_eq!(kind_of(&path), "sound");
     let info = info(&path).expect("a sound");
+    assert_eq!(kind_of(&info), "sound");
     let json = serde_json::to_value(&info).expect("JSON");
     assert_eq!(
         (&json["rate"], &json["channels"], &json["duration_secs"]),
