@@ -17,7 +17,7 @@ use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, take, hair, character, motion or surroundings file to open in the window.
+    /// A project, take, hair, character, motion, surroundings or sound file to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -49,7 +49,7 @@ pub(crate) enum Task {
     Compare(Compare),
     /// Measures frames of known scenes, stage by stage, on each backend, beside published figures.
     Bench(Bench),
-    /// Describes the contents of a hair, character, motion, project, take or surroundings file.
+    /// Describes the contents of a hair, character, motion, project, take, surroundings or sound file.
     Info(Info),
     /// Converts a hair file to another format.
     Convert(Convert),
@@ -91,6 +91,9 @@ pub(crate) struct SourceArguments {
     /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that gives light from all directions.
     #[arg(long, value_name = "FILE")]
     pub(crate) surroundings: Option<PathBuf>,
+    /// Sound file (WAV, MP3, Ogg Vorbis or FLAC) beside the dance, which films get. `--set sound.offset_secs=1.5` shifts it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sound: Option<PathBuf>,
     /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<Assignment>,

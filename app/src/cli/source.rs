@@ -54,11 +54,15 @@ impl Source {
         print_problems(&problems);
         if let Some(take) = project.take.file.clone() {
             allow(task, &project, &take.path, &mut access)?;
-            // The light is not recorded.
+            // Light and sound are not recorded.
             let mut named = Vec::new();
             if let Some(path) = &task.surroundings {
                 named.push((Place::Surroundings, required(path, &mut access)?));
                 project.set_surroundings_file(path);
+            }
+            if let Some(path) = &task.sound {
+                named.push((Place::Sound, required(path, &mut access)?));
+                project.set_sound_file(path);
             }
             apply(&task.set, &mut project)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
@@ -89,6 +93,7 @@ impl Source {
             (Place::Body, &task.body),
             (Place::Motion, &task.motion),
             (Place::Surroundings, &task.surroundings),
+            (Place::Sound, &task.sound),
         ];
         let mut named = Vec::new();
         for (place, path) in places {
@@ -107,6 +112,9 @@ impl Source {
         }
         if let Some(path) = &task.surroundings {
             project.set_surroundings_file(path);
+        }
+        if let Some(path) = &task.sound {
+            project.set_sound_file(path);
         }
         apply(&task.set, &mut project)?;
         Ok(Self { project, access, name: names.join(", "), named })

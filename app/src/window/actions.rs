@@ -52,6 +52,7 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
         FileKind::Character => opened.project.set_body_file(path),
         FileKind::Motion => opened.project.set_motion_file(path),
         FileKind::Surroundings => opened.project.set_surroundings_file(path),
+        FileKind::Sound => opened.project.set_sound_file(path),
         FileKind::Style => {
             let listed = lovelock_jobs::presets::style_in(path)?;
             opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
@@ -131,6 +132,7 @@ impl Window {
             Command::Record => self.open_path_dialog(Purpose::Film),
             Command::SavePicture => self.open_path_dialog(Purpose::Picture),
             Command::ExportCurves => self.open_path_dialog(Purpose::Curves),
+            Command::PickSound => self.open_path_dialog(Purpose::Sound),
             Command::FrameHair => self.frame_hair(ctx),
             Command::ToggleFollow => self.change_seen(ctx, |project| {
                 project.camera.mode = match project.camera.mode {
@@ -273,6 +275,8 @@ impl Window {
             Purpose::Body => self.open_part(path, |project| project.set_body_file(path)),
             Purpose::Motion => self.open_part(path, |project| project.set_motion_file(path)),
             Purpose::Surroundings => self.open_part(path, |project| project.set_surroundings_file(path)),
+            // Another kind of file is a problem of the sound, which its reader reports.
+            Purpose::Sound => self.open_part(path, |project| project.set_sound_file(path)),
             Purpose::SaveProject => self.save_to(path),
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume | Purpose::Curves => {
                 let access = self.session.access().clone();

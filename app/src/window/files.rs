@@ -31,6 +31,7 @@ impl Window {
                 FileKind::Hair => project.set_hair_file(path),
                 FileKind::Character => project.set_body_file(path),
                 FileKind::Surroundings => project.set_surroundings_file(path),
+                FileKind::Sound => project.set_sound_file(path),
                 FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
                     project.set_motion_file(path);
                 }

@@ -26,6 +26,7 @@ impl Window {
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
         let said = self.session.update();
         self.warn(said);
+        self.follow_sound(&ctx);
         self.take_brushed();
         for done in std::mem::take(&mut self.session.done) {
             self.notices.push(notices::Kind::Done, done);
@@ -223,21 +224,35 @@ impl Window {
                 armed: self.overdub.is_armed(),
                 targets: self.overdub.writes().map(str::to_owned).collect(),
             },
+            sound: project.sound.file.as_ref().map(|file| timeline::SoundLane {
+                name: file.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                loaded: self.soundtrack.loaded().cloned().unwrap_or_default(),
+            }),
             recording: session.worker().take_progress().map(|take| {
                 let kept = take.kept as f64 / take.frames.max(1) as f64;
                 [take.secs, take.secs * kept]
             }),
         };
         let zoom = &mut self.layout.timeline;
-        let Project { recording, motion, timeline: section, hair, .. } = project;
+        let Project { recording, motion, timeline: section, hair, sound, .. } = project;
         let lovelock_project::project::TimelineSection { markers, tracks, .. } = section;
-        let height = timeline::height(tracks.len());
-        let mut edited = timeline::Edited { recording, markers, tracks, motion, stack: &hair.stack };
+        let height = timeline::height(tracks.len(), sound.file.is_some());
+        let mut edited = timeline::Edited { recording, markers, tracks, motion, sound, stack: &hair.stack };
         Panel::bottom("timeline")
             .exact_size(height)
             .resizable(false)
             .show(ui, |ui| timeline::ui(ui, &view, zoom, &mut edited))
             .inner
+    }
+
+    /// Reads the sound of the project and plays it in step with the image.
+    fn follow_sound(&mut self, ctx: &egui::Context) {
+        let project = Arc::clone(self.history.project());
+        let said = self.soundtrack.update(&project.sound, self.session.access(), ctx);
+        self.warn(said);
+        let rate = if self.session.backwards { -self.session.rate } else { self.session.rate };
+        let playing = self.session.playing && self.session.frame.is_some();
+        self.soundtrack.follow(&project.sound, self.now_secs(), playing, rate);
     }
 
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
@@ -306,6 +321,15 @@ impl Window {
                 }
                 row += 1;
             }
+            if let Some(loading) = self.soundtrack.loading()
+                && loading.taken_secs > SHOW_LOADING_SECS
+            {
+                let tip = "Stops reading the sound. The dance is silent.";
+                if progress_overlay(ui, rect, row, loading.fraction, "Reading the sound", tip) {
+                    self.soundtrack.cancel();
+                }
+                row += 1;
+            }
             if let Some(settling) = self.session.worker().settling()
                 && settling.taken_secs > SHOW_SETTLING_SECS
             {
@@ -370,7 +394,12 @@ impl Window {
             .and_then(std::path::Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
-            Purpose::Open | Purpose::Beside | Purpose::Body | Purpose::Motion | Purpose::Surroundings => folder,
+            Purpose::Open
+            | Purpose::Beside
+            | Purpose::Body
+            | Purpose::Motion
+            | Purpose::Surroundings
+            | Purpose::Sound => folder,
             Purpose::SaveProject => self
                 .project_path
                 .clone()
@@ -402,6 +431,7 @@ impl Window {
             | Purpose::Body
             | Purpose::Motion
             | Purpose::Surroundings
+            | Purpose::Sound
             | Purpose::SaveProject
             | Purpose::ExportStyle
             | Purpose::SaveStrokes
@@ -448,6 +478,7 @@ pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.shadow != after.shadow, "shadow"),
         (before.lights != after.lights, "light"),
         (before.surroundings != after.surroundings, "surroundings"),
+        (before.sound != after.sound, "sound"),
         (before.picture != after.picture, "picture"),
         (before.body != after.body, "body"),
         (before.motion != after.motion, "motion"),

@@ -97,6 +97,7 @@ fn part_of(command: Command) -> u8 {
         | Command::Record
         | Command::SavePicture
         | Command::ExportCurves
+        | Command::PickSound
         | Command::AddMarker
         | Command::MarkIn
         | Command::MarkOut => 2,

@@ -25,6 +25,7 @@ mod recorder;
 mod screenshot;
 mod session;
 mod side_panels;
+mod soundtrack;
 mod styles;
 
 #[cfg(test)]
@@ -153,6 +154,7 @@ pub(crate) struct Window {
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
+    soundtrack: soundtrack::Soundtrack,
     styles: styles::Browser,
     /// The project with the style that is shown and not applied.
     preview: Option<styles::Preview>,
@@ -265,6 +267,7 @@ impl Window {
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
+            soundtrack: soundtrack::Soundtrack::default(),
             styles: styles::Browser::default(),
             preview: None,
             morphed: None,

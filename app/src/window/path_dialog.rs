@@ -25,6 +25,8 @@ pub(crate) enum Purpose {
     Motion,
     /// Light from a picture of the surroundings.
     Surroundings,
+    /// A sound beside the dance.
+    Sound,
     /// Saving the project.
     SaveProject,
     /// Recording a film.
@@ -57,11 +59,12 @@ const NO_DIALOG_SECS: f64 = 0.5;
 impl Purpose {
     fn title(self) -> &'static str {
         match self {
-            Self::Open => "Open a project, take, hairstyle, character, motion or surroundings",
+            Self::Open => "Open a project, take, hairstyle, character, motion, surroundings or sound",
             Self::Beside => "Compare with a take",
             Self::Body => "Body from a character file",
             Self::Motion => "Motion from a motion file, or from a clip of another character",
             Self::Surroundings => "Light from a picture of the surroundings: .hdr or .exr",
+            Self::Sound => "Sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record images to a folder",
@@ -76,7 +79,7 @@ impl Purpose {
 
     fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Body | Self::Motion | Self::Surroundings => "Open file",
+            Self::Open | Self::Body | Self::Motion | Self::Surroundings | Self::Sound => "Open file",
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle | Self::SaveStrokes => {
                 "Save file"
@@ -94,6 +97,7 @@ impl Purpose {
             | Self::Body
             | Self::Motion
             | Self::Surroundings
+            | Self::Sound
             | Self::Sequence
             | Self::Resume => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
@@ -252,6 +256,7 @@ impl PathDialog {
                 let extensions = FileKind::Surroundings.extensions();
                 Box::pin(dialog.add_filter("Surroundings", &extensions).pick_file())
             }
+            Purpose::Sound => Box::pin(dialog.add_filter("Sound", &FileKind::Sound.extensions()).pick_file()),
             Purpose::Sequence | Purpose::Resume => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),

@@ -86,7 +86,7 @@ impl Window {
     }
 
     pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
-        let (mut recording, mut picks_light) = (None, false);
+        let (mut recording, mut picks_light, mut picks_sound) = (None, false, false);
         let axes = camera_control::axes(&project.camera);
         Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -113,6 +113,13 @@ impl Window {
                         });
                     }
                 });
+                section(ui, "Sound", project.sound.file.is_some(), |ui| {
+                    let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
+                    let loaded = self.soundtrack.loaded().map(|loaded| &**loaded);
+                    let problem = self.soundtrack.problem();
+                    let ask = panels::sound::ui(ui, project, loaded, problem.as_deref(), duration);
+                    picks_sound = ask.is_some();
+                });
                 section(ui, "Recording", false, |ui| {
                     let frames = self.session.frames(project.recording.fps);
                     recording =
@@ -133,6 +140,9 @@ impl Window {
         });
         if picks_light {
             self.open_path_dialog(Purpose::Surroundings);
+        }
+        if picks_sound {
+            self.open_path_dialog(Purpose::Sound);
         }
         match recording {
             Some(panels::recording::RecordingRequest::Film) => self.open_path_dialog(Purpose::Film),

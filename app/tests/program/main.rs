@@ -10,5 +10,6 @@ mod projects;
 mod record;
 mod refusals;
 mod settings;
+mod sound;
 mod strokes;
 mod tool;

@@ -126,6 +126,8 @@ pub enum Place {
     Lights,
     /// The picture of the surroundings.
     Surroundings,
+    /// The sound beside the dance.
+    Sound,
     /// The camera.
     Camera,
     /// Settings of the picture.
@@ -153,6 +155,7 @@ impl Place {
             Self::Shadow => "shadow",
             Self::Lights => "lights",
             Self::Surroundings => "surroundings",
+            Self::Sound => "sound",
             Self::Camera => "camera",
             Self::Picture => "picture",
             Self::Recording => "recording",

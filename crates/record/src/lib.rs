@@ -13,6 +13,8 @@
 //!   `push` waits while the queue is full.
 //! - The same images give the same bytes: the encoder runs on one thread, and nothing depends on the clock.
 //!
+//! A film and a sequence may have a sound ([`SoundSource`]): Opus in the film, a WAV file in the folder.
+//!
 //! [`TakeWriter`] records the simulation itself, and [`TakeReader`] plays it back. A take is written as `NAME.part`; whatever
 //! ends the recording, the frames written so far are kept and can be played.
 //!
@@ -34,6 +36,7 @@ mod rate;
 mod reader;
 mod sequence;
 mod sink;
+mod sound;
 mod still;
 mod take;
 mod yuv;
@@ -47,9 +50,10 @@ pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, Preview
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{
-    FrameLayers, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter, frame_name,
+    FrameLayers, SOUND_NAME, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter, frame_name,
 };
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
+pub use sound::{SOUND_RATE, SoundSource};
 pub use still::{jpeg_within, read_jpeg, write_png};
 pub use take::{
     AssetState, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,

@@ -3,6 +3,7 @@
 use crate::{
     FilmQuality, FilmReport, FilmSettings, FilmWriter, FrameLayers, PreviewReport, PreviewSettings,
     PreviewWriter, RecordError, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter,
+    SoundSource,
 };
 use std::path::Path;
 
@@ -235,6 +236,16 @@ impl PictureSink {
             Self::Film(_) | Self::Preview(_) => {
                 Err(RecordError::request("only sequences of EXR files can store layers"))
             }
+        }
+    }
+
+    /// Gives the output a sound, which ends with its last frame: Opus in a film, the file [`crate::SOUND_NAME`] in the folder of a sequence. A
+    /// preview has none. Call it before the first frame.
+    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) {
+        match self {
+            Self::Film(writer) => writer.set_sound(sound),
+            Self::Sequence(writer) => writer.set_sound(sound),
+            Self::Preview(_) => {}
         }
     }
 

@@ -119,6 +119,16 @@ impl Dance {
         }
     }
 
+    /// The time after which the timeline starts again at 0, seconds, if the dance loops. That of a take does not.
+    pub fn period_secs(&self) -> Option<f64> {
+        match &self.0 {
+            Source::Simulated { scene, .. } if scene.looping => {
+                Some(scene.duration_secs()).filter(|secs| *secs > 0.0)
+            }
+            Source::Simulated { .. } | Source::Take { .. } => None,
+        }
+    }
+
     /// Rejects frames outside the take. A simulation has no last frame.
     ///
     /// # Errors

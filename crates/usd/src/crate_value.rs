@@ -108,7 +108,9 @@ impl CrateValues<'_> {
             // Pixar writes a vector, the `openusd` library an array.
             kind::DOUBLE if value & (IS_ARRAY | IS_COMPRESSED) == IS_ARRAY => self.length(at)?,
             kind::DOUBLE if value & IS_ARRAY != 0 => {
-                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else { return Ok(Vec::new()) };
+                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else {
+                    return Ok(Vec::new());
+                };
                 return Ok(times.into_iter().map(f64::from).collect());
             }
             _ => return Err(self.file.at(times, format!("times of type {kind}"), "numbers")),

@@ -29,7 +29,11 @@ pub const TEXT_MAGIC: &[u8] = b"#usda";
 ///
 /// # Errors
 /// If the file cannot be read or contradicts itself. The error has the byte offset.
-pub fn open<'a>(name: &str, source: Source<'a>, is_crate: bool) -> Result<Box<dyn Layer + Send + 'a>, UsdError> {
+pub fn open<'a>(
+    name: &str,
+    source: Source<'a>,
+    is_crate: bool,
+) -> Result<Box<dyn Layer + Send + 'a>, UsdError> {
     if is_crate {
         return Ok(Box::new(crate_file::CrateLayer::open(name, source)?));
     }

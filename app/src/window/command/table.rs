@@ -198,6 +198,14 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
+            C::PickSound,
+            "pick-sound",
+            "Sound…",
+            "Puts a sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC.",
+            &[],
+            G::File,
+        ),
+        entry(
             C::FrameHair,
             "frame-hair",
             "Frame the hair",

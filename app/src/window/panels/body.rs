@@ -58,7 +58,12 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         if let Some(file) = &project.body.file {
             note(ui, file.path.display().to_string());
         }
-        settings(ui, &["unit", "up", "facing", "own_hair"], &mut project.body.settings, &BodySettings::default());
+        settings(
+            ui,
+            &["unit", "up", "facing", "own_hair"],
+            &mut project.body.settings,
+            &BodySettings::default(),
+        );
     }
     let chosen = project.body.head_joint.clone().unwrap_or_else(|| format!("{} (guess)", loaded.head));
     ui.horizontal(|ui| {

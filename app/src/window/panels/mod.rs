@@ -13,6 +13,7 @@ pub(crate) mod records;
 pub(crate) mod scalp;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
+pub(crate) mod sound;
 pub(crate) mod statistics;
 pub(crate) mod surroundings;
 mod swatch;
@@ -20,3 +21,5 @@ pub(crate) mod ties;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::clicks;

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use lovelock_project::project::{Marker, MotionSection, MotionSource, RecordingSection};
+use lovelock_project::project::{Marker, MotionSection, MotionSource, RecordingSection, SoundSection};
 use lovelock_project::tracks::Track;
 use lovelock_style::StyleStack;
 
@@ -18,6 +18,7 @@ struct State {
     markers: Vec<Marker>,
     tracks: Vec<Track>,
     motion: MotionSection,
+    sound: SoundSection,
     asked: Vec<TimelineRequest>,
 }
 
@@ -29,6 +30,7 @@ fn state(view: View) -> State {
         markers: vec![Marker { secs: 6.0, name: "turn".to_owned() }],
         tracks: Vec::new(),
         motion: MotionSection::default(),
+        sound: SoundSection::default(),
         asked: Vec::new(),
     }
 }
@@ -38,9 +40,10 @@ fn bar(view: View) -> Harness<'static, Shown<State>> {
 }
 
 fn with_tracks(state: State) -> Harness<'static, Shown<State>> {
-    screen_of(vec2(900.0, timeline::height(state.tracks.len())), state, |ui, state: &mut State| {
-        let State { recording, markers, tracks, motion, .. } = state;
-        let mut edited = Edited { recording, markers, tracks, motion, stack: &StyleStack::default() };
+    let size = vec2(900.0, timeline::height(state.tracks.len(), state.view.sound.is_some()));
+    screen_of(size, state, |ui, state: &mut State| {
+        let State { recording, markers, tracks, motion, sound, .. } = state;
+        let mut edited = Edited { recording, markers, tracks, motion, sound, stack: &StyleStack::default() };
         state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
     })
 }
@@ -59,6 +62,7 @@ fn view() -> View {
         recording: None,
         thumbs: Vec::new(),
         writing: Writing::default(),
+        sound: None,
     }
 }
 
@@ -223,7 +227,10 @@ fn key_at(harness: &Harness<'_, Shown<State>>, secs: f32, height: f32) -> egui::
 fn tracks_are_muted_smoothed_and_deleted() {
     let mut harness = tracked();
     harness.check_accessibility();
-    assert!(harness.state().taken.right() <= 900.0 && harness.state().taken.bottom() <= timeline::height(2));
+    assert!(
+        harness.state().taken.right() <= 900.0
+            && harness.state().taken.bottom() <= timeline::height(2, false)
+    );
     for (button, says) in [("Mute", "own value"), ("Smooth", "jitter"), ("Delete", "Removes")] {
         let name = format!("{button} track Camera distance");
         let at = control(&harness, Role::Button, &name).rect().center();
@@ -315,4 +322,52 @@ fn the_clip_menu_changes_clip_tempo_and_trim() {
         press(&mut fresh, Role::Button, name);
     }
     assert_eq!(fresh.state().state.asked, []);
+}
+
+/// A view with a sound that has a beat every half second.
+fn with_sound() -> State {
+    let lane = timeline::SoundLane {
+        name: "song.ogg".to_owned(),
+        loaded: std::sync::Arc::new(crate::window::panels::clicks()),
+    };
+    let mut state = state(View { sound: Some(lane), ..view() });
+    state.sound.file = Some(lovelock_project::files::FileRef::new("/songs/song.ogg"));
+    state
+}
+
+#[test]
+fn the_sound_is_drawn_under_the_ruler_and_a_drag_shifts_it() {
+    let mut harness = with_tracks(with_sound());
+    let lane = control(&harness, Role::Slider, "Sound on the timeline").rect();
+    let ruler = control(&harness, Role::Slider, "Time").rect();
+    assert!(
+        lane.top() > ruler.top() + 15.0 && lane.bottom() < ruler.bottom() - 30.0,
+        "{lane:?} in {ruler:?}"
+    );
+    drag(&mut harness, lane.center(), lane.center() + vec2(lane.width() / 8.0, 0.0));
+    let offset = harness.state().state.sound.offset_secs;
+    assert!((offset - 1.0).abs() < 0.05, "an eighth of 8 s: {offset}");
+    assert!(harness.state().state.asked.is_empty(), "the drag does not scrub");
+    let said = tooltip_at(&mut harness, lane.center()).expect("a tooltip");
+    assert!(said.contains("song.ogg") && said.contains("Alt"), "{said}");
+    // Control: without a sound there is no lane, and the timeline is lower.
+    assert!(timeline::height(0, true) > timeline::height(0, false));
+}
+
+#[test]
+fn a_dragged_marker_snaps_to_a_beat_unless_alt_is_held() {
+    let beat = |secs: f64| (secs * 2.0 - (secs * 2.0).round()).abs() / 2.0;
+    let mut harness = with_tracks(with_sound());
+    let flag = control(&harness, Role::Button, "Marker turn").rect().center();
+    let width = control(&harness, Role::Slider, "Sound on the timeline").rect().width();
+    // Two seconds back, and three points beside the beat.
+    let to = flag + vec2(3.0 - width / 4.0, 0.0);
+    drag(&mut harness, flag, to);
+    let snapped = harness.state().state.markers[0].secs;
+    assert!((snapped - 4.0).abs() < 0.3 && beat(snapped) < 0.015, "{snapped}");
+    // Far from every beat it stays where it was dropped.
+    let flag = control(&harness, Role::Button, "Marker turn").rect().center();
+    drag(&mut harness, flag, flag + vec2(width / 32.0, 0.0));
+    let free = harness.state().state.markers[0].secs;
+    assert!(beat(free) > 0.1, "{free}");
 }

@@ -277,3 +277,46 @@ fn a_broken_hair_file_is_reported_and_the_scene_stays() {
         assert_eq!(project(&harness), before);
     }
 }
+
+/// A WAV file of clicks, one every half second for four seconds.
+fn click_track(path: &Path) {
+    let samples =
+        (0..4 * 48_000_u32).map(|i| if i % 24_000 < 400 { (i * 7919 % 20_000) as i16 - 10_000 } else { 0 });
+    let data: Vec<u8> = samples.flat_map(i16::to_le_bytes).collect();
+    let mut bytes = b"RIFF".to_vec();
+    bytes.extend((36 + data.len() as u32).to_le_bytes());
+    bytes.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0\x80\xBB\0\0\0\x77\x01\0\x02\0\x10\0data");
+    bytes.extend((data.len() as u32).to_le_bytes());
+    bytes.extend(data);
+    std::fs::write(path, bytes).expect("a file");
+}
+
+#[test]
+fn a_dropped_sound_plays_beside_the_dance_and_one_that_is_none_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("clicks ü.wav");
+    click_track(&path);
+    let mut harness = window();
+    let open = |harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path| {
+        harness.state_mut().state.as_mut().expect("a window").open_any(path);
+    };
+    open(&mut harness, &path);
+    wait(&mut harness, "the sound", |window| window.soundtrack.loaded().is_some());
+    let loaded = Arc::clone(of(&harness).soundtrack.loaded().expect("a sound"));
+    assert!((loaded.beats.tempo.expect("a tempo") - 120.0).abs() < 1.0, "{:?}", loaded.beats);
+    assert_eq!(project(&harness).sound.file.as_ref().expect("a file").path, path);
+    assert!(harness.query_by_role_and_label(Role::Slider, "Sound on the timeline").is_some());
+    // Undo returns to silence, redo to the sound, without asking for the file again.
+    harness.key_press_modifiers(CTRL, Key::Z);
+    harness.run_steps(3);
+    assert!(project(&harness).sound.file.is_none() && of(&harness).soundtrack.loaded().is_none());
+
+    let bad = folder.path().join("bad.wav");
+    std::fs::write(&bad, b"RIFF\0\0\0\0WAVE and nothing more").expect("a file");
+    open(&mut harness, &bad);
+    let told =
+        |window: &Window| window.soundtrack.problem().is_some_and(|problem| problem.contains("bad.wav"));
+    wait(&mut harness, "the problem", told);
+    let problem = of(&harness).soundtrack.problem().expect("a problem");
+    assert!(problem.contains("the dance is silent") && problem.lines().count() == 1, "{problem}");
+}

@@ -5,7 +5,7 @@ use lovelock_project::project::Marker;
 
 use super::scale::Scale;
 use super::zoom::tick_secs;
-use super::{Edited, TimelineRequest, View, Zoom, thumbnails};
+use super::{Edited, TimelineRequest, View, Zoom, sound, thumbnails};
 use crate::window::theme;
 
 const RULER: f32 = 22.0;
@@ -22,8 +22,10 @@ pub(super) fn ui(
 ) -> Option<TimelineRequest> {
     let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
     let names = if edited.tracks.is_empty() { NAMES } else { NAMES_OF_TRACKS };
+    let of_sound = if view.sound.is_some() { sound::HEIGHT } else { 0.0 };
+    let below = RULER + of_sound;
     let size =
-        vec2((ui.available_width() - 8.0).max(names + 60.0), RULER + lanes * LANE + thumbnails::HEIGHT);
+        vec2((ui.available_width() - 8.0).max(names + 60.0), below + lanes * LANE + thumbnails::HEIGHT);
     let (whole, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Time"));
     let rect = Rect::from_min_max(whole.min + vec2(names, 0.0), whole.max);
@@ -35,12 +37,18 @@ pub(super) fn ui(
 
     ruler(ui, rect, scale);
     let strip =
-        Rect::from_x_y_ranges(rect.x_range(), rect.top() + RULER..=rect.top() + RULER + thumbnails::HEIGHT);
+        Rect::from_x_y_ranges(rect.x_range(), rect.top() + below..=rect.top() + below + thumbnails::HEIGHT);
     thumbnails::lane(ui, strip, scale, *zoom, duration, &view.thumbs);
     let lane = |i: f32| {
-        let top = rect.top() + RULER + thumbnails::HEIGHT + i * LANE;
+        let top = rect.top() + below + thumbnails::HEIGHT + i * LANE;
         Rect::from_min_max(pos2(rect.left(), top + 1.0), pos2(rect.right(), top + LANE - 1.0))
     };
+    let beats = beats_of(view, edited.sound.offset_secs);
+    if let Some(of) = &view.sound {
+        let lane = Rect::from_x_y_ranges(rect.x_range(), rect.top() + RULER..=rect.top() + below);
+        name(ui, whole, lane, "Sound");
+        sound::lane(ui, lane.shrink2(vec2(0.0, 1.0)), scale, of, edited.sound);
+    }
     let head =
         Rect::from_min_max(pos2(whole.left(), lane(0.0).top()), pos2(rect.left() - 4.0, lane(0.0).bottom()));
     let of_clip = if view.take.is_some() {
@@ -62,7 +70,7 @@ pub(super) fn ui(
         bar(ui, lane(1.0), scale, [0.0, kept.min(end)], theme::RECORDING.gamma_multiply(0.6), "recording");
     }
     points(ui, rect, scale, edited, duration);
-    let flagged = flags(ui, rect, scale, edited.markers);
+    let flagged = flags(ui, rect, scale, edited.markers, &beats);
     let painter = ui.painter_at(rect);
     if (from..=to).contains(&now) {
         let x = scale.x(now);
@@ -77,8 +85,14 @@ pub(super) fn ui(
     }
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
-    let at_track = super::tracks::ui(ui, names, scale, view, edited);
+    let at_track = super::tracks::ui(ui, (names, &beats), scale, view, edited);
     of_clip.or(flagged.or(at).or(at_track).map(TimelineRequest::Seek))
+}
+
+/// The times of the beats on the timeline, seconds.
+fn beats_of(view: &View, offset_secs: f64) -> Vec<f64> {
+    let beats = view.sound.iter().flat_map(|sound| &sound.loaded.beats.secs);
+    beats.map(|secs| secs + offset_secs).filter(|secs| *secs >= 0.0).collect()
 }
 
 /// Zooms about the pointer by the wheel; pans by the right or middle button.
@@ -181,7 +195,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
 }
 
 /// Markers as flags on the ruler. A click seeks, a drag moves the flag, the right button removes it.
-fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>) -> Option<f64> {
+fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>, beats: &[f64]) -> Option<f64> {
     let mut sought = None;
     let mut removed = None;
     for (i, marker) in markers.iter_mut().enumerate() {
@@ -197,7 +211,7 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>) -> Option
         if let Some(at) =
             response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary))
         {
-            marker.secs = scale.secs(at.x);
+            marker.secs = sound::snapped(ui, scale, beats, scale.secs(at.x));
         }
         if response.clicked() {
             sought = Some(marker.secs);

@@ -3,6 +3,7 @@
 mod clip;
 mod lanes;
 mod scale;
+mod sound;
 mod thumbnails;
 mod tracks;
 mod transport;
@@ -11,12 +12,15 @@ mod zoom;
 pub(crate) use thumbnails::Thumbnails;
 pub(crate) use zoom::Zoom;
 
+use std::sync::Arc;
+
 use egui::Ui;
-use lovelock_project::project::{Marker, MotionSection, RecordingSection};
+use lovelock_project::project::{Marker, MotionSection, RecordingSection, SoundSection};
 use lovelock_project::tracks::Track;
 use lovelock_style::StyleStack;
 
 use super::command::Command;
+use super::soundtrack::Loaded;
 
 /// Frames per second in which times are counted: the steps of the simulation.
 const FRAMES_PER_SEC: f64 = 1.0 / lovelock_session::clock::STEP_SECS;
@@ -25,8 +29,8 @@ const FRAMES_PER_SEC: f64 = 1.0 / lovelock_session::clock::STEP_SECS;
 pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;
 
 /// Height of the panel with that number of tracks, points; more tracks scroll.
-pub(crate) fn height(tracks: usize) -> f32 {
-    HEIGHT + tracks::height(tracks)
+pub(crate) fn height(tracks: usize, has_sound: bool) -> f32 {
+    HEIGHT + tracks::height(tracks) + if has_sound { sound::HEIGHT } else { 0.0 }
 }
 
 /// The state that the timeline shows.
@@ -56,6 +60,23 @@ pub(crate) struct View {
     pub(crate) thumbs: Vec<(f64, egui::TextureId)>,
     /// The recording of tracks.
     pub(crate) writing: Writing,
+    /// The sound beside the dance.
+    pub(crate) sound: Option<SoundLane>,
+}
+
+/// The sound beside the dance.
+#[derive(Clone, Debug)]
+pub(crate) struct SoundLane {
+    /// The file's name.
+    pub(crate) name: String,
+    /// The sound; an empty one while it is read.
+    pub(crate) loaded: Arc<Loaded>,
+}
+
+impl PartialEq for SoundLane {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && Arc::ptr_eq(&self.loaded, &other.loaded)
+    }
 }
 
 /// The recording of tracks by moving controls.
@@ -103,6 +124,8 @@ pub(crate) struct Edited<'a> {
     pub(crate) tracks: &'a mut Vec<Track>,
     /// The motion.
     pub(crate) motion: &'a mut MotionSection,
+    /// The sound.
+    pub(crate) sound: &'a mut SoundSection,
     /// The layers of the hairstyle, which name their tracks.
     pub(crate) stack: &'a StyleStack,
 }

@@ -33,6 +33,11 @@ impl Scale {
         Rangef::new(self.left, self.left + self.width)
     }
 
+    /// The time that a distance is long, seconds.
+    pub(super) fn secs_of(&self, dx: f32) -> f64 {
+        (self.to - self.from) * f64::from(dx / self.width.max(1.0))
+    }
+
     /// The time at a position, seconds.
     pub(super) fn secs(&self, x: f32) -> f64 {
         let part = f64::from(((x - self.left) / self.width.max(1.0)).clamp(0.0, 1.0));

@@ -35,8 +35,14 @@ enum Whole {
     Delete,
 }
 
-/// Shows all tracks. Returns a time to seek to.
-pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, edited: &mut Edited<'_>) -> Option<f64> {
+/// Shows all tracks; dragged keys snap to the times of `beats`. Returns a time to seek to.
+pub(super) fn ui(
+    ui: &mut Ui,
+    (names, beats): (f32, &[f64]),
+    scale: Scale,
+    view: &View,
+    edited: &mut Edited<'_>,
+) -> Option<f64> {
     let (tracks, stack) = (&mut *edited.tracks, edited.stack);
     if tracks.is_empty() {
         return None;
@@ -53,7 +59,7 @@ pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, edited: &mu
             let writes = view.writing.targets.contains(&track.target);
             let label = track.label_in(stack);
             asked = head_ui(ui, head, i, (track, &label), writes).map(|what| (i, what)).or(asked);
-            sought = lane_ui(ui, lane, scale, i, (track, &label), writes).or(sought);
+            sought = lane_ui(ui, lane, (scale, beats), i, (track, &label), writes).or(sought);
             if let Some(x) = scale.x_of(view.time_secs) {
                 let line = [pos2(x, lane.top() - 1.0), pos2(x, lane.bottom() + 1.0)];
                 ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::ACCENT));
@@ -131,7 +137,7 @@ fn head_ui(
 fn lane_ui(
     ui: &Ui,
     lane: Rect,
-    scale: Scale,
+    (scale, beats): (Scale, &[f64]),
     index: usize,
     (track, label): (&mut Track, &str),
     writes: bool,
@@ -160,7 +166,7 @@ fn lane_ui(
     let near = near_to(response.hover_pos().or(response.interact_pointer_pos()));
     // A drag is recognised some points after the button was pressed, but starts where it was pressed.
     let taken = near_to(ui.input(|input| input.pointer.press_origin()));
-    let moved = drag(ui, id, &response, taken, dragged, own, (lane, scale, range), track);
+    let moved = drag(ui, id, &response, taken, dragged, own, (lane, scale, range, beats), track);
     paint(ui, lane, scale, track, writes, near.or(moved), y);
     if response.secondary_clicked()
         && let Some((key, _)) = near
@@ -190,7 +196,7 @@ fn drag(
     taken: Option<(usize, usize)>,
     dragged: Option<Dragged>,
     own: [f64; 2],
-    (lane, scale, range): (Rect, Scale, [f64; 2]),
+    (lane, scale, range, beats): (Rect, Scale, [f64; 2], &[f64]),
     track: &mut Track,
 ) -> Option<(usize, usize)> {
     if response.drag_started_by(PointerButton::Primary)
@@ -209,7 +215,7 @@ fn drag(
     let before = track.keys.get(key + 1).map_or(f64::INFINITY, |next| next.secs - gap);
     let moved = track.keys.get_mut(key)?;
     if after <= before {
-        moved.secs = scale.secs(at.x).clamp(after, before);
+        moved.secs = super::sound::snapped(ui, scale, beats, scale.secs(at.x)).clamp(after, before);
     }
     let part = f64::from((lane.bottom() - 4.0 - at.y) / (lane.height() - 8.0)).clamp(-0.1, 1.1);
     *moved.value.get_mut(number)? = range[0] + part * (range[1] - range[0]);

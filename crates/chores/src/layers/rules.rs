@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 25] = [
+const ARROWS: [(&str, &[&str]); 26] = [
     (
         "app",
         &[
@@ -21,6 +21,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
             "motion",
             "groom",
             "record",
+            "sound",
             "appearance",
             "metrics",
             "base",
@@ -39,6 +40,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
             "motion",
             "groom",
             "record",
+            "sound",
             "appearance",
             "metrics",
             "base",
@@ -73,6 +75,7 @@ const ARROWS: [(&str, &[&str]); 25] = [
     ("groom", &["appearance", "alembic", "usd", "base"]),
     ("alembic", &[]),
     ("usd", &["base"]),
+    ("sound", &["base"]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
     ("metrics", &["base"]),
@@ -96,6 +99,7 @@ const WITHOUT_WGPU: [&str; 16] = [
     "motion",
     "satf",
     "simulation",
+    "sound",
     "style",
     "record",
     "metrics",

@@ -39,6 +39,7 @@ pub(super) fn copy(
         match place {
             Place::Body => project.body.file = file,
             Place::Motion => project.motion.file = file,
+            Place::Sound => project.sound.file = file,
             Place::Surroundings => project.surroundings.file = file,
             _ => project.hair.file = file,
         }

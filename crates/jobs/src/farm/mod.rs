@@ -81,6 +81,8 @@ pub fn farm(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<FarmReport, ProjectError> {
     let (mut project, _) = project.sanitised();
+    // The machines write images, and a folder of images is joined without a sound.
+    project.sound = lovelock_project::project::SoundSection::default();
     let out = &request.out;
     check_folder(out)?;
     if let Some((width, height)) = request.size {

@@ -28,6 +28,8 @@ pub enum FileKind {
     Take,
     /// A picture of the surroundings: Radiance or `OpenEXR`.
     Surroundings,
+    /// A sound: WAV, MP3, Ogg Vorbis or FLAC.
+    Sound,
 }
 
 /// The kinds of files that can be read, with their extensions, for messages.
@@ -38,7 +40,7 @@ fn readable() -> String {
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Hair,
         Self::Character,
         Self::Motion,
@@ -46,6 +48,7 @@ impl FileKind {
         Self::Style,
         Self::Take,
         Self::Surroundings,
+        Self::Sound,
     ];
 
     /// The name in sentences.
@@ -58,6 +61,7 @@ impl FileKind {
             Self::Style => "style",
             Self::Take => "take",
             Self::Surroundings => "surroundings",
+            Self::Sound => "sound",
         }
     }
 
@@ -71,6 +75,7 @@ impl FileKind {
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
             Self::Surroundings => vec!["hdr", "exr"],
+            Self::Sound => lovelock_sound::SOUND_EXTENSIONS.to_vec(),
         }
     }
 
@@ -132,6 +137,9 @@ impl FileKind {
 
     /// The kind by the first bytes of a file, if they are unambiguous.
     fn by_content(start: &[u8]) -> Option<Self> {
+        if lovelock_sound::is_sound(start) {
+            return Some(Self::Sound);
+        }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             _ if is_fbx(start) => return Some(Self::Character),

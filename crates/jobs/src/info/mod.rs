@@ -1,12 +1,14 @@
 //! `lovelock info`: describes the contents of a file.
 
 mod kind;
+mod sound;
 mod style;
 mod surroundings;
 mod take;
 mod text;
 
 pub use kind::FileKind;
+pub use sound::SoundInfo;
 pub use style::StyleInfo;
 pub use surroundings::SurroundingsInfo;
 pub use take::{RegrownInfo, TakeInfo};
@@ -50,6 +52,8 @@ pub enum Content {
     Take(TakeInfo),
     /// A picture of the surroundings.
     Surroundings(SurroundingsInfo),
+    /// A sound.
+    Sound(SoundInfo),
     /// A database of hair clusters.
     HairClusters(DatabaseInfo),
 }
@@ -71,6 +75,8 @@ pub struct ProjectInfo {
     pub hair: String,
     /// The picture of the surroundings, or `null`.
     pub surroundings: Option<String>,
+    /// The sound beside the dance, or `null`.
+    pub sound: Option<String>,
     /// Id of the shadow method.
     pub shadow: String,
     /// Number of lights.
@@ -85,7 +91,7 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Describes a hair, character, motion, project, style or take file, a picture of the surroundings, or a database of hair clusters.
+/// Describes a hair, character, motion, project, style or take file, a picture of the surroundings, a sound, or a database of hair clusters.
 ///
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
@@ -111,6 +117,7 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
         FileKind::Style => Content::Style(StyleInfo::of(path)?),
         FileKind::Take => Content::Take(TakeInfo::of(path)?),
         FileKind::Surroundings => Content::Surroundings(SurroundingsInfo::of(path)?),
+        FileKind::Sound => Content::Sound(SoundInfo::of(path)?),
     };
     Ok(Info { file: path.display().to_string(), content })
 }
@@ -144,6 +151,7 @@ fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
             HairSource::File => name(&project.hair.file),
         },
         surroundings: project.surroundings.file.as_ref().map(|file| file.path.display().to_string()),
+        sound: project.sound.file.as_ref().map(|file| file.path.display().to_string()),
         shadow: project.shadow.method.to_string(),
         lights: project.lights.len(),
         width: project.recording.width,

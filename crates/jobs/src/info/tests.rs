@@ -9,6 +9,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Style(_) => "style",
         Content::Take(_) => "take",
         Content::Surroundings(_) => "surroundings",
+        Content::Sound(_) => "sound",
         Content::HairClusters(_) => "hair-clusters",
     }
 }
@@ -162,4 +163,24 @@ fn a_database_of_hair_clusters_is_described() {
     // A file that only begins alike is none.
     std::fs::write(&path, b"LVLKSA").expect("written");
     assert!(info(&path).is_err_and(|error| error.to_string().contains("not a file that is known here")));
+}
+
+#[test]
+fn a_sound_is_described_with_its_tempo() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("clicks ü.wav");
+    crate::record::testing::click_track(&path);
+    let info = info(&path).expect("a sound");
+    assert_eq!(kind_of(&info), "sound");
+    let json = serde_json::to_value(&info).expect("JSON");
+    assert_eq!(
+        (&json["rate"], &json["channels"], &json["duration_secs"]),
+        (&48_000.into(), &1.into(), &8.0.into())
+    );
+    assert!((json["tempo"].as_f64().expect("a tempo") - 120.0).abs() < 1.0, "{json}");
+    let text = info.to_string();
+    assert!(text.contains("sound, WAV (pcm_s16le)") && text.contains("120.0 beats per minute"), "{text}");
+    std::fs::write(&path, b"RIFF\0\0\0\0WAVE and nothing more").expect("a file");
+    let error = super::info(&path).expect_err("no sound");
+    assert!(error.exit_code() == 2 && error.to_string().contains("clicks ü.wav"), "{error}");
 }

@@ -68,6 +68,9 @@ impl fmt::Display for Info {
                 if let Some(surroundings) = &project.surroundings {
                     line(f, "surround", surroundings)?;
                 }
+                if let Some(sound) = &project.sound {
+                    line(f, "sound", sound)?;
+                }
                 line(
                     f,
                     "film",
@@ -104,6 +107,17 @@ impl fmt::Display for Info {
                     None => line(f, "strongest", "no direction stands out")?,
                 }
                 remarks(f, &picture.dropped, &picture.notes)
+            }
+            Content::Sound(sound) => {
+                line(f, "kind", format_args!("sound, {}", sound.format))?;
+                line(f, "duration", format_args!("{:.2} s", sound.duration_secs))?;
+                line(f, "samples", format_args!("{} per second, {} channels", sound.rate, sound.channels))?;
+                let tempo = sound.tempo.map_or_else(
+                    || "no regular beat".to_owned(),
+                    |tempo| format!("{tempo:.1} beats per minute, {} beats", sound.beats),
+                );
+                line(f, "tempo", tempo)?;
+                remarks(f, &sound.dropped, &sound.notes)
             }
             Content::HairClusters(database) => {
                 line(f, "kind", format_args!("database of hair clusters, {}", database.format))?;

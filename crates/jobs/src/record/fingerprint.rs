@@ -10,7 +10,7 @@ use lovelock_record::TakeAsset;
 use serde_json::{Map, Value};
 
 /// Parts of a project that do not affect images, or have their own entries in the manifest.
-const BESIDE: [&str; 4] = ["version", "recording", "compare", "take"];
+const BESIDE: [&str; 5] = ["version", "recording", "compare", "sound", "take"];
 
 /// A hash of each part of the project, by name. `with_panes` includes the panes.
 ///
@@ -33,7 +33,8 @@ pub(super) fn of_project(project: &Project, with_panes: bool) -> Result<Value, P
 
 /// A hash of each file of the project and of its take, by role, and of the takes of its panes if they are rendered.
 pub(super) fn of_files(project: &Project, access: &Access, assets: &[TakeAsset], with_panes: bool) -> Value {
-    let own = project.files().into_iter().filter_map(|(place, file)| {
+    let files = project.files().into_iter().filter(|(place, _)| *place != Place::Sound);
+    let own = files.filter_map(|(place, file)| {
         let path = access.read(place, file).ok()?;
         Some((place.label().to_owned(), path))
     });

@@ -9,6 +9,7 @@ mod options;
 mod pictures;
 mod report;
 mod request;
+mod sound;
 mod take;
 
 pub use curves::{CurveRecordReport, CurveSource, is_curves, record_curves};
@@ -24,5 +25,7 @@ mod curve_tests;
 mod layered_tests;
 #[cfg(test)]
 mod take_tests;
+#[cfg(test)]
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;

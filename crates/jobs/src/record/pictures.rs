@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Choices;
 use lovelock_project::Project;
-use lovelock_project::error::ProjectError;
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_record::{
     FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
 };
@@ -25,6 +25,7 @@ use super::fingerprint;
 use super::options::Options;
 use super::report::RecordReport;
 use super::request::RecordRequest;
+use super::sound::FilmSound;
 
 /// Maximum number of frames whose times are kept for medians.
 const MOST_TIMES: usize = 1 << 20;
@@ -50,17 +51,29 @@ pub fn record(
     }
 
     let frames = job.frames(&dance)?;
+    let sound = if job.kind == OutputKind::Preview {
+        let heard = job.project.sound.is_heard();
+        problems
+            .extend(heard.then(|| Problem::new(Place::Sound, ProblemKind::Note, "a preview has no sound")));
+        None
+    } else {
+        FilmSound::of(&job.project, &request.access, &dance, &frames, &mut problems, progress)?
+    };
     // After the checks of the request, because drivers may print to standard error when they are opened.
     let mut drawer = Drawer::open(&job.project, request)?;
     if job.project.recording.seamless {
         dance.close(&frames)?;
     }
 
+    let has_sound = sound.is_some();
     let refused = |error: RecordError| job.refused(&error);
     // Created before the sink, so that it is dropped after it.
     let _new_folders = NewFolders::missing_on(&request.out);
     let settings = job.sink_settings(&frames, &dance, &drawer)?;
     let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
+    if let Some(sound) = sound {
+        sink.set_sound(Box::new(sound));
+    }
     let mut begun = false;
     let mut drawn = Drawn::default();
     let total = frames.end - frames.start;
@@ -119,6 +132,7 @@ pub fn record(
         draw: job.project.picture.draw.to_string(),
         transparency: job.project.picture.transparency.to_string(),
         format: job.format().to_owned(),
+        sound: has_sound,
         transparent: job.options.transparent,
         motion_blur: job.options.subframes,
         shutter_degrees: job.options.shutter_degrees,

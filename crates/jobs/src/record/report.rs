@@ -40,6 +40,8 @@ pub struct RecordReport {
     pub transparency: String,
     /// Format: `mp4`, `apng`, `png` or `exr`.
     pub format: String,
+    /// Whether it has a sound: in the film, or as `sound.wav` in the folder.
+    pub sound: bool,
     /// Whether the background is transparent.
     pub transparent: bool,
     /// Samples per frame.

@@ -139,6 +139,7 @@ fn the_report_has_the_keys_that_were_promised() {
         draw: "strands".to_owned(),
         transparency: "sorted".to_owned(),
         format: "mp4".to_owned(),
+        sound: false,
         transparent: false,
         motion_blur: 1,
         shutter_degrees: 180.0,
@@ -240,4 +241,44 @@ fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
     looped.recording.seamless = true;
     let error = draw(&looped, "loop", 40..43, true).expect_err("refused");
     assert!(error.to_string().contains("--dance-time"), "{error}");
+}
+
+#[test]
+fn a_sequence_gets_the_sound_of_its_frames_and_a_missing_one_is_a_note() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("clicks.wav");
+    super::testing::click_track(&file);
+    let mut project = small_project();
+    project.set_sound_file(&file);
+    project.sound.offset_secs = -0.4;
+    let mut access = lovelock_project::files::Access::new();
+    access.pick(&file);
+    let quiet = &mut |_| ControlFlow::Continue(());
+    // Frames 2 to 4 at 30 per second are the seconds 0.0667 to 0.1667, in which the click of second 0.5 of the sound is heard.
+    let own = RecordRequest {
+        fps: Some(30.0),
+        backend: Some(Backend::Cpu),
+        access,
+        ..request(&dir.path().join("frames"))
+    };
+    let report = record(&project, &own, quiet).expect("pictures");
+    assert!(report.sound && report.notes.is_empty(), "{:?}", report.notes);
+    let data = std::fs::read(dir.path().join("frames").join(lovelock_record::SOUND_NAME)).expect("a sound");
+    let samples: Vec<i16> =
+        data[44..].chunks_exact(2).map(|pair| i16::from_le_bytes([pair[0], pair[1]])).collect();
+    assert_eq!(samples.len(), 4800);
+    let first = samples.iter().position(|sample| *sample != 0).expect("a click");
+    assert!(first.abs_diff(1600) <= 1, "0.1 s is 1600 samples after frame 2: {first}");
+
+    project.sound.muted = true;
+    let silent = RecordRequest { out: dir.path().join("silent"), ..own.clone() };
+    assert!(!record(&project, &silent, quiet).expect("pictures").sound);
+    project.sound.muted = false;
+    std::fs::remove_file(&file).expect("removed");
+    let report = record(&project, &RecordRequest { out: dir.path().join("missing"), ..own }, quiet);
+    let report = report.expect("pictures");
+    assert!(
+        !report.sound && report.notes.iter().any(|note| note.contains("the recording is silent")),
+        "{report:?}"
+    );
 }

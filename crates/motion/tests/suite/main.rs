@@ -12,6 +12,6 @@ mod fbx;
 mod fuzz;
 mod retargeting;
 mod rolls;
-mod vmd;
 mod usd;
+mod vmd;
 mod vrm;

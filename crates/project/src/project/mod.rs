@@ -10,6 +10,7 @@ mod generic;
 mod sanitise;
 mod sections;
 mod settings;
+mod sound;
 mod tables;
 mod trim;
 mod version_1;
@@ -26,6 +27,8 @@ pub use sections::{
     KeptScalp, Marker, MorphStyle, MotionSection, MotionSource, RecordingSection, SurroundingsSection,
     TakeSection, TimelineSection,
 };
+
+pub use sound::SoundSection;
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
@@ -61,6 +64,8 @@ pub struct Project {
     pub lights: Vec<Light>,
     /// The light from all directions.
     pub surroundings: SurroundingsSection,
+    /// The sound beside the dance.
+    pub sound: SoundSection,
     /// The camera.
     pub camera: CameraSection,
     /// Settings of the whole image.
@@ -87,6 +92,7 @@ impl Default for Project {
             shadow: ShadowSettings::default(),
             lights: Light::default_rig(),
             surroundings: SurroundingsSection::default(),
+            sound: SoundSection::default(),
             camera: CameraSection::default(),
             picture: PictureSettings::default(),
             recording: RecordingSection::default(),
@@ -133,6 +139,11 @@ impl Project {
         self.surroundings.file = Some(FileRef::new(path));
     }
 
+    /// Puts a sound file that the user picked beside the dance.
+    pub fn set_sound_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.sound.file = Some(FileRef::new(path));
+    }
+
     /// Plays a take that the user picked.
     pub fn set_take(&mut self, path: impl Into<std::path::PathBuf>) {
         self.take.file = Some(FileRef::new(path));
@@ -147,10 +158,11 @@ impl Project {
         let morph = self.hair.morph.to.as_ref().map(|to| &to.hair);
         let other = morph.filter(|hair| hair.source == HairSource::File).and_then(|hair| hair.file.as_ref());
         let surroundings = (crate::error::Place::Surroundings, self.surroundings.file.as_ref());
+        let sound = (crate::error::Place::Sound, self.sound.file.as_ref());
         let take = self.take.file.as_ref();
         if take.is_some() {
             // The take itself names the files of body, motion and hair.
-            let used = [(crate::error::Place::Take, take), surroundings];
+            let used = [(crate::error::Place::Take, take), surroundings, sound];
             return used.into_iter().filter_map(|(place, file)| Some((place, file?))).collect();
         }
         [
@@ -159,6 +171,7 @@ impl Project {
             (crate::error::Place::Hair, hair),
             (crate::error::Place::Hair, other),
             surroundings,
+            sound,
         ]
         .into_iter()
         .filter_map(|(place, file)| Some((place, file?)))
@@ -167,8 +180,8 @@ impl Project {
 
     /// Every file that the project refers to, used or not.
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let Self { body, motion, hair, surroundings, recording, take, compare, .. } = self;
-        let own = [&mut body.file, &mut motion.file, &mut surroundings.file];
+        let Self { body, motion, hair, surroundings, sound, recording, take, compare, .. } = self;
+        let own = [&mut body.file, &mut motion.file, &mut surroundings.file, &mut sound.file];
         let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
             .chain(scalps)

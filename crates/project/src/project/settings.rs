@@ -152,7 +152,7 @@ pub fn settings_page() -> String {
 }
 
 /// The sections of the page, with their titles.
-const SECTIONS: [(&str, &str); 12] = [
+const SECTIONS: [(&str, &str); 13] = [
     ("body", "Body"),
     ("motion", "Motion"),
     ("hair", "Hairstyle"),
@@ -160,6 +160,7 @@ const SECTIONS: [(&str, &str); 12] = [
     ("simulation", "Simulation"),
     ("shadow", "Shadow"),
     ("lights", "Lights"),
+    ("sound", "Sound"),
     ("camera", "Camera"),
     ("picture", "Picture"),
     ("recording", "Recording"),

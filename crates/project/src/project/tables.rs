@@ -43,7 +43,8 @@ impl Settings for Project {
             ("shadow".into(), &self.shadow),
         ];
         parts.extend(list("lights", &self.lights));
-        let rest: [Part<'_>; 5] = [
+        let rest: [Part<'_>; 6] = [
+            ("sound".into(), &self.sound),
             ("camera".into(), &self.camera),
             ("picture".into(), &self.picture),
             ("recording".into(), &self.recording),
@@ -64,7 +65,8 @@ impl Settings for Project {
             ("shadow".into(), &mut self.shadow),
         ];
         parts.extend(list_mut("lights", &mut self.lights));
-        let rest: [PartMut<'_>; 5] = [
+        let rest: [PartMut<'_>; 6] = [
+            ("sound".into(), &mut self.sound),
             ("camera".into(), &mut self.camera),
             ("picture".into(), &mut self.picture),
             ("recording".into(), &mut self.recording),

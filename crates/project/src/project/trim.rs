@@ -3,8 +3,8 @@
 use super::super::Project;
 
 impl Project {
-    /// Trims the motion to the range between the in and out points of recordings (frames of the timeline). Markers and tracks keep
-    /// their places relative to the motion; those outside the range are removed.
+    /// Trims the motion to the range between the in and out points of recordings (frames of the timeline). Markers, tracks and the sound
+    /// keep their places relative to the motion; those outside the range are removed.
     pub fn trim_to_points(&mut self) {
         let fps = self.recording.fps.max(1e-3);
         let first = self.recording.first_frame as f64 / fps;
@@ -16,6 +16,7 @@ impl Project {
             self.motion.end_secs = Some((before + end * speed) as f32);
         }
         (self.recording.first_frame, self.recording.end_frame) = (0, None);
+        self.sound.offset_secs -= first;
         self.timeline.shift(-first, end.map_or(f64::INFINITY, |end| end - first));
     }
 
@@ -25,6 +26,7 @@ impl Project {
         let shift = f64::from(self.motion.start_secs) / speed;
         (self.motion.start_secs, self.motion.end_secs) = (0.0, None);
         (self.recording.first_frame, self.recording.end_frame) = (0, None);
+        self.sound.offset_secs += shift;
         self.timeline.shift(shift, f64::INFINITY);
     }
 }

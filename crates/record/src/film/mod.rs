@@ -4,6 +4,7 @@ mod encoder;
 mod worker;
 
 use crate::partial::{self, Opener};
+use crate::sound::SoundSource;
 use crate::{FrameRate, RecordError};
 use lovelock_base::settings::Choices;
 use serde::{Deserialize, Serialize};
@@ -175,6 +176,14 @@ impl FilmWriter {
             .spawn(move || film.run(&todo, &done))
             .map_err(|error| RecordError::io(path, "start the encoder's thread", error))?;
         Ok(Self { path: path.to_owned(), settings, jobs: Some(jobs), spent, worker: Some(worker) })
+    }
+
+    /// Gives the film a sound, as Opus. It ends with the last frame. Call it before the first [`FilmWriter::push`].
+    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) {
+        if let Some(jobs) = &self.jobs {
+            // This fails only if the worker has stopped; the next `push` then returns its error.
+            let _ = jobs.send(Job::Sound(sound));
+        }
     }
 
     /// Writes the next frame: RGBA, 8-bit sRGB, rows from the top, `width × height × 4` bytes. Alpha is ignored.

@@ -3,8 +3,9 @@
 use super::encoder::FrameEncoder;
 use super::{FilmReport, FilmSettings, give_back};
 use crate::dither::Dither;
-use crate::mp4::{Mp4Writer, Track};
+use crate::mp4::{Mp4Writer, SoundTrack, Track};
 use crate::partial::{Opener, PartialFile};
+use crate::sound::{OpusEncoding, PACKET, PRE_SKIP, SoundSource, samples_of};
 use crate::{FrameRate, RecordError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,8 @@ use std::sync::mpsc::{Receiver, SyncSender};
 
 /// A message to the worker.
 pub(super) enum Job {
+    /// The sound of the film, before the first image.
+    Sound(Box<dyn SoundSource>),
     /// The next image.
     Frame(Vec<u8>),
     /// There are no more frames. If the channel closes without this message, the recording has been cancelled.
@@ -24,6 +27,7 @@ pub(super) struct Film {
     settings: FilmSettings,
     rate: FrameRate,
     writer: Mp4Writer<PartialFile>,
+    sound: Option<OpusEncoding>,
     frames: u64,
 }
 
@@ -42,7 +46,7 @@ impl Film {
             ticks_per_frame,
         };
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
-        Ok(Self { path: path.to_owned(), settings, rate, writer, frames: 0 })
+        Ok(Self { path: path.to_owned(), settings, rate, writer, sound: None, frames: 0 })
     }
 
     /// Works until [`Job::Finish`] (returns the report), until the channel closes (returns `None`), or until an error.
@@ -56,6 +60,7 @@ impl Film {
             .map_err(|error| self.encoder_error(&error.to_string()))?;
         while let Ok(job) = todo.recv() {
             match job {
+                Job::Sound(sound) => self.begin_sound(sound)?,
                 Job::Frame(rgba) => {
                     self.add(&mut encoder, &rgba)?;
                     give_back(done, rgba);
@@ -75,10 +80,30 @@ impl Film {
             .write_frame(sample, key)
             .map_err(|error| RecordError::io(&self.path, format!("write frame {}", self.frames), error))?;
         self.frames += 1;
+        if self.writer.is_between_chunks() { self.add_sound() } else { Ok(()) }
+    }
+
+    fn begin_sound(&mut self, sound: Box<dyn SoundSource>) -> Result<(), RecordError> {
+        let encoding = OpusEncoding::new(sound, self.settings.quality)
+            .map_err(|error| sound_error(&self.path, error))?;
+        self.writer.add_sound(SoundTrack::new(encoding.channels(), PRE_SKIP, PACKET as u32));
+        self.sound = Some(encoding);
         Ok(())
     }
 
-    fn finish(self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
+    /// Writes the sound of the frames so far.
+    fn add_sound(&mut self) -> Result<(), RecordError> {
+        let Some(sound) = &mut self.sound else { return Ok(()) };
+        let packets = sound
+            .packets_until(samples_of(self.frames, self.rate))
+            .map_err(|error| sound_error(&self.path, error))?;
+        self.writer
+            .write_sound(&packets)
+            .map_err(|error| RecordError::io(&self.path, "write the sound", error))
+    }
+
+    fn finish(mut self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
+        self.add_sound()?;
         let Self { path, rate, writer, frames, .. } = self;
         if frames == 0 {
             return Err(RecordError::request(format!("{}: a film needs at least one frame", path.display())));
@@ -93,4 +118,8 @@ impl Film {
     fn encoder_error(&self, reason: &str) -> RecordError {
         RecordError::Encoder { path: self.path.clone(), frame: self.frames, reason: reason.to_owned() }
     }
+}
+
+fn sound_error(path: &Path, reason: &'static str) -> RecordError {
+    RecordError::io(path, "encode the sound", io::Error::other(reason))
 }

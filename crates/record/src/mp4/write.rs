@@ -1,6 +1,8 @@
 //! Writes MP4 files: frames as they arrive, and at the end the tables that locate them.
 
 use super::AvcConfig;
+use super::boxes::{chunk_offsets, full, identity_matrix, leaf, nest, numbers, same_file};
+use super::sound::{SoundTrack, TrackTimes};
 use std::io::{self, Seek, SeekFrom, Write};
 
 /// Frames per chunk. Players read one chunk at a time.
@@ -30,6 +32,7 @@ pub(crate) struct Mp4Writer<W> {
     chunks: Vec<u64>,
     /// Key frames, counted from 1 as in the table.
     keys: Vec<u32>,
+    sound: Option<SoundTrack>,
 }
 
 impl<W: Write + Seek> Mp4Writer<W> {
@@ -46,7 +49,28 @@ impl<W: Write + Seek> Mp4Writer<W> {
         out.write_all(b"mdat")?;
         out.write_all(&16_u64.to_be_bytes())?;
         let position = mdat_start + 16;
-        Ok(Self { out, track, mdat_start, position, sizes: Vec::new(), chunks: Vec::new(), keys: Vec::new() })
+        let (sizes, chunks, keys) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { out, track, mdat_start, position, sizes, chunks, keys, sound: None })
+    }
+
+    /// Gives the film a track of sound.
+    pub(crate) fn add_sound(&mut self, track: SoundTrack) {
+        self.sound = Some(track);
+    }
+
+    /// Whether the next frame begins a chunk. Only then packets of sound may be written, because a chunk is contiguous.
+    pub(crate) fn is_between_chunks(&self) -> bool {
+        (self.sizes.len() as u32).is_multiple_of(FRAMES_PER_CHUNK)
+    }
+
+    /// Appends packets of sound, which become one chunk.
+    pub(crate) fn write_sound(&mut self, packets: &[Vec<u8>]) -> io::Result<()> {
+        let Some(track) = &mut self.sound else { return Ok(()) };
+        for packet in packets {
+            self.out.write_all(packet)?;
+        }
+        self.position += track.add_chunk(self.position, packets);
+        Ok(())
     }
 
     /// Appends one encoded frame.
@@ -87,7 +111,8 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend([0; 10]);
             b.extend(identity_matrix());
             b.extend([0; 24]);
-            b.extend(2_u32.to_be_bytes()); // Number of the next track.
+            // Number of the next track.
+            b.extend((2 + u32::from(self.sound.is_some())).to_be_bytes());
         });
         // Flags: enabled, in the movie and in the preview.
         let tkhd = full(*b"tkhd", 1, 7, |b| {
@@ -113,15 +138,12 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend(b"Lovelock\0");
         });
         let vmhd = full(*b"vmhd", 0, 1, |b| b.extend([0; 8]));
-        // One data reference with flag 1: the frames are in the same file.
-        let dref = full(*b"dref", 0, 0, |b| {
-            b.extend(1_u32.to_be_bytes());
-            b.extend(full(*b"url ", 0, 1, |_| ()));
-        });
-        let dinf = nest(*b"dinf", &[dref]);
-        let minf = nest(*b"minf", &[vmhd, dinf, self.stbl(config)]);
+        let minf = nest(*b"minf", &[vmhd, same_file(), self.stbl(config)]);
         let mdia = nest(*b"mdia", &[mdhd, hdlr, minf]);
-        nest(*b"moov", &[mvhd, nest(*b"trak", &[tkhd, mdia])])
+        let mut parts = vec![mvhd, nest(*b"trak", &[tkhd, mdia])];
+        let times = TrackTimes { ticks_per_second, duration, large: u32::try_from(self.position).is_err() };
+        parts.extend(self.sound.as_ref().map(|sound| sound.trak(times)));
+        nest(*b"moov", &parts)
     }
 
     fn stbl(&self, config: &AvcConfig) -> Vec<u8> {
@@ -164,52 +186,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend([0; 4]);
             numbers(b, self.sizes.len(), self.sizes.iter().copied());
         });
-        let offsets = if u32::try_from(self.position).is_ok() {
-            full(*b"stco", 0, 0, |b| numbers(b, self.chunks.len(), self.chunks.iter().map(|&at| at as u32)))
-        } else {
-            full(*b"co64", 0, 0, |b| {
-                numbers(b, self.chunks.len(), []);
-                b.extend(self.chunks.iter().flat_map(|at| at.to_be_bytes()));
-            })
-        };
+        let offsets = chunk_offsets(&self.chunks, u32::try_from(self.position).is_err());
         nest(*b"stbl", &[stsd, stts, stss, stsc, stsz, offsets])
     }
-}
-
-/// A box with any contents.
-fn leaf(kind: [u8; 4], fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
-    let mut bytes = vec![0; 4];
-    bytes.extend(kind);
-    fill(&mut bytes);
-    let size = (bytes.len() as u32).to_be_bytes();
-    bytes[..4].copy_from_slice(&size);
-    bytes
-}
-
-/// A box with a version and flags.
-fn full(kind: [u8; 4], version: u8, flags: u32, fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
-    leaf(kind, |bytes| {
-        bytes.extend((u32::from(version) << 24 | flags).to_be_bytes());
-        fill(bytes);
-    })
-}
-
-/// A box that contains boxes.
-fn nest(kind: [u8; 4], parts: &[Vec<u8>]) -> Vec<u8> {
-    leaf(kind, |bytes| parts.iter().for_each(|part| bytes.extend(part)))
-}
-
-/// A table: the number of entries, then the numbers.
-fn numbers(bytes: &mut Vec<u8>, count: usize, values: impl IntoIterator<Item = u32>) {
-    bytes.extend((count as u32).to_be_bytes());
-    values.into_iter().for_each(|value| bytes.extend(value.to_be_bytes()));
-}
-
-/// The identity: 1 and 1 as 16.16 and 1 as 2.30 on the diagonal.
-fn identity_matrix() -> [u8; 36] {
-    let mut matrix = [0; 36];
-    matrix[1] = 1;
-    matrix[17] = 1;
-    matrix[32] = 0x40;
-    matrix
 }

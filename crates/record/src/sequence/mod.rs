@@ -11,6 +11,7 @@ pub use settings::{SequenceFormat, SequenceReport, SequenceSettings, frame_name}
 use crate::film::check_frame;
 use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, VERSION, read_manifest};
 use crate::partial::{Opener, PartialFile, open_file};
+use crate::sound::{SoundSource, samples_of, write_wav};
 use crate::{FrameRate, RecordError};
 use journal::Journal;
 use std::collections::BTreeMap;
@@ -30,6 +31,9 @@ const LARGEST_SIDE: u32 = 16_384;
 
 /// Number of pixels of an EXR file above which only two threads encode, because each needs 14 bytes per pixel and more.
 const LARGE: u64 = 4_000_000;
+
+/// The name of the sound's file in the folder of a sequence.
+pub const SOUND_NAME: &str = "sound.wav";
 
 /// A sequence that is being written.
 ///
@@ -51,6 +55,7 @@ pub struct SequenceWriter {
     shared: Arc<Mutex<Progress>>,
     /// Files of the sequence that was in the folder before.
     old_files: Vec<String>,
+    sound: Option<Box<dyn SoundSource>>,
     ended: bool,
 }
 
@@ -108,6 +113,7 @@ impl SequenceWriter {
             threads: Vec::new(),
             shared: Arc::new(Mutex::new(Progress::default())),
             old_files: Vec::new(),
+            sound: None,
             ended: true,
         };
         let journal = writer.begin()?;
@@ -219,6 +225,11 @@ impl SequenceWriter {
         said.collect::<Vec<_>>().join(", ").replace(|c: char| !c.is_ascii(), "?")
     }
 
+    /// Gives the sequence a sound, which [`SequenceWriter::finish`] writes as [`SOUND_NAME`] into the folder. It ends with the last frame.
+    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) {
+        self.sound = Some(sound);
+    }
+
     /// Whether the next frame already exists and is complete, so that it can be skipped with [`SequenceWriter::keep_next`].
     pub fn next_is_kept(&self) -> bool {
         self.kept.contains_key(&(self.settings.first_frame + self.at))
@@ -294,7 +305,14 @@ impl SequenceWriter {
             let what = format!("{}: a sequence needs at least one frame", self.folder.display());
             return Err(RecordError::request(what));
         }
-        self.end(true)
+        let sound = self.sound.take();
+        let (samples, path) = (samples_of(self.at, self.rate), self.folder.join(SOUND_NAME));
+        let mut report = self.end(true)?;
+        if let Some(mut sound) = sound {
+            report.bytes += write_wav(&path, sound.as_mut(), samples)
+                .map_err(|error| RecordError::io(&path, "write the sound", error))?;
+        }
+        Ok(report)
     }
 
     /// Cancels the recording. This is the same as dropping the writer.

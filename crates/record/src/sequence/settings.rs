@@ -75,7 +75,7 @@ pub struct SequenceReport {
     pub frames: u64,
     /// Number of frames that were kept from an earlier recording.
     pub kept: u64,
-    /// Total length of all frames in bytes.
+    /// Total length of all frames and the sound in bytes.
     pub bytes: u64,
 }
 

@@ -4,6 +4,7 @@
 mod take_scene;
 
 mod outside;
+mod outside_sound;
 mod sequence_kill;
 mod take_damage;
 mod take_kill;

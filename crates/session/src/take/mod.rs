@@ -41,10 +41,11 @@ pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), ProjectEr
     };
     let (mut project, problems) = project_of_text(path, &text)?;
     project.set_take(path);
-    // Markers and tracks move to the timeline of the take, where the in and out points have no meaning.
+    // Markers, tracks and the sound move to the timeline of the take, where the in and out points have no meaning.
     (project.recording.first_frame, project.recording.end_frame) = (0, None);
     let start = start_on_timeline(reader.header(), &project);
     project.timeline.shift(-start, f64::INFINITY);
+    project.sound.offset_secs -= start;
     Ok((project, problems))
 }
 

@@ -4,6 +4,7 @@ mod one_by_one;
 mod reasons;
 mod recording;
 mod scalp;
+mod sound;
 mod surroundings;
 mod ties;
 mod undo;
@@ -21,12 +22,14 @@ use lovelock_project::Project;
 use lovelock_project::project::HairSource;
 use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PassTime, StrandCount, VoxelDeposit};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
+use lovelock_sound::Sound;
 use lovelock_style::operations::{Curl, Lift, Wave};
 use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation};
 
 use super::recording::State;
 use crate::window::control::section;
 use crate::window::overlay::scalp::ScalpTool;
+use crate::window::soundtrack::Loaded;
 use crate::window::testing::{Shown, screen, unfold};
 
 /// A project and the other data that the panels show.
@@ -37,6 +40,7 @@ pub(super) struct Bench {
     pub(super) hair: super::hair::LoadedHair,
     pub(super) body: super::body::LoadedBody,
     pub(super) surroundings: super::surroundings::LoadedSurroundings,
+    pub(super) sound: Arc<Loaded>,
     pub(super) stages: StageHistory,
     pub(super) passes: PassHistory,
     pub(super) clip_frames: u64,
@@ -80,6 +84,7 @@ impl Bench {
                 picture: Some(surroundings()),
                 notes: vec!["3 pixels negative: taken as 0".to_owned()],
             },
+            sound: Arc::new(clicks()),
             stages,
             passes,
             clip_frames: 480,
@@ -101,10 +106,16 @@ pub(super) fn surroundings() -> Arc<Panorama> {
     Arc::new(Panorama::from_pixels(16, 8, &pixels).expect("a picture"))
 }
 
+/// Clicks, two per second for eight seconds.
+pub(crate) fn clicks() -> Loaded {
+    let value = |i: usize| if i % 24_000 < 400 { (i * 7919 % 20_000) as i16 - 10_000 } else { 0 };
+    Loaded::of(Sound::new((0..8 * 48_000).map(value).collect(), 1), None)
+}
+
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
 /// Every panel, inside a section as in the window.
-pub(super) const PANELS: [(&str, Show); 13] = [
+pub(super) const PANELS: [(&str, Show); 14] = [
     ("Hairstyle", |ui, b| {
         crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
         super::hair::ui(ui, &mut b.project, &b.hair);
@@ -150,6 +161,9 @@ pub(super) const PANELS: [(&str, Show); 13] = [
         super::look::hair(ui, &mut b.project.look, &default, &mut b.project.picture);
     }),
     ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture)),
+    ("Sound", |ui, b| {
+        super::sound::ui(ui, &mut b.project, Some(&b.sound), Some("The sound is silent."), 8.0);
+    }),
     ("Recording", |ui, b| {
         super::recording::ui(ui, &mut b.project.recording, &State::Idle, b.clip_frames);
     }),
@@ -191,6 +205,7 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
     files.set_motion_file("/a/b c/ü.bvh");
     files.set_surroundings_file("/a/b c/a panorama of a rather long name that says much.exr");
+    files.set_sound_file("/a/b c/a song of a rather long name that says much.flac");
     files.look.shading = HairShading::KajiyaKay;
     files.picture.strands = StrandCount::Fixed;
     files.picture.draw = HairDrawing::Auto;

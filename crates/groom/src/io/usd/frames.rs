@@ -23,9 +23,7 @@ struct Frames {
 }
 
 /// The curves of a layer over time, and the hair at the first time.
-pub(super) fn open(
-    mut layer: Stage<'static>,
-) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+pub(super) fn open(mut layer: Stage<'static>) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
     let raw = read_layer(&mut layer)?;
     let metres_from_stage = stage_transform(&mut layer, &mut Vec::new())?;
     let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());

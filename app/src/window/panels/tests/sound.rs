@@ -1,0 +1,59 @@
+//! The sound's panel.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use lovelock_project::Project;
+use lovelock_project::project::TimelineSection;
+
+use super::{Bench, clicks, panel};
+use crate::window::panels::sound::{SoundRequest, ui};
+use crate::window::testing::{Shown, control, screen};
+
+fn heard() -> Project {
+    let mut project = Project::default();
+    project.set_sound_file("/songs/dance.ogg");
+    project
+}
+
+#[test]
+fn a_sound_is_requested_named_muted_and_removed() {
+    let loaded = clicks();
+    let state = (heard(), None);
+    let mut harness = screen(state, move |place, (project, asked)| {
+        *asked = ui(place, project, Some(&loaded), Some("It is silent."), 8.0).or(*asked);
+    });
+    for shown in ["dance.ogg", "It is silent.", "0:08.0, 120.0 beats per minute"] {
+        assert!(harness.query_by_label(shown).is_some(), "{shown}");
+    }
+    control(&harness, Role::Button, "Sound file…").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(SoundRequest::PickFile));
+    control(&harness, Role::CheckBox, "Mute").click();
+    harness.run();
+    assert!(harness.state().state.0.sound.muted);
+    control(&harness, Role::Button, "Remove sound").click();
+    harness.run();
+    assert_eq!(harness.state().state.0.sound.file, None);
+    assert!(harness.query_by_label("Silence").is_some());
+    for gone in ["Remove sound", "Markers at the beats", "It is silent."] {
+        assert!(harness.query_by_label(gone).is_none(), "{gone} is about the sound");
+    }
+}
+
+#[test]
+fn beats_become_markers_once() {
+    let mut project = heard();
+    project.sound.offset_secs = 1.0;
+    let mut harness: egui_kittest::Harness<'_, Shown<Bench>> = panel("Sound", project);
+    for _ in 0..2 {
+        control(&harness, Role::Button, "Markers at the beats").click();
+        harness.run();
+        let markers = &harness.state().state.project.timeline.markers;
+        assert!((13..=15).contains(&markers.len()), "{} beats from 1 s to 8 s", markers.len());
+        assert!(
+            markers.iter().all(|marker| (marker.secs * 2.0 - (marker.secs * 2.0).round()).abs() < 0.04),
+            "{markers:?}"
+        );
+    }
+    assert!(harness.state().state.project.timeline.markers.len() < TimelineSection::MOST_MARKERS);
+}

@@ -1,0 +1,222 @@
+use std::io::Write as _;
+
+use lovelock_base::random::SplitMix64;
+
+use super::*;
+
+/// Reads bytes as a file.
+fn read(bytes: &[u8]) -> Result<(Sound, Source), SoundError> {
+    let mut file = tempfile::Builder::new().prefix("sound ü ").tempfile().expect("a file");
+    file.write_all(bytes).expect("written");
+    read_sound(file.path(), &mut |_| ControlFlow::Continue(()))
+}
+
+/// A WAV file of any contents. `format` 1 is integers and 3 floats.
+fn wav(format: u16, channels: u16, rate: u32, bits: u16, data: &[u8]) -> Vec<u8> {
+    let block = channels.wrapping_mul(bits / 8);
+    let mut out = b"RIFF".to_vec();
+    out.extend((36 + data.len() as u32).to_le_bytes());
+    out.extend(b"WAVEfmt \x10\0\0\0");
+    out.extend(format.to_le_bytes());
+    out.extend(channels.to_le_bytes());
+    out.extend(rate.to_le_bytes());
+    out.extend(rate.wrapping_mul(u32::from(block)).to_le_bytes());
+    out.extend(block.to_le_bytes());
+    out.extend(bits.to_le_bytes());
+    out.extend(b"data");
+    out.extend((data.len() as u32).to_le_bytes());
+    out.extend(data);
+    out
+}
+
+/// Samples of a sine of 440 Hz on every channel.
+fn sine(rate: u32, secs: f64, channels: usize, amplitude: f64) -> Vec<f32> {
+    let frames = (f64::from(rate) * secs) as usize;
+    let value =
+        |i: usize| (amplitude * (std::f64::consts::TAU * 440.0 * i as f64 / f64::from(rate)).sin()) as f32;
+    (0..frames).flat_map(|i| std::iter::repeat_n(value(i), channels)).collect()
+}
+
+fn bytes_16(samples: &[f32]) -> Vec<u8> {
+    samples.iter().flat_map(|&s| Sound::quantised(s).to_le_bytes()).collect()
+}
+
+/// The largest difference of a sound from a sine of 440 Hz, apart from its first and last 50 ms.
+fn error_of(sound: &Sound, amplitude: f64) -> f64 {
+    let value = |i: i64| amplitude * (std::f64::consts::TAU * 440.0 * i as f64 / f64::from(RATE)).sin();
+    let inner = 2400..sound.frames() as i64 - 2400;
+    inner.map(|i| (f64::from(sound.stereo(i)[0]) - value(i)).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_sine_keeps_its_amplitude_length_and_phase_at_every_rate() {
+    for rate in [8_000, 22_050, 44_100, 48_000, 96_000, 192_000] {
+        for channels in [1_u16, 2] {
+            let data = bytes_16(&sine(rate, 0.5, usize::from(channels), 0.5));
+            let (sound, source) = read(&wav(1, channels, rate, 16, &data)).expect("a sound");
+            assert_eq!(
+                (source.rate, source.channels, source.format.as_str()),
+                (rate, channels.into(), "WAV (pcm_s16le)")
+            );
+            assert_eq!((sound.frames(), sound.channels()), (24_000, channels.into()), "{rate}");
+            let error = error_of(&sound, 0.5);
+            assert!(error < 0.002, "{rate}: {error}");
+            assert!(source.notes.is_empty(), "{:?}", source.notes);
+        }
+    }
+    // Negative control: another amplitude is noticed.
+    let (sound, _) = read(&wav(1, 1, 48_000, 16, &bytes_16(&sine(48_000, 0.5, 1, 0.5)))).expect("a sound");
+    assert!(error_of(&sound, 0.51) > 0.008);
+}
+
+#[test]
+fn floats_and_other_widths_are_read_and_what_is_no_number_is_silent() {
+    let samples = sine(48_000, 0.25, 1, 0.5);
+    let floats: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();
+    let whole = |s: &f32, scale: f64| (f64::from(*s) * scale) as i32;
+    let of_24: Vec<u8> =
+        samples.iter().flat_map(|s| whole(s, 8_388_608.0).to_le_bytes()[..3].to_vec()).collect();
+    let of_8: Vec<u8> = samples.iter().map(|s| (f64::from(*s) * 127.0 + 128.0) as u8).collect();
+    for (format, bits, data, most) in [(3, 32, &floats, 1e-4), (1, 24, &of_24, 1e-4), (1, 8, &of_8, 0.02)] {
+        let (sound, _) = read(&wav(format, 1, 48_000, bits, data)).expect("a sound");
+        let error = error_of(&sound, 0.5);
+        assert!(error < most, "{bits} bits: {error}");
+    }
+    let bad: Vec<u8> =
+        [f32::NAN, f32::INFINITY, 5.0, -5.0, 0.25].iter().flat_map(|s| s.to_le_bytes()).collect();
+    let (sound, _) = read(&wav(3, 1, 48_000, 32, &bad)).expect("a sound");
+    assert_eq!(sound.samples(), [0, 0, i16::MAX, i16::MIN, 8192]);
+}
+
+#[test]
+fn more_than_two_channels_are_mixed_to_one() {
+    let data = bytes_16(&[0.4, 0.0, 0.0, 0.0, 0.2, 0.0]).repeat(1000);
+    let (sound, source) = read(&wav(1, 6, 48_000, 16, &data)).expect("a sound");
+    assert_eq!((sound.channels(), sound.frames(), source.channels), (1, 1000, 6));
+    assert!((sound.stereo(500)[0] - 0.1).abs() < 1e-3);
+    assert_eq!(source.notes, ["its 6 channels are mixed to one"]);
+}
+
+/// Half a second of 440 Hz by FFmpeg, with an amplitude of 0.5.
+const TONES: [(&str, &[u8]); 3] = [
+    ("MP3", include_bytes!("fixtures/tone.mp3")),
+    ("Ogg Vorbis", include_bytes!("fixtures/tone.ogg")),
+    ("FLAC", include_bytes!("fixtures/tone.flac")),
+];
+
+#[test]
+fn each_format_is_read_by_its_contents() {
+    for (format, bytes) in TONES {
+        assert!(is_sound(&bytes[..12]), "{format}");
+        let (sound, source) = read(bytes).unwrap_or_else(|error| panic!("{format}: {error}"));
+        assert_eq!(source.format, format);
+        assert!((sound.secs() - 0.5).abs() < 0.03, "{format}: {} s", sound.secs());
+        // Power is independent of the delay that an encoder adds.
+        let inner = sound.samples()[4800..19_200].iter().map(|&s| (f64::from(s) / 32_768.0).powi(2));
+        let amplitude = (2.0 * inner.sum::<f64>() / 14_400.0).sqrt();
+        // LAME lowers the amplitude by 5 %.
+        assert!((amplitude - 0.5).abs() < 0.03, "{format}: {amplitude}");
+    }
+    assert!(is_sound(&wav(1, 1, 48_000, 16, &[0; 8])));
+    for other in [&b"glTF\x02\0\0\0...."[..], b"RIFF....AVI ", b"\xFF\xD8\xFF\xE0....", b"\xFF\xFE", b""] {
+        assert!(!is_sound(other), "{other:?}");
+    }
+}
+
+#[test]
+fn what_is_no_sound_is_refused_in_a_sentence() {
+    let data = [0; 64];
+    let long = wav(1, 1, 4_000, 8, &vec![128; 4_000 * 1801]);
+    let cases: [(&str, Vec<u8>, &str); 9] = [
+        ("empty", Vec::new(), "empty file"),
+        ("text", b"This is a letter and no sound at all. ".repeat(20), "no sound"),
+        ("zeros", vec![0; 5000], "no sound"),
+        ("no samples", wav(1, 2, 44_100, 16, &[]), "no samples"),
+        ("no channels", wav(1, 0, 44_100, 16, &data), "channel count"),
+        ("rate 0", wav(1, 1, 0, 16, &data), "0"),
+        ("rate 4 GHz", wav(1, 1, u32::MAX, 16, &data), "4294967295 samples per second"),
+        ("half an hour and a second", long, "30 minutes"),
+        ("a picture", b"\x89PNG\r\n\x1a\n".repeat(100), "no sound"),
+    ];
+    for (what, bytes, word) in cases {
+        let error = read(&bytes).expect_err(what).to_string();
+        assert!(
+            error.contains(word) && error.contains("sound ü") && error.lines().count() == 1,
+            "{what}: {error}"
+        );
+    }
+    let missing =
+        read_sound(Path::new("/nowhere/ü.wav"), &mut |_| ControlFlow::Continue(())).expect_err("missing");
+    assert!(missing.to_string().contains("/nowhere/ü.wav: could not be read"), "{missing}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let error =
+        read_sound(folder.path(), &mut |_| ControlFlow::Continue(())).expect_err("a folder").to_string();
+    assert!(error.contains("could not be read"), "{error}");
+}
+
+#[test]
+fn a_file_that_is_cut_is_read_up_to_there() {
+    let whole = wav(1, 1, 48_000, 16, &bytes_16(&sine(48_000, 1.0, 1, 0.5)));
+    let (sound, _) = read(&whole[..44 + 48_000]).expect("half of it");
+    assert!((sound.secs() - 0.5).abs() < 0.03, "{} s", sound.secs());
+    for (format, bytes) in TONES {
+        for length in 0..bytes.len() {
+            // Every length of the head, then every seventh.
+            if length > 300 && length % 7 != 0 {
+                continue;
+            }
+            if let Ok((sound, _)) = read(&bytes[..length]) {
+                assert!(sound.secs() <= 0.55, "{format} of {length} bytes: {} s", sound.secs());
+            }
+        }
+    }
+}
+
+#[test]
+fn damaged_files_neither_panic_nor_grow() {
+    let wave = wav(1, 2, 44_100, 16, &bytes_16(&sine(44_100, 0.02, 2, 0.5)));
+    let all = TONES.map(|(_, bytes)| bytes).into_iter().chain([wave.as_slice()]);
+    let mut read_at_all = 0;
+    for (seed, bytes) in all.enumerate() {
+        let mut random = SplitMix64::of_stream(5, seed as u64);
+        for _ in 0..400 {
+            let mut damaged = bytes.to_vec();
+            // Mostly in the head, where the counts are.
+            let reach = if random.unit() < 0.7 { 200.min(bytes.len()) } else { bytes.len() };
+            for _ in 0..=random.bits() % 4 {
+                let at = random.bits() as usize % reach;
+                damaged[at] = match random.bits() % 4 {
+                    0 => 0xFF,
+                    1 => 0,
+                    2 => damaged[at] ^ (1 << (random.bits() % 8)),
+                    _ => random.bits() as u8,
+                };
+            }
+            if let Ok((sound, source)) = read(&damaged) {
+                read_at_all += 1;
+                assert!((1..=MOST_CHANNELS).contains(&source.channels) && RATES.contains(&source.rate));
+                // A stated rate of 4 kHz in place of 192 kHz lengthens a sound 48 times.
+                assert!(sound.secs() < 60.0, "{} s of {} bytes", sound.secs(), bytes.len());
+            }
+        }
+    }
+    assert!(read_at_all > 200, "much damage leaves something to read: {read_at_all} of 1600");
+}
+
+#[test]
+fn reading_reports_progress_and_can_be_cancelled() {
+    let data = wav(1, 1, 48_000, 16, &bytes_16(&sine(48_000, 4.0, 1, 0.5)));
+    let mut file = tempfile::NamedTempFile::new().expect("a file");
+    file.write_all(&data).expect("written");
+    let mut seen = Vec::new();
+    read_sound(file.path(), &mut |part| {
+        seen.push(part);
+        ControlFlow::Continue(())
+    })
+    .expect("a sound");
+    assert!(seen.windows(2).all(|w| w[0] <= w[1]) && seen[seen.len() - 1] > 0.9, "{seen:?}");
+    let stopped = read_sound(file.path(), &mut |part| {
+        if part > 0.5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(stopped, Err(SoundError::Cancelled)));
+}
