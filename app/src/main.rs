@@ -7,8 +7,8 @@ use std::io::IsTerminal;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // Messages of graphics drivers while adapters are probed are not errors of this program.
-    let quiet = "error,wgpu=off,wgpu_core=off,wgpu_hal=off,naga=off";
+    // Messages of graphics drivers while adapters are probed, and of readers of sound while a format is guessed, are not errors of this program.
+    let quiet = "error,wgpu=off,wgpu_core=off,wgpu_hal=off,naga=off,symphonia=off";
     tracing_subscriber::fmt()
         .with_env_filter(
             tracing_subscriber::EnvFilter::try_from_env("LOVELOCK_LOG")

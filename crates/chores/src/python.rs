@@ -8,6 +8,11 @@ use std::process::Command;
 
 /// Creates a virtual environment with the packages in `folder` if there is none. Returns the path of its Python.
 pub(crate) fn environment(folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
+    environment_of("python3", folder, packages)
+}
+
+/// As [`environment`], with a Python that may be of another version.
+pub(crate) fn environment_of(python3: &str, folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     // Written last, so that an incomplete environment is created again.
     let made = folder.join("made");
@@ -19,7 +24,7 @@ pub(crate) fn environment(folder: &Path, packages: &[&str]) -> anyhow::Result<Pa
         fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
     }
     println!("Creating a Python environment with {}.", packages.join(", "));
-    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
+    tool::run(Command::new(python3).args(["-m", "venv"]).arg(folder))?;
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     tool::run(Command::new(&python).args(pip).args(packages))?;
     fs::write(&made, wanted)?;

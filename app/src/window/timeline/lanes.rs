@@ -211,7 +211,8 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>, beats: &[
         if let Some(at) =
             response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary))
         {
-            marker.secs = sound::snapped(ui, scale, beats, scale.secs(at.x));
+            // The marker's line is the left edge of its flag.
+            marker.secs = sound::snapped(ui, scale, beats, scale.secs(at.x - 0.5 * flag.width()));
         }
         if response.clicked() {
             sought = Some(marker.secs);

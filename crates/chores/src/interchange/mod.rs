@@ -1,6 +1,7 @@
 //! `cargo xtask test --interchange`: compares results with those of other programs, which are installed from the Python
 //! Package Index into a virtual environment in `target`.
 
+mod blender;
 mod exr;
 mod farm;
 mod pictures;
@@ -34,6 +35,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     exr::run(&folder)?;
     let lovelock = program::build()?;
     stage::check(&python, &folder, &lovelock)?;
+    blender::check(&folder, &lovelock)?;
     farm::check(&python, &folder, &lovelock)
 }
 

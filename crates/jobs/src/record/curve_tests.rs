@@ -120,7 +120,7 @@ fn options_of_pictures_frames_outside_and_cancels_are_told() {
         (RecordRequest { label: true, ..request.clone() }, "--label"),
         (RecordRequest { frames: Some(5..5), ..request.clone() }, "an empty range"),
         (RecordRequest { frames: Some(0..40), ..request.clone() }, "frames 0..40"),
-        (RecordRequest { frames: Some(0..1), out: path.with_file_name("a.abc"), ..request.clone() }, ".usdc"),
+        (RecordRequest { frames: Some(0..1), out: path.with_file_name("a.fbx"), ..request.clone() }, ".usdc"),
     ] {
         let error = run(request).expect_err(wanted);
         assert!(error.to_string().contains(wanted) && error.exit_code() == 2, "{error}");

@@ -33,13 +33,30 @@ const fn library(what: &'static str, name: &'static str, packages: [&'static str
     Need { what, test: Test::Library(name), to_build: false, packages }
 }
 
-/// The additional requirement of `cargo xtask test --interchange`.
-pub(crate) const INTERCHANGE: [Need; 1] = [Need {
-    what: "Python 3 with virtual environments",
-    test: Test::Python,
-    to_build: true,
-    packages: ["python3-venv", "python3", "python", "python3", "python3"],
-}];
+/// The additional requirements of `cargo xtask test --interchange`: Python, and the libraries that Blender's package loads.
+pub(crate) const INTERCHANGE: [Need; 8] = [
+    Need {
+        what: "Python 3 with virtual environments",
+        test: Test::Python,
+        to_build: true,
+        packages: ["python3-venv", "python3", "python", "python3", "python3"],
+    },
+    library("EGL", "libEGL.so.1", ["libegl1", "libglvnd-egl", "libglvnd", "Mesa-libEGL1", "mesa-egl"]),
+    library("OpenGL", "libGL.so.1", ["libgl1", "libglvnd-glx", "libglvnd", "Mesa-libGL1", "mesa-gl"]),
+    library("X sessions", "libSM.so.6", ["libsm6", "libSM", "libsm", "libSM6", "libsm"]),
+    library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]),
+    library(
+        "X video modes",
+        "libXxf86vm.so.1",
+        ["libxxf86vm1", "libXxf86vm", "libxxf86vm", "libXxf86vm1", "libxxf86vm"],
+    ),
+    library("X fixes", "libXfixes.so.3", ["libxfixes3", "libXfixes", "libxfixes", "libXfixes3", "libxfixes"]),
+    library(
+        "keyboard layouts",
+        "libxkbcommon.so.0",
+        ["libxkbcommon0", "libxkbcommon", "libxkbcommon", "libxkbcommon0", "libxkbcommon"],
+    ),
+];
 
 /// The additional requirement of `cargo xtask test --browser`.
 pub(crate) const BROWSER: [Need; 1] = [Need {
