@@ -18,9 +18,9 @@ LIMIT = 5e-3
 TALL = (1.5, 1.85)
 
 
-def empty(fps=24):
+def empty(fps):
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.context.scene.render.fps = fps
+    bpy.context.scene.render.fps = int(fps)
 
 
 def open_file(path):
@@ -43,6 +43,9 @@ def content(frame):
     graph = bpy.context.evaluated_depsgraph_get()
     curves, points, body = 0, [], []
     for thing in bpy.context.scene.objects:
+        # The glTF importer adds one as the shape of bones.
+        if thing.name.startswith("Icosphere"):
+            continue
         shown = thing.evaluated_get(graph)
         world = shown.matrix_world
         if thing.type == "CURVES":
@@ -111,12 +114,12 @@ def check(path, request):
 
 
 def hair_curves():
-    """Twenty hair curves of five points, which rise by 0.1 m per point; the root of each is on a line of 0.19 m."""
+    """Twenty hair curves of five points, which hang down by 0.1 m per point; the root of each is on a line of 0.19 m."""
     data = bpy.data.hair_curves.new("Hair")
     data.add_curves([5] * 20)
     for curve in range(20):
         for point in range(5):
-            data.points[curve * 5 + point].position = (0.01 * curve, 0.0, 0.1 * point)
+            data.points[curve * 5 + point].position = (0.01 * curve, 0.0, 1.6 - 0.1 * point)
             data.points[curve * 5 + point].radius = 0.0005
     thing = bpy.data.objects.new("Hair", data)
     bpy.context.scene.collection.objects.link(thing)
@@ -188,6 +191,7 @@ def figure(fps):
         group.add([i for i, owner in enumerate(owners) if owner == name], 1.0, "REPLACE")
     body.modifiers.new("Rig", "ARMATURE").object = rig
     body.parent = rig
+    fps = int(fps)
     bpy.context.scene.frame_start, bpy.context.scene.frame_end = 0, fps
     for frame, turn in ((0, 0.0), (fps // 2, 0.6), (fps, 0.0)):
         for name in ("head", "upper_arm.L"):
@@ -212,7 +216,9 @@ def write(folder, fps):
                 bpy.ops.wm.alembic_export(filepath=str(path), as_background_job=False, start=1, end=1, export_hair=True)
             else:
                 bpy.ops.wm.usd_export(filepath=str(path), export_hair=True)
-            written.append({"file": path.name, "kind": "hair", "strands": curves, "points": points, "height": height})
+            # USD holds the smooth curves, whose polylines have more points.
+            counted = points if ending == ".abc" else None
+            written.append({"file": path.name, "kind": "hair", "strands": curves, "points": counted, "height": height})
 
     hair(hair_curves, "hair_curves", 20, 100, 0.4)
     hair(particle_hair, "particle_hair", 30, None, None)
