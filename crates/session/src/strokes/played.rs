@@ -293,6 +293,7 @@ mod tests {
             position: rest.transform_point3(ear - Vec3::Z * (0.006 * i as f32)),
             view: rest.transform_vector3(Vec3::NEG_X),
             drag: if i > 0 { rest.transform_vector3(Vec3::NEG_Z * 0.006) } else { Vec3::ZERO },
+            pressure: 1.0,
             ..StrokeSample::default()
         };
         let stroke = RecordedStroke {
