@@ -54,8 +54,18 @@ impl Source {
         print_problems(&problems);
         if let Some(take) = project.take.file.clone() {
             allow(task, &project, &take.path, &mut access)?;
-            // Light and sound are not recorded.
+            // Light and sound are not recorded, and curves have neither body nor motion.
             let mut named = Vec::new();
+            if project.plays_curves() {
+                if let Some(path) = &task.body {
+                    named.push((Place::Body, required(path, &mut access)?));
+                    project.set_body_file(path);
+                }
+                if let Some(path) = &task.motion {
+                    named.push((Place::Motion, required(path, &mut access)?));
+                    project.set_motion_file(path);
+                }
+            }
             if let Some(path) = &task.surroundings {
                 named.push((Place::Surroundings, required(path, &mut access)?));
                 project.set_surroundings_file(path);
@@ -225,6 +235,10 @@ fn allow(
         ("--motion", &task.motion, &project.motion.file),
     ] {
         let Some(named) = named else { continue };
+        if option != "--hair" && project.plays_curves() {
+            // Curves play on any body.
+            continue;
+        }
         if own.as_ref().is_none_or(|own| real(&own.path) != real(named)) {
             return Err(refused(option));
         }
@@ -240,7 +254,9 @@ fn allow(
 pub(crate) fn apply(set: &[Assignment], project: &mut Project) -> Result<(), ProjectError> {
     for Assignment { name, value } in set {
         let section = name.split('.').next().unwrap_or_default();
-        if project.take.file.is_some() && RECORDED.contains(&section) {
+        let free = project.plays_curves()
+            && (["body", "motion"].contains(&section) || name.starts_with("hair.import."));
+        if project.take.file.is_some() && RECORDED.contains(&section) && !free {
             let message = format!(
                 "--set {name}: a take plays as recorded; must be a setting of another section than {section}"
             );

@@ -14,12 +14,18 @@ impl Window {
         let mut asked = None;
         Panel::left("left").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                let curves = project.plays_curves();
                 if project.take.file.is_some() {
                     self.problems(ui, &[Place::Take]);
-                    super::control::note(
-                        ui,
-                        "A take plays: body and hair move as recorded. Leave the take (Shift+R) to change them.",
-                    );
+                    let note = if curves {
+                        "Curves of a file play in place of the simulation. Leave them (Shift+R) to change the hair."
+                    } else {
+                        "A take plays: body and hair move as recorded. Leave the take (Shift+R) to change them."
+                    };
+                    super::control::note(ui, note);
+                    if curves {
+                        asked = self.body_section(ui, project, true);
+                    }
                     ui.disable();
                 }
                 section(ui, "Hairstyle", true, |ui| {
@@ -71,18 +77,27 @@ impl Window {
                 if unfolded.is_none() {
                     self.scalp.painting = false;
                 }
-                section(ui, "Body and motion", false, |ui| {
-                    self.problems(ui, &[Place::Body, Place::Motion]);
-                    asked = asked.or(panels::body::ui(ui, project, &self.session.body).map(|ask| match ask {
-                        panels::body::BodyRequest::PickBody => Purpose::Body,
-                        panels::body::BodyRequest::PickMotion => Purpose::Motion,
-                    }));
-                });
+                if !curves {
+                    asked = asked.or(self.body_section(ui, project, false));
+                }
             });
         });
         if let Some(purpose) = asked {
             self.open_path_dialog(purpose);
         }
+    }
+
+    /// Body and motion; returns what shall be picked.
+    fn body_section(&mut self, ui: &mut Ui, project: &mut Project, open: bool) -> Option<Purpose> {
+        let mut asked = None;
+        section(ui, "Body and motion", open, |ui| {
+            self.problems(ui, &[Place::Body, Place::Motion]);
+            asked = panels::body::ui(ui, project, &self.session.body).map(|ask| match ask {
+                panels::body::BodyRequest::PickBody => Purpose::Body,
+                panels::body::BodyRequest::PickMotion => Purpose::Motion,
+            });
+        });
+        asked
     }
 
     pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {

@@ -47,7 +47,7 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         })
         .collect();
     let duration = playable_secs(clip);
-    let frames = ((duration * RATE).round() as usize + 1).max(1);
+    let frames = ((duration * RATE).round() as usize).saturating_add(1);
     if frames.saturating_mul(joints.len()) > LIMIT {
         let problem = format!(
             "lasts {duration:.0} s with {} joints; at most {:.0} s of them are read",

@@ -137,6 +137,7 @@ impl<'a> CrateLayer<'a> {
         let empty = Node { parent: NOTHING, token: NOTHING, depth: 0, fieldset: NOTHING, spec_type: 0 };
         let mut nodes = vec![empty; count as usize];
         let mut visited = vec![false; indices.len()];
+        let mut placed = vec![false; count as usize];
         let mut pending = if indices.is_empty() { Vec::new() } else { vec![(0_usize, NOTHING)] };
         let (mut root, mut properties) = (0, HashMap::new());
         while let Some((mut entry, mut parent)) = pending.pop() {
@@ -150,6 +151,10 @@ impl<'a> CrateLayer<'a> {
                 let token = name.unsigned_abs();
                 if node as usize >= nodes.len() || depth as usize > DEEPEST {
                     return Err(wrong("a path out of range"));
+                }
+                // A path with two parents could be its own ancestor.
+                if std::mem::replace(&mut placed[node as usize], true) {
+                    return Err(wrong("a path in two places"));
                 }
                 nodes[node as usize] = Node { parent, token, depth, ..empty };
                 if parent == NOTHING {

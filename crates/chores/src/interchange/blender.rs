@@ -32,9 +32,8 @@ pub(super) fn check(folder: &Path, program: &Path) -> anyhow::Result<()> {
     let [first, end] = FRAMES;
     let fps = FPS.to_string();
     let files = ["strands.abc", "strands.usdc", "strands.glb"];
-    for name in files {
-        // A film of glTF is a mesh of its own per frame.
-        let end = if name.ends_with(".glb") { first + 1 } else { end };
+    // A film of glTF is a mesh of its own per frame.
+    for (name, end) in files.into_iter().zip([end, end, first + 1]) {
         let frames = format!("{first}..{end}");
         let mut record = lovelock(program, "record");
         record.arg(&project).arg("-o").arg(folder.join(name));
@@ -59,7 +58,7 @@ pub(super) fn check(folder: &Path, program: &Path) -> anyhow::Result<()> {
         let name = file["file"].as_str().context("a file has no name")?;
         match run_json(lovelock(program, "info").arg(folder.join(name))) {
             Ok(info) => {
-                faults.extend(differences(file, &info).into_iter().map(|fault| format!("{name}: {fault}")))
+                faults.extend(differences(file, &info).into_iter().map(|fault| format!("{name}: {fault}")));
             }
             Err(error) => faults.push(format!("{name}: {error:#}")),
         }

@@ -67,7 +67,9 @@ impl CurveCache {
         let mut hair = clean_keeping(&name, format, raw, Some(&mut kept))?;
         if let Some(of_points) = guides {
             let places: Vec<u32> = (0..).zip(&of_points).filter(|(_, kept)| **kept).map(|(i, _)| i).collect();
-            kept.iter_mut().for_each(|point| *point = places[*point as usize]);
+            for point in &mut kept {
+                *point = places[*point as usize];
+            }
         } else if kept.len() == whole {
             kept.clear();
         }
@@ -85,9 +87,13 @@ impl CurveCache {
             read: Vec::new(),
         };
         let mut points = std::mem::take(&mut hair.points);
-        points.iter_mut().for_each(|point| *point = cache.in_metres(*point));
+        for point in &mut points {
+            *point = cache.in_metres(*point);
+        }
         hair.bounds = Bounds::EMPTY;
-        points.iter().for_each(|&point| hair.bounds.include(point));
+        for &point in &points {
+            hair.bounds.include(point);
+        }
         hair.points = points;
         hair.thickness.iter_mut().flatten().for_each(|width| *width *= metres_per_unit);
         hair.default_thickness = hair.default_thickness.map(|width| width * metres_per_unit);

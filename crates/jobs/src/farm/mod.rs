@@ -128,6 +128,11 @@ pub fn farm(
     let building = Building::start(out)?;
     let mut copied = Vec::new();
     let source = if let Some(take) = &project.take.file {
+        if lovelock_session::take::holds_curves(&take.path) {
+            let found =
+                format!("{}: found curves over time; a job needs a project or a take", take.path.display());
+            return Err(ProjectError::input(&take.path, found));
+        }
         as_recorded(&project, &take.path)?;
         Source::Take(take.path.clone(), [project.recording.width, project.recording.height])
     } else {

@@ -8,8 +8,8 @@ use ufbx::{AllocatorOpts, BakeOpts, BakedAnim, Scene};
 
 use super::mesh::{MorphsOfChannels, weights_of_shapes};
 use super::nodes::Nodes;
-use super::{quat, refuse, vec3};
-use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
+use super::{quat, vec3};
+use crate::{Clip, Interpolation, JointTracks, MorphTrack, Track};
 
 /// Samples per second of curves that are not linear.
 const RATE: f64 = 60.0;
@@ -19,13 +19,11 @@ const MEMORY_LIMIT: usize = 2 << 30;
 
 /// Reads every animation stack that moves a joint or a morph target.
 pub(super) fn read_clips(
-    file: &str,
-    bytes: &[u8],
     scene: &Scene,
     nodes: &Nodes,
     morphs: &MorphsOfChannels,
     notes: &mut Vec<String>,
-) -> Result<Vec<Clip>, MotionError> {
+) -> Vec<Clip> {
     let mut clips = Vec::new();
     for stack in &scene.anim_stacks {
         let allocator = || AllocatorOpts { memory_limit: MEMORY_LIMIT, ..AllocatorOpts::default() };
@@ -36,8 +34,14 @@ pub(super) fn read_clips(
             resample_rate: RATE,
             ..BakeOpts::default()
         };
-        let baked =
-            ufbx::bake_anim(scene, &stack.anim, options).map_err(|error| refuse(file, bytes, &error))?;
+        let baked = match ufbx::bake_anim(scene, &stack.anim, options) {
+            Ok(baked) => baked,
+            Err(error) => {
+                let why = error.description.to_string().to_lowercase();
+                notes.push(format!("the animation `{}` could not be read ({why})", stack.element.name));
+                continue;
+            }
+        };
         let mut clip = Clip { name: stack.element.name.to_string(), ..Clip::default() };
         clip.joints = joints(&baked, nodes);
         clip.morphs = morph_tracks(&baked, morphs);
@@ -48,7 +52,7 @@ pub(super) fn read_clips(
         clip.duration_secs = clip.keys_end_secs();
         clips.push(clip);
     }
-    Ok(clips)
+    clips
 }
 
 fn joints(baked: &BakedAnim, nodes: &Nodes) -> Vec<JointTracks> {

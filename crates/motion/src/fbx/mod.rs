@@ -65,7 +65,7 @@ pub(crate) fn read(
             wanted: "a mesh of triangles",
         });
     }
-    let clips = clip::read_clips(file, bytes, &scene, &nodes, &morphs, &mut notes)?;
+    let clips = clip::read_clips(&scene, &nodes, &morphs, &mut notes);
     let metadata = &scene.metadata;
     let format = format!(
         "FBX {}.{} ({})",

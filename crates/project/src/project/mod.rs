@@ -161,8 +161,16 @@ impl Project {
         let sound = (crate::error::Place::Sound, self.sound.file.as_ref());
         let take = self.take.file.as_ref();
         if take.is_some() {
-            // The take itself names the files of body, motion and hair.
-            let used = [(crate::error::Place::Take, take), surroundings, sound];
+            // A take itself names the files of body, motion and hair; curves play on the body of the project.
+            let curves = self.plays_curves();
+            let around = |file| if curves { file } else { None };
+            let used = [
+                (crate::error::Place::Take, take),
+                (crate::error::Place::Body, around(body)),
+                (crate::error::Place::Motion, around(motion)),
+                surroundings,
+                sound,
+            ];
             return used.into_iter().filter_map(|(place, file)| Some((place, file?))).collect();
         }
         [
@@ -176,6 +184,16 @@ impl Project {
         .into_iter()
         .filter_map(|(place, file)| Some((place, file?)))
         .collect()
+    }
+
+    /// Whether the file that plays is one of curves over time, by its name. Body and motion are then those of the project, whereas a take has
+    /// recorded them.
+    pub fn plays_curves(&self) -> bool {
+        self.take
+            .file
+            .as_ref()
+            .and_then(|file| file.path.extension())
+            .is_some_and(|end| ["abc", "usd", "usda", "usdc"].iter().any(|own| end.eq_ignore_ascii_case(own)))
     }
 
     /// Every file that the project refers to, used or not.

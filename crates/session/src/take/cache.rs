@@ -27,8 +27,11 @@ use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
 use crate::totals::Totals;
 
+/// The longest playback of curves, seconds.
+const MOST_SECS: f64 = 86_400.0;
+
 /// Whether the first bytes of a file are those of a format of hair. A take begins otherwise.
-pub(crate) fn holds_curves(path: &Path) -> bool {
+pub fn holds_curves(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(64).read_to_end(&mut start));
     read.is_ok() && HairFormat::of_magic(&start).is_some()
@@ -47,6 +50,10 @@ pub fn project_of_cache(base: &Project, path: &Path) -> Result<Project, ProjectE
         (project.look.eumelanin, project.look.pheomelanin) = (look.eumelanin, look.pheomelanin);
     }
     project.set_take(path);
+    // Markers, tracks and the sound move to the timeline of the curves, as they do for a take.
+    let start = cache.times()[0].max(0.0);
+    project.timeline.shift(-start, f64::INFINITY);
+    project.sound.offset_secs -= start;
     (project.recording.first_frame, project.recording.end_frame) = (0, None);
     Ok(project)
 }
@@ -108,6 +115,14 @@ impl CachePlayer {
             clip_secs: scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs),
             ..TakeHeader::default()
         };
+        if end - start > MOST_SECS {
+            let found = format!(
+                "{}: found curves over {:.0} s; must be {MOST_SECS} s at most",
+                path.display(),
+                end - start
+            );
+            return Err(ProjectError::input(path, found));
+        }
         let frames = ((end - start) * rate.as_f64() + 1e-3).floor().max(0.0) as u64 + 1;
 
         let mut pose = Pose::default();

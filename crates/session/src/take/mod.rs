@@ -10,8 +10,7 @@ mod playing;
 mod recording;
 mod transport;
 
-pub(crate) use cache::holds_curves;
-pub use cache::project_of_cache;
+pub use cache::{holds_curves, project_of_cache};
 pub use player::TakePlayer;
 pub use recording::{TakeProgress, TakeRecording};
 pub(crate) use transport::TakeTransport;

@@ -1,7 +1,7 @@
 //! The curves of an archive over time.
 
 use glam::Vec3;
-use lovelock_alembic::{AlembicError, Archive};
+use lovelock_alembic::{AlembicError, Archive, metadata_value};
 
 use super::objects::CurveObject;
 use super::{named, refused, shape, transform};
@@ -17,6 +17,8 @@ pub(super) struct Frames {
     pub(super) archive: Archive<'static>,
     objects: Vec<(CurveObject, Vec<usize>, Shape)>,
     times: Vec<f64>,
+    /// The time in the archive of 0 seconds.
+    start_secs: f64,
 }
 
 impl Frames {
@@ -59,7 +61,15 @@ impl Frames {
             let shape = shape::of(&mut archive, &object, secs, &mut Vec::new())?;
             all.push((object, counts, shape));
         }
-        Ok(Self { name: name.to_owned(), archive, objects: all, times: merged(times) })
+        let mut times = merged(times);
+        // The clips of other files begin at 0, so curves do, too. An archive of Lovelock counts on the dance.
+        let own = metadata_value(archive.metadata(), "_ai_Application")
+            .is_some_and(|program| program.to_ascii_lowercase().starts_with("lovelock"));
+        let start_secs = if own { 0.0 } else { times[0] };
+        for secs in &mut times {
+            *secs -= start_secs;
+        }
+        Ok(Self { name: name.to_owned(), archive, objects: all, times, start_secs })
     }
 }
 
@@ -70,6 +80,7 @@ impl CurveFrames for Frames {
 
     fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
         out.clear();
+        let secs = secs + self.start_secs;
         for (object, counts, shape) in &self.objects {
             add(&mut self.archive, object, counts, *shape, secs, out)
                 .map_err(|error| named(&self.name, error))?;

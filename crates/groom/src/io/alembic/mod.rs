@@ -138,7 +138,8 @@ impl Hair {
         let counts = object.counts(archive, secs)?;
         let shape = shape::of(archive, object, secs, &mut self.raw.notes)?;
         let controls = archive.elements(&object.points, 0)?;
-        if counts.iter().map(|&count| count as u64).sum::<u64>() != controls {
+        let sum = counts.iter().try_fold(0_u64, |sum, &count| sum.checked_add(count as u64));
+        if sum != Some(controls) {
             let found = format!("{controls} points in {} curves", counts.len());
             return Err(refused(object, found, "as many points as nVertices add up to"));
         }
@@ -251,10 +252,10 @@ impl Hair {
             .flat_map(|(&is_guide, &count)| std::iter::repeat_n(!is_guide, count as usize))
             .collect();
         keep(&mut self.raw.points, &of_points);
-        for array in self.raw.thickness.iter_mut() {
+        if let Some(array) = &mut self.raw.thickness {
             keep(array, &of_points);
         }
-        for array in self.raw.colours.iter_mut() {
+        if let Some(array) = &mut self.raw.colours {
             keep(array, &of_points);
         }
         let of_curves: Vec<bool> = self.guides.iter().map(|is_guide| !is_guide).collect();

@@ -24,15 +24,15 @@ pub(super) struct CurveObject {
     pub(super) counts: Property,
     pub(super) basis: Option<Property>,
     pub(super) knots: Option<Property>,
-    pub(super) width: Option<Values>,
-    pub(super) colour: Option<Values>,
+    pub(super) width: Option<Parameter>,
+    pub(super) colour: Option<Parameter>,
     pub(super) guides: Option<Property>,
     /// The transforms above it, innermost first.
-    pub(super) above: Option<Arc<Above>>,
+    pub(super) above: Option<Arc<Ancestor>>,
 }
 
 /// A parameter of geometry.
-pub(super) struct Values {
+pub(super) struct Parameter {
     pub(super) name: String,
     pub(super) values: Property,
     /// Indices of `values`.
@@ -42,11 +42,11 @@ pub(super) struct Values {
 }
 
 /// A transform and those above it.
-pub(super) struct Above {
+pub(super) struct Ancestor {
     pub(super) inherits: Option<Property>,
     pub(super) operations: Option<Property>,
     pub(super) values: Option<Property>,
-    pub(super) above: Option<Arc<Above>>,
+    pub(super) above: Option<Arc<Ancestor>>,
 }
 
 impl CurveObject {
@@ -76,7 +76,7 @@ pub(super) fn visit(
     archive: &mut Archive<'_>,
     take: &mut dyn FnMut(&mut Archive<'_>, CurveObject) -> Result<(), AlembicError>,
 ) -> Result<(), AlembicError> {
-    let mut waiting: Vec<(Object, String, Option<Arc<Above>>, usize)> =
+    let mut waiting: Vec<(Object, String, Option<Arc<Ancestor>>, usize)> =
         vec![(archive.top(), String::new(), None, 0)];
     while let Some((object, path, above, depth)) = waiting.pop() {
         if depth > DEEPEST {
@@ -89,7 +89,7 @@ pub(super) fn visit(
         let above = if object.has_schema(TRANSFORM) {
             let transform = schema(archive, &object, ".xform")?;
             let get = |name| transform.get(name).cloned();
-            Some(Arc::new(Above {
+            Some(Arc::new(Ancestor {
                 inherits: get(".inherits"),
                 operations: get(".ops"),
                 values: get(".vals"),
@@ -122,7 +122,7 @@ fn curves(
     archive: &mut Archive<'_>,
     object: &Object,
     path: &str,
-    above: Option<Arc<Above>>,
+    above: Option<Arc<Ancestor>>,
 ) -> Result<Option<CurveObject>, AlembicError> {
     let geometry = schema(archive, object, ".geom")?;
     let (Some(points), Some(counts)) = (geometry.get("P"), geometry.get("nVertices")) else {
@@ -148,7 +148,7 @@ fn curves(
 }
 
 /// A parameter as values, or as values and indices.
-fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Option<Values>, AlembicError> {
+fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Option<Parameter>, AlembicError> {
     let Some(property) = property else { return Ok(None) };
     let scope = match metadata_value(&property.metadata, "geoScope") {
         Some("con") => Some("constant"),
@@ -163,5 +163,5 @@ fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Opti
         return Ok(None);
     }
     let indices = inner.get(".indices").filter(|indices| indices.samples > 0).cloned();
-    Ok(Some(Values { name: property.name.clone(), values: values.clone(), indices, scope }))
+    Ok(Some(Parameter { name: property.name.clone(), values: values.clone(), indices, scope }))
 }

@@ -130,7 +130,7 @@ fn curves_have_their_points_widths_and_colours() {
     let colours = hair.colours.expect("colours");
     assert!((colours[1][0] - 0.484_53).abs() < 1e-3, "{:?} is sRGB of 0.2", colours[1]);
     assert!(colours[2][0] == 0.0 && colours[2][1] > 0.999, "{:?}", colours[2]);
-    // Values that fit nothing are left out, with a note.
+    // Parameter that fit nothing are left out, with a note.
     curves.more[0].3 = floats(&[0.1; 4]);
     let hair = load(|writer| vec![curves.object(writer, "a")]);
     assert!(hair.thickness.is_none() && hair.notes[0].contains("/a: 4 values of width"), "{:?}", hair.notes);

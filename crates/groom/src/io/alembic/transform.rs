@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 use lovelock_alembic::{AlembicError, Archive};
 
-use super::objects::{Above, CurveObject};
+use super::objects::{Ancestor, CurveObject};
 use super::refused;
 
 /// The most operations of one transform.
@@ -34,7 +34,7 @@ pub(super) fn to_archive(
     }
 }
 
-fn inherits(archive: &mut Archive<'_>, above: &Above, secs: f64) -> Result<bool, AlembicError> {
+fn inherits(archive: &mut Archive<'_>, above: &Ancestor, secs: f64) -> Result<bool, AlembicError> {
     let Some(inherits) = above.inherits.as_ref().filter(|inherits| inherits.samples > 0) else {
         return Ok(true);
     };
@@ -43,7 +43,7 @@ fn inherits(archive: &mut Archive<'_>, above: &Above, secs: f64) -> Result<bool,
 }
 
 /// The operations of one transform, with their values between two samples; `None` if there are too few values.
-fn own(archive: &mut Archive<'_>, above: &Above, secs: f64) -> Result<Option<DMat4>, AlembicError> {
+fn own(archive: &mut Archive<'_>, above: &Ancestor, secs: f64) -> Result<Option<DMat4>, AlembicError> {
     let samples =
         |property: &Option<_>| property.as_ref().is_some_and(|p: &lovelock_alembic::Property| p.samples > 0);
     let (Some(operations), Some(values)) = (&above.operations, &above.values) else {

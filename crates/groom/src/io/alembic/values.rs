@@ -1,10 +1,9 @@
-//! Values along curves: widths and colours.
+//! Parameter along curves: widths and colours.
 
 use glam::Vec3;
 use lovelock_alembic::{AlembicError, Archive};
 
-use super::objects::{CurveObject, Values};
-use super::refused;
+use super::objects::{CurveObject, Parameter};
 use crate::io::basis::{Shape, Spread};
 
 /// Gives one value for each point of the polylines to `take`. Returns whether the values fit the curves; a note says if not.
@@ -12,7 +11,7 @@ use crate::io::basis::{Shape, Spread};
 pub(super) fn spread<const N: usize>(
     archive: &mut Archive<'_>,
     object: &CurveObject,
-    values: &Values,
+    values: &Parameter,
     secs: f64,
     counts: &[usize],
     shape: Shape,
@@ -50,8 +49,11 @@ pub(super) fn spread<const N: usize>(
         let picked: Option<Vec<Vec3>> =
             indices.iter().map(|&index| read.get(index as usize).copied()).collect();
         let Some(picked) = picked else {
-            let found = format!("an index of {} that is out of range", values.name);
-            return Err(refused(object, found, "indices of its values"));
+            notes.push(format!(
+                "{}: {} has an index that is out of range, and was left out.",
+                object.path, values.name
+            ));
+            return Ok(false);
         };
         read = picked;
     }

@@ -19,6 +19,8 @@ struct Frames {
     prims: Vec<(usize, Vec<usize>, Shape)>,
     metres_from_stage: DMat4,
     codes_per_sec: f64,
+    /// The time code of 0 seconds.
+    start_code: f64,
     times: Vec<f64>,
 }
 
@@ -39,6 +41,7 @@ pub(super) fn open(mut layer: Stage<'static>) -> Result<(Box<dyn CurveFrames>, R
         }
         times.extend(layer.times(prim, "points")?);
         times.extend(layer.transform_times(prim)?);
+        times = merged(times);
         if times.len() > MOST_TIMES {
             return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
         }
@@ -49,8 +52,12 @@ pub(super) fn open(mut layer: Stage<'static>) -> Result<(Box<dyn CurveFrames>, R
         let shape = shape(&mut layer, prim)?;
         prims.push((prim, counts, shape));
     }
-    let times = merged(times.into_iter().map(|code| code / codes_per_sec).collect());
-    Ok((Box::new(Frames { layer, prims, metres_from_stage, codes_per_sec, times }), raw))
+    // The clips of a stage begin at its start. A file of Lovelock counts on the dance.
+    let own = layer.metadata("defaultPrim")?.is_some_and(|prim| prim.token() == Some("Lovelock"));
+    let start = layer.metadata("startTimeCode")?.and_then(|value| value.numbers().first().copied());
+    let start_code = start.filter(|start| !own && start.is_finite()).unwrap_or(0.0);
+    let times = merged(times.into_iter().map(|code| (code - start_code) / codes_per_sec).collect());
+    Ok((Box::new(Frames { layer, prims, metres_from_stage, codes_per_sec, start_code, times }), raw))
 }
 
 impl CurveFrames for Frames {
@@ -62,9 +69,9 @@ impl CurveFrames for Frames {
         out.clear();
         let layer = &mut self.layer;
         // With a tolerance for the division by the rate.
-        layer.set_time(secs * self.codes_per_sec + 1e-4);
+        layer.set_time(secs * self.codes_per_sec + self.start_code + 1e-4);
         for (prim, counts, shape) in &self.prims {
-            let transform = self.metres_from_stage * layer.to_stage(*prim)?;
+            let transform = self.metres_from_stage * layer.transform(*prim)?;
             let points = layer.attribute(*prim, "points", usize::MAX)?;
             let points = points.map_or_else(Vec::new, Value::into_vectors);
             if points.len() != counts.iter().sum::<usize>() {

@@ -59,7 +59,7 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     let (mut widths, mut colours) = (Vec::new(), Vec::new());
     let (mut all_widths, mut all_colours) = (true, true);
     for prim in prims {
-        let transform = metres_from_stage * layer.to_stage(prim)?;
+        let transform = metres_from_stage * layer.transform(prim)?;
         let curves = Curves::read(layer, prim, &mut raw.notes)?;
         let scale = transform.determinant().abs().cbrt() as f32;
         raw.point_counts.extend(&curves.counts);

@@ -68,7 +68,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The transform from a prim's own space to the stage.
-    pub(super) fn to_stage(&mut self, prim: usize) -> Result<DMat4, HairFileError> {
+    pub(super) fn transform(&mut self, prim: usize) -> Result<DMat4, HairFileError> {
         lovelock_usd::to_stage(&mut *self.0, prim).map_err(refused)
     }
 
