@@ -69,6 +69,16 @@ impl FilmQuality {
         }
     }
 
+    /// Bits per second and channel of the sound.
+    pub(crate) fn sound_bits(self) -> i32 {
+        match self {
+            Self::Draft => 48_000,
+            Self::Good => 64_000,
+            Self::High => 96_000,
+            Self::Best => 128_000,
+        }
+    }
+
     /// The quantiser of H.264, 0 to 51. Its step doubles every six.
     pub(crate) fn quantiser(self) -> u8 {
         match self {

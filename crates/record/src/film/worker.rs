@@ -84,7 +84,7 @@ impl Film {
     }
 
     fn begin_sound(&mut self, sound: Box<dyn SoundSource>) -> Result<(), RecordError> {
-        let encoding = OpusEncoding::new(sound, self.settings.quality)
+        let encoding = OpusEncoding::new(sound, self.settings.quality.sound_bits())
             .map_err(|error| sound_error(&self.path, error))?;
         self.writer.add_sound(SoundTrack::new(encoding.channels(), PRE_SKIP, PACKET as u32));
         self.sound = Some(encoding);

@@ -1,7 +1,6 @@
 //! Opus (RFC 6716) for films.
 
 use super::{SOUND_RATE, SoundSource};
-use crate::FilmQuality;
 use opus_rs::{Application, OpusEncoder};
 
 /// Samples per packet: 20 ms.
@@ -25,17 +24,11 @@ pub(crate) struct OpusEncoding {
 }
 
 impl OpusEncoding {
-    pub(crate) fn new(source: Box<dyn SoundSource>, quality: FilmQuality) -> Result<Self, &'static str> {
+    /// `bits` is the rate per second and channel.
+    pub(crate) fn new(source: Box<dyn SoundSource>, bits: i32) -> Result<Self, &'static str> {
         let channels = source.channels().clamp(1, 2);
         let mut encoder =
             OpusEncoder::new(SOUND_RATE as i32, usize::from(channels), Application::RestrictedLowDelay)?;
-        // Bits per second and channel.
-        let bits = match quality {
-            FilmQuality::Draft => 48_000,
-            FilmQuality::Good => 64_000,
-            FilmQuality::High => 96_000,
-            FilmQuality::Best => 128_000,
-        };
         encoder.bitrate_bps = bits * i32::from(channels);
         encoder.complexity = 10;
         Ok(Self { source, encoder, channels, encoded: 0, samples: vec![0.0; PACKET * usize::from(channels)] })

@@ -5,7 +5,8 @@ use opus_rs::OpusDecoder;
 
 /// Encodes and decodes two seconds.
 fn decoded(channels: u16, quality: FilmQuality) -> (Vec<f32>, usize) {
-    let mut encoding = OpusEncoding::new(Box::new(Clicks::new(channels, 0.25)), quality).unwrap();
+    let mut encoding =
+        OpusEncoding::new(Box::new(Clicks::new(channels, 0.25)), quality.sound_bits()).unwrap();
     // In parts, as a film does it.
     let mut packets = Vec::new();
     for part in 1..=10 {
