@@ -62,7 +62,7 @@ fn extreme_samples_are_encoded() {
             out.iter_mut().enumerate().for_each(|(i, s)| *s = values[(i / 7 + first as usize) % 6]);
         }
     }
-    let mut encoding = OpusEncoding::new(Box::new(Extreme), FilmQuality::High).unwrap();
+    let mut encoding = OpusEncoding::new(Box::new(Extreme), FilmQuality::High.sound_bits()).unwrap();
     assert_eq!(encoding.packets_until(48_000).unwrap().len(), 51);
 }
 
