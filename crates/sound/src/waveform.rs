@@ -5,7 +5,7 @@ use crate::sound::{RATE, Sound};
 /// Samples per entry of the finest level.
 const FINEST: usize = 256;
 
-/// The lowest and the highest sample of each part of a sound, at resolutions from [`FINEST`] samples to the whole sound. Each level has
+/// The lowest and the highest sample of each part of a sound, at resolutions from a fixed number of samples to the whole sound. Each level has
 /// half the entries of the level before, so all of them have at most 1/64 of the samples.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Waveform {
