@@ -25,6 +25,14 @@ pub(super) fn check(folder: &Path, program: &Path) -> anyhow::Result<()> {
         return Ok(());
     }
     let python = environment_of(PYTHON, &folder.join("blender-python"), &[PACKAGE])?;
+    let loads = Command::new(&python).args(["-c", "import bpy"]).output();
+    if let Err(why) = loads.context("it does not start").and_then(|output| {
+        ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
+        Ok(())
+    }) {
+        println!("interchange: left out Blender, which cannot be loaded on this system: {why:#}");
+        return Ok(());
+    }
     let folder = folder.join("blender");
     super::empty(&folder)?;
     let project = folder.join("small.lovelock");

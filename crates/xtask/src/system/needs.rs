@@ -34,7 +34,7 @@ const fn library(what: &'static str, name: &'static str, packages: [&'static str
 }
 
 /// The additional requirements of `cargo xtask test --interchange`: Python, and the libraries that Blender's package loads.
-pub(crate) const INTERCHANGE: [Need; 8] = [
+pub(crate) const INTERCHANGE: [Need; 9] = [
     Need {
         what: "Python 3 with virtual environments",
         test: Test::Python,
@@ -43,6 +43,11 @@ pub(crate) const INTERCHANGE: [Need; 8] = [
     },
     library("EGL", "libEGL.so.1", ["libegl1", "libglvnd-egl", "libglvnd", "Mesa-libEGL1", "mesa-egl"]),
     library("OpenGL", "libGL.so.1", ["libgl1", "libglvnd-glx", "libglvnd", "Mesa-libGL1", "mesa-gl"]),
+    library(
+        "X rendering",
+        "libXrender.so.1",
+        ["libxrender1", "libXrender", "libxrender", "libXrender1", "libxrender"],
+    ),
     library("X sessions", "libSM.so.6", ["libsm6", "libSM", "libsm", "libSM6", "libsm"]),
     library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]),
     library(

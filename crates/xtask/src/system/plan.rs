@@ -281,6 +281,7 @@ mod tests {
             "python3-venv",
             "libegl1",
             "libgl1",
+            "libxrender1",
             "libsm6",
             "libxi6",
             "libxxf86vm1",
