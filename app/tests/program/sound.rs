@@ -1,29 +1,16 @@
 //! The sound of films, through the program.
 
-use std::path::Path;
 use std::process::Command;
 
 use lovelock_record::read_film;
 
 use crate::tool::{names, run, saved, small_project};
 
-/// Four seconds of clicks, one every half second, as a WAV file.
-fn click_track(path: &Path) {
-    let sample = |i: u32| if i % 24_000 < 400 { (i * 7919 % 20_000) as i16 - 10_000 } else { 0 };
-    let data: Vec<u8> = (0..4 * 48_000).map(sample).flat_map(i16::to_le_bytes).collect();
-    let mut bytes = b"RIFF".to_vec();
-    bytes.extend((36 + data.len() as u32).to_le_bytes());
-    bytes.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0\x80\xBB\0\0\0\x77\x01\0\x02\0\x10\0data");
-    bytes.extend((data.len() as u32).to_le_bytes());
-    bytes.extend(data);
-    std::fs::write(path, bytes).expect("a file");
-}
-
 #[test]
 fn a_film_has_the_sound_of_its_frames() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
-    click_track(&dir.path().join("clicks ü.wav"));
+    lovelock_testkit::click_track(&dir.path().join("clicks ü.wav"), 4);
     // Twelve frames from second 0.4 on; the click of second 0.5 of the sound is heard at second 0.6 of the dance, 0.2 s later.
     let args = [
         "record",

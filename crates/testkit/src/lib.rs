@@ -1,9 +1,11 @@
-//! Helpers for tests: comparison of images, the folder of real data files, damaged input, and skipping without a graphics adapter.
+//! Helpers for tests: comparison of images, the folder of real data files, damaged input, a sound, and skipping without a graphics adapter.
 
 mod compare;
 mod data;
 pub mod fuzz;
+mod sound;
 pub mod suite;
 
 pub use compare::{Flip, flip, mean_color};
 pub use data::{data_dir, skip_without_adapter};
+pub use sound::click_track;

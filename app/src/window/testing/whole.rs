@@ -278,24 +278,11 @@ fn a_broken_hair_file_is_reported_and_the_scene_stays() {
     }
 }
 
-/// A WAV file of clicks, one every half second for four seconds.
-fn click_track(path: &Path) {
-    let samples =
-        (0..4 * 48_000_u32).map(|i| if i % 24_000 < 400 { (i * 7919 % 20_000) as i16 - 10_000 } else { 0 });
-    let data: Vec<u8> = samples.flat_map(i16::to_le_bytes).collect();
-    let mut bytes = b"RIFF".to_vec();
-    bytes.extend((36 + data.len() as u32).to_le_bytes());
-    bytes.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0\x80\xBB\0\0\0\x77\x01\0\x02\0\x10\0data");
-    bytes.extend((data.len() as u32).to_le_bytes());
-    bytes.extend(data);
-    std::fs::write(path, bytes).expect("a file");
-}
-
 #[test]
 fn a_dropped_sound_plays_beside_the_dance_and_one_that_is_none_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("clicks ü.wav");
-    click_track(&path);
+    lovelock_testkit::click_track(&path, 4);
     let mut harness = window();
     let open = |harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path| {
         harness.state_mut().state.as_mut().expect("a window").open_any(path);

@@ -169,7 +169,7 @@ fn a_database_of_hair_clusters_is_described() {
 fn a_sound_is_described_with_its_tempo() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("clicks ü.wav");
-    crate::record::testing::click_track(&path);
+    lovelock_testkit::click_track(&path, 8);
     let info = info(&path).expect("a sound");
     assert_eq!(kind_of(&info), "sound");
     let json = serde_json::to_value(&info).expect("JSON");

@@ -26,6 +26,4 @@ mod layered_tests;
 #[cfg(test)]
 mod take_tests;
 #[cfg(test)]
-pub(crate) mod testing;
-#[cfg(test)]
 mod tests;

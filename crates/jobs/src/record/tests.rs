@@ -247,7 +247,7 @@ fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
 fn a_sequence_gets_the_sound_of_its_frames_and_a_missing_one_is_a_note() {
     let dir = tempfile::tempdir().expect("a folder");
     let file = dir.path().join("clicks.wav");
-    super::testing::click_track(&file);
+    lovelock_testkit::click_track(&file, 8);
     let mut project = small_project();
     project.set_sound_file(&file);
     project.sound.offset_secs = -0.4;

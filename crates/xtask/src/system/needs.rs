@@ -33,6 +33,14 @@ const fn library(what: &'static str, name: &'static str, packages: [&'static str
     Need { what, test: Test::Library(name), to_build: false, packages }
 }
 
+const X_INPUT: Need = library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]);
+
+const KEYBOARD: Need = library(
+    "keyboard layouts",
+    "libxkbcommon.so.0",
+    ["libxkbcommon0", "libxkbcommon", "libxkbcommon", "libxkbcommon0", "libxkbcommon"],
+);
+
 /// The additional requirements of `cargo xtask test --interchange`: Python, and the libraries that Blender's package loads.
 pub(crate) const INTERCHANGE: [Need; 9] = [
     Need {
@@ -49,18 +57,14 @@ pub(crate) const INTERCHANGE: [Need; 9] = [
         ["libxrender1", "libXrender", "libxrender", "libXrender1", "libxrender"],
     ),
     library("X sessions", "libSM.so.6", ["libsm6", "libSM", "libsm", "libSM6", "libsm"]),
-    library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]),
+    X_INPUT,
     library(
         "X video modes",
         "libXxf86vm.so.1",
         ["libxxf86vm1", "libXxf86vm", "libxxf86vm", "libXxf86vm1", "libxxf86vm"],
     ),
     library("X fixes", "libXfixes.so.3", ["libxfixes3", "libXfixes", "libxfixes", "libXfixes3", "libxfixes"]),
-    library(
-        "keyboard layouts",
-        "libxkbcommon.so.0",
-        ["libxkbcommon0", "libxkbcommon", "libxkbcommon", "libxkbcommon0", "libxkbcommon"],
-    ),
+    KEYBOARD,
 ];
 
 /// The additional requirement of `cargo xtask test --browser`.
@@ -125,12 +129,8 @@ pub(crate) const NEEDS: [Need; 11] = [
         "libXcursor.so.1",
         ["libxcursor1", "libXcursor", "libxcursor", "libXcursor1", "libxcursor"],
     ),
-    library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]),
-    library(
-        "keyboard layouts",
-        "libxkbcommon.so.0",
-        ["libxkbcommon0", "libxkbcommon", "libxkbcommon", "libxkbcommon0", "libxkbcommon"],
-    ),
+    X_INPUT,
+    KEYBOARD,
     library(
         "keyboard layouts for X",
         "libxkbcommon-x11.so.0",
