@@ -1,6 +1,7 @@
 //! Carrying a change of moving hair back to the rest shape.
 
 use glam::{Quat, Vec3};
+use lovelock_base::numbers::smoothstep;
 use lovelock_groom::Guides;
 use lovelock_style::hand::{
     HandChannel, HandEdit, hand_input, link_frames, relength, resampled, smallest_turn, turn_to, turned_by,
@@ -10,6 +11,53 @@ use crate::chain::{along, directions, lengths};
 
 /// Links that turned less than this keep their edit, as a difference of directions.
 const STILL: f32 = 1e-6;
+
+/// Part of the links of a guide, to either side of a link, over which turns of flying hair are averaged.
+const AVERAGED: f32 = 0.2;
+/// A link flies if the links around it are turned from their mean by more than the first angle, and wholly from the second on, radians.
+const FLIES: [f32; 2] = [0.35, 0.9];
+
+/// The mean of some rotations.
+fn mean_turn(turns: &[Quat]) -> Quat {
+    let first = turns.first().copied().unwrap_or_default();
+    let sum = turns.iter().fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, turn| {
+        sum + if turn.dot(first) < 0.0 { -*turn } else { *turn }
+    });
+    if sum.length_squared() > 1e-6 { sum.normalize() } else { first }
+}
+
+/// The links around each that are averaged.
+fn around(i: usize, count: usize) -> std::ops::Range<usize> {
+    let reach = (AVERAGED * count as f32).ceil() as usize;
+    i.saturating_sub(reach)..(i + reach + 1).min(count)
+}
+
+/// What turns each link at rest as a change of the seen hair wants it: from `before` to `after`, the seen hair being at rest turned by
+/// `turns`.
+///
+/// Where hair is bent evenly, that is the turn by which the changed shape comes back exactly in the same pose. Where hair flies, links beside
+/// each other are turned to very different sides for an instant. There it is the mean of what the links around would do, seen through the
+/// mean of their turns: by their own turns they would fold against each other at rest.
+fn turns_at_rest(rest: &[Vec3], turns: &[Quat], [before, after]: [&[Vec3]; 2]) -> Vec<Quat> {
+    let count = rest.len();
+    let still = |i: usize| before[i].distance_squared(after[i]) < STILL * STILL;
+    let exact = |i: usize| {
+        if still(i) {
+            return Quat::IDENTITY;
+        }
+        smallest_turn(rest[i], (turns[i].inverse() * after[i]).normalize_or(rest[i]))
+    };
+    let means: Vec<Quat> = (0..count).map(|i| mean_turn(&turns[around(i, count)])).collect();
+    let through_mean = |i: usize| means[i].inverse() * smallest_turn(before[i], after[i]) * means[i];
+    let even: Vec<Quat> = (0..count).map(through_mean).collect();
+    let of = |i: usize| {
+        let near = around(i, count);
+        let most = near.clone().map(|j| turns[j].angle_between(means[i])).fold(0.0, f32::max);
+        let flies = smoothstep(FLIES[0], FLIES[1], most);
+        if flies > 0.0 { exact(i).slerp(mean_turn(&even[near]), flies) } else { exact(i) }
+    };
+    (0..count).map(of).collect()
+}
 
 /// How each link at rest is turned in motion. Each turn is that of the link before, and the smallest one from there, as the simulation
 /// carries a motion over to another hairstyle.
@@ -58,7 +106,8 @@ impl CarriedGuide<'_> {
 
     /// The seen guide takes other places. `factor` is that on its length.
     ///
-    /// A motion turns each link at rest to the seen one. What it turns to the new place of the link becomes the link at rest.
+    /// A motion turns each link at rest to the seen one. What it turns to the new place of the link becomes the link at rest, evenly along
+    /// hair that flies.
     pub fn move_to(&mut self, seen: &[Vec3], factor: f32) -> Option<()> {
         let input = self.input()?;
         let output = directions(&self.output(&input));
@@ -66,18 +115,16 @@ impl CarriedGuide<'_> {
         let turns = link_turns(&self.rest, &self.seen);
         let [before, after, mut rest] = [&self.seen, &seen.to_vec(), &self.rest].map(|p| directions(p));
         let mut ways = output;
-        let mut moved = false;
-        for i in 0..count {
-            if before[i].distance_squared(after[i]) < STILL * STILL {
-                continue;
-            }
-            let now = turns[i].inverse() * after[i];
-            ways[i] = smallest_turn(rest[i], now.normalize_or(rest[i])) * ways[i];
-            rest[i] = now;
-            moved = true;
-        }
-        if !moved && factor == 1.0 {
+        let still = (0..count).all(|i| before[i].distance_squared(after[i]) < STILL * STILL);
+        if still && factor == 1.0 {
             return Some(());
+        }
+        let seen_ways = [&before[..count], &after[..count]];
+        for (i, turn) in turns_at_rest(&rest[..count], &turns[..count], seen_ways).into_iter().enumerate() {
+            if turn != Quat::IDENTITY {
+                ways[i] = turn * ways[i];
+                rest[i] = (turn * rest[i]).normalize_or(rest[i]);
+            }
         }
         let links: Vec<f32> = lengths(&self.rest).iter().map(|link| link * factor).collect();
         self.rest = along(self.rest[0], &rest, &links);
