@@ -39,4 +39,4 @@ pub use input::{PlacedField, StepInput};
 pub use integrator::{Integrator, MAX_SWEEPS};
 pub use report::{BodyPart, InsidePoint, StepReport};
 pub use settings::{Locks, MAX_SUBSTEPS, Repulsion, RepulsionMode, SimulationSettings, Wind};
-pub use simulation::{RestoreError, Simulation};
+pub use simulation::{BodyNow, RestoreError, Simulation};

@@ -433,6 +433,7 @@ mod body;
 mod restyle;
 mod snapshot;
 
+pub use body::BodyNow;
 use restyle::TieBlend;
 pub use snapshot::RestoreError;
 

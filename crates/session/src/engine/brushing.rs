@@ -6,6 +6,7 @@ use glam::{Affine3A, Vec3};
 use lovelock_base::settings::Settings as _;
 use lovelock_brush::{Brush, BrushSettings, BrushSurroundings, StrokeSample, Tool};
 use lovelock_groom::{GuideFrame, Guides, Hairstyle, Obstacle};
+use lovelock_simulation::BodyNow;
 use lovelock_style::hand::HandEdits;
 use lovelock_style::{Operation, StyleCache, StyleStack};
 
@@ -21,12 +22,10 @@ pub struct BrushLayers {
 }
 
 impl BrushLayers {
-    /// The hair that the layer `layer` of a scene gets, in the size of the head that wears it; `None` if the scene has no such layer of
-    /// edits by hand.
-    fn below(&mut self, source: &StyleSource, layer: u32) -> Option<Arc<Hairstyle>> {
-        source.stack.hand(layer)?;
-        let at = source.stack.layers.iter().position(|own| own.id == layer)?;
-        let mut stack = source.stack.clone();
+    /// The hair that a layer of `stack` gets, in the size of the head that wears it; `None` if there is no such layer of edits by hand.
+    fn below(&mut self, source: &StyleSource, mut stack: StyleStack, layer: u32) -> Option<Arc<Hairstyle>> {
+        stack.hand(layer)?;
+        let at = stack.layers.iter().position(|own| own.id == layer)?;
         stack.layers.truncate(at);
         let below = self.below.apply(&source.base, &stack, Arc::clone(&source.obstacle)).style;
         Some(self.worn.of(&below, source.scale))
@@ -57,7 +56,7 @@ impl Engine {
         (layer, edits): (u32, &HandEdits),
         frozen: &[bool],
     ) -> Option<Brush> {
-        let below = layers.below(&self.loaded.source, layer)?;
+        let below = layers.below(&self.loaded.source, self.stack(), layer)?;
         Brush::new(tool, inverted, settings, [&below, &self.scene.style], edits, frozen)
     }
 
@@ -90,7 +89,8 @@ impl Engine {
 
     fn comb_frame(&mut self, brush: &mut Brush, sample: &StrokeSample, mut frame: GuideFrame) -> Vec<usize> {
         let source = &self.loaded.source;
-        let obstacle = WornObstacle { obstacle: &*source.obstacle, scale: source.scale };
+        let body = self.simulation.body_now();
+        let obstacle = BodyAround { rest: &*source.obstacle, scale: source.scale, now: &body };
         let changed = brush.stroke_to(&mut frame, &BrushSurroundings { obstacle: &obstacle }, sample);
         if !changed.is_empty() {
             self.simulation.move_guides(&frame, brush.rest(), &changed);
@@ -126,17 +126,17 @@ fn scene_with(scene: &Scene, cache: &mut StyleCache, stack: StyleStack) -> Arc<S
     Arc::new(Scene { style, source: Arc::new(source), ..scene.clone() })
 }
 
-/// The body at rest in the size of the head that wears the hair, head space. Shoulders do not move with the dance here; the simulation
-/// pushes hair out of those that do.
-struct WornObstacle<'a> {
-    obstacle: &'a dyn Obstacle,
+/// The body of the current step in the space of the head. `rest` is the body at rest, in the size of the usual head.
+struct BodyAround<'a> {
+    rest: &'a dyn Obstacle,
     scale: f32,
+    now: &'a BodyNow<'a>,
 }
 
-impl Obstacle for WornObstacle<'_> {
+impl Obstacle for BodyAround<'_> {
     fn distance(&self, p: Vec3) -> (f32, Vec3) {
-        let (distance, normal) = self.obstacle.distance(p / self.scale);
-        (distance * self.scale, normal)
+        let (distance, normal) = self.rest.distance(p / self.scale);
+        self.now.distance(p, (distance * self.scale, normal))
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use lovelock_style::StyleStack;
+
 use super::Engine;
 use crate::scene::Scene;
 
@@ -24,6 +26,19 @@ impl Engine {
             Some(styling) => styling.scene_at(&self.loaded, secs),
             None => Arc::clone(&self.loaded),
         }
+    }
+
+    /// The layers of the current step.
+    pub(super) fn stack(&self) -> StyleStack {
+        let stack = &self.loaded.source.stack;
+        let secs = self.loaded.position_secs(self.time_secs());
+        self.styling.as_ref().map_or_else(|| stack.clone(), |styling| styling.stack_at(stack, secs))
+    }
+
+    /// Keeps the hairstyle without its tracks.
+    #[cfg(test)]
+    pub(crate) fn forget_tracks(&mut self) {
+        self.styling = None;
     }
 
     /// Takes the hairstyle of the current step; see [`Engine::styled`]. The hair keeps moving.

@@ -105,6 +105,11 @@ impl Styling {
         }
     }
 
+    /// The layers of a scene with their numbers at a time of the timeline, seconds.
+    pub(crate) fn stack_at(&self, stack: &StyleStack, secs: f64) -> StyleStack {
+        self.tracks.stack_with(stack, &self.tracks.values_at(secs))
+    }
+
     /// `loaded` with its hairstyle at a time of the timeline, seconds.
     pub(crate) fn scene_at(&mut self, loaded: &Arc<Scene>, secs: f64) -> Arc<Scene> {
         let values = self.tracks.values_at(secs);

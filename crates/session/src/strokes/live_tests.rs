@@ -4,6 +4,7 @@ use glam::Vec3;
 use lovelock_brush::{BrushSettings, StrokeSample, Tool};
 use lovelock_project::Project;
 use lovelock_project::files::Access;
+use lovelock_project::tracks::{Key, Track};
 use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::{Hand, Wave};
 use lovelock_style::{Layer, Operation};
@@ -83,6 +84,42 @@ fn hair_that_is_combed_at_rest_is_the_hair_of_the_layer() {
     let off = farthest(&after, &rest);
     println!("combed by {moved} m; the layer differs by {off} m");
     assert!(moved > 0.02 && off < 0.002, "{moved}, {off}");
+}
+
+#[test]
+fn hair_whose_lower_layers_have_tracks_is_combed_as_it_is_at_the_time() {
+    let mut project = brushed();
+    let key = |secs, value| Key { secs, value: vec![value] };
+    project.timeline.tracks =
+        vec![Track { keys: vec![key(0.0, 0.002), key(4.0, 0.03)], ..Track::new("hair/stack/1/wave/height") }];
+    project.timeline.preroll_secs = 0.25;
+    // How far the hair at rest is from what was combed, at the time of the stroke.
+    let off = |tracked: bool| {
+        let mut loader = SceneLoader::new();
+        let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+        let mut engine = Engine::at_rest(scene, project.simulation, crate::clock::STEP_SECS);
+        engine.follow(&project);
+        engine.advance_to_step(120);
+        engine.lay_at_rest();
+        let mut below = BrushLayers::default();
+        if !tracked {
+            engine.forget_tracks();
+        }
+        let mut stroke = Stroke::begin(&engine, &start(Tool::Comb), HandEdits::default(), &[], &mut below)
+            .expect("a stroke");
+        for sample in samples(&engine) {
+            stroke.stroke_to(&mut engine, &sample);
+        }
+        let after = snapshot(&mut engine);
+        let project = with_edits(&project, stroke.edits());
+        engine.set_scene(loader.load_now(&project, &Access::new()).expect("a scene").0);
+        engine.follow(&project);
+        engine.lay_at_rest();
+        farthest(&after, &snapshot(&mut engine))
+    };
+    let [with, without] = [true, false].map(off);
+    println!("the layer differs by {with} m; combed without its tracks by {without} m");
+    assert!(with < 0.002 && without > 2.0 * with.max(0.001), "{with}, {without}");
 }
 
 #[test]

@@ -1,14 +1,46 @@
 //! The simulator and the body: the field of head and shoulders, and which part of the hair at rest penetrates
 //! the body.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
 use super::Simulation;
 use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
 use crate::colliders::field::{MovingField, PlaneRow};
-use crate::lanes::{LANES, at};
+use crate::colliders::shape::Shape;
+use crate::colliders::transformed;
+use crate::lanes::{LANES, ZERO3, at, splat3};
 use crate::{BodyPart, InsidePoint, SimulationSettings, StepInput};
+
+/// Distance up to which the moving body is measured, metres.
+fn reach() -> f32 {
+    SimulationSettings::default().skin_margin + LAYER_HEIGHT
+}
+
+/// The body with which hair collides, at the end of the last step.
+pub struct BodyNow<'a> {
+    field: Option<&'a MovingField>,
+    /// In head space.
+    shapes: Vec<Shape>,
+}
+
+impl BodyNow<'_> {
+    /// Signed distance in metres from a point of head space to the body, and the normal there. `at_rest` is that of the body at rest, which
+    /// moves with the head where the head alone moves the skin. Skin further away than a few centimetres is not measured; the distance of
+    /// such points is at least that.
+    pub fn distance(&self, p: Vec3, at_rest: (f32, Vec3)) -> (f32, Vec3) {
+        let reach = reach();
+        let skin = self.field.and_then(|field| field.skin_near(p, reach));
+        let mut nearest = skin.map_or(at_rest, |skin| skin.unwrap_or((at_rest.0.max(reach), at_rest.1)));
+        for shape in &self.shapes {
+            let found = shape.nearest(&splat3(p), &ZERO3);
+            if found.distance[0] < nearest.0 {
+                nearest = (found.distance[0], (p - at(&found.centre, 0)).normalize_or(nearest.1));
+            }
+        }
+        nearest
+    }
+}
 
 impl Simulation {
     /// Switches to the field of `input` if it differs from the current one; returns whether the new input has
@@ -25,8 +57,7 @@ impl Simulation {
             Some(placed) => {
                 let known = self.field.as_ref().is_some_and(|f| f.is(placed.field, placed.pose.lift));
                 if !known {
-                    let reach = SimulationSettings::default().skin_margin + LAYER_HEIGHT;
-                    self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach));
+                    self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach()));
                     self.blocks.iter_mut().for_each(|block| block.skin.fill(PlaneRow::NO_SKIN));
                     self.measure_field_distances();
                 }
@@ -51,6 +82,17 @@ impl Simulation {
                 block.field_distance.extend(block.rest.position.iter().map(|row| field.rest_distance(row)));
             }
         });
+    }
+
+    /// The body at the end of the last step.
+    pub fn body_now(&mut self) -> BodyNow<'_> {
+        if let Some(field) = &mut self.field {
+            field.find_body(reach());
+        }
+        let head_from_world: Affine3A = self.head.affine().inverse();
+        let shapes =
+            self.colliders.iter().filter_map(|c| Shape::new(&transformed(&c.shape, &head_from_world)));
+        BodyNow { shapes: shapes.collect(), field: self.field.as_ref() }
     }
 
     /// Sets whether contact tests that cannot find a contact are skipped (the default). The motion is the

@@ -1,7 +1,7 @@
 //! Hair against the skinned surface itself, not against its approximations.
 
 use lovelock_groom::Preset;
-use lovelock_motion::{Skin, skin};
+use lovelock_motion::{RestDistance, Skin, SurfaceDistance, skin};
 use lovelock_simulation::SimulationSettings;
 use lovelock_testkit::suite;
 
@@ -53,4 +53,43 @@ fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance() {
     }
     let control = deepest(Preset::Long, motion, false);
     assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test proves nothing");
+}
+
+#[test]
+fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
+    let mut stage = Stage::of_wisps(Preset::Smooth, 12);
+    stage.play("dance").expect("the motion");
+    let at_rest = RestDistance::new(&stage.body);
+    let mut simulation = stage.simulation(Some(0.0));
+    let mut surface = Skin::default();
+    // The worst error of the body of the last step, and that of the body at rest, of places a centimetre outside the skin.
+    let (mut worst, mut worst_at_rest, mut places) = (0.0_f32, 0.0_f32, 0);
+    for step in 1..=240 {
+        let input = stage.at(Some(f64::from(step) * f64::from(STEP_SECS)));
+        simulation.step(&input, &SimulationSettings::default(), STEP_SECS);
+        if step % 80 != 0 {
+            continue;
+        }
+        skin(&stage.body, &stage.pose, &mut surface);
+        let exact = SurfaceDistance::new(&surface.positions, &stage.body.mesh.triangles);
+        let head_from_world = stage.pose.world_from_head.inverse();
+        let now = simulation.body_now();
+        for (p, normal) in surface.positions.iter().zip(&surface.normals).step_by(7) {
+            let near = *p + 0.01 * *normal;
+            let place = head_from_world.transform_point3(near);
+            let distance = exact.distance(near);
+            // Neck and shoulders; not in the folds of skin.
+            let in_reach = place.y > -0.2 && place.y < 0.05 && place.x.abs() < 0.2 && distance > 0.008;
+            if !in_reach {
+                continue;
+            }
+            places += 1;
+            let rest = at_rest.distance(place);
+            worst = worst.max((now.distance(place, rest).0 - distance).abs());
+            worst_at_rest = worst_at_rest.max((rest.0 - distance).abs());
+        }
+    }
+    println!("{places} places: {:.2} mm, at rest {:.2} mm", 1e3 * worst, 1e3 * worst_at_rest);
+    assert!(places > 100 && worst < 0.004, "{worst}");
+    assert!(worst_at_rest > 0.01, "control: at rest it is off by {worst_at_rest} m");
 }

@@ -27,8 +27,8 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::simd::Width;
 use lovelock_motion::{BodyField, FIELD_JOINTS, FieldPose};
 
-use crate::lanes::{Lane, Lane3, at};
-use crate::motion::HeadPose;
+use crate::lanes::{Lane, Lane3, at, put, splat3};
+use crate::motion::{HeadPose, substep};
 use affine::Affine;
 use occupancy::Occupancy;
 pub(crate) use planes::{FieldRow, PlaneRow};
@@ -157,6 +157,29 @@ impl MovingField {
     /// The joints relative to the head: the whole motion that the next step starts with.
     pub(crate) const fn joints(&self) -> &Joints {
         &self.joints
+    }
+
+    /// Finds the body at the end of the last step, for [`MovingField::skin_near`].
+    pub(crate) fn find_body(&mut self, reach: f32) {
+        let ends = [&self.joints, &self.joints];
+        self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, true);
+    }
+
+    /// Distance from the skin and its normal at the end of the last step, at a point of head space. `None` if the skin is further away
+    /// than `reach`. The outer result is `None` where the head alone moves the skin, which is there as it is at rest. Needs
+    /// [`MovingField::find_body`].
+    pub(crate) fn skin_near(&self, p: Vec3, reach: f32) -> Option<Option<(f32, Vec3)>> {
+        if self.is_moved_by_head_alone(p).0 {
+            return None;
+        }
+        let identity = HeadPose::IDENTITY;
+        let here = substep(&identity, &identity, Vec3::ZERO, self.dt_secs);
+        let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
+        // Nothing is searched for lanes that are not numbers.
+        let mut alone = splat3(Vec3::NAN);
+        put(&mut alone, 0, p);
+        let row = self.row(&alone, &here, 1.0, reach, &mut planes);
+        Some(row.map(|row| (row.distance[0], at(&row.normal, 0))).filter(|(distance, _)| *distance < reach))
     }
 
     /// Restores the joints returned by [`MovingField::joints`].
