@@ -79,6 +79,40 @@ impl StrandSet {
     pub fn segments(&self) -> usize {
         self.points() - self.count()
     }
+
+    /// The strands with their first `points` points each, which are all or fewer; a strand of fewer than 2 is left out. `wisps` are those of
+    /// the hairstyle, and get the new strands.
+    #[must_use]
+    pub fn shortened(&self, wisps: &mut [Wisp], points: impl Fn(usize) -> usize) -> Self {
+        let mut out = Self { first_point: vec![0], ..Self::default() };
+        let mut kept = Vec::new();
+        for wisp in wisps {
+            let strands = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
+            wisp.first_strand = out.wisp.len() as u32;
+            for strand in strands {
+                let whole = self.first_point[strand] as usize..self.first_point[strand + 1] as usize;
+                let range = whole.start..whole.start + whole.len().min(points(strand));
+                if range.len() < 2 {
+                    continue;
+                }
+                kept.push(strand);
+                out.guide_param.extend_from_slice(&self.guide_param[range.clone()]);
+                out.offset_normal.extend_from_slice(&self.offset_normal[range.clone()]);
+                out.offset_binormal.extend_from_slice(&self.offset_binormal[range.clone()]);
+                out.offset_tangent.extend_from_slice(&self.offset_tangent[range.clone()]);
+                out.taper.extend_from_slice(&self.taper[range]);
+                out.first_point.push(out.guide_param.len() as u32);
+                out.wisp.push(self.wisp[strand]);
+                out.weights.push(self.weights[strand]);
+                out.shade.push(self.shade[strand]);
+            }
+            wisp.strand_count = out.wisp.len() as u32 - wisp.first_strand;
+        }
+        if !self.colours.is_empty() {
+            out.colours = self.colours.selected(kept.into_iter());
+        }
+        out
+    }
 }
 
 /// A hairstyle, immutable and shared by `Arc`.
@@ -133,6 +167,17 @@ pub enum HairstyleError {
 }
 
 impl Hairstyle {
+    /// The hairstyle with at most about `most` of its strands, evenly from all wisps, without the look: to find where hair is.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Self {
+        let every = self.strands.count().div_ceil(most.max(1)).max(1);
+        let mut wisps = self.wisps.clone();
+        let all_or_none = |strand: usize| if strand.is_multiple_of(every) { usize::MAX } else { 0 };
+        let strands = self.strands.shortened(&mut wisps, all_or_none);
+        let (guides, widest) = (self.guides.clone(), self.widest.clone());
+        Self { name: self.name.clone(), wisps, guides, widest, strands, ..Self::default() }
+    }
+
     /// Checks every index and length, so that interpolation can rely on them.
     ///
     /// # Errors

@@ -4,8 +4,8 @@ mod file;
 
 use crate::operate::{AnyOperation, Kind, Operate};
 use crate::operations::{
-    Bend, Braid, Clump, Coil, Curl, Damping, Dreadlock, Dye, Friction, Fringe, Frizz, Gradient, Grey,
-    HairTie, Hand, Highlights, Hold, Length, Lift, Melanin, Noise, Part, Scissors, Smooth, Stiffness,
+    Bend, Braid, Clump, Coil, Curl, Damping, Density, Dreadlock, Dye, Friction, Fringe, Frizz, Gradient,
+    Grey, HairTie, Hand, Highlights, Hold, Length, Lift, Melanin, Noise, Part, Scissors, Smooth, Stiffness,
     Straighten, Strays, Streak, Sweep, Taper, Twist, Wander, Wave, Width,
 };
 use crate::stored::UnknownOperation;
@@ -67,8 +67,8 @@ macro_rules! operations {
 // The table of operations, in the order of menus: each is a file or folder of `operations`.
 operations!(
     Length, Scissors, Hand, Lift, Bend, Straighten, Smooth, Twist, Sweep, Part, Fringe, Wave, Noise, HairTie,
-    Coil, Dreadlock, Braid, Clump, Curl, Frizz, Strays, Wander, Width, Taper, Melanin, Dye, Gradient,
-    Highlights, Grey, Streak, Stiffness, Hold, Damping, Friction
+    Coil, Dreadlock, Braid, Clump, Curl, Frizz, Strays, Wander, Density, Width, Taper, Melanin, Dye,
+    Gradient, Highlights, Grey, Streak, Stiffness, Hold, Damping, Friction
 );
 
 impl Operation {

@@ -146,36 +146,9 @@ impl StrandEdits<'_> {
         };
         let stays: Vec<bool> = (0..style.strands.count()).map(stays).collect();
         if stays.contains(&false) {
-            leave(style, &stays);
+            let set = std::mem::take(&mut style.strands);
+            style.strands =
+                set.shortened(&mut style.wisps, |strand| if stays[strand] { usize::MAX } else { 0 });
         }
     }
-}
-
-/// Leaves the strands for which `stays` is true.
-fn leave(style: &mut Hairstyle, stays: &[bool]) {
-    let set = &style.strands;
-    let mut out = StrandSet { first_point: vec![0], ..StrandSet::default() };
-    let mut first_strand = 0;
-    for wisp in &mut style.wisps {
-        let strands = wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize;
-        for strand in strands.filter(|strand| stays[*strand]) {
-            let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
-            out.guide_param.extend(&set.guide_param[range.clone()]);
-            out.offset_normal.extend(&set.offset_normal[range.clone()]);
-            out.offset_binormal.extend(&set.offset_binormal[range.clone()]);
-            out.offset_tangent.extend(&set.offset_tangent[range.clone()]);
-            out.taper.extend(&set.taper[range]);
-            out.first_point.push(out.guide_param.len() as u32);
-            out.wisp.push(set.wisp[strand]);
-            out.weights.push(set.weights[strand]);
-            out.shade.push(set.shade[strand]);
-        }
-        wisp.first_strand = first_strand;
-        wisp.strand_count = out.wisp.len() as u32 - first_strand;
-        first_strand = out.wisp.len() as u32;
-    }
-    if !set.colours.is_empty() {
-        out.colours = set.colours.selected((0..stays.len()).filter(|strand| stays[*strand]));
-    }
-    style.strands = out;
 }
