@@ -44,6 +44,7 @@ impl Window {
                             self.brushes.forget_frozen();
                         }
                         Some(super::brushes::BrushRequest::Save) => asked = Some(Purpose::SaveStrokes),
+                        Some(super::brushes::BrushRequest::Paint(id)) => self.paint_map(project, id),
                         None => {}
                     }
                 });

@@ -1,4 +1,5 @@
-//! The point of a triangle that is closest to another point (Ericson 2005, "Real-Time Collision Detection", section 5.1.5).
+//! The point of a triangle that is closest to another point (Ericson 2005, "Real-Time Collision Detection", section 5.1.5), or where a ray
+//! meets it.
 
 use glam::Vec3;
 
@@ -75,6 +76,23 @@ pub fn closest_barycentric(p: Vec3, triangle: &[Vec3; 3]) -> [f32; 3] {
         }
     }
     weights
+}
+
+/// The intersection of a ray and a triangle: weights of the second and third corner, and the distance in lengths of `along` (Möller and
+/// Trumbore 1997).
+#[inline]
+pub fn ray_meets([a, b, c]: [Vec3; 3], eye: Vec3, along: Vec3) -> Option<[f32; 3]> {
+    let (to_b, to_c) = (b - a, c - a);
+    let p = along.cross(to_c);
+    let determinant = to_b.dot(p);
+    if !determinant.is_finite() || determinant == 0.0 {
+        return None;
+    }
+    let from = (eye - a) / determinant;
+    let u = from.dot(p);
+    let q = from.cross(to_b);
+    let (v, t) = (along.dot(q), to_c.dot(q));
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some([u, v, t])
 }
 
 #[cfg(test)]

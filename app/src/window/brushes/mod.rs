@@ -61,6 +61,7 @@ pub(crate) struct Brushes {
     /// Whether the stroke of the button that is down was taken back, so that the pointer does nothing more.
     spent: bool,
     resize: Option<keys::Resize>,
+    seen: pick::SeenHair,
     strokes: Strokes,
 }
 
@@ -94,5 +95,18 @@ impl Brushes {
     /// Forgets which locks are protected.
     pub(crate) fn forget_frozen(&mut self) {
         self.strokes.frozen = std::sync::Arc::default();
+    }
+}
+
+impl crate::window::Window {
+    /// Starts to paint where an operation acts. The pointer does not brush hair meanwhile.
+    pub(in crate::window) fn paint_map(&mut self, project: &mut lovelock_project::Project, id: &str) {
+        if self.layers.paint_map(&mut project.hair.stack, id) {
+            self.brushes.on = false;
+        } else {
+            let why =
+                "There are as many layers as there can be. Remove one, so that the map gets one of its own.";
+            self.notices.push(crate::window::notices::Kind::Warning, why.to_owned());
+        }
     }
 }

@@ -15,7 +15,18 @@ pub(crate) enum BrushRequest {
     Thaw,
     /// Save the strokes of this run.
     Save,
+    /// Paint where the operation with this id acts.
+    Paint(&'static str),
 }
+
+/// Operations that are painted as maps of the scalp, and what painting does.
+const MAPS: [(&str, &str, &str); 5] = [
+    ("density", "Density", "Paints where hair is thinned out."),
+    ("length", "Length", "Paints where hair is shorter."),
+    ("width", "Width", "Paints where strands are thinner or thicker."),
+    ("stiffness", "Stiffness", "Paints where hair is stiffer."),
+    ("dye", "Colour", "Paints where hair is dyed."),
+];
 
 /// The switches of brushes and the settings of the tool.
 pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<BrushRequest> {
@@ -56,6 +67,17 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
         request = Some(BrushRequest::Save);
     }
     note(ui, "Strokes are written into the selected layer By hand, or into the last one.");
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Paint a map:");
+        for (id, name, tip) in MAPS {
+            let tip = format!(
+                "{tip} The map is the painted mask of a layer, whose settings say how much. Ctrl erases."
+            );
+            if ui.button(name).on_hover_text(tip).clicked() {
+                request = Some(BrushRequest::Paint(id));
+            }
+        }
+    });
     request
 }
 

@@ -8,7 +8,7 @@ use lovelock_session::render_thread::RenderedImage;
 use lovelock_session::snapshot::FrameSnapshot;
 
 use super::circle::{self, Look};
-use super::{pick, strokes};
+use super::strokes;
 use crate::window::overlay::View;
 use crate::window::overlay::head::Head;
 use crate::window::{Window, notices, theme};
@@ -57,7 +57,7 @@ impl Window {
         let settings = self.layout.brushes.of(self.brushes.tool);
         let over = response.contains_pointer() || self.brushes.held.is_some();
         let at = resizing.or_else(|| pointer.filter(|_| over));
-        let under = at.and_then(|at| pick::hair_at(view, head, snapshot, at));
+        let under = at.and_then(|at| self.brushes.seen.at(view, head, snapshot, at));
         let place = under.or_else(|| {
             let held = self.brushes.held?;
             Some(view.at_depth_of(at?, head.world_from_head.transform_point3(held.place)))
@@ -122,7 +122,7 @@ impl Window {
             // Only what the pointer has moved: hair that dances past it is not combed by that.
             let from = view.at_depth_of(held.at, before);
             // The brush follows the hair in depth, but does not fall from a lock onto what is far behind it.
-            let found = pick::hair_at(view, head, snapshot, at);
+            let found = self.brushes.seen.at(view, head, snapshot, at);
             let now = found.filter(|found| found.distance(moved) < radius).unwrap_or(moved);
             if !now.is_finite() {
                 continue;

@@ -2,6 +2,7 @@
 
 use egui::Pos2;
 use glam::{Affine3A, Vec3};
+use lovelock_base::triangle::ray_meets;
 use lovelock_groom::Scalp;
 
 use super::View;
@@ -144,7 +145,7 @@ fn under(
             Some((*scalp.positions.get(v)? + *scalp.normals.get(v)? * height, *scalp.normals.get(v)?))
         };
         let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { continue };
-        let Some([u, v, t]) = meets([a.0, b.0, c.0], eye, along) else { continue };
+        let Some([u, v, t]) = ray_meets([a.0, b.0, c.0], eye, along) else { continue };
         let place = eye + along * t;
         let normal = (a.1 * (1.0 - u - v) + b.1 * u + c.1 * v).normalize_or(Vec3::Y);
         let faces = if normal.dot(along) > 0.0 { Side::Far } else { Side::Seen };
@@ -164,21 +165,6 @@ fn nearest(scalp: &Scalp, place: Vec3) -> Option<(OnHead, f32)> {
         .min_by(|(a, _), (b, _)| a.distance_squared(place).total_cmp(&b.distance_squared(place)))?;
     let normal = n.try_normalize()?;
     Some((OnHead { place: *p, normal }, (place - *p).dot(normal)))
-}
-
-/// The intersection of a ray and a triangle: weights of the second and third corner, and the distance (Möller and Trumbore 1997).
-fn meets([a, b, c]: [Vec3; 3], eye: Vec3, along: Vec3) -> Option<[f32; 3]> {
-    let (to_b, to_c) = (b - a, c - a);
-    let p = along.cross(to_c);
-    let determinant = to_b.dot(p);
-    if !determinant.is_finite() || determinant == 0.0 {
-        return None;
-    }
-    let from = (eye - a) / determinant;
-    let u = from.dot(p);
-    let q = from.cross(to_b);
-    let (v, t) = (along.dot(q), to_c.dot(q));
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some([u, v, t])
 }
 
 #[cfg(test)]

@@ -10,12 +10,13 @@ pub(crate) mod ties;
 
 use egui::{CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 use glam::{Mat4, Vec3};
+use lovelock_render::Camera;
 use lovelock_session::render_thread::RenderedImage;
 
 use super::theme;
 
 /// The image on the screen and the camera with which it was rendered.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct View {
     /// The position of the image on the screen, points.
     pub(crate) place: Rect,
@@ -56,29 +57,39 @@ fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
 impl View {
     /// The view of an image that is shown at `place`; `None` if it has no size.
     pub(crate) fn new(painted: &RenderedImage, place: Rect) -> Option<Self> {
+        Self::of_camera(&painted.camera, place)
+    }
+
+    /// The view of what a camera sees, shown at `place`.
+    pub(crate) fn of_camera(camera: &Camera, place: Rect) -> Option<Self> {
         let aspect = place.width() / place.height();
         if !(aspect.is_finite() && aspect > 0.0) {
             return None;
         }
-        let clip_from_world = painted.camera.clip_from_world(aspect);
+        let clip_from_world = camera.clip_from_world(aspect);
         let world_from_clip = clip_from_world.inverse();
-        (world_from_clip.is_finite() && painted.camera.eye.is_finite()).then_some(Self {
+        (world_from_clip.is_finite() && camera.eye.is_finite()).then_some(Self {
             place,
             clip_from_world,
             world_from_clip,
-            eye: painted.camera.eye,
+            eye: camera.eye,
         })
     }
 
     /// The position of a point of the world on the screen, also outside the image; `None` behind the camera.
     pub(crate) fn to_screen(self, world: Vec3) -> Option<Pos2> {
+        self.to_screen_and_depth(world).map(|(at, _)| at)
+    }
+
+    /// As [`View::to_screen`], with the distance from the camera along the direction in which it looks.
+    pub(crate) fn to_screen_and_depth(self, world: Vec3) -> Option<(Pos2, f32)> {
         let clip = self.clip_from_world * world.extend(1.0);
         // Projections of nearer points would overflow.
         if !clip.is_finite() || clip.w < 1e-2 {
             return None;
         }
         let (x, y) = (0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
-        Some(self.place.min + self.place.size() * pos2(x, y).to_vec2())
+        Some((self.place.min + self.place.size() * pos2(x, y).to_vec2(), clip.w))
     }
 
     /// The direction from the eye through a point of the screen.
@@ -97,24 +108,25 @@ impl View {
 
     /// The point of the world under a point of the screen at the distance of `depth_of` from the camera.
     pub(crate) fn at_depth_of(self, at: Pos2, depth_of: Vec3) -> Vec3 {
-        let forward = self.ray(self.place.center());
+        self.at_depth(at, (depth_of - self.eye).dot(self.ray(self.place.center())))
+    }
+
+    /// The point of the world under a point of the screen at a distance from the camera along the direction in which it looks.
+    pub(crate) fn at_depth(self, at: Pos2, depth: f32) -> Vec3 {
         let ray = self.ray(at);
-        self.eye + ray * ((depth_of - self.eye).dot(forward) / ray.dot(forward).max(1e-3))
+        self.eye + ray * (depth / ray.dot(self.ray(self.place.center())).max(1e-3))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use egui::vec2;
-    use lovelock_render::Camera;
-
     use super::*;
+    use egui::vec2;
 
     fn view() -> View {
         let camera = Camera { eye: Vec3::new(0.4, 1.6, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov_y: 0.5 };
         let place = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 450.0));
-        let clip_from_world = camera.clip_from_world(800.0 / 450.0);
-        View { place, clip_from_world, world_from_clip: clip_from_world.inverse(), eye: camera.eye }
+        View::of_camera(&camera, place).expect("a view")
     }
 
     #[test]

@@ -110,6 +110,34 @@ fn the_other_side_is_painted_with_it_if_the_brush_mirrors() {
 }
 
 #[test]
+fn a_map_is_painted_into_a_layer_of_its_own() {
+    let Some(mut harness) = with_picture() else { return };
+    let whole = of(&harness).session.scene.clone().expect("a scene").style.strands.count();
+    key(&mut harness, Modifiers::NONE, Key::H);
+    let start = |harness: &mut Whole| {
+        super::control(harness, egui::accesskit::Role::Button, "Density").click();
+        go(harness);
+    };
+    start(&mut harness);
+    assert!(of(&harness).layers.painting && !of(&harness).brushes.on);
+    let layers = project(&harness).hair.stack.layers.clone();
+    assert_eq!(layers.iter().map(|layer| layer.operation.id()).collect::<Vec<_>>(), ["density"]);
+    assert_eq!(mask_at(&harness, FOREHEAD), 0.0, "it acts nowhere yet");
+    set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.05, 1.0));
+    let middle = on_screen(&harness, FOREHEAD);
+    drag_over(&mut harness, middle - egui::vec2(6.0, 0.0), middle + egui::vec2(6.0, 0.0));
+    assert!(mask_at(&harness, FOREHEAD) > 0.9 && mask_at(&harness, -FOREHEAD) == 0.0);
+    wait(&mut harness, "thinner hair", |window| {
+        let scene = window.session.scene.as_ref();
+        scene.is_some_and(|scene| scene.style.strands.count() < whole)
+    });
+    // Another start goes on with the same layer.
+    key(&mut harness, Modifiers::NONE, Key::H);
+    start(&mut harness);
+    assert_eq!(project(&harness).hair.stack.layers.len(), 1);
+}
+
+#[test]
 fn strange_strokes_are_safe() {
     let Some(mut harness) = painting() else { return };
     let before = project(&harness);

@@ -2,7 +2,7 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Ui};
-use lovelock_style::{Kind, Layer, Operation, StyleStack, Subject};
+use lovelock_style::{Kind, Layer, Mask, MaskPart, MaskRegion, Operation, StyleStack, Subject};
 
 use super::LayersView;
 
@@ -45,6 +45,24 @@ fn add(stack: &mut StyleStack, view: &mut LayersView, operation: Operation) {
     let at = after.map_or(stack.layers.len(), |i| i + 1);
     if let Some(id) = stack.insert(at, Layer { group, ..Layer::of(operation) }) {
         view.select(Some(id));
+    }
+}
+
+impl LayersView {
+    /// Starts to paint where an operation acts: in the selected layer or in the last one that has a painted mask, or in a new layer, which
+    /// acts where it is painted. Returns whether there was room for one.
+    pub(crate) fn paint_map(&mut self, stack: &mut StyleStack, id: &str) -> bool {
+        let fits = |layer: &&Layer| layer.operation.id() == id && layer.mask.painted().is_some();
+        let selected = self.selected.and_then(|id| stack.layer(id)).filter(fits);
+        let layer = selected.or_else(|| stack.layers.iter().rev().find(fits)).map(|layer| layer.id);
+        let new = |stack: &mut StyleStack| {
+            let mask = Mask::of(MaskPart::region(MaskRegion::Painted));
+            stack.push(Layer { mask, ..Layer::of(Operation::new(id)?) })
+        };
+        let Some(layer) = layer.or_else(|| new(stack)) else { return false };
+        self.reveal(Some(layer));
+        self.painting = true;
+        true
     }
 }
 
