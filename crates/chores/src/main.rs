@@ -21,7 +21,11 @@ enum Chore {
     /// Prints which crate uses which; fails on arrows that the architecture lacks and on circles among modules
     Layers,
     /// Compares FLIP, USD, EXR and farm jobs with other people's programs
-    Interchange,
+    Interchange {
+        /// Open files in every version of Blender that is known to read and write them
+        #[arg(long)]
+        every_blender: bool,
+    },
     /// Opens the page of a comparison in Chromium
     Browser,
     /// Measures how long the window takes from an input to the screen
@@ -52,7 +56,7 @@ enum Chore {
 fn main() -> ExitCode {
     let done = match Chore::parse() {
         Chore::Layers => layers::run(),
-        Chore::Interchange => interchange::run(),
+        Chore::Interchange { every_blender } => interchange::run(every_blender),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Reference(arguments) => reference::run(&arguments),

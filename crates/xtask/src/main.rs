@@ -42,8 +42,9 @@ enum Chore {
         /// The long suite: dances of ten minutes in place of seconds, and tests that take minutes; for releases
         #[arg(long)]
         long: bool,
-        /// Instead, compares FLIP, USD and farm jobs with other people's programs in Python, installed below target
-        #[arg(long, conflicts_with_all = ["filter", "package", "long"])]
+        /// Instead, compares FLIP, USD and farm jobs with other people's programs in Python, installed below target; with --long, opens files in
+        /// every version of Blender that is known to read and write them
+        #[arg(long, conflicts_with_all = ["filter", "package"])]
         interchange: bool,
         /// Instead, opens the page of a comparison in Chromium, which is installed where that is allowed
         #[arg(long, conflicts_with_all = ["filter", "package", "long"])]
@@ -88,8 +89,9 @@ enum Chore {
 fn main() -> ExitCode {
     let done = match Arguments::parse().chore {
         Chore::Run { arguments } => launch::run(&arguments),
-        Chore::Test { interchange, browser, .. } if interchange || browser => {
-            let first = if interchange { chore("interchange", []) } else { Ok(()) };
+        Chore::Test { interchange, browser, long, .. } if interchange || browser => {
+            let every = long.then(|| "--every-blender".into());
+            let first = if interchange { chore("interchange", every) } else { Ok(()) };
             first.and_then(|()| if browser { chore("browser", []) } else { Ok(()) })
         }
         Chore::Test { filter, package, long, .. } => {

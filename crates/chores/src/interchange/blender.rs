@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Blender as a Python package. It wants exactly this version of Python.
-const PACKAGE: &str = "bpy==4.5.4";
+/// Versions of Blender as a Python package: the one with long support, and the newest. They want exactly this version of Python.
+const PACKAGES: [&str; 2] = ["bpy==4.5.4", "bpy==5.0.1"];
 const PYTHON: &str = "python3.11";
 
 /// Frames that are written, and frames per second.
@@ -18,13 +18,20 @@ const FPS: f64 = 24.0;
 /// The most that a length of a file of Blender may be off, metres.
 const LIMIT: f64 = 0.01;
 
-/// Writes the small scene in the formats that Blender reads, and reads those that it writes. Says why it does not, where this Python is missing.
-pub(super) fn check(folder: &Path, program: &Path) -> anyhow::Result<()> {
+/// Writes the small scene in the formats that Blender reads, and reads those that it writes: with the first version of Blender, or with `every`.
+/// Says why it does not, where this Python is missing.
+pub(super) fn check(folder: &Path, program: &Path, every: bool) -> anyhow::Result<()> {
     if Command::new(PYTHON).arg("--version").output().is_err() {
-        println!("interchange: left out Blender: {PACKAGE} wants {PYTHON}, which is not installed");
+        println!("interchange: left out Blender: {} wants {PYTHON}, which is not installed", PACKAGES[0]);
         return Ok(());
     }
-    let python = environment_of(PYTHON, &folder.join("blender-python"), &[PACKAGE])?;
+    let count = if every { PACKAGES.len() } else { 1 };
+    PACKAGES[..count].iter().try_for_each(|package| check_version(folder, program, package))
+}
+
+fn check_version(folder: &Path, program: &Path, package: &str) -> anyhow::Result<()> {
+    let name = package.replace("bpy==", "blender-");
+    let python = environment_of(PYTHON, &folder.join(format!("{name}-python")), &[package])?;
     let loads = Command::new(&python).args(["-c", "import bpy"]).output();
     if let Err(why) = loads.context("it does not start").and_then(|output| {
         ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
@@ -33,7 +40,7 @@ pub(super) fn check(folder: &Path, program: &Path) -> anyhow::Result<()> {
         println!("interchange: left out Blender, which cannot be loaded on this system: {why:#}");
         return Ok(());
     }
-    let folder = folder.join("blender");
+    let folder = folder.join(name);
     super::empty(&folder)?;
     let project = folder.join("small.lovelock");
     fs::write(&project, include_str!("../browser/small.lovelock"))?;

@@ -26,8 +26,9 @@ const BESIDE: [&str; 3] = ["numpy<3", "usd-core>=25.5", "openjd-cli>=0.7"];
 /// The largest accepted difference between two means of FLIP. Measured: 8e-5, because theirs uses 67.02 pixels per degree.
 const LIMIT: f64 = 1e-3;
 
-/// Compares FLIP, USD and the job for many machines with other programs, and fails if one differs.
-pub(crate) fn run() -> anyhow::Result<()> {
+/// Compares FLIP, USD and the job for many machines with other programs, and fails if one differs. Files are opened in one version of Blender
+/// or in all that are known.
+pub(crate) fn run(every_blender: bool) -> anyhow::Result<()> {
     system::prepare_interchange()?;
     let folder = tool::root().join("target/interchange");
     let python = environment(&folder.join("python"), &[&[PACKAGE][..], &BESIDE].concat())?;
@@ -35,7 +36,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     exr::run(&folder)?;
     let lovelock = program::build()?;
     stage::check(&python, &folder, &lovelock)?;
-    blender::check(&folder, &lovelock)?;
+    blender::check(&folder, &lovelock, every_blender)?;
     farm::check(&python, &folder, &lovelock)
 }
 
