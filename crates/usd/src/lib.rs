@@ -5,6 +5,8 @@
 
 mod crate_bytes;
 mod crate_file;
+mod crate_samples;
+mod crate_tokens;
 mod crate_value;
 mod error;
 mod layer;

@@ -1,0 +1,3 @@
+//! Tests of stages through the interface of the crate.
+
+mod many_prims;
