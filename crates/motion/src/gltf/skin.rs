@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Mat4};
 
-use super::{accessor::Accessors, document::Primitive};
+use lovelock_gltf::Accessors;
+use lovelock_gltf::document::Primitive;
+
 use crate::MotionError;
 use crate::surface::{Palette, VertexWeights, WeightCounts};
 

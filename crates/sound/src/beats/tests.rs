@@ -1,4 +1,5 @@
 use lovelock_base::random::SplitMix64;
+use lovelock_testkit::clicks as click_samples;
 
 use super::*;
 use crate::sound::RATE;
@@ -45,6 +46,41 @@ fn clicks_are_found_within_20_ms_at_their_tempo() {
             worst * 1e3
         );
         assert!(worst < 0.02, "{bpm}: off by {worst} s");
+    }
+}
+
+/// Adds short bursts of high noise at a rate per minute, with an amplitude of `loudness` of the full one.
+fn add_hats(samples: &mut [i16], per_minute: f64, loudness: f32) {
+    let mut random = SplitMix64::new(5);
+    let count = (samples.len() as f64 / f64::from(RATE) * per_minute / 60.0) as usize;
+    for hat in 0..count {
+        let start = (hat as f64 * 60.0 / per_minute * f64::from(RATE)).round() as usize;
+        let mut before = 0.0;
+        for (i, sample) in samples.iter_mut().skip(start).take(1500).enumerate() {
+            let noise = random.unit() * 2.0 - 1.0;
+            // The difference of neighbours has little but high frequencies.
+            let high = 0.5 * (noise - std::mem::replace(&mut before, noise));
+            *sample = sample.saturating_add(Sound::quantised(loudness * high * (-(i as f32) / 300.0).exp()));
+        }
+    }
+}
+
+#[test]
+fn the_tempo_is_that_of_the_clicks_and_not_half_or_twice_of_it() {
+    for bpm in [60.0, 70.0, 90.0, 120.0, 150.0, 174.0, 180.0, 190.0] {
+        let plain = click_samples(bpm, 20.0);
+        let tempo_of = |samples: Vec<i16>| find_beats(&Sound::new(samples, 1)).tempo.expect("a tempo");
+        let tempo = tempo_of(plain.clone());
+        // The controls: quieter onsets between the beats do not double the tempo.
+        let with_hats = [0.1, 0.3].map(|loudness| {
+            let mut samples = plain.clone();
+            add_hats(&mut samples, 2.0 * bpm, loudness);
+            tempo_of(samples)
+        });
+        println!("{bpm} bpm: found {tempo:.2}; with hi-hats on eighths {with_hats:.2?}");
+        for found in [tempo, with_hats[0], with_hats[1]] {
+            assert!((found - bpm).abs() < 0.5, "{bpm}: {found}");
+        }
     }
 }
 

@@ -21,7 +21,7 @@ fn stage(prims: usize) -> String {
     text + "}\n"
 }
 
-fn crate_of(text: &str) -> Vec<u8> {
+pub fn crate_of(text: &str) -> Vec<u8> {
     let data = openusd::usda::parse(text).expect("a stage");
     let mut bytes = std::io::Cursor::new(Vec::new());
     openusd::usdc::CrateWriter::write(&data, &mut bytes).expect("a crate");
