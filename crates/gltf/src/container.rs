@@ -40,7 +40,7 @@ impl<'a> Container<'a> {
         let word = |at: usize| {
             let four = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
             four.map(|&four| u32::from_le_bytes(four)).ok_or_else(|| {
-                malformed(at, format!("the end of a file of {} bytes", bytes.len()), "the header of a chunk")
+                malformed(at, format!("a file of {} bytes", bytes.len()), "the header of a chunk")
             })
         };
         let version = word(4)?;
@@ -48,11 +48,8 @@ impl<'a> Container<'a> {
             return Err(malformed(4, format!("glTF version {version}"), "version 2"));
         }
         let (mut json, mut bin, mut at) = (None, None, 12_usize);
-        while at < bytes.len() && (json.is_none() || bin.is_none()) {
-            // Some writers leave a few bytes of padding at the end.
-            if json.is_some() && bytes.len() - at < 8 {
-                break;
-            }
+        // Some writers leave a few bytes of padding at the end.
+        while json.is_none() || bin.is_none() && at + 8 <= bytes.len() {
             let (length, kind) = (word(at)? as usize, word(at + 4)?);
             let data = bytes.get(at + 8..).and_then(|tail| tail.get(..length)).ok_or_else(|| {
                 let left = bytes.len() - at - 8;
@@ -66,8 +63,7 @@ impl<'a> Container<'a> {
             }
             at += 8 + length;
         }
-        let json = json.ok_or_else(|| malformed(12, "no JSON chunk".to_owned(), "a JSON chunk first"))?;
-        Ok(Self { json, bin, format: "glTF 2.0 (binary)" })
+        Ok(Self { json: json.unwrap_or_default(), bin, format: "glTF 2.0 (binary)" })
     }
 }
 

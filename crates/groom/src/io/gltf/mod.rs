@@ -145,7 +145,8 @@ fn refused(error: GltfError) -> HairFileError {
     match error {
         GltfError::Read { file: name, source } => HairFileError::Io { name, source },
         GltfError::Malformed { file, offset, place, found, wanted } => {
-            malformed(file, offset, format!("{place} with {found}"), wanted)
+            let found = if place.starts_with("byte ") { found } else { format!("{place} with {found}") };
+            malformed(file, offset, found, wanted)
         }
         GltfError::Extension { file, extension, advice } => {
             malformed(file, 0, format!("the extension {extension}"), format!("a file without it: {advice}"))
