@@ -321,7 +321,7 @@ impl SequenceWriter {
             let written = sound_file::write(&self.folder, sound.as_mut(), samples);
             self.new_sound =
                 Some(written.map_err(|error| {
-                    RecordError::io(&self.folder.join(SOUND_NAME), "write the sound", error)
+                    RecordError::io(self.folder.join(SOUND_NAME), "write the sound", error)
                 })?);
         }
         self.end(true)

@@ -19,11 +19,12 @@ use crate::sound::Sound;
 /// it gets to `got`.
 fn serve(socket: PathBuf, asked: u32, got: Arc<AtomicU64>) -> JoinHandle<()> {
     let listener = UnixListener::bind(&socket).expect("a socket");
-    std::thread::spawn(move || {
+    let thread = std::thread::Builder::new().name("a sound server".to_owned()).spawn(move || {
         let (stream, _) = listener.accept().expect("a client");
         let _ = converse(&stream, asked, &got);
         std::fs::remove_file(&socket).expect("the socket");
-    })
+    });
+    thread.expect("a thread")
 }
 
 fn converse(stream: &UnixStream, mut asked: u32, got: &AtomicU64) -> Result<(), ProtocolError> {

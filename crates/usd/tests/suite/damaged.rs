@@ -80,7 +80,9 @@ fn read_all(bytes: &[u8], is_crate: bool) -> Result<usize, UsdError> {
     prims.truncate(64);
     prims.extend(["/w/b", "/w", "/", "", "w/a", "/w/a/b"].iter().filter_map(|path| layer.prim_at(path)));
     for time in [None, Some(-1.0), Some(2.5), Some(f64::NAN)] {
-        time.into_iter().for_each(|time| layer.set_time(time));
+        if let Some(time) = time {
+            layer.set_time(time);
+        }
         for &prim in &prims {
             assert_eq!(
                 layer.path(prim).matches('/').count(),

@@ -289,9 +289,13 @@ impl Lines<'_> {
             // Counted from the first vertex in use, because primitives that share vertices use few of them each.
             let (first, last) = listed.iter().fold((u32::MAX, 0), |(a, b), &v| (a.min(v), b.max(v)));
             let first = first.min(last);
-            listed.iter_mut().for_each(|vertex| *vertex -= first);
+            for vertex in &mut listed {
+                *vertex -= first;
+            }
             let mut chains = chain(listed.as_chunks::<2>().0, (last - first) as usize + 1);
-            chains.vertices.iter_mut().for_each(|vertex| *vertex += first);
+            for vertex in &mut chains.vertices {
+                *vertex += first;
+            }
             return Ok(chains);
         }
         // Without indices a segment that begins where the one before ends continues its strand.
