@@ -1,6 +1,7 @@
 //! Errors of glTF files.
 
-use crate::DRACO;
+/// The extension for meshes compressed with Draco.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
 
 /// Why a file was refused.
 #[derive(Debug, thiserror::Error)]

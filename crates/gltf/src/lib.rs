@@ -16,10 +16,7 @@ pub use accessor::Accessors;
 pub use buffers::{Buffers, gltf_reference};
 pub use container::{Container, MAGIC, without_mark};
 pub use document::Document;
-pub use error::GltfError;
-
-/// The extension for meshes compressed with Draco.
-pub const DRACO: &str = "KHR_draco_mesh_compression";
+pub use error::{DRACO, GltfError};
 
 /// A file whose buffers are in memory.
 #[derive(Debug)]
