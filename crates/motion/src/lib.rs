@@ -44,13 +44,13 @@ pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
 pub use fbx::is_fbx;
 pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
-pub use gltf::gltf_reference;
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use load::{
     load_character, load_character_bytes, load_character_bytes_with, load_character_with, load_motion,
     load_motion_bytes, load_motion_with,
 };
+pub use lovelock_gltf::gltf_reference;
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;

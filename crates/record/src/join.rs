@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
 use crate::partial::{PartialFile, open_file};
+use crate::sequence::remove_own;
 use crate::{RecordError, SequenceReport};
 
 /// Joins the sequences in the subfolders of `parts` into one sequence in `out`. The result is the same, byte for byte, as if
@@ -35,7 +36,8 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
     }
     fs::create_dir_all(out).map_err(|error| RecordError::io(out, "create the folder", error))?;
     let manifest_path = out.join(MANIFEST_NAME);
-    let old = read_manifest(out).map_or_else(|_| Vec::new(), |old| old.frames);
+    let (old, old_sound) =
+        read_manifest(out).map_or_else(|_| (Vec::new(), None), |old| (old.frames, old.sound));
     if manifest_path.exists() {
         fs::remove_file(&manifest_path)
             .map_err(|error| RecordError::io(&manifest_path, "remove the old manifest", error))?;
@@ -47,6 +49,8 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
         complete: true,
         first_frame: frames.start,
         frames: found.into_values().map(|(_, frame)| frame).collect(),
+        // Parts have sounds of their own, if any, and those are not joined.
+        sound: None,
         ..head
     };
     let write = || {
@@ -59,6 +63,9 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
     for frame in old.iter().filter(|old| is_plain(&old.file) && !frames.contains(&old.number)) {
         // Frames of the sequence that was here before. Errors do no harm, because the new manifest does not list them.
         let _ = fs::remove_file(out.join(&frame.file));
+    }
+    if let Some(old) = &old_sound {
+        remove_own(out, old);
     }
     let bytes = manifest.frames.iter().map(|frame| frame.bytes).sum();
     Ok(SequenceReport { folder: out.to_owned(), frames: manifest.frames.len() as u64, kept: 0, bytes })

@@ -45,7 +45,7 @@ pub use curves::{BodyFrame, CurveBody, CurveFormat, CurveFrame, CurveReport, Cur
 pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
 pub use join::join_sequences;
-pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
+pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, ManifestSound, read_manifest};
 pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};

@@ -30,6 +30,9 @@ pub struct Manifest {
     pub first_frame: u64,
     /// The frames, by rising number.
     pub frames: Vec<ManifestFrame>,
+    /// The sound beside the frames, if the recording wrote one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sound: Option<ManifestSound>,
     /// How the frames were rendered, as given by the caller.
     pub settings: serde_json::Value,
 }
@@ -44,6 +47,17 @@ pub struct ManifestFrame {
     /// Length of the file in bytes.
     pub bytes: u64,
     /// CRC-32 of the file's bytes (as in zip and PNG), eight hexadecimal digits.
+    pub crc32: String,
+}
+
+/// The sound of a [`Manifest`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ManifestSound {
+    /// Name of its file in the manifest's folder.
+    pub file: String,
+    /// Length of the file in bytes.
+    pub bytes: u64,
+    /// CRC-32 of the file's bytes, eight hexadecimal digits.
     pub crc32: String,
 }
 

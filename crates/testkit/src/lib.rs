@@ -8,4 +8,4 @@ pub mod suite;
 
 pub use compare::{Flip, flip, mean_color};
 pub use data::{data_dir, skip_without_adapter};
-pub use sound::click_track;
+pub use sound::{click_track, clicks};

@@ -9,6 +9,8 @@ use std::collections::HashMap;
 
 use crate::Source;
 use crate::crate_bytes::{CrateBytes, u64_of};
+use crate::crate_samples::CrateSamples;
+use crate::crate_tokens::Tokens;
 use crate::crate_value::CrateValues;
 use crate::layer::sample_at;
 use crate::transform::DEEPEST;
@@ -21,6 +23,10 @@ pub(crate) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
 const NOTHING: u32 = u32::MAX;
 
 const PRIM: u32 = 6;
+
+/// The most fields of a spec that are looked at. Specs may share one run of fields, so without a limit a small file could make
+/// every look-up long.
+const MOST_FIELDS: usize = 1024;
 
 /// A node of the path tree.
 #[derive(Clone, Copy)]
@@ -43,6 +49,10 @@ pub(crate) struct CrateLayer<'a> {
     nodes: Vec<Node>,
     /// Properties by their prim and name.
     properties: HashMap<(u32, u32), u32>,
+    /// Prims by their parent and name.
+    children: HashMap<(u32, u32), u32>,
+    /// Time samples that were looked up.
+    samples: CrateSamples,
     root: u32,
     /// The time code of values; the first one of each attribute if there is none.
     time: Option<f64>,
@@ -51,11 +61,17 @@ pub(crate) struct CrateLayer<'a> {
 impl<'a> CrateLayer<'a> {
     pub(crate) fn open(name: &str, source: Source<'a>) -> Result<Self, UsdError> {
         let mut layer = Self {
-            values: CrateValues { file: CrateBytes::new(name, source), version: [0; 3], tokens: Vec::new() },
+            values: CrateValues {
+                file: CrateBytes::new(name, source),
+                version: [0; 3],
+                tokens: Tokens::default(),
+            },
             fields: Vec::new(),
             fieldsets: Vec::new(),
             nodes: Vec::new(),
             properties: HashMap::new(),
+            children: HashMap::new(),
+            samples: CrateSamples::default(),
             root: 0,
             time: None,
         };
@@ -107,7 +123,7 @@ impl<'a> CrateLayer<'a> {
             ));
         }
         let words = text.strip_suffix(&[0]).unwrap_or(&text).split(|&byte| byte == 0);
-        self.values.tokens = words.map(|word| String::from_utf8_lossy(word).into_owned()).collect();
+        self.values.tokens = Tokens::new(words);
         if !text.is_empty() && self.values.tokens.len() as u64 != count {
             return Err(self.values.file.at(
                 at,
@@ -139,7 +155,7 @@ impl<'a> CrateLayer<'a> {
         let mut visited = vec![false; indices.len()];
         let mut placed = vec![false; count as usize];
         let mut pending = if indices.is_empty() { Vec::new() } else { vec![(0_usize, NOTHING)] };
-        let (mut root, mut properties) = (0, HashMap::new());
+        let (mut root, mut properties, mut children) = (0, HashMap::new(), HashMap::new());
         while let Some((mut entry, mut parent)) = pending.pop() {
             loop {
                 if visited.get(entry).is_none_or(|&visited| visited) {
@@ -163,6 +179,8 @@ impl<'a> CrateLayer<'a> {
                     return Err(wrong("a name out of range"));
                 } else if name < 0 {
                     properties.insert((parent, token), node);
+                } else {
+                    children.insert((parent, token), node);
                 }
                 let (has_child, has_sibling) = (jump > 0 || jump == -1, jump >= 0);
                 if has_child {
@@ -176,7 +194,8 @@ impl<'a> CrateLayer<'a> {
                 entry += 1;
             }
         }
-        (self.nodes, self.root, self.properties) = (nodes, root, properties);
+        (self.nodes, self.root) = (nodes, root);
+        (self.properties, self.children) = (properties, children);
         Ok(())
     }
 
@@ -204,16 +223,35 @@ impl<'a> CrateLayer<'a> {
     /// The stored value of a field of a spec.
     fn field_of(&self, node: u32, name: &str) -> Option<u64> {
         let start = self.nodes.get(node as usize)?.fieldset as usize;
-        let run = self.fieldsets.get(start..)?.iter().take_while(|&&field| field != NOTHING);
+        let run =
+            self.fieldsets.get(start..)?.iter().take(MOST_FIELDS).take_while(|&&field| field != NOTHING);
         let mut fields = run.filter_map(|&field| self.fields.get(field as usize));
         fields
-            .find(|(token, _)| self.values.tokens.get(*token as usize).is_some_and(|token| token == name))
+            .find(|(token, _)| self.values.tokens.get(*token).is_some_and(|token| token == name))
             .map(|&(_, value)| value)
     }
 
     fn property(&self, prim: usize, name: &str) -> Option<u32> {
-        let token = self.values.tokens.iter().position(|token| token == name)?;
-        self.properties.get(&(prim as u32, token as u32)).copied()
+        let token = self.values.tokens.index_of(name)?;
+        self.properties.get(&(prim as u32, token)).copied()
+    }
+
+    /// The stored value of a field of a property.
+    fn field_of_property(&self, prim: usize, name: &str, field: &str) -> Option<u64> {
+        self.field_of(self.property(prim, name)?, field)
+    }
+
+    /// The names from the root down to a prim.
+    fn names(&self, prim: usize) -> Vec<&str> {
+        let mut names = Vec::new();
+        let mut at = prim as u32;
+        while at != NOTHING && at != self.root {
+            let node = self.nodes[at as usize];
+            names.push(self.values.tokens.get(node.token).unwrap_or_default());
+            at = node.parent;
+        }
+        names.reverse();
+        names
     }
 
     fn token_of(&mut self, node: u32, field: &str) -> Result<Option<String>, UsdError> {
@@ -253,16 +291,20 @@ impl Layer for CrateLayer<'_> {
                 at = self.nodes[at as usize].parent;
             }
             if on {
-                found.push((self.path(node as usize), node as usize, kind));
+                found.push((node as usize, kind));
             }
         }
-        found.sort();
-        Ok(found.into_iter().map(|(_, prim, kind)| (prim, kind)).collect())
+        // Names in place of whole paths: a path may repeat a long name at every level.
+        found.sort_by_cached_key(|(prim, _)| self.names(*prim));
+        Ok(found)
     }
 
     fn prim_at(&mut self, path: &str) -> Option<usize> {
-        let is_prim = |node: &usize| self.nodes[*node].spec_type == PRIM;
-        (0..self.nodes.len()).filter(is_prim).find(|&node| self.path(node) == path)
+        let mut node = self.root;
+        for name in path.strip_prefix('/')?.split('/') {
+            node = *self.children.get(&(node, self.values.tokens.index_of(name)?))?;
+        }
+        (self.nodes[node as usize].spec_type == PRIM).then_some(node as usize)
     }
 
     fn parent(&self, prim: usize) -> Option<usize> {
@@ -271,14 +313,7 @@ impl Layer for CrateLayer<'_> {
     }
 
     fn path(&self, prim: usize) -> String {
-        let mut names = Vec::new();
-        let mut at = prim as u32;
-        while at != NOTHING && at != self.root {
-            let node = self.nodes[at as usize];
-            names.push(self.values.tokens.get(node.token as usize).map_or("", String::as_str));
-            at = node.parent;
-        }
-        names.iter().rev().fold(String::new(), |path, name| path + "/" + name)
+        self.names(prim).iter().fold(String::new(), |path, name| path + "/" + name)
     }
 
     fn set_time(&mut self, time: f64) {
@@ -286,22 +321,25 @@ impl Layer for CrateLayer<'_> {
     }
 
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
-        let sample = match self.time {
-            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
-            None => 0,
-        };
-        if let Some(value) = self.sample(prim, name, sample, most)? {
-            return Ok(Some(value));
+        let Some(property) = self.property(prim, name) else { return Ok(None) };
+        if let Some(stored) = self.field_of(property, "timeSamples") {
+            let sample = match self.time {
+                Some(time) => sample_at(&self.samples.times(&mut self.values, stored)?, |at| *at, time),
+                None => 0,
+            };
+            if let Some(value) = self.samples.value(&mut self.values, stored, sample, most)? {
+                return Ok(Some(value));
+            }
         }
-        match self.property(prim, name).and_then(|property| self.field_of(property, "default")) {
+        match self.field_of(property, "default") {
             Some(value) => self.values.value(value, most),
             None => Ok(None),
         }
     }
 
     fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError> {
-        match self.property(prim, name).and_then(|property| self.field_of(property, "timeSamples")) {
-            Some(samples) => self.values.times(samples),
+        match self.field_of_property(prim, name, "timeSamples") {
+            Some(samples) => Ok(self.samples.times(&mut self.values, samples)?.to_vec()),
             None => Ok(Vec::new()),
         }
     }
@@ -313,27 +351,21 @@ impl Layer for CrateLayer<'_> {
         sample: usize,
         most: usize,
     ) -> Result<Option<Value>, UsdError> {
-        let samples = self.property(prim, name).and_then(|property| self.field_of(property, "timeSamples"));
-        let Some(samples) = samples else { return Ok(None) };
-        match self.values.samples(samples)? {
-            Some((first, count)) if (sample as u64) < count => {
-                let value = self.values.file.u64(first + 8 * sample as u64)?;
-                self.values.value(value, most)
-            }
-            _ => Ok(None),
+        match self.field_of_property(prim, name, "timeSamples") {
+            Some(samples) => self.samples.value(&mut self.values, samples, sample, most),
+            None => Ok(None),
         }
     }
 
     fn field(&mut self, prim: usize, attribute: &str, field: &str) -> Result<Option<Value>, UsdError> {
-        match self.property(prim, attribute).and_then(|property| self.field_of(property, field)) {
+        match self.field_of_property(prim, attribute, field) {
             Some(value) => self.values.value(value, 1),
             None => Ok(None),
         }
     }
 
     fn targets(&mut self, prim: usize, relationship: &str) -> Result<Vec<String>, UsdError> {
-        let list =
-            self.property(prim, relationship).and_then(|property| self.field_of(property, "targetPaths"));
+        let list = self.field_of_property(prim, relationship, "targetPaths");
         let Some(list) = list else { return Ok(Vec::new()) };
         let paths = self.values.paths(list)?;
         let known = paths.into_iter().filter(|&path| (path as usize) < self.nodes.len());
@@ -349,9 +381,9 @@ impl Layer for CrateLayer<'_> {
 
     fn composes(&self) -> bool {
         let refers = ["references", "payload", "subLayers", "variantSetNames"];
-        self.fields.iter().any(|(token, _)| {
-            self.values.tokens.get(*token as usize).is_some_and(|token| refers.contains(&token.as_str()))
-        })
+        self.fields
+            .iter()
+            .any(|(token, _)| self.values.tokens.get(*token).is_some_and(|token| refers.contains(&token)))
     }
 
     fn malformed(&self, found: String, wanted: &str) -> UsdError {

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::UsdError;
 use crate::crate_bytes::{CrateBytes, u64_of};
+use crate::crate_tokens::Tokens;
 use crate::value::{Value, half};
 
 const IS_ARRAY: u64 = 1 << 63;
@@ -66,7 +67,7 @@ pub(crate) struct CrateValues<'a> {
     pub(crate) file: CrateBytes<'a>,
     /// Version of the crate: major, minor, patch.
     pub(crate) version: [u8; 3],
-    pub(crate) tokens: Vec<String>,
+    pub(crate) tokens: Tokens,
 }
 
 impl CrateValues<'_> {
@@ -151,7 +152,7 @@ impl CrateValues<'_> {
         let inlined = at as u32;
         Ok(Some(match kind {
             kind::BOOL => Value::Bool(inlined != 0),
-            kind::TOKEN => Value::Token(self.tokens.get(inlined as usize).cloned().unwrap_or_default()),
+            kind::TOKEN => Value::Token(self.tokens.get(inlined).unwrap_or_default().to_owned()),
             kind::INT => Value::Numbers(vec![f64::from(inlined as i32)]),
             kind::HALF => Value::Numbers(vec![f64::from(half(inlined as u16))]),
             kind::FLOAT | kind::DOUBLE if is_inlined => {
@@ -203,9 +204,7 @@ impl CrateValues<'_> {
         }
         let indices = self.file.bytes(start, 4 * count, "bytes of tokens")?;
         let words = indices.as_chunks::<4>().0.iter().map(|&index| u32::from_le_bytes(index));
-        Ok(Value::Tokens(
-            words.map(|index| self.tokens.get(index as usize).cloned().unwrap_or_default()).collect(),
-        ))
+        Ok(Value::Tokens(words.map(|index| self.tokens.get(index).unwrap_or_default().to_owned()).collect()))
     }
 
     fn array(&mut self, value: u64, most: usize) -> Result<Option<Value>, UsdError> {

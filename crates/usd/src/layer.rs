@@ -72,7 +72,7 @@ pub trait Layer {
     fn malformed(&self, found: String, wanted: &str) -> UsdError;
 }
 
-/// The number of the last of ascending `times` up to `time`; that of the first one before it.
-pub(crate) fn sample_at(times: &[f64], time: f64) -> usize {
-    times.partition_point(|at| *at <= time).saturating_sub(1)
+/// The number of the last of `samples`, which ascend in time, up to `time`; that of the first one before it.
+pub(crate) fn sample_at<T>(samples: &[T], time_of: impl Fn(&T) -> f64, time: f64) -> usize {
+    samples.partition_point(|sample| time_of(sample) <= time).saturating_sub(1)
 }

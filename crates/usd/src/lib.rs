@@ -5,6 +5,8 @@
 
 mod crate_bytes;
 mod crate_file;
+mod crate_samples;
+mod crate_tokens;
 mod crate_value;
 mod error;
 mod layer;
@@ -16,7 +18,7 @@ mod value;
 pub use error::UsdError;
 pub use layer::Layer;
 pub use source::Source;
-pub use transform::{own_transform, to_stage, transform_times};
+pub use transform::{StageSpace, own_transform, stage_space, to_stage, transform_times};
 pub use value::Value;
 
 /// The first bytes of a crate.

@@ -49,7 +49,13 @@ impl TextLayer {
         // here.
         let parsed = catch_unwind(AssertUnwindSafe(|| parser.parse()));
         let found = match parsed {
-            Ok(Ok(specs)) => {
+            Ok(Ok(mut specs)) => {
+                // Sorted once, so that a sample is found without a look at all of them.
+                for (_, value) in specs.values_mut().flat_map(|spec| &mut spec.fields) {
+                    if let Sdf::TimeSamples(samples) = value {
+                        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    }
+                }
                 let data = Data::from_specs(specs);
                 let mut prims: Vec<Path> = data
                     .iter()
@@ -72,12 +78,12 @@ impl TextLayer {
     }
 
     /// The time samples of an attribute, ascending.
-    fn samples(&self, prim: usize, name: &str) -> Vec<(f64, &Sdf)> {
-        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Vec::new() };
-        let Some(Sdf::TimeSamples(samples)) = self.field_of(&path, "timeSamples") else { return Vec::new() };
-        let mut samples: Vec<(f64, &Sdf)> = samples.iter().map(|(time, value)| (*time, value)).collect();
-        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-        samples
+    fn samples(&self, prim: usize, name: &str) -> &[(f64, Sdf)] {
+        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return &[] };
+        match self.field_of(&path, "timeSamples") {
+            Some(Sdf::TimeSamples(samples)) => samples,
+            _ => &[],
+        }
     }
 
     fn is_off(&self, path: &Path) -> bool {
@@ -150,19 +156,17 @@ impl Layer for TextLayer {
         self.time = Some(time);
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
-        let sample = match self.time {
-            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
-            None => 0,
-        };
-        if let Some(value) = self.sample(prim, name, sample, most)? {
+    fn attribute(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, UsdError> {
+        let samples = self.samples(prim, name);
+        let sample = self.time.map_or(0, |time| sample_at(samples, |(at, _)| *at, time));
+        if let Some(value) = samples.get(sample).and_then(|(_, value)| value_of(value)) {
             return Ok(Some(value));
         }
         self.field(prim, name, "default")
     }
 
     fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError> {
-        Ok(self.samples(prim, name).into_iter().map(|(time, _)| time).collect())
+        Ok(self.samples(prim, name).iter().map(|(time, _)| *time).collect())
     }
 
     fn sample(

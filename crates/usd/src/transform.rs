@@ -10,6 +10,33 @@ pub(crate) const DEEPEST: usize = 128;
 /// The most transform operations of one prim.
 const MOST_OPS: usize = 256;
 
+/// Unit and axis of a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageSpace {
+    /// The transform from the stage to metres with Y up.
+    pub metres_from_stage: DMat4,
+    /// Metres per unit.
+    pub metres: f64,
+    /// Whether the file states its unit. A stage without one is in centimetres.
+    pub is_stated: bool,
+}
+
+/// Unit and axis of a stage.
+///
+/// # Errors
+/// If the unit is out of range.
+pub fn stage_space(layer: &mut dyn Layer) -> Result<StageSpace, UsdError> {
+    let stated = layer.metadata("metersPerUnit")?;
+    let is_stated = stated.is_some();
+    let metres = stated.map_or(0.01, |value| value.numbers().first().copied().unwrap_or(f64::NAN));
+    if !(1e-9..=1e9).contains(&metres) {
+        return Err(layer.malformed(format!("metersPerUnit {metres}"), "1e-9 to 1e9"));
+    }
+    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
+    let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
+    Ok(StageSpace { metres_from_stage: turn * DMat4::from_scale(DVec3::splat(metres)), metres, is_stated })
+}
+
 /// The transform from a prim's own space to the stage: its operations and those of all its ancestors, at their first time samples.
 ///
 /// # Errors

@@ -1,10 +1,11 @@
-//! Chores of the workspace: run, test, ci, layers, latency, reference, count and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, fuzz, ci, layers, latency, reference, count and assets. `cargo xtask` lists them.
 //!
 //! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
 
 mod ci;
 mod docs;
+mod fuzz;
 mod launch;
 mod testing;
 mod totals;
@@ -49,6 +50,18 @@ enum Chore {
         /// Instead, opens the page of a comparison in Chromium, which is installed where that is allowed
         #[arg(long, conflicts_with_all = ["filter", "package", "long"])]
         browser: bool,
+    },
+    /// Reads damaged files with every reader, one after another, in tests that take as long as wanted
+    Fuzz {
+        /// Seconds for each of about 25 readers
+        #[arg(long, default_value_t = 30)]
+        secs: u64,
+        /// Another seed damages the files in other ways
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Only readers whose test has this in its name, such as `damaged_hair` or `usd`
+        #[arg(long)]
+        reader: Option<String>,
     },
     /// Runs every check: tests, interchange, browser, format, clippy, layers, documentation
     Ci,
@@ -96,6 +109,9 @@ fn main() -> ExitCode {
         }
         Chore::Test { filter, package, long, .. } => {
             testing::run(&Suite { filter: filter.as_deref(), package: package.as_deref(), long })
+        }
+        Chore::Fuzz { secs, seed, reader } => {
+            fuzz::run(&fuzz::Wanted { secs, seed, reader: reader.as_deref() })
         }
         Chore::Ci => ci::run(),
         Chore::Docs => docs::run(),

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 26] = [
+const ARROWS: [(&str, &[&str]); 27] = [
     (
         "app",
         &[
@@ -71,9 +71,10 @@ const ARROWS: [(&str, &[&str]); 26] = [
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
     ("record", &["groom", "alembic", "base"]),
-    ("motion", &["usd", "base"]),
-    ("groom", &["appearance", "alembic", "usd", "base"]),
+    ("motion", &["gltf", "usd", "base"]),
+    ("groom", &["appearance", "alembic", "gltf", "usd", "base"]),
     ("alembic", &[]),
+    ("gltf", &["base"]),
     ("usd", &["base"]),
     ("sound", &["base"]),
     ("gpu", &["base"]),
@@ -90,11 +91,12 @@ const ARROWS: [(&str, &[&str]); 26] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 16] = [
+const WITHOUT_WGPU: [&str; 17] = [
     "alembic",
     "appearance",
     "base",
     "brush",
+    "gltf",
     "groom",
     "motion",
     "satf",
@@ -259,7 +261,7 @@ mod tests {
             ("lovelock → lovelock-gpu", "app may use jobs, study"),
             ("lovelock-project → lovelock-session", "project may use render"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
-            ("lovelock-groom → lovelock-motion", "groom may use appearance, alembic, usd, base"),
+            ("lovelock-groom → lovelock-motion", "groom may use appearance, alembic, gltf, usd, base"),
             ("lovelock-record → lovelock-session", "record may use groom, alembic, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),

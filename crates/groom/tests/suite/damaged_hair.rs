@@ -1,6 +1,6 @@
 //! Damaged hair files of every format give hair or an error, never a panic.
 
-use crate::common::YukselFile;
+use crate::common::{YukselFile, data_dir};
 
 use std::io::Write;
 use std::path::Path;
@@ -125,6 +125,15 @@ fn run(name: &str, sound: &[Vec<u8>]) {
 #[test]
 fn damaged_hair_yuksel() {
     run("hair", &[yuksel(), written("hair")]);
+}
+
+#[test]
+fn damaged_hair_of_other_programs() {
+    let Some(data) = data_dir() else { return };
+    let names =
+        ["tressfx/sintel_vk.tfx", "tressfx/back.tfx", "broken/variable_odd.hair", "broken/allflags.hair"];
+    let files = names.map(|name| std::fs::read(data.join("hair").join(name)).expect(name));
+    damaged("other hair", &files, 200, |bytes| reads("a.hair", bytes));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::ops::{ControlFlow, Range};
 use std::path::{Path, PathBuf};
 
 use lovelock_project::Project;
-use lovelock_project::error::ProjectError;
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::{Access, FileRef, write_whole};
 use lovelock_project::project::{PROJECT_EXTENSION, save_project};
 use lovelock_record::{FrameRate, SequenceReport, join_sequences};
@@ -82,6 +82,7 @@ pub fn farm(
 ) -> Result<FarmReport, ProjectError> {
     let (mut project, _) = project.sanitised();
     // The machines write images, and a folder of images is joined without a sound.
+    let loses_sound = project.sound.is_heard();
     project.sound = lovelock_project::project::SoundSection::default();
     let out = &request.out;
     check_folder(out)?;
@@ -108,7 +109,9 @@ pub fn farm(
     for (place, file) in project.files() {
         request.access.read(place, file).map_err(|problem| ProjectError::input(&file.path, problem.cause))?;
     }
-    let (dance, problems) = Dance::open(&project, &request.access, fps, progress)?;
+    let (dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
+    let silent = "the frames of a farm have no sound; add the file when you make a film of them";
+    problems.extend(loses_sound.then(|| Problem::new(Place::Sound, ProblemKind::Note, silent)));
     if let Some(problem) = problems.iter().find(|problem| problem.is_failure()) {
         return Err(ProjectError::option(format!("a part of the scene is missing: {}", problem.cause)));
     }

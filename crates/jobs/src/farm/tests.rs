@@ -54,6 +54,25 @@ fn the_folder_holds_the_project_its_files_and_a_job_of_three_steps() {
 }
 
 #[test]
+fn a_project_with_a_sound_gives_a_note_because_frames_have_none() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("clicks.wav");
+    lovelock_testkit::click_track(&file, 1);
+    let notes = |name: &str, project: &Project| {
+        let request =
+            FarmRequest { out: dir.path().join(name), frames: Some(0..2), ..FarmRequest::default() };
+        make(project, &request).expect("a job").notes
+    };
+    let mut project = small_project();
+    project.set_sound_file(&file);
+    let heard = notes("heard", &project);
+    assert!(heard.iter().any(|note| note.contains("the frames of a farm have no sound")), "{heard:?}");
+    // The control: a muted sound is not missed.
+    project.sound.muted = true;
+    assert!(notes("muted", &project).iter().all(|note| !note.contains("sound")));
+}
+
+#[test]
 fn wrong_requests_are_refused_and_leave_nothing() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = |name: &str| dir.path().join(name);

@@ -8,7 +8,7 @@ use ufbx::{BlendShape, Mesh, Node, Scene, SkinDeformer};
 use super::nodes::Nodes;
 use super::{affine, vec3};
 use crate::character::WornHair;
-use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightCounts};
+use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 use crate::{BodySettings, MotionError};
 
 /// The shapes of each channel by the number of its element: one list for each node that shows the mesh.
@@ -165,32 +165,23 @@ impl Reader<'_> {
         vertices: usize,
         rigid: u16,
     ) -> Vec<VertexWeights> {
-        let mut counts = WeightCounts::default();
-        let mut found: Vec<(u16, f32)> = Vec::new();
+        let mut sums = WeightSums::default();
         let weights = (0..vertices)
             .map(|v| {
-                found.clear();
                 let of_vertex = skin.vertices.get(v).map_or(0..0, |range| {
                     let begin = range.weight_begin as usize;
                     begin..begin.saturating_add(range.num_weights as usize)
                 });
                 for weight in skin.weights.get(of_vertex).unwrap_or_default() {
-                    let amount = weight.weight as f32;
-                    if !(amount > 0.0 && amount.is_finite()) {
-                        continue;
-                    }
-                    match binds.get(weight.cluster_index as usize).copied().flatten() {
-                        Some(bind) => match found.iter_mut().find(|(known, _)| *known == bind) {
-                            Some((_, sum)) => *sum += amount,
-                            None => found.push((bind, amount)),
-                        },
-                        None => counts.unknown_joints += 1,
-                    }
+                    sums.add(
+                        binds.get(weight.cluster_index as usize).copied().flatten(),
+                        weight.weight as f32,
+                    );
                 }
-                VertexWeights::of(&mut found, rigid, &mut counts)
+                sums.take(rigid)
             })
             .collect();
-        counts.report(self.dropped);
+        sums.report(self.dropped);
         weights
     }
 }

@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::Affine3A;
 
+use lovelock_gltf::Accessors;
+use lovelock_gltf::document::{Document, Mesh as MeshEntry, Primitive};
+
 use super::{
-    accessor::Accessors,
     clip::{Targets, read_clip},
-    document::{Document, Mesh as MeshEntry, Primitive},
     mesh::{Binding, read_primitive},
     nodes::Tree,
     skin::read_skin,

@@ -7,7 +7,9 @@ use std::{
 
 use glam::{Quat, Vec3};
 
-use super::{accessor::Accessors, document::Animation};
+use lovelock_gltf::Accessors;
+use lovelock_gltf::document::Animation;
+
 use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
 
 /// What the nodes of a file have become.

@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{
-    accessor::Accessors,
-    document::{Document, Primitive},
-    skin::read_vertex_weights,
-};
+use lovelock_gltf::document::{Accessor, Document, Primitive};
+use lovelock_gltf::{Accessors, DRACO, GltfError};
+
+use super::skin::read_vertex_weights;
 use crate::MotionError;
 use crate::surface::{CLAY, MorphPiece, Piece, VertexWeights};
 
@@ -85,12 +84,11 @@ pub(super) fn read_primitive(
 
 /// Positions that exist only in compressed form would be read as zeros.
 fn refuse_draco(accessors: &Accessors, primitive: &Primitive, positions: usize) -> Result<(), MotionError> {
-    let empty = |a: &super::document::Accessor| a.buffer_view.is_none() && a.sparse.is_none();
-    let name = super::DRACO;
-    if primitive.extensions.contains_key(name)
+    let empty = |a: &Accessor| a.buffer_view.is_none() && a.sparse.is_none();
+    if primitive.extensions.contains_key(DRACO)
         && accessors.document.accessors.get(positions).is_some_and(empty)
     {
-        return Err(super::refuse(accessors.file, name));
+        return Err(GltfError::extension(accessors.file, DRACO).into());
     }
     Ok(())
 }

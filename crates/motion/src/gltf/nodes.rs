@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use glam::{Mat4, Quat, Vec3};
+use glam::{Quat, Vec3};
+use lovelock_gltf::document::{Document, Node};
 
-use super::document::{Document, Node};
 use crate::{Joint, MotionError, Skeleton};
 
 /// The nodes of the scene, ordered with parents first.
@@ -98,7 +98,7 @@ impl Tree {
         let mut skeleton = Skeleton::default();
         let mut joint_of_node = vec![None; document.nodes.len()];
         for &n in self.order.iter().filter(|&&n| wanted[n]) {
-            let (translation, rotation, scale) = local(&document.nodes[n]).unwrap_or_else(|| {
+            let (translation, rotation, scale) = document.nodes[n].local().unwrap_or_else(|| {
                 *dropped.entry("node_transforms".into()).or_default() += 1;
                 (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE)
             });
@@ -125,24 +125,4 @@ fn top_of(mut node: usize, parent: &[Option<usize>]) -> usize {
         }
     }
     node
-}
-
-/// Translation, rotation and scale of a node; `None` if they are not finite.
-fn local(node: &Node) -> Option<(Vec3, Quat, Vec3)> {
-    let (scale, rotation, translation) = if let Some(matrix) = &node.matrix {
-        let matrix = Mat4::from_cols_array(matrix);
-        if !matrix.is_finite() || matrix.determinant().abs() < 1e-30 {
-            return None;
-        }
-        matrix.to_scale_rotation_translation()
-    } else {
-        (
-            node.scale.map_or(Vec3::ONE, Vec3::from),
-            node.rotation.map_or(Quat::IDENTITY, Quat::from_array),
-            node.translation.map_or(Vec3::ZERO, Vec3::from),
-        )
-    };
-    let length = rotation.length();
-    let finite = scale.is_finite() && rotation.is_finite() && translation.is_finite() && length > 1e-6;
-    finite.then(|| (translation, rotation * (1.0 / length), scale))
 }

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Mat4};
 
-use super::{accessor::Accessors, document::Primitive};
+use lovelock_gltf::Accessors;
+use lovelock_gltf::document::Primitive;
+
 use crate::MotionError;
-use crate::surface::{Palette, VertexWeights, WeightCounts};
+use crate::surface::{Palette, VertexWeights, WeightSums};
 
 /// The palette entries of the joints of one skin.
 pub(super) fn read_skin(
@@ -68,28 +70,17 @@ pub(super) fn read_vertex_weights(
         }
         sets.push((accessors.read_indices::<4>(joints)?, accessors.read::<4>(weights)?));
     }
-    let mut counts = WeightCounts::default();
+    let mut sums = WeightSums::default();
     let otherwise = skin.first().copied().unwrap_or(0);
-    let mut found: Vec<(u16, f32)> = Vec::new();
     let mut influences = Vec::with_capacity(vertices);
     for v in 0..vertices {
-        found.clear();
         for (joints, weights) in &sets {
             for (&joint, &weight) in joints[v].iter().zip(&weights[v]) {
-                if !(weight > 0.0 && weight.is_finite()) {
-                    continue;
-                }
-                match skin.get(joint as usize) {
-                    Some(&bind) => match found.iter_mut().find(|(b, _)| *b == bind) {
-                        Some((_, sum)) => *sum += weight,
-                        None => found.push((bind, weight)),
-                    },
-                    None => counts.unknown_joints += 1,
-                }
+                sums.add(skin.get(joint as usize).copied(), weight);
             }
         }
-        influences.push(VertexWeights::of(&mut found, otherwise, &mut counts));
+        influences.push(sums.take(otherwise));
     }
-    counts.report(dropped);
+    sums.report(dropped);
     Ok(influences)
 }

@@ -7,7 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use super::document::Document;
+use lovelock_gltf::document::Document;
+
 use crate::character::names_hair;
 
 /// The VRM part of a document.

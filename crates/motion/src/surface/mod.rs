@@ -11,7 +11,7 @@ use glam::Vec3;
 use crate::{Mesh, MorphTarget, SkinData};
 pub(crate) use corners::Corners;
 use normals::fill_normals;
-pub(crate) use weights::{Palette, VertexWeights, WeightCounts};
+pub(crate) use weights::{Palette, VertexWeights, WeightSums};
 
 /// Largest number of vertices of a character; drawing more would take minutes per frame.
 const VERTEX_LIMIT: usize = 8_000_000;

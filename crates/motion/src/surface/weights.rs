@@ -39,16 +39,62 @@ pub(crate) struct VertexWeights {
     pub(crate) weights: [f32; 8],
 }
 
-/// What was left out of the weights of vertices.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct WeightCounts {
-    /// Weights of joints that do not exist.
-    pub(crate) unknown_joints: u64,
+impl VertexWeights {
+    /// A vertex that follows one palette entry.
+    pub(crate) fn rigid(bind: u16) -> Self {
+        let mut weights = [0.0; 8];
+        weights[0] = 1.0;
+        Self { binds: [bind; 8], weights }
+    }
+}
+
+/// Collects the weights of vertices, one vertex after the other, and counts what is left out.
+#[derive(Debug, Default)]
+pub(crate) struct WeightSums {
+    /// Weight of each palette entry for the vertex at hand.
+    found: Vec<(u16, f32)>,
+    unknown_joints: u64,
     beyond: u64,
     unweighted: u64,
 }
 
-impl WeightCounts {
+impl WeightSums {
+    /// Adds a weight of the vertex at hand. `bind` is `None` if its joint does not exist; weights that are not positive count for nothing.
+    pub(crate) fn add(&mut self, bind: Option<u16>, weight: f32) {
+        if !(weight > 0.0 && weight.is_finite()) {
+            return;
+        }
+        match bind {
+            Some(bind) => match self.found.iter_mut().find(|(known, _)| *known == bind) {
+                Some((_, sum)) => *sum += weight,
+                None => self.found.push((bind, weight)),
+            },
+            None => self.unknown_joints += 1,
+        }
+    }
+
+    /// The eight heaviest weights of the vertex at hand; one without any follows `otherwise`. The next vertex begins.
+    pub(crate) fn take(&mut self, otherwise: u16) -> VertexWeights {
+        let found = &mut self.found;
+        found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        self.beyond += found.len().saturating_sub(8) as u64;
+        found.truncate(8);
+        let sum: f32 = found.iter().map(|(_, w)| w).sum();
+        let weights = if sum < 1e-6 || !sum.is_finite() {
+            self.unweighted += 1;
+            VertexWeights::rigid(otherwise)
+        } else {
+            let mut of = VertexWeights { binds: [found[0].0; 8], weights: [0.0; 8] };
+            for (k, &(bind, weight)) in found.iter().enumerate() {
+                of.binds[k] = bind;
+                of.weights[k] = weight / sum;
+            }
+            of
+        };
+        found.clear();
+        weights
+    }
+
     /// Adds the counts to those of a file.
     pub(crate) fn report(self, dropped: &mut BTreeMap<String, u64>) {
         for (what, count) in [
@@ -60,32 +106,5 @@ impl WeightCounts {
                 *dropped.entry(what.into()).or_default() += count;
             }
         }
-    }
-}
-
-impl VertexWeights {
-    /// A vertex that follows one palette entry.
-    pub(crate) fn rigid(bind: u16) -> Self {
-        let mut weights = [0.0; 8];
-        weights[0] = 1.0;
-        Self { binds: [bind; 8], weights }
-    }
-
-    /// The eight heaviest of some weights, which are sorted in place; a vertex without any follows `otherwise`.
-    pub(crate) fn of(found: &mut Vec<(u16, f32)>, otherwise: u16, counts: &mut WeightCounts) -> Self {
-        found.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        counts.beyond += found.len().saturating_sub(8) as u64;
-        found.truncate(8);
-        let sum: f32 = found.iter().map(|(_, w)| w).sum();
-        if sum < 1e-6 || !sum.is_finite() {
-            counts.unweighted += 1;
-            return Self::rigid(otherwise);
-        }
-        let mut of = Self { binds: [found[0].0; 8], weights: [0.0; 8] };
-        for (k, &(bind, weight)) in found.iter().enumerate() {
-            of.binds[k] = bind;
-            of.weights[k] = weight / sum;
-        }
-        of
     }
 }

@@ -8,7 +8,7 @@ use lovelock_usd::{Layer, Value};
 use super::skeleton::{Figure, OneSkeleton};
 use super::{MOST_NAMES, affine, affine_of, inherited_target, tokens};
 use crate::MotionError;
-use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightCounts};
+use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 
 /// The morph targets of each skeleton by the name of their shape.
 pub(super) type Shapes = BTreeMap<(usize, String), Vec<usize>>;
@@ -38,6 +38,8 @@ pub(super) struct Reader<'a> {
     pub(super) surface: &'a mut Surface,
     pub(super) palette: &'a mut Palette,
     pub(super) shapes: &'a mut Shapes,
+    /// The shaders of the stage.
+    pub(super) shaders: &'a Shaders,
     pub(super) dropped: &'a mut BTreeMap<String, u64>,
 }
 
@@ -90,7 +92,7 @@ impl Reader<'_> {
         let skeleton = self.figure.skeletons.iter().find(|of| Some(of.prim) == skeleton);
         let weights = self.weights(layer, prim, skeleton, points.len(), metres_from_stage)?;
         let mut piece = Piece {
-            color: color(layer, prim)?,
+            color: self.shaders.color(layer, prim)?,
             normals: std::mem::take(&mut corners.normals),
             triangles: std::mem::take(&mut corners.triangles),
             ..Piece::default()
@@ -170,34 +172,23 @@ impl Reader<'_> {
         if !is_constant && per_point.checked_mul(points) != Some(joints.len()) {
             return Err(refuse(format!("{} joint indices for {points} points of {per_point}", joints.len())));
         }
-        let mut counts = WeightCounts::default();
-        let mut found: Vec<(u16, f32)> = Vec::new();
         // Without any usable joint the mesh follows the stage.
         let otherwise = match binds.iter().flatten().next() {
             Some(&bind) => bind,
             None => self.palette.add(0, geometry).ok_or_else(too_many)?,
         };
+        let mut sums = WeightSums::default();
         let weights = (0..points)
             .map(|point| {
-                found.clear();
                 let first = if is_constant { 0 } else { point * per_point };
                 for k in first..first + per_point {
-                    let (joint, amount) = (joints[k], amounts[k]);
-                    if !(amount > 0.0 && amount.is_finite()) {
-                        continue;
-                    }
-                    match usize::try_from(joint).ok().and_then(|joint| binds.get(joint).copied().flatten()) {
-                        Some(bind) => match found.iter_mut().find(|(known, _)| *known == bind) {
-                            Some((_, sum)) => *sum += amount,
-                            None => found.push((bind, amount)),
-                        },
-                        None => counts.unknown_joints += 1,
-                    }
+                    let joint = usize::try_from(joints[k]).ok();
+                    sums.add(joint.and_then(|joint| binds.get(joint).copied().flatten()), amounts[k]);
                 }
-                VertexWeights::of(&mut found, otherwise, &mut counts)
+                sums.take(otherwise)
             })
             .collect();
-        counts.report(self.dropped);
+        sums.report(self.dropped);
         Ok(weights)
     }
 
@@ -295,23 +286,34 @@ impl Normals {
     }
 }
 
-/// The colour of a mesh: that of its material if it states one, otherwise its display colour.
-fn color(layer: &mut dyn Layer, prim: usize) -> Result<Vec3, MotionError> {
-    if let Some(material) = inherited_target(layer, prim, "material:binding")? {
-        let path = layer.path(material) + "/";
-        for (shader, _) in layer.prims(&["Shader"])? {
-            if !layer.path(shader).starts_with(&path) {
-                continue;
-            }
-            if let Some(value) = layer.attribute(shader, "inputs:diffuseColor", 1)?
-                && let Some(&color) = value.into_vectors().first()
-                && color.is_finite()
-            {
-                return Ok(color);
+/// The shaders of a stage by their paths, ascending.
+pub(super) struct Shaders(Vec<(String, usize)>);
+
+impl Shaders {
+    pub(super) fn read(layer: &mut dyn Layer) -> Result<Self, MotionError> {
+        let prims = layer.prims(&["Shader"])?;
+        let mut shaders: Vec<(String, usize)> =
+            prims.into_iter().map(|(prim, _)| (layer.path(prim), prim)).collect();
+        shaders.sort();
+        Ok(Self(shaders))
+    }
+
+    /// The colour of a mesh: that of its material if it states one, otherwise its display colour.
+    fn color(&self, layer: &mut dyn Layer, prim: usize) -> Result<Vec3, MotionError> {
+        if let Some(material) = inherited_target(layer, prim, "material:binding")? {
+            let folder = layer.path(material) + "/";
+            let first = self.0.partition_point(|(path, _)| *path < folder);
+            for (_, shader) in self.0[first..].iter().take_while(|(path, _)| path.starts_with(&folder)) {
+                if let Some(value) = layer.attribute(*shader, "inputs:diffuseColor", 1)?
+                    && let Some(&color) = value.into_vectors().first()
+                    && color.is_finite()
+                {
+                    return Ok(color);
+                }
             }
         }
+        let shown = layer.attribute(prim, "primvars:displayColor", MOST_NAMES)?;
+        let shown = shown.map_or_else(Vec::new, Value::into_vectors);
+        Ok(shown.first().copied().filter(|color| color.is_finite()).unwrap_or(CLAY))
     }
-    let shown = layer.attribute(prim, "primvars:displayColor", MOST_NAMES)?;
-    let shown = shown.map_or_else(Vec::new, Value::into_vectors);
-    Ok(shown.first().copied().filter(|color| color.is_finite()).unwrap_or(CLAY))
 }

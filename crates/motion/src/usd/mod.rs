@@ -11,8 +11,8 @@ mod skeleton;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use glam::{Affine3A, DMat4, DVec3, Mat3A, Mat4};
-use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value};
+use glam::{Affine3A, DMat4, Mat3A, Mat4};
+use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value, stage_space};
 
 use crate::character::{Axes, Character, Draft, WornHair, only_motion};
 use crate::surface::{Palette, Surface};
@@ -91,13 +91,18 @@ pub(crate) fn read(
     if layer.composes() {
         notes.push("what the file refers to in other files or in variants was left out".to_owned());
     }
-    let (metres_from_stage, unit_metres) = stage_transform(layer, &mut notes)?;
+    let space = stage_space(layer)?;
+    if !space.is_stated {
+        notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
+    }
+    let (metres_from_stage, unit_metres) = (space.metres_from_stage, space.metres as f32);
     let figure = skeleton::Figure::read(file, layer, metres_from_stage, needs_mesh)?;
     let (mut surface, mut palette) = (Surface::default(), Palette::default());
     let mut shapes = BTreeMap::new();
     let mut meshes = 0;
     if needs_mesh {
         let prims = layer.prims(&["Mesh"])?;
+        let shaders = mesh::Shaders::read(layer)?;
         meshes = prims.len();
         let mut worn = WornHair::new(settings);
         let mut parts = Vec::new();
@@ -117,6 +122,7 @@ pub(crate) fn read(
                 surface: &mut surface,
                 palette: &mut palette,
                 shapes: &mut shapes,
+                shaders: &shaders,
                 dropped: &mut dropped,
             };
             reader.mesh(layer, prim, metres_from_stage)?;
@@ -143,23 +149,6 @@ pub(crate) fn read(
     };
     character.format = format!("USD ({form})");
     Ok(character)
-}
-
-/// The transform from the stage to metres with Y up, and the metres per unit.
-fn stage_transform(layer: &mut dyn Layer, notes: &mut Vec<String>) -> Result<(DMat4, f32), MotionError> {
-    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
-        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
-        if !(1e-9..=1e9).contains(&found) {
-            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9").into());
-        }
-        found
-    } else {
-        notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
-        0.01
-    };
-    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
-    let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
-    Ok((turn * DMat4::from_scale(DVec3::splat(metres)), metres as f32))
 }
 
 /// The matrix of USD, for row vectors, as a transform; `None` if it is not finite.

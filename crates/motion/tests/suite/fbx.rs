@@ -1,12 +1,11 @@
 //! FBX: known positions in every unit and axis, motion alone, and files that are refused.
 
 use glam::Vec3;
-use lovelock_motion::{
-    Character, MotionSettings, Pose, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
-};
-use proptest::prelude::*;
+use lovelock_motion::{Character, MotionSettings, load_character_bytes, load_motion_bytes};
+use lovelock_testkit::fuzz::damaged;
 
 use crate::common::fbx::{Node, Space, Value, binary, figure, text};
+use crate::common::{assert_near, points_at, reads_character};
 
 const SPACES: [Space; 4] = [
     Space { z_up: false, unit: 1.0 },
@@ -17,20 +16,6 @@ const SPACES: [Space; 4] = [
 
 fn load(bytes: &[u8]) -> Character {
     load_character_bytes("figure.fbx", bytes, None).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn at(character: &Character, secs: f64) -> Vec<Vec3> {
-    let (mut pose, mut surface) = (Pose::default(), Skin::default());
-    let clip = character.clips.first().map(AsRef::as_ref);
-    pose_at(&character.body, clip, secs, &mut pose);
-    skin(&character.body, &pose, &mut surface);
-    surface.positions
-}
-
-#[track_caller]
-fn assert_near(found: &[Vec3], expected: [Vec3; 3]) {
-    let off = expected.map(|p| found.iter().map(|q| q.distance(p)).fold(f32::MAX, f32::min));
-    assert!(off.iter().all(|d| *d < 1e-5), "{found:?}, expected {expected:?}");
 }
 
 #[test]
@@ -47,13 +32,13 @@ fn a_figure_is_the_same_in_every_unit_and_axis() {
             let head = character.body.skeleton.rest_position(character.body.head_joint);
             assert!(head.distance(Vec3::new(0.0, 1.5, 0.0)) < 1e-5, "{head}");
             let (left, front) = (Vec3::new(0.1, 1.5, 0.0), Vec3::new(0.0, 1.5, 0.1));
-            assert_near(&at(&character, 0.0), [left, front, Vec3::new(0.0, 1.6, 0.0)]);
+            assert_near(&points_at(&character, 0.0), [left, front, Vec3::new(0.0, 1.6, 0.0)]);
             // A quarter turn to the left carries the left to the back, and the front to the left.
             let back = Vec3::new(0.0, 1.5, -0.1);
-            assert_near(&at(&character, 1.0_f64.next_down()), [back, left, Vec3::new(0.0, 1.7, 0.0)]);
+            assert_near(&points_at(&character, 1.0_f64.next_down()), [back, left, Vec3::new(0.0, 1.7, 0.0)]);
             let half = std::f32::consts::FRAC_1_SQRT_2 * 0.1;
             let (a, b) = (Vec3::new(half, 1.5, -half), Vec3::new(half, 1.5, half));
-            assert_near(&at(&character, 0.5), [a, b, Vec3::new(0.0, 1.65, 0.0)]);
+            assert_near(&points_at(&character, 0.5), [a, b, Vec3::new(0.0, 1.65, 0.0)]);
         }
     }
 }
@@ -143,20 +128,12 @@ fn joints_in_a_circle_and_of_no_size_are_survived() {
         }
     }
     let character = load(&binary(&nodes));
-    assert!(at(&character, 0.5).iter().all(|p| p.is_finite()));
+    assert!(points_at(&character, 0.5).iter().all(|p| p.is_finite()));
 }
 
-/// Whatever comes of a file, it must be finite and in range.
-fn try_load(bytes: &[u8]) {
-    match load_character_bytes("x.fbx", bytes, None) {
-        Ok(character) => {
-            assert!(at(&character, 0.3).iter().all(|p| !p.is_nan()));
-            let count = character.body.skeleton.joints.len();
-            assert!(character.body.mesh.joints.iter().flatten().all(|&j| usize::from(j) < count));
-        }
-        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
-    }
+fn survives(bytes: &[u8]) -> bool {
     let _ = load_motion_bytes("x.fbx", bytes, MotionSettings::default());
+    reads_character("x.fbx", bytes)
 }
 
 #[test]
@@ -164,25 +141,13 @@ fn files_cut_anywhere_are_survived() {
     let nodes = figure(SPACES[1]);
     for bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
         for end in (0..bytes.len()).step_by(7) {
-            try_load(&bytes[..end]);
+            survives(&bytes[..end]);
         }
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn files_with_other_bytes_are_survived(
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
-    ) {
-        let nodes = figure(SPACES[1]);
-        for mut bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
-            for (at, byte) in &changes {
-                let at = at.index(bytes.len());
-                bytes[at] = *byte;
-            }
-            try_load(&bytes);
-        }
-    }
+#[test]
+fn damaged_character_fbx() {
+    let nodes = figure(SPACES[1]);
+    damaged("fbx", &[text(&nodes).into_bytes(), binary(&nodes)], 2000, survives);
 }

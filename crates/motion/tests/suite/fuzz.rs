@@ -5,7 +5,6 @@ use crate::common;
 
 use lovelock_motion::{MotionSettings, load_character_bytes, load_motion_bytes};
 use lovelock_testkit::fuzz::damaged;
-use proptest::prelude::*;
 
 /// A small skinned, morphed and animated figure: a valid file to corrupt.
 fn glb() -> Vec<u8> {
@@ -39,16 +38,7 @@ fn glb() -> Vec<u8> {
         "bufferViews":[{{"buffer":0,"byteLength":{0}}}],"buffers":[{{"byteLength":{0}}}]}}"#,
         bin.len()
     );
-    let mut json = json.into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut out = b"glTF\x02\0\0\0".to_vec();
-    out.extend((20 + json.len() as u32 + 8 + bin.len() as u32).to_le_bytes());
-    for (kind, data) in [(b"JSON", &json), (b"BIN\0", &bin)] {
-        out.extend((data.len() as u32).to_le_bytes());
-        out.extend(kind);
-        out.extend(data);
-    }
-    out
+    common::glb(json, bin)
 }
 
 const BVH: &str = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 90 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation \
@@ -72,45 +62,6 @@ fn every_truncation_is_handled() {
     }
     for cut in 0..bvh.len() {
         let _ = load_motion_bytes("x.bvh", &bvh[..cut], MotionSettings::default());
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn every_flipped_bit_is_handled(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u32), 1..6)) {
-        let (mut glb, mut bvh) = (glb(), BVH.as_bytes().to_vec());
-        for (place, bit) in flips {
-            let (i, j) = (place.index(glb.len()), place.index(bvh.len()));
-            glb[i] ^= 1 << bit;
-            bvh[j] ^= 1 << bit;
-        }
-        if let Ok(character) = load_character_bytes("x.glb", &glb, None) {
-            prop_assert!(character.body.mesh.positions.iter().all(|p| p.is_finite()));
-            prop_assert!(lovelock_motion::fit_colliders(&character.body).len() < 100);
-        }
-        let _ = load_motion_bytes("x.bvh", &bvh, MotionSettings::default());
-    }
-
-    #[test]
-    fn any_number_is_handled(number in "-?[0-9]{1,20}|1e400|-1|4294967296|18446744073709551615", which in 0..40_usize) {
-        // Replaces the n-th number of the document.
-        let glb = glb();
-        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
-        let json = String::from_utf8(glb[20..20 + length].to_vec()).unwrap();
-        let starts: Vec<usize> = json.match_indices(|c: char| c.is_ascii_digit()).map(|(i, _)| i)
-            .filter(|&i| matches!(json.as_bytes()[i - 1], b':' | b'[' | b',')).collect();
-        let at = starts[which % starts.len()];
-        let end = at + json[at..].find(|c: char| !c.is_ascii_digit()).unwrap();
-        let mut json = format!("{}{number}{}", &json[..at], &json[end..]).into_bytes();
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let mut bytes = glb[..12].to_vec();
-        bytes.extend((json.len() as u32).to_le_bytes());
-        bytes.extend(b"JSON");
-        bytes.extend(json);
-        bytes.extend(&glb[20 + length..]);
-        let _ = load_character_bytes("x.glb", &bytes, None);
     }
 }
 
@@ -146,26 +97,14 @@ fn gltf() -> Vec<u8> {
     document.to_string().into_bytes()
 }
 
-fn reads_character(name: &str, bytes: &[u8]) -> bool {
-    let character = match load_character_bytes(name, bytes, None) {
-        Ok(character) => character,
-        Err(error) => {
-            assert!(!error.to_string().contains('\n'), "{error}");
-            return false;
-        }
-    };
-    assert!(character.body.mesh.positions.iter().all(|p| p.is_finite()));
-    true
-}
-
 #[test]
 fn damaged_character_glb() {
-    damaged("glb", &[glb()], 3000, |bytes| reads_character("a.glb", bytes));
+    damaged("glb", &[glb()], 3000, |bytes| common::reads_character("a.glb", bytes));
 }
 
 #[test]
 fn damaged_character_gltf() {
-    damaged("gltf", &[gltf()], 3000, |bytes| reads_character("a.gltf", bytes));
+    damaged("gltf", &[gltf()], 3000, |bytes| common::reads_character("a.gltf", bytes));
 }
 
 #[test]
@@ -173,16 +112,6 @@ fn damaged_motion_bvh() {
     let positions = BVH.replace("CHANNELS 3 ", "CHANNELS 6 Xposition Yposition Zposition ");
     let positions = positions.replace("4 5 6\n", "0 60 0 4 5 6\n").replace("4 5 7\n", "0 60 0 4 5 7\n");
     damaged("bvh", &[BVH.into(), positions.into_bytes()], 3000, |bytes| {
-        let motion = match load_motion_bytes("a.bvh", bytes, MotionSettings::default()) {
-            Ok(motion) => motion,
-            Err(error) => {
-                assert!(!error.to_string().contains('\n'), "{error}");
-                return false;
-            }
-        };
-        let count = motion.joints.len() * motion.frames;
-        assert!(motion.rotations.len() == count && motion.positions.len() == count);
-        assert!(motion.rotations.iter().all(|q| q.is_finite()) && motion.info().height_m.is_finite());
-        true
+        common::reads_motion("a.bvh", bytes, MotionSettings::default())
     });
 }

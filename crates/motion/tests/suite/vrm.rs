@@ -1,9 +1,12 @@
 //! VRM: the bones that a file names, its face, its own hair, and motion of the format.
 
+use crate::common;
+
 use glam::Vec3;
 use lovelock_motion::{
     BodySettings, MotionSettings, OwnHair, load_character_bytes, load_character_bytes_with, load_motion_bytes,
 };
+use lovelock_testkit::fuzz::damaged;
 
 /// Version of a file, or a motion.
 #[derive(Clone, Copy, PartialEq)]
@@ -86,16 +89,7 @@ fn file(kind: Kind, spring: &str) -> Vec<u8> {
         "animations":[{{"name":"turn","samplers":[{{"input":2,"output":3}}],"channels":[{{"sampler":0,"target":{{"node":0,"path":"rotation"}}}}]}}],
         "accessors":[{accessors}],"bufferViews":[{{"buffer":0,"byteLength":{length}}}],"buffers":[{{"byteLength":{length}}}]}}"#
     );
-    let mut json = json.into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut out = b"glTF\x02\0\0\0".to_vec();
-    out.extend((20 + json.len() as u32 + 8 + bin.len() as u32).to_le_bytes());
-    for (kind, data) in [(b"JSON", &json), (b"BIN\0", &bin)] {
-        out.extend((data.len() as u32).to_le_bytes());
-        out.extend(kind);
-        out.extend(data);
-    }
-    out
+    common::glb(json, bin)
 }
 
 #[test]
@@ -160,4 +154,18 @@ fn wrong_extensions_leave_a_gltf() {
         let character = load_character_bytes("a.vrm", &changed, None).expect("a character");
         assert!(character.body.mesh.positions.len() >= 3);
     }
+}
+
+#[test]
+fn damaged_character_vrm() {
+    damaged("vrm", &[file(Kind::One, "Hair"), file(Kind::Zero, "Hair")], 3000, |bytes| {
+        common::reads_character("a.vrm", bytes)
+    });
+}
+
+#[test]
+fn damaged_motion_vrma() {
+    damaged("vrma", &[file(Kind::Motion, "")], 2000, |bytes| {
+        common::reads_motion("a.vrma", bytes, MotionSettings::default())
+    });
 }

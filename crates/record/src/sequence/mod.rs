@@ -3,15 +3,18 @@
 mod exr;
 mod journal;
 mod settings;
+mod sound_file;
 mod worker;
 
 pub use self::exr::FrameLayers;
 pub use settings::{SequenceFormat, SequenceReport, SequenceSettings, frame_name};
+pub use sound_file::SOUND_NAME;
+pub(crate) use sound_file::remove_own;
 
 use crate::film::check_frame;
-use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, VERSION, read_manifest};
+use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, ManifestSound, VERSION, read_manifest};
 use crate::partial::{Opener, PartialFile, open_file};
-use crate::sound::{SoundSource, samples_of, write_wav};
+use crate::sound::{SoundSource, samples_of};
 use crate::{FrameRate, RecordError};
 use journal::Journal;
 use std::collections::BTreeMap;
@@ -31,9 +34,6 @@ const LARGEST_SIDE: u32 = 16_384;
 
 /// Number of pixels of an EXR file above which only two threads encode, because each needs 14 bytes per pixel and more.
 const LARGE: u64 = 4_000_000;
-
-/// The name of the sound's file in the folder of a sequence.
-pub const SOUND_NAME: &str = "sound.wav";
 
 /// A sequence that is being written.
 ///
@@ -56,6 +56,10 @@ pub struct SequenceWriter {
     /// Files of the sequence that was in the folder before.
     old_files: Vec<String>,
     sound: Option<Box<dyn SoundSource>>,
+    /// The sound that this recording has written.
+    new_sound: Option<ManifestSound>,
+    /// The sound of the sequence that was in the folder before.
+    old_sound: Option<ManifestSound>,
     ended: bool,
 }
 
@@ -114,6 +118,8 @@ impl SequenceWriter {
             shared: Arc::new(Mutex::new(Progress::default())),
             old_files: Vec::new(),
             sound: None,
+            new_sound: None,
+            old_sound: None,
             ended: true,
         };
         let journal = writer.begin()?;
@@ -128,6 +134,9 @@ impl SequenceWriter {
         let folder = self.folder.clone();
         let mut journal = Journal::claim(&folder)?;
         let there = journal.earlier(&folder);
+        if let Some(there) = &there {
+            self.old_sound.clone_from(&there.sound);
+        }
         let head = self.manifest(false, Vec::new());
         if let Some(there) = there {
             let listed = there.frames.iter();
@@ -296,7 +305,8 @@ impl SequenceWriter {
         self.end(false).map(drop)
     }
 
-    /// Encodes the frames in the queue, writes the manifest, and removes frames of the old sequence that this one lacks.
+    /// Encodes the frames in the queue, writes the sound and the manifest, and removes frames of the old sequence that this one lacks,
+    /// and its sound.
     ///
     /// # Errors
     /// As [`SequenceWriter::push`]; also [`RecordError::Request`] for a sequence of no frames.
@@ -305,14 +315,16 @@ impl SequenceWriter {
             let what = format!("{}: a sequence needs at least one frame", self.folder.display());
             return Err(RecordError::request(what));
         }
-        let sound = self.sound.take();
-        let (samples, path) = (samples_of(self.at, self.rate), self.folder.join(SOUND_NAME));
-        let mut report = self.end(true)?;
-        if let Some(mut sound) = sound {
-            report.bytes += write_wav(&path, sound.as_mut(), samples)
-                .map_err(|error| RecordError::io(&path, "write the sound", error))?;
+        // Before the manifest, which lists it.
+        if let Some(mut sound) = self.sound.take().filter(|_| !self.ended) {
+            let samples = samples_of(self.at, self.rate);
+            let written = sound_file::write(&self.folder, sound.as_mut(), samples);
+            self.new_sound =
+                Some(written.map_err(|error| {
+                    RecordError::io(self.folder.join(SOUND_NAME), "write the sound", error)
+                })?);
         }
-        Ok(report)
+        self.end(true)
     }
 
     /// Cancels the recording. This is the same as dropping the writer.
@@ -345,14 +357,17 @@ impl SequenceWriter {
             None => written?,
         }
         if whole {
-            self.remove_old_frames(&manifest);
+            self.remove_old_files(&manifest);
         }
-        let bytes = manifest.frames.iter().map(|frame| frame.bytes).sum();
+        let of_sound = self.new_sound.as_ref().map(|sound| sound.bytes);
+        let bytes = manifest.frames.iter().map(|frame| frame.bytes).chain(of_sound).sum();
         let (frames, kept) = (manifest.frames.len() as u64, self.kept.len() as u64);
         Ok(SequenceReport { folder: self.folder.clone(), frames, kept, bytes })
     }
 
+    /// The manifest. Until the sequence is complete, it lists the sound of the one before.
     fn manifest(&self, complete: bool, frames: Vec<ManifestFrame>) -> Manifest {
+        let old_sound = self.old_sound.as_ref().filter(|_| !complete);
         Manifest {
             format: "lovelock-sequence".into(),
             version: VERSION,
@@ -362,6 +377,7 @@ impl SequenceWriter {
             fps: self.settings.fps,
             first_frame: self.settings.first_frame,
             frames,
+            sound: self.new_sound.as_ref().or(old_sound).cloned(),
             settings: self.settings.settings.clone(),
         }
     }
@@ -377,7 +393,10 @@ impl SequenceWriter {
         write().map_err(|error| RecordError::io(&path, "write the manifest", error))
     }
 
-    fn remove_old_frames(&self, manifest: &Manifest) {
+    fn remove_old_files(&self, manifest: &Manifest) {
+        if let (Some(old), None) = (&self.old_sound, &self.new_sound) {
+            remove_own(&self.folder, old);
+        }
         for file in &self.old_files {
             if manifest.frames.iter().all(|frame| frame.file != *file) {
                 // Errors do no harm, because the manifest does not list the file.

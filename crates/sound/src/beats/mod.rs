@@ -1,7 +1,8 @@
 //! Finds beats: onset strength by spectral flux, tempo by autocorrelation, beats by dynamic programming.
 //!
 //! D. P. W. Ellis, *Beat Tracking by Dynamic Programming*, Journal of New Music Research 36 (2007), 51–60. Names of sections and
-//! constants are those of the paper. The frames are finer here, so that beats are exact to about 10 ms.
+//! constants are those of the paper. The frames are finer here, so that beats are exact to about 10 ms, and the period is halved where the
+//! onsets between the beats are as strong as the beats.
 
 mod onset;
 mod tempo;
@@ -28,7 +29,10 @@ pub fn find_beats(sound: &Sound) -> Beats {
     }
     let onsets = onset::strength(sound);
     let Some(period) = tempo::period(&onsets) else { return Beats::default() };
-    let frames = track::beats(&onsets, period);
+    let mut frames = track::beats(&onsets, period);
+    if let Some(half) = tempo::halved(&onsets, &frames, period) {
+        frames = track::beats(&onsets, half);
+    }
     let secs: Vec<f64> = frames.into_iter().map(onset::secs_of).collect();
     let tempo = match secs.as_slice() {
         [first, .., last] => Some(60.0 * (secs.len() - 1) as f64 / (last - first)),

@@ -1,4 +1,5 @@
 use lovelock_base::random::SplitMix64;
+use lovelock_testkit::clicks as click_samples;
 
 use super::*;
 use crate::sound::RATE;
@@ -46,6 +47,64 @@ fn clicks_are_found_within_20_ms_at_their_tempo() {
         );
         assert!(worst < 0.02, "{bpm}: off by {worst} s");
     }
+}
+
+/// Adds short bursts of high noise at a rate per minute, with an amplitude of `loudness` of the full one.
+fn add_hats(samples: &mut [i16], per_minute: f64, loudness: f32) {
+    let mut random = SplitMix64::new(5);
+    let count = (samples.len() as f64 / f64::from(RATE) * per_minute / 60.0) as usize;
+    for hat in 0..count {
+        let start = (hat as f64 * 60.0 / per_minute * f64::from(RATE)).round() as usize;
+        let mut before = 0.0;
+        for (i, sample) in samples.iter_mut().skip(start).take(1500).enumerate() {
+            let noise = random.unit() * 2.0 - 1.0;
+            // The difference of neighbours has little but high frequencies.
+            let high = 0.5 * (noise - std::mem::replace(&mut before, noise));
+            *sample = sample.saturating_add(Sound::quantised(loudness * high * (-(i as f32) / 300.0).exp()));
+        }
+    }
+}
+
+#[test]
+fn the_tempo_is_that_of_the_clicks_and_not_half_or_twice_of_it() {
+    let mut wrong = Vec::new();
+    for bpm in [60.0, 70.0, 90.0, 120.0, 150.0, 174.0, 180.0, 190.0] {
+        let plain = click_samples(bpm, 20.0);
+        let tempo_of = |samples: Vec<i16>| find_beats(&Sound::new(samples, 1)).tempo.expect("a tempo");
+        let tempo = tempo_of(plain.clone());
+        // The controls: quieter onsets between the beats do not double the tempo.
+        let with_hats = [0.1, 0.3].map(|loudness| {
+            let mut samples = plain.clone();
+            add_hats(&mut samples, 2.0 * bpm, loudness);
+            tempo_of(samples)
+        });
+        println!("{bpm} bpm: found {tempo:.2}; with hi-hats on eighths {with_hats:.2?}");
+        // Hi-hats at twice a slow tempo are beats for most listeners as well.
+        // Those as loud as the clicks at over 300 per minute make three of them a beat.
+        let with_hats = with_hats.into_iter().take(if bpm <= 150.0 { 2 } else { 1 }).filter(|_| bpm >= 90.0);
+        wrong.extend(with_hats.chain([tempo]).map(|found| [bpm, found]).filter(|[a, b]| (a - b).abs() > 0.5));
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn onsets_between_beats_are_told_from_beats() {
+    let share = |samples: Vec<i16>, period_secs: f64| {
+        let onsets = onset::strength(&Sound::new(samples, 1));
+        tempo::between(&onsets, &track::beats(&onsets, period_secs * onset::FRAME_RATE))
+    };
+    let mut shares = Vec::new();
+    for bpm in [150.0, 174.0, 190.0] {
+        // Every second click as a beat, and every click as a beat with hi-hats between them.
+        let plain = click_samples(bpm, 20.0);
+        let mut hats = plain.clone();
+        add_hats(&mut hats, 2.0 * bpm, 0.3);
+        shares.push([share(plain.clone(), 120.0 / bpm), share(hats, 60.0 / bpm), share(plain, 60.0 / bpm)]);
+    }
+    println!("clicks, hi-hats, nothing between: {shares:.2?}");
+    assert!(shares.iter().all(|[clicks, hats, nothing]| *clicks > tempo::AS_STRONG
+        && *hats < tempo::AS_STRONG
+        && *nothing < 0.2));
 }
 
 #[test]

@@ -10,7 +10,9 @@ mod mixer;
 #[cfg_attr(not(target_os = "linux"), path = "system.rs")]
 mod output;
 
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 
@@ -39,6 +41,8 @@ struct Heard {
     at: Option<(f64, Stopwatch)>,
     /// Why there is no device, as a sentence.
     failure: Option<String>,
+    /// Whether something plays, so that a device is wanted.
+    is_wanted: bool,
 }
 
 /// [`Heard`], shared with the thread of the device.
@@ -48,7 +52,29 @@ struct SharedHeard(Arc<Mutex<Heard>>);
 impl SharedHeard {
     /// Reports the frame that is heard now.
     fn report(&self, frame: f64) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).at = Some((frame, Stopwatch::start()));
+        let mut heard = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        (heard.at, heard.failure) = (Some((frame, Stopwatch::start())), None);
+    }
+
+    /// Says whether something plays.
+    fn want(&self, is_wanted: bool) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_wanted = is_wanted;
+    }
+
+    /// Calls `open`, which plays until the device is lost and returns why, again and again: after a loss every `reopened`, and only while
+    /// something plays. Ends when `open` returns `None`, or when the sender of `ended` is dropped.
+    fn keep_open(&self, ended: &Receiver<()>, reopened: Duration, mut open: impl FnMut() -> Option<String>) {
+        while let Some(why) = open() {
+            self.fail(why);
+            loop {
+                if ended.recv_timeout(reopened) != Err(RecvTimeoutError::Timeout) {
+                    return;
+                }
+                if self.0.lock().unwrap_or_else(PoisonError::into_inner).is_wanted {
+                    break;
+                }
+            }
+        }
     }
 
     /// Reports that nothing is heard, and why.
@@ -68,7 +94,8 @@ impl SharedHeard {
     }
 }
 
-/// Plays a sound in step with a clock. The device is opened by a thread of its own; until then, and without one, it is silent.
+/// Plays a sound in step with a clock. The device is opened by a thread of its own; until then, and without one, it is silent. A device that
+/// was lost or is missing is looked for every two seconds while the sound plays.
 pub struct Player {
     mixer: Arc<Mixer>,
     heard: SharedHeard,
@@ -99,6 +126,7 @@ impl Player {
 
     /// Tells where the sound should be now. Call it for every image while the dance plays, and when it pauses.
     pub fn follow(&mut self, target: Target) {
+        self.heard.want(target.playing);
         let heard = self.heard.frame(self.mixer.out_rate());
         self.follower.follow(&self.mixer, heard, self.since.secs(), target);
     }

@@ -31,9 +31,14 @@ pub struct Counts {
     pub secs: f64,
 }
 
+/// A number from the environment.
+fn named(variable: &str) -> Option<u64> {
+    std::env::var(variable).ok().and_then(|value| value.parse().ok())
+}
+
 /// Calls `reads` with damaged copies of `sound` files: `short` of them every day; in the long suite as many as fit into the
-/// seconds of the environment variable `LOVELOCK_FUZZ_SECS`, 30 if it is not set. `reads` returns whether the reader accepted
-/// the bytes, and panics if it broke a promise. Prints the counts.
+/// seconds of the environment variable `LOVELOCK_FUZZ_SECS`, 30 if it is not set. `LOVELOCK_FUZZ_SEED` chooses other damage. `reads` returns
+/// whether the reader accepted the bytes, and panics if it broke a promise. Prints the counts.
 ///
 /// # Panics
 /// If `reads` panics, takes more than 10 seconds, or refuses a sound file.
@@ -41,10 +46,11 @@ pub fn damaged(name: &str, sound: &[Vec<u8>], short: u64, reads: impl Fn(&[u8]) 
     for (index, file) in sound.iter().enumerate() {
         assert!(reads(file), "{name}: the sound file {index} was refused");
     }
-    let named = std::env::var("LOVELOCK_FUZZ_SECS").ok().and_then(|secs| secs.parse().ok());
-    let budget_secs = if suite::is_long() { Some(named.unwrap_or(LONG_SECS)) } else { None };
+    let budget_secs =
+        suite::is_long().then(|| named("LOVELOCK_FUZZ_SECS").map_or(LONG_SECS, |secs| secs as f64));
+    let seed = named("LOVELOCK_FUZZ_SEED").unwrap_or(1) as u32;
     let watch = Stopwatch::start();
-    let mut mutator = Mutator::new(SplitMix64::of_stream(1, name.bytes().map(u64::from).sum()));
+    let mut mutator = Mutator::new(SplitMix64::of_stream(seed, name.bytes().map(u64::from).sum()));
     let mut counts = Counts::default();
     let goes_on = |counts: &Counts| match budget_secs {
         Some(secs) => watch.secs() < secs,

@@ -3,8 +3,7 @@
 //! glTF states metres and Y up. Half of the width of hair is the attribute `_RADIUS`, a convention of several programs;
 //! colours are `COLOR_0`. Skins, animations and morph targets do not apply to lines. Nodes of scale 0 are hidden.
 
-mod data;
-mod document;
+mod shared;
 mod write;
 
 use std::fs::File as DiskFile;
@@ -12,6 +11,8 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use glam::{Mat4, Vec3};
+use lovelock_gltf::document::{Document, Primitive};
+use lovelock_gltf::{Accessors, Asset, GltfError, MAGIC, without_mark};
 use serde::Deserialize;
 
 use super::HairFileError;
@@ -20,8 +21,7 @@ use super::file::{MOST_COPIED_POINTS, RawHair};
 use super::format::HairFormat;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
-use data::{Data, File, split};
-use document::{Document, Primitive};
+use shared::Shared;
 
 /// `.glb`: one binary file.
 pub(super) static BINARY: HairFormat = HairFormat {
@@ -44,19 +44,19 @@ pub(super) static TEXT: HairFormat = HairFormat {
     states_unit: true,
     common_up: UpAxis::Y,
     magics: &[],
-    may_begin: |start| {
-        start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start().starts_with(b"{")
-    },
+    may_begin: |start| without_mark(start).trim_ascii_start().starts_with(b"{"),
     read,
     write: Some(write::text),
 };
 
-/// The first bytes of a binary file.
-const MAGIC: &[u8] = b"glTF";
-
 const LINES: u32 = 1;
 const LINE_LOOP: u32 = 2;
 const LINE_STRIP: u32 = 3;
+
+/// Attributes of lines.
+const POSITION: &str = "POSITION";
+const RADIUS: &str = "_RADIUS";
+const COLOUR: &str = "COLOR_0";
 
 fn is_line(mode: Option<u32>) -> bool {
     matches!(mode, Some(LINES | LINE_LOOP | LINE_STRIP))
@@ -100,37 +100,62 @@ pub fn gltf_holds_lines(path: &Path) -> bool {
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let folder = source.folder();
     let bytes = source.into_bytes(name)?;
-    let file = File { name };
-    let (json, bin) = split(file, &bytes)?;
-    let document: Document = serde_json::from_slice(json).map_err(|error| {
-        let at = (json.as_ptr() as usize - bytes.as_ptr() as usize) as u64;
-        file.malformed(at, format!("JSON that cannot be read: {error}"), "a glTF document")
-    })?;
-    for unknown in ["EXT_meshopt_compression", "KHR_draco_mesh_compression"] {
-        if document.extensions_required.iter().any(|required| required == unknown) {
-            return Err(file.malformed(0, format!("the extension {unknown}"), "a file without compression"));
-        }
-    }
-    let data = Data::load(file, &document, bin, folder.as_deref())?;
+    let asset = Asset::read(name, &bytes, folder.as_deref()).map_err(refused)?;
+    let (document, accessors) = (&asset.document, asset.accessors());
+    let shown = shown(document);
+    let each = || shown.iter().map(|(primitive, _)| *primitive).filter(|primitive| is_line(primitive.mode));
+    let of =
+        |attribute: &'static str| move |primitive: &Primitive| primitive.attributes.get(attribute).copied();
     let mut lines = Lines {
-        file,
-        data,
+        name,
+        accessors: &accessors,
+        positions: Shared::new(each().filter_map(of(POSITION))),
+        radii: Shared::new(each().filter_map(of(RADIUS))),
+        linear: Shared::new(each().filter_map(of(COLOUR))),
+        indices: Shared::new(each().filter_map(|primitive| primitive.indices)),
         most_points: MOST_COPIED_POINTS.max(bytes.len()),
         raw: RawHair::new(Vec::new(), Vec::new()),
         widths: Some(Vec::new()),
         colours: Some(Vec::new()),
         surfaces: 0,
     };
-    for (node, transform) in nodes(&document) {
+    for (primitive, transform) in &shown {
+        lines.primitive(primitive, *transform)?;
+    }
+    lines.finish()
+}
+
+/// The primitives of the scene with their transforms.
+fn shown(document: &Document) -> Vec<(&Primitive, Mat4)> {
+    let mut shown = Vec::new();
+    for (node, transform) in nodes(document) {
         let mesh = document.nodes[node].mesh.and_then(|mesh| document.meshes.get(mesh));
         // A node of scale 0 hides what it carries, as in an animation of one mesh per frame.
         if transform.determinant().abs() > 1e-18 {
-            for primitive in mesh.iter().flat_map(|mesh| &mesh.primitives) {
-                lines.primitive(primitive, transform)?;
-            }
+            shown.extend(
+                mesh.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| (primitive, transform)),
+            );
         }
     }
-    lines.finish()
+    shown
+}
+
+fn refused(error: GltfError) -> HairFileError {
+    let malformed = |name, offset, found, wanted| HairFileError::Malformed { name, offset, found, wanted };
+    match error {
+        GltfError::Read { file: name, source } => HairFileError::Io { name, source },
+        GltfError::Malformed { file, offset, place, found, wanted } => {
+            let found = if place.starts_with("byte ") { found } else { format!("{place} with {found}") };
+            malformed(file, offset, found, wanted)
+        }
+        GltfError::Extension { file, extension, advice } => {
+            malformed(file, 0, format!("the extension {extension}"), format!("a file without it: {advice}"))
+        }
+        GltfError::Outside { file, uri } => {
+            let wanted = "a file in its own folder or below".to_owned();
+            malformed(file, 0, format!("a buffer in `{uri}`"), wanted)
+        }
+    }
 }
 
 /// The nodes of the default scene with their transforms, parents first. A node that is reached twice counts once.
@@ -167,8 +192,13 @@ fn nodes(document: &Document) -> Vec<(usize, Mat4)> {
 
 /// The strands read so far.
 struct Lines<'a> {
-    file: File<'a>,
-    data: Data<'a>,
+    name: &'a str,
+    accessors: &'a Accessors<'a>,
+    positions: Shared<[f32; 3]>,
+    radii: Shared<[f32; 1]>,
+    /// Colours in linear light.
+    linear: Shared<[f32; 4]>,
+    indices: Shared<[u32; 1]>,
     most_points: usize,
     raw: RawHair,
     /// Widths of all points, as long as every primitive has them.
@@ -184,36 +214,42 @@ impl Lines<'_> {
             self.surfaces += 1;
             return Ok(());
         }
-        let Some(position) = primitive.attributes.position else { return Ok(()) };
-        let positions = self.data.vectors(position, [0.0; 3])?;
+        let accessors = self.accessors;
+        let of = |attribute: &str| primitive.attributes.get(attribute).copied();
+        let Some(position) = of(POSITION) else { return Ok(()) };
+        let positions = self.positions.get(position, || accessors.read(position)).map_err(refused)?;
         let chains = self.strands(primitive, &positions)?;
         if self.raw.points.len() + chains.vertices.len() > self.most_points {
-            let found = "a scene that shows the same points again and again";
-            return Err(self.file.malformed(0, found, format!("{} points at most", self.most_points)));
+            let found = "a scene that shows the same points again and again".to_owned();
+            return Err(self.malformed(found, &format!("{} points at most", self.most_points)));
         }
         let scale = transform.determinant().abs().cbrt();
-        let same_length = |what: &str, length: usize| {
-            if length == positions.len() {
+        let count = positions.len();
+        let same_length = |lines: &Self, what: &str, length: usize| {
+            if length == count {
                 return Ok(());
             }
-            let found = format!("{length} values of {what} for {} points", positions.len());
-            Err(self.file.malformed(0, found, "one per point"))
+            Err(lines.malformed(format!("{length} values of {what} for {count} points"), "one per point"))
         };
-        match (primitive.attributes.radius, &mut self.widths) {
-            (Some(radius), Some(widths)) => {
-                let radii = self.data.vectors(radius, [0.0])?;
-                same_length("_RADIUS", radii.len())?;
+        if let (Some(radius), true) = (of(RADIUS), self.widths.is_some()) {
+            let radii = self.radii.get(radius, || accessors.read(radius)).map_err(refused)?;
+            same_length(self, RADIUS, radii.len())?;
+            if let Some(widths) = &mut self.widths {
                 widths.extend(chains.vertices.iter().map(|&v| 2.0 * radii[v as usize][0] * scale));
             }
-            _ => self.widths = None,
+        } else {
+            self.widths = None;
         }
-        match (primitive.attributes.color, &mut self.colours) {
-            (Some(color), Some(colours)) => {
-                let linear = self.data.vectors(color, [1.0; 3])?;
-                same_length("COLOR_0", linear.len())?;
-                colours.extend(chains.vertices.iter().map(|&v| linear[v as usize].map(display_from_linear)));
+        if let (Some(colour), true) = (of(COLOUR), self.colours.is_some()) {
+            let linear = self.linear.get(colour, || accessors.read_3_or_4(colour)).map_err(refused)?;
+            same_length(self, COLOUR, linear.len())?;
+            let display =
+                |&v: &u32| linear[v as usize].first_chunk::<3>().map(|rgb| rgb.map(display_from_linear));
+            if let Some(colours) = &mut self.colours {
+                colours.extend(chains.vertices.iter().filter_map(display));
             }
-            _ => self.colours = None,
+        } else {
+            self.colours = None;
         }
         self.raw.points.extend(
             chains.vertices.iter().map(|&v| transform.transform_point3(Vec3::from(positions[v as usize]))),
@@ -222,11 +258,24 @@ impl Lines<'_> {
         Ok(())
     }
 
+    fn malformed(&self, found: String, wanted: &str) -> HairFileError {
+        HairFileError::Malformed { name: self.name.to_owned(), offset: 0, found, wanted: wanted.to_owned() }
+    }
+
     /// The strands of a primitive as sequences of its vertices.
-    fn strands(&self, primitive: &Primitive, positions: &[[f32; 3]]) -> Result<Chains, HairFileError> {
+    fn strands(&mut self, primitive: &Primitive, positions: &[[f32; 3]]) -> Result<Chains, HairFileError> {
         let points = positions.len();
         let listed = match primitive.indices {
-            Some(indices) => Some(self.data.indices(indices, points as u64)?),
+            Some(indices) => {
+                let accessors = self.accessors;
+                let listed =
+                    self.indices.get(indices, || accessors.read_indices(indices)).map_err(refused)?;
+                if let Some([index]) = listed.iter().find(|[index]| *index as usize >= points) {
+                    let found = format!("accessor {indices} with the index {index}");
+                    return Err(self.malformed(found, &format!("indices of {points} points")));
+                }
+                Some(listed.iter().map(|[index]| *index).collect::<Vec<u32>>())
+            }
             None => None,
         };
         if primitive.mode != Some(LINES) {
@@ -236,8 +285,18 @@ impl Lines<'_> {
             }
             return Ok(Chains { counts: vec![vertices.len() as u32], vertices, first_listed: vec![0] });
         }
-        if let Some(listed) = listed {
-            return Ok(chain(listed.as_chunks::<2>().0, points));
+        if let Some(mut listed) = listed {
+            // Counted from the first vertex in use, because primitives that share vertices use few of them each.
+            let (first, last) = listed.iter().fold((u32::MAX, 0), |(a, b), &v| (a.min(v), b.max(v)));
+            let first = first.min(last);
+            for vertex in &mut listed {
+                *vertex -= first;
+            }
+            let mut chains = chain(listed.as_chunks::<2>().0, (last - first) as usize + 1);
+            for vertex in &mut chains.vertices {
+                *vertex += first;
+            }
+            return Ok(chains);
         }
         // Without indices a segment that begins where the one before ends continues its strand.
         let mut segments: Vec<[u32; 2]> = Vec::with_capacity(points / 2);
@@ -252,11 +311,7 @@ impl Lines<'_> {
     fn finish(mut self) -> Result<RawHair, HairFileError> {
         if self.raw.point_counts.is_empty() {
             let found = format!("no lines, and {} primitives of other modes", self.surfaces);
-            return Err(self.file.malformed(
-                0,
-                found,
-                "primitives of the mode LINES, LINE_LOOP or LINE_STRIP",
-            ));
+            return Err(self.malformed(found, "primitives of the mode LINES, LINE_LOOP or LINE_STRIP"));
         }
         if self.surfaces > 0 {
             let note = format!(

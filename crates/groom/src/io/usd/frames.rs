@@ -4,7 +4,7 @@ use glam::{DMat4, Vec3};
 use lovelock_usd::Value;
 
 use super::stage::Stage;
-use super::{read_layer, shape, stage_transform};
+use super::{read_layer, shape};
 use crate::io::HairFileError;
 use crate::io::basis::{Shape, Spread};
 use crate::io::file::RawHair;
@@ -27,7 +27,7 @@ struct Frames {
 /// The curves of a layer over time, and the hair at the first time.
 pub(super) fn open(mut layer: Stage<'static>) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
     let raw = read_layer(&mut layer)?;
-    let metres_from_stage = stage_transform(&mut layer, &mut Vec::new())?;
+    let metres_from_stage = layer.space()?.metres_from_stage;
     let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
     let codes_per_sec = rate.unwrap_or(24.0);
     if !(1e-3..=1e6).contains(&codes_per_sec) {

@@ -7,7 +7,7 @@
 mod frames;
 mod stage;
 
-use glam::{DMat4, Vec3};
+use glam::Vec3;
 use lovelock_usd::{CRATE_MAGIC, TEXT_MAGIC, Value};
 
 use super::HairFileError;
@@ -48,7 +48,10 @@ pub(super) fn frames(
 
 fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     let mut raw = RawHair::new(Vec::new(), Vec::new());
-    let metres_from_stage = stage_transform(layer, &mut raw.notes)?;
+    let space = layer.space()?;
+    if !space.is_stated {
+        raw.notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
+    }
     let prims = layer.curves()?;
     if prims.is_empty() {
         return Err(layer.malformed("no curves".to_owned(), "one prim of type BasisCurves or more"));
@@ -59,7 +62,7 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     let (mut widths, mut colours) = (Vec::new(), Vec::new());
     let (mut all_widths, mut all_colours) = (true, true);
     for prim in prims {
-        let transform = metres_from_stage * layer.transform(prim)?;
+        let transform = space.metres_from_stage * layer.transform(prim)?;
         let curves = Curves::read(layer, prim, &mut raw.notes)?;
         let scale = transform.determinant().abs().cbrt() as f32;
         raw.point_counts.extend(&curves.counts);
@@ -81,23 +84,6 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     raw.thickness = Some(widths).filter(|_| all_widths);
     raw.colours = Some(colours).filter(|_| all_colours);
     Ok(raw)
-}
-
-/// The transform from the stage to metres with Y up.
-fn stage_transform(layer: &mut Stage<'_>, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
-    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
-        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
-        if !(1e-9..=1e9).contains(&found) {
-            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9"));
-        }
-        found
-    } else {
-        notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
-        0.01
-    };
-    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
-    let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
-    Ok(turn * DMat4::from_scale(glam::DVec3::splat(metres)))
 }
 
 /// The polylines of one prim, in its own space.

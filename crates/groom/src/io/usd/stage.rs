@@ -1,7 +1,7 @@
 //! A stage whose errors are those of hair files.
 
 use glam::DMat4;
-use lovelock_usd::{CRATE_MAGIC, Layer, UsdError, Value};
+use lovelock_usd::{CRATE_MAGIC, Layer, StageSpace, UsdError, Value};
 
 use super::HairFileError;
 use crate::io::source::Source;
@@ -65,6 +65,11 @@ impl<'a> Stage<'a> {
     /// A metadata field of the stage.
     pub(super) fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
         self.0.metadata(name).map_err(refused)
+    }
+
+    /// Unit and axis of the stage.
+    pub(super) fn space(&mut self) -> Result<StageSpace, HairFileError> {
+        lovelock_usd::stage_space(&mut *self.0).map_err(refused)
     }
 
     /// The transform from a prim's own space to the stage.

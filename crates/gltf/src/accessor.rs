@@ -3,14 +3,17 @@
 
 use std::cell::Cell;
 
-use super::document::{Accessor, Document};
-use crate::MotionError;
+use crate::document::{Accessor, Document};
+use crate::{Buffers, GltfError};
 
 /// Reads the accessors of one file, and refuses those that exceed their buffers.
-pub(super) struct Accessors<'a> {
-    pub(super) file: &'a str,
-    pub(super) document: &'a Document,
-    pub(super) buffers: &'a [Vec<u8>],
+#[derive(Debug)]
+pub struct Accessors<'a> {
+    /// The file as the user named it.
+    pub file: &'a str,
+    /// The document with the accessors.
+    pub document: &'a Document,
+    buffers: &'a Buffers<'a>,
     /// Remaining number of values that may be decoded, so that a small file cannot refer to the same bytes a
     /// thousand times.
     budget: Cell<u64>,
@@ -72,6 +75,9 @@ impl Component {
     }
 }
 
+/// What indices are.
+const UNSIGNED: &str = "unsigned integers";
+
 fn components_of(kind: &str) -> Option<usize> {
     Some(match kind {
         "SCALAR" => 1,
@@ -91,25 +97,27 @@ struct ElementRun<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    pub(super) fn new(file: &'a str, document: &'a Document, buffers: &'a [Vec<u8>]) -> Self {
-        let bytes: u64 = buffers.iter().map(|b| b.len() as u64).sum();
-        Self { file, document, buffers, budget: Cell::new(64 * bytes.max(1 << 16)) }
+    pub(crate) fn new(file: &'a str, document: &'a Document, buffers: &'a Buffers<'a>) -> Self {
+        Self { file, document, buffers, budget: Cell::new(64 * buffers.total().max(1 << 16)) }
     }
 
-    fn error(&self, index: usize, problem: impl Into<String>) -> MotionError {
-        MotionError::malformed(self.file, format!("accessor {index}"), problem)
+    fn error(&self, index: usize, found: impl Into<String>, wanted: impl Into<String>) -> GltfError {
+        GltfError::malformed(self.file, format!("accessor {index}"), found, wanted)
     }
 
-    fn get(&self, index: usize) -> Result<&'a Accessor, MotionError> {
+    fn get(&self, index: usize) -> Result<&'a Accessor, GltfError> {
         let count = self.document.accessors.len();
         self.document
             .accessors
             .get(index)
-            .ok_or_else(|| self.error(index, format!("does not exist; the file has {count}")))
+            .ok_or_else(|| self.error(index, "an index out of range", format!("one of {count} accessors")))
     }
 
     /// Number of elements, not yet checked.
-    pub(super) fn count(&self, index: usize) -> Result<u64, MotionError> {
+    ///
+    /// # Errors
+    /// If there is no such accessor.
+    pub fn count(&self, index: usize) -> Result<u64, GltfError> {
         Ok(self.get(index)?.count)
     }
 
@@ -121,11 +129,17 @@ impl<'a> Accessors<'a> {
         offset: u64,
         count: u64,
         element: usize,
-    ) -> Result<ElementRun<'a>, MotionError> {
-        let missing =
-            |what: &str, i: usize| self.error(index, format!("needs {what} {i}, which does not exist"));
+    ) -> Result<ElementRun<'a>, GltfError> {
+        let missing = |what: &str, i: usize| {
+            self.error(index, format!("{what} {i}, which is missing"), "an existing one")
+        };
         let v = self.document.buffer_views.get(view).ok_or_else(|| missing("bufferView", view))?;
-        let buffer = self.buffers.get(v.buffer).ok_or_else(|| missing("buffer", v.buffer))?;
+        let buffer: &'a [u8] = self
+            .buffers
+            .bytes
+            .get(v.buffer)
+            .map(|bytes| &**bytes)
+            .ok_or_else(|| missing("buffer", v.buffer))?;
         // Zero is not allowed but is interpreted as tightly packed.
         let stride = v.byte_stride.filter(|&s| s != 0).unwrap_or(element as u64);
         let length = match count {
@@ -141,9 +155,9 @@ impl<'a> Accessors<'a> {
             }
             _ => Err(self.error(
                 index,
+                format!("{count} elements of {element} bytes from byte {offset} of bufferView {view}"),
                 format!(
-                    "{count} elements of {element} bytes from byte {offset} of bufferView {view}, which has {} bytes \
-                     from byte {} of a buffer of {}",
+                    "as many as fit into its {} bytes from byte {} of a buffer of {}",
                     v.byte_length,
                     v.byte_offset,
                     buffer.len()
@@ -158,8 +172,8 @@ impl<'a> Accessors<'a> {
         &self,
         index: usize,
         element: usize,
-        mut store: impl FnMut(usize, &[u8]) -> Result<(), MotionError>,
-    ) -> Result<(), MotionError> {
+        mut store: impl FnMut(usize, &[u8]) -> Result<(), GltfError>,
+    ) -> Result<(), GltfError> {
         let accessor = self.get(index)?;
         if let Some(view) = accessor.buffer_view {
             let run = self.run(index, view, accessor.byte_offset, accessor.count, element)?;
@@ -169,7 +183,7 @@ impl<'a> Accessors<'a> {
         }
         let Some(sparse) = &accessor.sparse else { return Ok(()) };
         let component = Component::new(sparse.indices.component_type)
-            .ok_or_else(|| self.error(index, "sparse indices of an unknown component type"))?;
+            .ok_or_else(|| self.error(index, "sparse indices of an unknown component type", UNSIGNED))?;
         let places = self.run(
             index,
             sparse.indices.buffer_view,
@@ -182,10 +196,10 @@ impl<'a> Accessors<'a> {
         for k in 0..sparse.count as usize {
             let place = component
                 .decode_index(&places.bytes[k * places.stride..])
-                .ok_or_else(|| self.error(index, "sparse indices that are not unsigned integers"))?;
+                .ok_or_else(|| self.error(index, "sparse indices of another type", UNSIGNED))?;
             if u64::from(place) >= accessor.count {
-                let problem = format!("sparse index {place}; the accessor has {} elements", accessor.count);
-                return Err(self.error(index, problem));
+                let wanted = format!("one of its {} elements", accessor.count);
+                return Err(self.error(index, format!("the sparse index {place}"), wanted));
             }
             store(place as usize, &values.bytes[k * values.stride..][..element])?;
         }
@@ -193,47 +207,44 @@ impl<'a> Accessors<'a> {
     }
 
     /// Checks that `count` elements may be allocated, before they are.
-    fn check_budget(&self, index: usize, accessor: &Accessor, components: usize) -> Result<(), MotionError> {
-        let bytes: u64 = self.buffers.iter().map(|b| b.len() as u64).sum();
+    fn check_budget(&self, index: usize, accessor: &Accessor, components: usize) -> Result<(), GltfError> {
+        let bytes = self.buffers.total();
         // If the file has no bytes for the elements, their number must not exceed the size of the file.
         if accessor.buffer_view.is_none() && accessor.count > bytes.max(1 << 16) {
-            return Err(self.error(index, format!("{} elements without bytes in the file", accessor.count)));
+            let found = format!("{} elements without bytes in the file", accessor.count);
+            return Err(self.error(index, found, format!("{} at most", bytes.max(1 << 16))));
         }
         let wanted = accessor.count.saturating_mul(components as u64);
         let left = self.budget.get().checked_sub(wanted);
         let left = left.ok_or_else(|| {
-            self.error(index, format!("{} elements; too many for a file of {bytes} bytes", accessor.count))
+            let found = format!("{} elements, after others at the same bytes", accessor.count);
+            self.error(index, found, format!("fewer in a file of {bytes} bytes"))
         })?;
         self.budget.set(left);
         Ok(())
     }
 
-    /// Decodes elements of exactly `N` numbers.
-    pub(super) fn read<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, MotionError> {
+    /// Decodes elements of exactly `N` numbers. Integers are normalised where the file says so.
+    ///
+    /// # Errors
+    /// If the accessor does not fit into its buffer or has elements of another type, and if a file refers to the same bytes very often.
+    pub fn read<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, GltfError> {
         let (accessor, component, components) = self.shape(index)?;
         if components != N {
-            return Err(
-                self.error(index, format!("type {}; must have {N} numbers per element", accessor.kind))
-            );
+            return Err(self.error(
+                index,
+                format!("type {}", accessor.kind),
+                format!("{N} numbers per element"),
+            ));
         }
-        // Bounds are checked first, so that the allocation below is justified by the file.
-        if let Some(view) = accessor.buffer_view {
-            self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
-        }
-        self.check_budget(index, accessor, N)?;
-        let mut out = vec![[0.0; N]; accessor.count as usize];
-        let size = component.size();
-        self.each(index, N * size, |i, bytes| {
-            for (value, b) in out[i].iter_mut().zip(bytes.chunks_exact(size)) {
-                *value = component.decode(b, accessor.normalized);
-            }
-            Ok(())
-        })?;
-        Ok(out)
+        self.decode(index, |bytes| component.decode(bytes, accessor.normalized))
     }
 
     /// Decodes elements of 3 or 4 numbers; a missing fourth is 1 (colours).
-    pub(super) fn read_3_or_4(&self, index: usize) -> Result<Vec<[f32; 4]>, MotionError> {
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_3_or_4(&self, index: usize) -> Result<Vec<[f32; 4]>, GltfError> {
         match self.shape(index)?.2 {
             4 => self.read::<4>(index),
             _ => Ok(self.read::<3>(index)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()),
@@ -241,33 +252,49 @@ impl<'a> Accessors<'a> {
     }
 
     /// Decodes elements of `N` unsigned integers.
-    pub(super) fn read_indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, MotionError> {
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, GltfError> {
         let (accessor, component, components) = self.shape(index)?;
         if components != N || component.decode_index(&[0; 4]).is_none() {
-            return Err(self.error(index, format!("must have {N} unsigned integers per element")));
+            let found = format!("type {} of components {}", accessor.kind, accessor.component_type);
+            return Err(self.error(index, found, format!("{N} unsigned integers per element")));
         }
+        self.decode(index, |bytes| component.decode_index(bytes).unwrap_or(0))
+    }
+
+    /// Decodes elements of `N` numbers, each from the bytes of one component. The shape was checked.
+    fn decode<T: Copy + Default, const N: usize>(
+        &self,
+        index: usize,
+        number: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<[T; N]>, GltfError> {
+        let (accessor, component, _) = self.shape(index)?;
+        let size = component.size();
+        // Bounds are checked first, so that the allocation below is justified by the file.
         if let Some(view) = accessor.buffer_view {
-            self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
+            self.run(index, view, accessor.byte_offset, accessor.count, N * size)?;
         }
         self.check_budget(index, accessor, N)?;
-        let mut out = vec![[0; N]; accessor.count as usize];
-        let size = component.size();
+        let mut out = vec![[T::default(); N]; accessor.count as usize];
         self.each(index, N * size, |i, bytes| {
-            for (value, b) in out[i].iter_mut().zip(bytes.chunks_exact(size)) {
-                *value = component.decode_index(b).unwrap_or(0);
+            for (value, bytes) in out[i].iter_mut().zip(bytes.chunks_exact(size)) {
+                *value = number(bytes);
             }
             Ok(())
         })?;
         Ok(out)
     }
 
-    fn shape(&self, index: usize) -> Result<(&'a Accessor, Component, usize), MotionError> {
+    fn shape(&self, index: usize) -> Result<(&'a Accessor, Component, usize), GltfError> {
         let accessor = self.get(index)?;
         let component = Component::new(accessor.component_type).ok_or_else(|| {
-            self.error(index, format!("unknown component type {}", accessor.component_type))
+            self.error(index, format!("component type {}", accessor.component_type), "one from 5120 to 5126")
         })?;
-        let components = components_of(&accessor.kind)
-            .ok_or_else(|| self.error(index, format!("type `{}`, which is not supported", accessor.kind)))?;
+        let components = components_of(&accessor.kind).ok_or_else(|| {
+            self.error(index, format!("type `{}`", accessor.kind), "SCALAR, VEC2, VEC3, VEC4 or MAT4")
+        })?;
         Ok((accessor, component, components))
     }
 }
