@@ -10,6 +10,7 @@ mod character;
 mod clip;
 mod collide;
 mod collider;
+mod content;
 mod distance;
 mod error;
 mod fbx;
@@ -40,6 +41,7 @@ pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };
 pub use collider::{Collider, ColliderShape, PlacedCollider};
+pub use content::{FigureContent, figure_content};
 pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
 pub use fbx::is_fbx;
@@ -58,4 +60,3 @@ pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_plac
 pub use seam::Seam;
 pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, OwnHair, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};
-pub use usd::{UsdContent, usd_content};

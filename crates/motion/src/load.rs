@@ -8,7 +8,7 @@ use crate::recorded::motion_of;
 use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf, usd, vmd};
 
 /// Size of the largest file that is read.
-const FILE_LIMIT: u64 = 2 << 30;
+pub(crate) const FILE_LIMIT: u64 = 2 << 30;
 
 /// Loads a character with automatic unit and axes: glTF, VRM, FBX or USD.
 ///

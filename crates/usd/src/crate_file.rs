@@ -10,7 +10,6 @@ use std::collections::HashMap;
 use crate::Source;
 use crate::crate_bytes::{CrateBytes, u64_of};
 use crate::crate_value::CrateValues;
-use crate::layer::sample_at;
 use crate::transform::DEEPEST;
 use crate::value::Value;
 use crate::{Layer, UsdError};
@@ -285,14 +284,11 @@ impl Layer for CrateLayer<'_> {
         self.time = Some(time);
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
-        let sample = match self.time {
-            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
-            None => 0,
-        };
-        if let Some(value) = self.sample(prim, name, sample, most)? {
-            return Ok(Some(value));
-        }
+    fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    fn default_value(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
         match self.property(prim, name).and_then(|property| self.field_of(property, "default")) {
             Some(value) => self.values.value(value, most),
             None => Ok(None),

@@ -8,7 +8,6 @@ use openusd::sdf::{AbstractData, Data, Path, SpecType, Specifier, Value as Sdf};
 use openusd::usda::parser::Parser;
 use openusd::usda::token::Token;
 
-use crate::layer::sample_at;
 use crate::transform::DEEPEST;
 use crate::value::{Value, half};
 use crate::{Layer, UsdError};
@@ -150,14 +149,11 @@ impl Layer for TextLayer {
         self.time = Some(time);
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
-        let sample = match self.time {
-            Some(time) => sample_at(&self.sample_times(prim, name)?, time),
-            None => 0,
-        };
-        if let Some(value) = self.sample(prim, name, sample, most)? {
-            return Ok(Some(value));
-        }
+    fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    fn default_value(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, UsdError> {
         self.field(prim, name, "default")
     }
 

@@ -29,11 +29,12 @@ mod usd;
 mod words;
 mod yuksel;
 
-pub use cache::CurveCache;
+pub use alembic::METRES_Y_UP;
+pub use cache::{CurveCache, CurveMotion};
 pub use error::HairFileError;
 pub use file::{Bounds, HairFile};
 pub use format::HairFormat;
-pub use gltf::gltf_holds_lines;
+pub use gltf::{GltfContent, gltf_content};
 pub(crate) use guess::guess_facing;
 pub use guess::{UnitGuess, guess_units};
 pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes};

@@ -119,7 +119,11 @@ fn content_speaks_before_the_ending() {
     for (name, content, kind) in [
         ("a.txt", &b"HIERARCHY\nROOT"[..], Some(FileKind::Motion)),
         ("b.bvh", b"HAIR....", Some(FileKind::Hair)),
-        ("c", b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"}}", Some(FileKind::Character)),
+        (
+            "c",
+            b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{}]}]}",
+            Some(FileKind::Character),
+        ),
         ("d.dat", b"\xef\xbb\xbf(\n version: 1)", Some(FileKind::Project)),
         ("d.lovelockstyle", b"(version: 3)", Some(FileKind::Style)),
         ("e.lovelockstyle", b"HAIR....", Some(FileKind::Hair)),
@@ -129,6 +133,8 @@ fn content_speaks_before_the_ending() {
         ("g.glb", b"glTF\x02\0\0\0", Some(FileKind::Character)),
         ("h.obj", b"v 0 0 0\nl 1 2", Some(FileKind::Hair)),
         ("i.pbrt.gz", b"\x1f\x8b\x08", Some(FileKind::Hair)),
+        ("j.gltf", b"{\"asset\":{},\"animations\":[{}]}", Some(FileKind::Motion)),
+        ("k.vrma", b"{\"asset\":{},\"animations\":[{}]}", Some(FileKind::Motion)),
         ("f.txt", b"nonsense", None),
         ("g", b"", None),
     ] {
@@ -141,6 +147,35 @@ fn content_speaks_before_the_ending() {
             }
             (other, _) => panic!("{name}: {other:?}"),
         }
+    }
+    // A body with a clip is a body, and hair with a body is hair.
+    for (name, content, kind) in [
+        (
+            "l.gltf",
+            "{\"asset\":{},\"animations\":[{}],\"meshes\":[{\"primitives\":[{}]}]}",
+            FileKind::Character,
+        ),
+        ("m.gltf", "{\"asset\":{},\"meshes\":[{\"primitives\":[{},{\"mode\":1}]}]}", FileKind::Hair),
+        ("n.usda", "#usda 1.0\ndef BasisCurves \"a\" {}\ndef Mesh \"b\" {}\n", FileKind::Hair),
+        ("o.usda", "#usda 1.0\ndef SkelAnimation \"a\" {}\ndef Mesh \"b\" {}\n", FileKind::Character),
+        ("p.usda", "#usda 1.0\ndef Skeleton \"a\" {}\ndef SkelAnimation \"b\" {}\n", FileKind::Motion),
+    ] {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        assert_eq!(FileKind::of(&path).expect(name), kind, "{name}");
+    }
+    for (name, content) in [
+        ("q.usda", "#usda 1.0\ndef Camera \"a\" {}\n"),
+        ("r.usda", "#usda 1.0\ndef Skeleton \"a\" {}\n"),
+        ("s.gltf", "{\"asset\":{},\"nodes\":[{}]}"),
+        ("t.gltf", "{\"asset\":{},\"meshes\":[{\"primitives\":[{\"mode\":0}]}]}"),
+    ] {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        let error = FileKind::of(&path).expect_err(name);
+        let said = error.to_string();
+        assert!(said.contains(name) && said.contains("neither hair nor a mesh nor animation"), "{said}");
+        assert_eq!((said.lines().count(), error.exit_code()), (1, 2));
     }
     assert!(FileKind::of(dir.path()).is_err(), "a folder");
     assert!(FileKind::of(&dir.path().join("gone.hair")).is_err(), "a missing file");

@@ -14,6 +14,7 @@ use ufbx::{
 };
 
 use crate::character::{Axes, Character, Draft, only_motion};
+use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -82,6 +83,18 @@ pub(crate) fn read(
     let mut character = draft.finish(Axes { settings, usual_unit_metres })?;
     character.format = format;
     Ok(character)
+}
+
+/// What a file contains, without its geometry.
+pub(crate) fn content(file: &str, bytes: &[u8]) -> Result<FigureContent, MotionError> {
+    let scene = ufbx::load_memory(bytes, options(bytes.len(), false)).map_err(|e| refuse(file, bytes, &e))?;
+    Ok(if !scene.meshes.is_empty() {
+        FigureContent::Body
+    } else if !scene.anim_curves.is_empty() {
+        FigureContent::Clip
+    } else {
+        FigureContent::Nothing
+    })
 }
 
 fn options(file_bytes: usize, needs_mesh: bool) -> LoadOpts<'static> {

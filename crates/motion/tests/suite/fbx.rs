@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_motion::{
-    Character, MotionSettings, Pose, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
+    Character, FigureContent, MotionSettings, Pose, figure_content, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
 };
 use proptest::prelude::*;
 
@@ -78,6 +78,19 @@ fn a_clip_without_a_body_is_a_motion_and_no_character() {
         };
         node.children.retain(|node| !is_body(node));
     }
+    let folder = tempfile::tempdir().expect("a folder");
+    let content = |nodes: &[Node]| {
+        let path = folder.path().join("a.fbx");
+        std::fs::write(&path, binary(nodes)).expect("a file");
+        figure_content(&path).expect("FBX")
+    };
+    assert_eq!(content(&figure(SPACES[1])), Some(FigureContent::Body));
+    assert_eq!(content(&nodes), Some(FigureContent::Clip));
+    let mut still = nodes.clone();
+    for node in &mut still {
+        node.children.retain(|node| !node.name.starts_with("Animation"));
+    }
+    assert_eq!(content(&still), Some(FigureContent::Nothing));
     let bytes = binary(&nodes);
     let error = load_character_bytes("clip.fbx", &bytes, None).expect_err("no body").to_string();
     assert!(error.starts_with("clip.fbx: contains") && error.contains("Motion file"), "{error}");
