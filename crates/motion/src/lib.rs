@@ -50,8 +50,8 @@ pub use gltf::gltf_reference;
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use load::{
-    load_character, load_character_bytes, load_character_bytes_with, load_character_with, load_motion,
-    load_motion_bytes, load_motion_with,
+    load_character, load_character_bytes, load_character_bytes_with, load_character_watched,
+    load_character_with, load_motion, load_motion_bytes, load_motion_watched, load_motion_with,
 };
 pub use pose::Pose;
 pub use retarget::retarget;

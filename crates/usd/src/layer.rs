@@ -42,9 +42,9 @@ pub trait Layer {
             return self.default_value(prim, name, most);
         };
         let Some(t) = around.next.filter(|_| value.interpolates()) else { return Ok(Some(value)) };
-        // A single integer is a number here; the type of its attribute tells.
+        // A single integer, and in text a boolean, is a number here; the type of its attribute tells.
         let type_name = self.field(prim, name, "typeName")?;
-        let whole = |name: &str| name.starts_with("int") || name.starts_with('u');
+        let whole = |name: &str| ["int", "u", "bool"].iter().any(|start| name.starts_with(start));
         if matches!(value, Value::Numbers(_)) && type_name.as_ref().and_then(Value::token).is_some_and(whole)
         {
             return Ok(Some(value));
@@ -240,11 +240,13 @@ def Xform "a"
             ("count", Value::Numbers(vec![1.0]), Value::Numbers(vec![4.0])),
             ("counts", Value::Ints(vec![1]), Value::Ints(vec![4])),
             ("kind", Value::Token("one".into()), Value::Token("two".into())),
-            ("on", Value::Bool(false), Value::Bool(true)),
         ] {
             assert_eq!(at(layer, 9.9, name), held, "{name}");
             assert_eq!(at(layer, 10.0, name), next, "{name}");
         }
+        // Text gives booleans as numbers.
+        let on = at(layer, 0.0, "on");
+        assert!(at(layer, 9.9, "on") == on && at(layer, 10.0, "on") != on);
         // A quarter of the way: 22.5 degrees, where straight lines between the components give 18.4.
         let Value::Numbers(turn) = at(layer, 2.5, "turn") else { panic!("a quaternion") };
         let degrees = 2.0 * (-turn[3]).atan2(turn[0]).to_degrees();

@@ -37,7 +37,7 @@ pub use format::HairFormat;
 pub use gltf::{GltfContent, gltf_content};
 pub(crate) use guess::guess_facing;
 pub use guess::{UnitGuess, guess_units};
-pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes};
+pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes, load_hair_watched};
 pub(crate) use root_shape::{RootShape, fit_sphere};
 pub(crate) use units::rotation_to_head_axes;
 pub use units::{Facing, Unit, UpAxis};

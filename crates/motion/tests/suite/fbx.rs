@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use lovelock_motion::{
-    Character, FigureContent, MotionSettings, Pose, figure_content, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
+    Character, FigureContent, MotionSettings, Pose, Skin, figure_content, load_character_bytes,
+    load_motion_bytes, pose_at, skin,
 };
 use proptest::prelude::*;
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lovelock_base::watch::Watch;
 use lovelock_groom::Obstacle;
 use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
 use lovelock_project::Project;
@@ -15,6 +16,7 @@ use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
 use super::styling::{MorphCache, MorphSource};
 use super::{Scene, StyleSource, SurroundingsLoader};
+use crate::aside::aside;
 
 /// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
@@ -25,7 +27,18 @@ pub struct LoadControl<'a> {
 }
 
 impl LoadControl<'_> {
-    fn at(&mut self, what: &str, fraction: f32) -> Result<(), ProjectError> {
+    /// Reads a file on another thread: reading stops when the load is cancelled. `what` is done, and the part of the load from and to
+    /// which this goes.
+    pub(super) fn read<T: Send + 'static>(
+        &mut self,
+        what: &str,
+        [from, to]: [f32; 2],
+        work: impl FnOnce(&Watch) -> T + Send + 'static,
+    ) -> Result<T, ProjectError> {
+        aside(self.cancelled, &mut |done| (self.progress)(what, from + (to - from) * done), work)
+    }
+
+    pub(super) fn at(&mut self, what: &str, fraction: f32) -> Result<(), ProjectError> {
         if self.cancelled.load(Ordering::Relaxed) {
             return Err(ProjectError::Cancelled);
         }
@@ -98,15 +111,18 @@ impl SceneLoader {
         control.at("loading the body", 0.0)?;
         let body = self.body(&project, access, &mut problems, control)?;
         control.at("loading the motion", 0.3)?;
-        let motion = self.motion(&project, access, &body, &mut problems)?;
+        let motion = self.motion(&project, access, &body, &mut problems, control)?;
         control.at("creating the hair", 0.5)?;
         let scalp = self.scalp(&body, &project.body.scalp);
-        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems);
+        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems, control)?;
         let obstacle: Arc<dyn Obstacle + Send> = scalp.obstacle.clone();
-        let morph = project.hair.morph.to.as_ref().map(|to| MorphSource {
-            to: self.other_hair.load(&to.hair, access, &scalp, &mut problems).style,
-            amount: project.hair.morph.amount,
-        });
+        let morph = match &project.hair.morph.to {
+            Some(to) => {
+                let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control)?.style;
+                Some(MorphSource { to, amount: project.hair.morph.amount })
+            }
+            None => None,
+        };
         let styled = self.morph.of(&hair.style, morph.as_ref(), None, &*obstacle);
         let stack = project.hair.stack.clone();
         let source = StyleSource { base: hair.base, stack, obstacle, scale: scalp.scale, morph };
@@ -157,7 +173,7 @@ impl SceneLoader {
             return Ok(Arc::clone(&kept.part));
         }
         let loaded = match wanted {
-            Ok(key) => key.load_in_steps(&mut |what, done| control.at(what, done))?.map(|part| (key, part)),
+            Ok(key) => key.load_in_steps(control)?.map(|part| (key, part)),
             Err(problem) => Err(problem),
         };
         let (key, part) = match (loaded, &self.body) {
@@ -184,6 +200,7 @@ impl SceneLoader {
         access: &Access,
         body: &Arc<BodyPart>,
         problems: &mut Vec<Problem>,
+        control: &mut LoadControl<'_>,
     ) -> Result<Arc<MotionPart>, ProjectError> {
         // A clip belongs to the joints of one body, so a clip of another body cannot be reused.
         let kept = self.motion.take_if(|kept| kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body)));
@@ -196,7 +213,16 @@ impl SceneLoader {
                 Some(Kept { key: key.clone(), body: Some(Arc::clone(body)), part: Arc::clone(&part) });
             return Ok(part);
         }
-        let loaded = wanted.and_then(|key| key.load(body).map(|part| (key, Arc::new(part))));
+        let loaded = match wanted {
+            Ok(key) => match key.load(body, control) {
+                Ok(loaded) => loaded.map(|part| (key, Arc::new(part))),
+                Err(error) => {
+                    self.motion = kept;
+                    return Err(error);
+                }
+            },
+            Err(problem) => Err(problem),
+        };
         let (key, part) = match (loaded, kept) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
@@ -206,7 +232,7 @@ impl SceneLoader {
             (Err(problem), None) => {
                 problems.push(problem.with_fallback("the body's first clip is played instead"));
                 let key = MotionKey::first_clip();
-                let part = key.load(body).map_err(ProjectError::work)?;
+                let part = key.load(body, control)?.map_err(ProjectError::work)?;
                 (key, Arc::new(part))
             }
         };
