@@ -114,6 +114,24 @@ fn a_style_is_described() {
 }
 
 #[test]
+fn curves_whose_motion_is_refused_are_described_with_the_reason() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path().join("grows.usda");
+    for (counts, said) in [("[2], 2: [1]", "cannot be played"), ("[2], 2: [2]", "The curves move: 2 times")] {
+        let text = format!(
+            "#usda 1.0\ndef BasisCurves \"a\"\n{{\n uniform token type = \"linear\"\n\
+             int[] curveVertexCounts.timeSamples = {{ 1: {counts} }}\n\
+             point3f[] points.timeSamples = {{ 1: [(0, 0, 0), (0, 1, 0)], 2: [(0, 0, 0), (0, 2, 0)] }}\n}}\n"
+        );
+        std::fs::write(&at, text).expect("a file");
+        let json = serde_json::to_value(info(&at).expect("hair")).expect("JSON");
+        let notes = json["notes"].to_string();
+        assert!(notes.contains(said), "{notes}");
+        assert_eq!(notes.contains("number of points changes"), said == "cannot be played", "{notes}");
+    }
+}
+
+#[test]
 fn content_speaks_before_the_ending() {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, content, kind) in [

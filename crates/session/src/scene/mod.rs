@@ -11,7 +11,7 @@ mod scalp_part;
 mod styling;
 mod surroundings;
 
-pub use camera::{camera_at, frame_points};
+pub use camera::{camera_at, camera_for_size, frame_points};
 pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::{LoadControl, SceneLoader};
