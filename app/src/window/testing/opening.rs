@@ -5,7 +5,7 @@ use std::path::Path;
 
 use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::UpAxis;
 use lovelock_project::project::{BodySource, CameraSection, HairSource};
