@@ -51,7 +51,6 @@ pub(crate) fn aside<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
-    use std::sync::mpsc::channel;
 
     use lovelock_base::clock::Stopwatch;
 
@@ -69,8 +68,8 @@ mod tests {
         assert!(matches!(done, Ok(7)) && parts.contains(&0.5), "{parts:?}");
 
         let cancelled = Arc::new(AtomicBool::new(false));
-        let (release, held) = channel::<()>();
-        let (report, ended) = channel();
+        let (release, held) = sync_channel::<()>(1);
+        let (report, ended) = sync_channel(1);
         let (flag, watch) = (Arc::clone(&cancelled), Stopwatch::start());
         let left = aside(&cancelled, &mut |_| flag.store(true, Ordering::Relaxed), move |watch| {
             // As a library that reads for long without a report.

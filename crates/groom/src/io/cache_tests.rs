@@ -61,7 +61,7 @@ fn curves_that_cannot_be_played_say_why_and_are_a_still_hairstyle() {
         [("grows.abc", true), ("moves.abc", false), ("grows ü.usda", true), ("moves.usda", false)]
     {
         let path = at(name);
-        if name.ends_with(".abc") {
+        if path.extension().is_some_and(|ending| ending == "abc") {
             write_abc(&path, if refused { &[3, 4, 5] } else { &[3, 3, 3] }, "");
         } else {
             // Equal counts at several times do not change.
