@@ -41,7 +41,7 @@ pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };
 pub use collider::{Collider, ColliderShape, PlacedCollider};
-pub use content::{FigureContent, figure_content};
+pub use content::FigureContent;
 pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
 pub use fbx::is_fbx;
@@ -50,7 +50,7 @@ pub use gltf::gltf_reference;
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use load::{
-    load_character, load_character_bytes, load_character_bytes_with, load_character_watched,
+    figure_content, load_character, load_character_bytes, load_character_bytes_with, load_character_watched,
     load_character_with, load_motion, load_motion_bytes, load_motion_watched, load_motion_with,
 };
 pub use pose::Pose;

@@ -5,12 +5,29 @@ use std::path::Path;
 use lovelock_base::watch::Watch;
 
 use crate::character::Character;
+use crate::content::FigureContent;
 use crate::error::read_file;
 use crate::recorded::motion_of;
 use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf, usd, vmd};
 
 /// Size of the largest file that is read.
-pub(crate) const FILE_LIMIT: u64 = 2 << 30;
+const FILE_LIMIT: u64 = 2 << 30;
+
+/// What an FBX or USD file contains; `None` for a file of another format.
+///
+/// # Errors
+/// For a file that cannot be read.
+pub fn figure_content(path: &Path) -> Result<Option<FigureContent>, MotionError> {
+    let bytes = read_file(path, FILE_LIMIT)?;
+    let file = path.display().to_string();
+    if fbx::is_fbx(&bytes) {
+        fbx::content(&file, &bytes).map(Some)
+    } else if usd::is_usd(&bytes) {
+        usd::content(&file, &bytes).map(Some)
+    } else {
+        Ok(None)
+    }
+}
 
 /// Loads a character with automatic unit and axes: glTF, VRM, FBX or USD.
 ///

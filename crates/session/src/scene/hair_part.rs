@@ -11,7 +11,7 @@ use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{HairSection, HairSource};
 
-use super::LoadControl;
+use super::control::LoadControl;
 use super::parts::{Stamp, file_notes};
 use super::scalp_part::ScalpPart;
 

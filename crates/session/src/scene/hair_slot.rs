@@ -8,7 +8,7 @@ use lovelock_project::files::Access;
 use lovelock_project::project::HairSection;
 use lovelock_style::StyleCache;
 
-use super::LoadControl;
+use super::control::LoadControl;
 use super::hair_part::{HairFileCache, HairKey, HairPart};
 use super::scalp_part::ScalpPart;
 

@@ -1,51 +1,21 @@
 //! Loads the scene of a project. Each part is reused until its sources change.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use lovelock_base::watch::Watch;
 use lovelock_groom::Obstacle;
 use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 
+use super::control::LoadControl;
 use super::hair_slot::HairSlot;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
 use super::styling::{MorphCache, MorphSource};
 use super::{Scene, StyleSource, SurroundingsLoader};
-use crate::aside::aside;
-
-/// Progress and cancellation of a load.
-pub struct LoadControl<'a> {
-    /// Set by any thread to stop the load at the next opportunity.
-    pub cancelled: &'a AtomicBool,
-    /// Called with the current work, such as `growing the hair`, and the fraction that is done.
-    pub progress: &'a mut dyn FnMut(&str, f32),
-}
-
-impl LoadControl<'_> {
-    /// Reads a file on another thread: reading stops when the load is cancelled. `what` is done, and the part of the load from and to
-    /// which this goes.
-    pub(super) fn read<T: Send + 'static>(
-        &mut self,
-        what: &str,
-        [from, to]: [f32; 2],
-        work: impl FnOnce(&Watch) -> T + Send + 'static,
-    ) -> Result<T, ProjectError> {
-        aside(self.cancelled, &mut |done| (self.progress)(what, from + (to - from) * done), work)
-    }
-
-    pub(super) fn at(&mut self, what: &str, fraction: f32) -> Result<(), ProjectError> {
-        if self.cancelled.load(Ordering::Relaxed) {
-            return Err(ProjectError::Cancelled);
-        }
-        (self.progress)(what, fraction);
-        Ok(())
-    }
-}
 
 /// A part and its sources.
 #[derive(Debug)]

@@ -15,7 +15,8 @@ use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, BodySource, MotionSection, MotionSource};
 
-use super::{LoadControl, dancer};
+use super::control::LoadControl;
+use super::dancer;
 
 /// Identity of a file's contents when it was read. The file is read again if this changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
