@@ -36,6 +36,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
         curves: task.curves,
         no_body: task.no_body,
         backend: task.backend,
+        frame_body: task.source.body.is_some()
+            && !task.source.set.iter().any(|set| set.name.starts_with("camera.")),
         panes,
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()

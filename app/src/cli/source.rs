@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use lovelock_base::settings::Settings;
-use lovelock_groom::CurveCache;
+use lovelock_groom::CurveMotion;
 use lovelock_jobs::info::FileKind;
 use lovelock_jobs::presets::style_named;
 use lovelock_panes::sheet::Sheet;
@@ -38,17 +38,23 @@ impl Source {
                 access.pick(path);
                 project_of_take(path)?
             }
-            Some(path) if CurveCache::times_in(path).is_some() => {
-                access.pick(path);
-                (
-                    Self::around(task, &mut access).and_then(|around| project_of_cache(&around, path))?,
-                    Vec::new(),
-                )
-            }
-            Some(path) => {
-                access.set_project(Some(path));
-                load_project_with(path, &mut access)?
-            }
+            Some(path) => match CurveMotion::of(path) {
+                CurveMotion::Moving(_) => {
+                    access.pick(path);
+                    let around = Self::around(task, &mut access)?;
+                    (project_of_cache(&around, path)?, Vec::new())
+                }
+                CurveMotion::Refused(reason) => {
+                    let message = format!(
+                        "{reason}; these curves cannot be played: --hair takes them as a still hairstyle"
+                    );
+                    return Err(ProjectError::input(path, message));
+                }
+                CurveMotion::Still => {
+                    access.set_project(Some(path));
+                    load_project_with(path, &mut access)?
+                }
+            },
             None => (Project::default(), Vec::new()),
         };
         print_problems(&problems);
@@ -158,14 +164,23 @@ impl Source {
         for take in takes {
             match FileKind::of(take)? {
                 FileKind::Take => {}
-                FileKind::Hair if CurveCache::times_in(take).is_some() => {}
                 kind => {
-                    let message = format!(
-                        "--beside {}: a {} file, and a take was wanted",
-                        take.display(),
-                        kind.label()
-                    );
-                    return Err(ProjectError::input(take, message));
+                    let motion =
+                        if kind == FileKind::Hair { CurveMotion::of(take) } else { CurveMotion::Still };
+                    match motion {
+                        CurveMotion::Moving(_) => {}
+                        CurveMotion::Refused(reason) => {
+                            return Err(ProjectError::input(take, format!("--beside: {reason}")));
+                        }
+                        CurveMotion::Still => {
+                            let message = format!(
+                                "--beside {}: a {} file, and a take was wanted",
+                                take.display(),
+                                kind.label()
+                            );
+                            return Err(ProjectError::input(take, message));
+                        }
+                    }
                 }
             }
             self.access.pick(take);

@@ -2,20 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use lovelock_groom::{CurveCache, Preset};
+use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, ProjectError};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection, load_project_with};
 use lovelock_project::styles::StyleParts;
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
-use lovelock_session::take::{project_of_cache, project_of_take};
 
 use crate::cli::Assignment;
 
 use super::command::Command;
+use super::files::set_part;
+use super::opening::Found;
 use super::path_dialog::Purpose;
 use super::{Pending, Window, copy, notices};
 
@@ -40,25 +41,23 @@ pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<
 
 fn open_file(path: &Path) -> Result<Opened, ProjectError> {
     let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
-    match FileKind::of(path)? {
-        FileKind::Project => {
-            (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
-            opened.project_path = Some(path.to_owned());
+    match Found::of(path, &opened.project.hair)? {
+        Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
+        Found::Part(kind, unused) => {
+            let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
+            opened.problems.extend(unused);
+            set_part(&mut opened.project, kind, path);
         }
-        FileKind::Hair if CurveCache::times_in(path).is_some() => {
-            opened.project = project_of_cache(&opened.project, path)?;
-        }
-        FileKind::Hair => opened.project.set_hair_file(path),
-        FileKind::Character => opened.project.set_body_file(path),
-        FileKind::Motion => opened.project.set_motion_file(path),
-        FileKind::Surroundings => opened.project.set_surroundings_file(path),
-        FileKind::Sound => opened.project.set_sound_file(path),
-        FileKind::Style => {
+        Found::Document(FileKind::Style) => {
             let listed = lovelock_jobs::presets::style_in(path)?;
             opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
             opened.project.apply_style(&listed.style, StyleParts::ALL);
         }
-        FileKind::Take => (opened.project, opened.problems) = project_of_take(path)?,
+        Found::Document(_) => {
+            (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
+            opened.project_path = Some(path.to_owned());
+        }
+        Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
     }
     Ok(opened)
 }
@@ -272,7 +271,7 @@ impl Window {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
             // Another kind of file is a problem of the surroundings, which the loader reports.
-            Purpose::Body => self.open_part(path, |project| project.set_body_file(path)),
+            Purpose::Body => self.open_body(path),
             Purpose::Motion => self.open_part(path, |project| project.set_motion_file(path)),
             Purpose::Surroundings => self.open_part(path, |project| project.set_surroundings_file(path)),
             // Another kind of file is a problem of the sound, which its reader reports.

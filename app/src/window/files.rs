@@ -1,43 +1,133 @@
 //! Opening and saving files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use lovelock_groom::CurveCache;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::files::FileRef;
-use lovelock_project::project::{Contender, load_project_with, save_project};
-use lovelock_session::take::{project_of_cache, project_of_take};
+use lovelock_project::history::GestureId;
+use lovelock_project::project::{BodySection, CameraSection, Contender, load_project_with, save_project};
+use lovelock_session::scene::{Scene, camera_for_size};
 
+use super::opening::{Aim, Found, Opened};
 use super::{Pending, Window, notices, remember};
 
-impl Window {
-    /// Opens a file of any kind that the program reads.
-    pub(super) fn open_any(&mut self, path: &Path) {
-        match FileKind::of(path) {
-            Ok(FileKind::Project) if self.history.is_modified() => {
-                self.pending = Some(Pending::Open(path.to_owned()));
-            }
-            Ok(FileKind::Project) => self.open_project(path),
-            Ok(FileKind::Hair) if CurveCache::times_in(path).is_some() => self.open_take(path),
-            Ok(FileKind::Take) => {
-                self.open_take(path);
-                // Saving must not write the take's project to the file of the previous project.
-                self.project_path = None;
-                self.session.set_project_path(None);
-            }
-            Ok(FileKind::Style) => self.open_style(path),
-            Ok(kind) => self.open_part(path, |project| match kind {
-                FileKind::Hair => project.set_hair_file(path),
-                FileKind::Character => project.set_body_file(path),
-                FileKind::Surroundings => project.set_surroundings_file(path),
-                FileKind::Sound => project.set_sound_file(path),
-                FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
-                    project.set_motion_file(path);
-                }
-            }),
-            Err(error) => self.warn([error.to_string()]),
+/// A body that was opened and is not loaded yet.
+pub(super) struct Framing {
+    body: BodySection,
+    /// The undo step that opened it.
+    gesture: GestureId,
+    /// The scene before it.
+    before: Option<Arc<Scene>>,
+}
+
+impl Framing {
+    /// That of a project that starts with a character and a camera of its own, if it does.
+    pub(super) fn at_start(project: &Project, path: Option<&PathBuf>) -> Option<Self> {
+        let opened = path.is_none() && project.body.file.is_some() && project.take.file.is_none();
+        let framed = opened && project.camera == CameraSection::default();
+        framed.then(|| Self { body: project.body.clone(), gesture: 0, before: None })
+    }
+}
+
+/// Makes a file a part of the project.
+pub(super) fn set_part(project: &mut Project, kind: FileKind, path: &Path) {
+    match kind {
+        FileKind::Hair => project.set_hair_file(path),
+        FileKind::Character => project.set_body_file(path),
+        FileKind::Surroundings => project.set_surroundings_file(path),
+        FileKind::Sound => project.set_sound_file(path),
+        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
+            project.set_motion_file(path);
         }
+    }
+}
+
+impl Window {
+    /// Opens a file of any kind that the program reads. What it is, is found out on a thread.
+    pub(super) fn open_any(&mut self, path: &Path) {
+        self.look_into(path, Aim::Open);
+    }
+
+    /// Plays a take with the project that it was recorded from. One undo step restores the previous project.
+    pub(super) fn open_take(&mut self, path: &Path) {
+        self.look_into(path, Aim::PlayTake);
+    }
+
+    /// Adds a pane that shows a take, rendered with the settings of the project.
+    pub(super) fn compare_with(&mut self, path: &Path) {
+        self.look_into(path, Aim::Beside);
+    }
+
+    fn look_into(&mut self, path: &Path, aim: Aim) {
+        let hair = self.history.project().hair.clone();
+        if let Err(error) = self.openings.start(path, aim, hair, &self.ctx) {
+            self.warn([format!("{}: a thread that reads it could not start: {error}", path.display())]);
+        }
+    }
+
+    /// Opens the files that were looked into.
+    pub(super) fn take_opened(&mut self) {
+        while let Some(Opened { path, aim, found }) = self.openings.next() {
+            match (aim, found) {
+                (_, Err(error)) => self.warn([error.to_string()]),
+                (Aim::Beside, Ok(found)) => self.put_beside(&path, &found),
+                (aim, Ok(Found::Take(project, problems))) => {
+                    self.play(&path, |_| *project);
+                    self.warn(problems.into_iter().map(|problem| problem.message));
+                    if aim == Aim::Open {
+                        // Saving must not write the take's project to the file of the previous project.
+                        self.project_path = None;
+                        self.session.set_project_path(None);
+                    }
+                }
+                (_, Ok(Found::Curves(curves))) => self.play(&path, |project| curves.played_in(project)),
+                (_, Ok(Found::Document(FileKind::Style))) => self.open_style(&path),
+                (_, Ok(Found::Document(_))) if self.history.is_modified() => {
+                    self.pending = Some(Pending::Open(path));
+                }
+                (_, Ok(Found::Document(_))) => self.open_project(&path),
+                (_, Ok(Found::Part(kind, unused))) => {
+                    self.warn(unused);
+                    if kind == FileKind::Character {
+                        self.open_body(&path);
+                    } else {
+                        self.open_part(&path, |project| set_part(project, kind, &path));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Makes a character the body of the project. The camera follows its size when it is loaded.
+    pub(super) fn open_body(&mut self, path: &Path) {
+        self.open_part(path, |project| project.set_body_file(path));
+        self.framing = Some(Framing {
+            body: self.history.project().body.clone(),
+            gesture: self.gestures.id() - 1,
+            before: self.session.scene.clone(),
+        });
+    }
+
+    /// Moves the camera away from a large body and to a small one, as a part of the undo step that opened it.
+    pub(super) fn frame_opened_body(&mut self) {
+        let (Some(framing), Some(scene)) = (&self.framing, &self.session.scene) else { return };
+        let before = framing.before.as_ref();
+        // A load that began earlier.
+        if before.is_some_and(|before| Arc::ptr_eq(&before.body, &scene.body)) {
+            return;
+        }
+        let (gesture, project) = (framing.gesture, self.history.project());
+        let before_scale = before.map_or(1.0, |before| before.hair_scale);
+        let camera = camera_for_size(&project.camera, before_scale, scene.hair_scale);
+        // Undone or replaced meanwhile.
+        let camera = camera.filter(|_| project.body == framing.body);
+        if let Some(camera) = camera {
+            let framed = Project { camera, ..(**project).clone() };
+            self.history.edit("file", Some(gesture), framed);
+        }
+        self.framing = None;
     }
 
     /// Makes a file that the user picked a part of the project.
@@ -49,31 +139,17 @@ impl Window {
         self.session.reload(&project);
     }
 
-    /// Plays a take with the project that it was recorded from, or curves over time with the body and the motion of this one. One
-    /// undo step restores the previous project.
-    pub(super) fn open_take(&mut self, path: &Path) {
-        let opened = match FileKind::of(path) {
-            Ok(FileKind::Hair) => {
-                project_of_cache(self.history.project(), path).map(|project| (project, Vec::new()))
-            }
-            _ => project_of_take(path),
-        };
-        match opened {
-            Ok((take, problems)) => {
-                self.session.pick(path);
-                self.change("take", |project| *project = take);
-                let project = self.history.project().clone();
-                self.session.reload(&project);
-                self.warn(problems.into_iter().map(|problem| problem.message));
-            }
-            Err(error) => self.warn([error.to_string()]),
-        }
+    /// Plays a take or curves: `made` returns the project that does. One undo step restores the previous one.
+    fn play(&mut self, path: &Path, made: impl FnOnce(&Project) -> Project) {
+        self.session.pick(path);
+        self.change("take", |project| *project = made(project));
+        let project = self.history.project().clone();
+        self.session.reload(&project);
     }
 
-    /// Adds a pane that shows a take, rendered with the settings of the project.
-    pub(super) fn compare_with(&mut self, path: &Path) {
-        match FileKind::of(path) {
-            Ok(kind) if kind == FileKind::Take || CurveCache::times_in(path).is_some() => {
+    fn put_beside(&mut self, path: &Path, found: &Found) {
+        match found {
+            Found::Take(..) | Found::Curves(_) => {
                 self.session.pick(path);
                 let file = FileRef::new(path);
                 self.change("compare", |project| {
@@ -84,10 +160,10 @@ impl Window {
                 self.layout.compare.shown = true;
                 self.layout.wall.shown = false;
             }
-            Ok(kind) => {
-                self.warn([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);
+            Found::Part(_, Some(reason)) => self.warn([reason.clone()]),
+            found => {
+                self.warn([format!("{}: found a {} file; must be a take", path.display(), found.label())]);
             }
-            Err(error) => self.warn([error.to_string()]),
         }
     }
 

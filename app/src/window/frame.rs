@@ -24,8 +24,12 @@ impl Window {
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
+        let scene = self.session.scene.as_ref().map(Arc::as_ptr);
         let said = self.session.update();
         self.warn(said);
+        if self.session.scene.as_ref().map(Arc::as_ptr) != scene {
+            self.frame_opened_body();
+        }
         self.follow_sound(&ctx);
         self.take_brushed();
         for done in std::mem::take(&mut self.session.done) {
@@ -61,6 +65,7 @@ impl Window {
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
             self.open_any(file.path());
         }
+        self.take_opened();
 
         self.menu_bar(ui);
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
@@ -320,6 +325,18 @@ impl Window {
                     self.session.worker().cancel_load();
                 }
                 row += 1;
+            }
+            if let Some((name, taken_secs)) = self.openings.running() {
+                let left = SHOW_LOADING_SECS - taken_secs;
+                if left > 0.0 {
+                    ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
+                } else {
+                    let tip = "Opens nothing. The project stays unchanged.";
+                    if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
+                        self.openings.cancel();
+                    }
+                    row += 1;
+                }
             }
             if let Some(loading) = self.soundtrack.loading()
                 && loading.taken_secs > SHOW_LOADING_SECS

@@ -16,6 +16,7 @@ mod images;
 mod keys;
 mod light_sphere;
 mod notices;
+mod opening;
 mod overlay;
 mod palette;
 mod panels;
@@ -131,6 +132,11 @@ pub(crate) struct Window {
     palette: Palette,
     layout: Layout,
     dialog: Option<PathDialog>,
+    /// The files that are being looked into, and the context that their threads wake.
+    openings: opening::Openings,
+    ctx: egui::Context,
+    /// The body that was opened last, until it is loaded.
+    framing: Option<files::Framing>,
     pending: Option<Pending>,
     notices: Notices,
     keys_shown: bool,
@@ -235,6 +241,7 @@ impl Window {
             access.pick(path);
         }
         access.set_project(project_path.as_deref());
+        let framing = files::Framing::at_start(&project, project_path.as_ref());
         let history = History::new(project);
         let (device, textures) = (WindowDevice::default(), Textures::default());
         let session = Session::start(history.project(), access, ctx, &device)?;
@@ -249,6 +256,9 @@ impl Window {
             palette: Palette::default(),
             layout,
             dialog: None,
+            openings: opening::Openings::default(),
+            ctx: ctx.clone(),
+            framing,
             pending: None,
             notices: Notices::default(),
             keys_shown: false,

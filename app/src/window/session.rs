@@ -57,6 +57,8 @@ pub(crate) struct Session {
     pub(crate) hair: hair::LoadedHair,
     pub(crate) body: body::LoadedBody,
     pub(crate) surroundings: surroundings::LoadedSurroundings,
+    /// Notes about the curves that play.
+    pub(crate) take_notes: Vec<String>,
     pub(crate) stages: StageHistory,
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
@@ -122,6 +124,7 @@ impl Session {
             hair: hair::LoadedHair::default(),
             body: body::LoadedBody::default(),
             surroundings: surroundings::LoadedSurroundings::default(),
+            take_notes: Vec::new(),
             stages: StageHistory::new(PLOTTED_FRAMES),
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
@@ -360,6 +363,7 @@ impl Session {
             picture: scene.surroundings.clone(),
             notes: notes(&[Place::Surroundings]),
         };
+        self.take_notes = notes(&[Place::Take]);
         self.problems = problems;
         self.scene = Some(scene);
     }

@@ -24,6 +24,9 @@ impl Window {
                     };
                     super::control::note(ui, note);
                     if curves {
+                        section(ui, "Curves", true, |ui| {
+                            panels::hair::curves(ui, &mut project.hair.import, &self.session.take_notes);
+                        });
                         asked = self.body_section(ui, project, true);
                     }
                     ui.disable();

@@ -8,3 +8,4 @@ pub mod random;
 pub mod settings;
 pub mod statistics;
 pub mod triangle;
+pub mod watch;

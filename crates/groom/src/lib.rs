@@ -46,8 +46,9 @@ pub use import::{
 };
 pub use interpolate::interpolate;
 pub use io::{
-    Bounds, CurveCache, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis,
-    gltf_holds_lines, guess_units, load_hair, load_hair_bytes,
+    Bounds, CurveCache, CurveMotion, Facing, GltfContent, HAIR_FORMATS, HairFile, HairFileError, HairFormat,
+    METRES_Y_UP, Unit, UnitGuess, UpAxis, gltf_content, guess_units, load_hair, load_hair_bytes,
+    load_hair_watched,
 };
 pub use look::{HairLook, HairShading};
 pub use motion_factors::MotionFactors;

@@ -10,6 +10,7 @@ mod character;
 mod clip;
 mod collide;
 mod collider;
+mod content;
 mod distance;
 mod error;
 mod fbx;
@@ -40,6 +41,7 @@ pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };
 pub use collider::{Collider, ColliderShape, PlacedCollider};
+pub use content::FigureContent;
 pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
 pub use fbx::is_fbx;
@@ -47,8 +49,8 @@ pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use load::{
-    load_character, load_character_bytes, load_character_bytes_with, load_character_with, load_motion,
-    load_motion_bytes, load_motion_with,
+    figure_content, load_character, load_character_bytes, load_character_bytes_with, load_character_watched,
+    load_character_with, load_motion, load_motion_bytes, load_motion_watched, load_motion_with,
 };
 pub use lovelock_gltf::gltf_reference;
 pub use pose::Pose;
@@ -58,4 +60,3 @@ pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_plac
 pub use seam::Seam;
 pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, OwnHair, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};
-pub use usd::{UsdContent, usd_content};

@@ -2,13 +2,32 @@
 
 use std::path::Path;
 
+use lovelock_base::watch::Watch;
+
 use crate::character::Character;
+use crate::content::FigureContent;
 use crate::error::read_file;
 use crate::recorded::motion_of;
 use crate::{BodySettings, MotionError, MotionFile, MotionSettings, bvh, fbx, gltf, usd, vmd};
 
 /// Size of the largest file that is read.
 const FILE_LIMIT: u64 = 2 << 30;
+
+/// What an FBX or USD file contains; `None` for a file of another format.
+///
+/// # Errors
+/// For a file that cannot be read.
+pub fn figure_content(path: &Path) -> Result<Option<FigureContent>, MotionError> {
+    let bytes = read_file(path, FILE_LIMIT)?;
+    let file = path.display().to_string();
+    if fbx::is_fbx(&bytes) {
+        fbx::content(&file, &bytes).map(Some)
+    } else if usd::is_usd(&bytes) {
+        usd::content(&file, &bytes).map(Some)
+    } else {
+        Ok(None)
+    }
+}
 
 /// Loads a character with automatic unit and axes: glTF, VRM, FBX or USD.
 ///
@@ -24,8 +43,20 @@ pub fn load_character(path: &Path) -> Result<Character, MotionError> {
 /// # Errors
 /// As [`load_character`].
 pub fn load_character_with(path: &Path, settings: BodySettings) -> Result<Character, MotionError> {
+    load_character_watched(path, settings, &Watch::default())
+}
+
+/// As [`load_character_with`]. Reports to `watch`, and stops when it says so.
+///
+/// # Errors
+/// As [`load_character`], and if the load is cancelled.
+pub fn load_character_watched(
+    path: &Path,
+    settings: BodySettings,
+    watch: &Watch,
+) -> Result<Character, MotionError> {
     let bytes = read_file(path, FILE_LIMIT)?;
-    load_character_bytes_with(&path.display().to_string(), &bytes, path.parent(), settings)
+    read_figure((&path.display().to_string(), watch), &bytes, path.parent(), settings, true)
 }
 
 /// Loads a character from bytes. `name` is used in messages. Other files with buffers are searched in
@@ -51,12 +82,12 @@ pub fn load_character_bytes_with(
     base_dir: Option<&Path>,
     settings: BodySettings,
 ) -> Result<Character, MotionError> {
-    read_figure(name, bytes, base_dir, settings, true)
+    read_figure((name, &Watch::default()), bytes, base_dir, settings, true)
 }
 
 /// Reads a character, or with `needs_mesh` unset the joints and clips of a file that may have no mesh.
 fn read_figure(
-    name: &str,
+    (name, watch): (&str, &Watch),
     bytes: &[u8],
     base_dir: Option<&Path>,
     settings: BodySettings,
@@ -64,7 +95,7 @@ fn read_figure(
 ) -> Result<Character, MotionError> {
     refuse_empty(name, bytes)?;
     if fbx::is_fbx(bytes) {
-        return fbx::read(name, bytes, settings, needs_mesh);
+        return fbx::read((name, watch), bytes, settings, needs_mesh);
     }
     if usd::is_usd(bytes) {
         return usd::read(name, bytes, settings, needs_mesh);
@@ -100,9 +131,22 @@ pub fn load_motion_with(
     settings: MotionSettings,
     clip: &str,
 ) -> Result<MotionFile, MotionError> {
+    load_motion_watched(path, settings, clip, &Watch::default())
+}
+
+/// As [`load_motion_with`]. Reports to `watch`, and stops when it says so.
+///
+/// # Errors
+/// As [`load_motion`], and if the load is cancelled.
+pub fn load_motion_watched(
+    path: &Path,
+    settings: MotionSettings,
+    clip: &str,
+    watch: &Watch,
+) -> Result<MotionFile, MotionError> {
     let bytes = read_file(path, FILE_LIMIT)?;
     let name = path.display().to_string();
-    read_motion(&name, &bytes, path.parent(), settings, clip)
+    read_motion((&name, watch), &bytes, path.parent(), settings, clip)
 }
 
 /// Loads a motion file from bytes; `name` is used in messages.
@@ -114,11 +158,11 @@ pub fn load_motion_bytes(
     bytes: &[u8],
     settings: MotionSettings,
 ) -> Result<MotionFile, MotionError> {
-    read_motion(name, bytes, None, settings, "")
+    read_motion((name, &Watch::default()), bytes, None, settings, "")
 }
 
 fn read_motion(
-    name: &str,
+    (name, watch): (&str, &Watch),
     bytes: &[u8],
     base_dir: Option<&Path>,
     settings: MotionSettings,
@@ -138,6 +182,6 @@ fn read_motion(
         return bvh::read(name, bytes, settings);
     }
     let of_file = BodySettings { unit: settings.unit, up: settings.up, ..BodySettings::default() };
-    let figure = read_figure(name, bytes, base_dir, of_file, false)?;
+    let figure = read_figure((name, watch), bytes, base_dir, of_file, false)?;
     motion_of(name, figure, clip)
 }

@@ -12,7 +12,7 @@ use lovelock_render::{CpuRenderer, DeviceImages, Image, Picture};
 
 use crate::latest::LatestJob;
 use crate::scene::SurroundingsLoader;
-use crate::take::TakePlayer;
+use crate::take::{CurveInputs, TakePlayer};
 use crate::threads::lower_priority;
 use crate::window_device::WindowDevice;
 
@@ -89,12 +89,21 @@ impl Drop for Filmstrip {
     }
 }
 
+/// A take that is open, and what it was opened with.
+struct Open {
+    file: PathBuf,
+    access: Access,
+    /// Body and motion around curves.
+    around: Option<CurveInputs>,
+    player: Box<TakePlayer>,
+}
+
 /// The thread's own state.
 struct Worker {
     jobs: LatestJob<FilmstripRequest>,
     left: Arc<Mutex<Vec<FilmstripPicture>>>,
     on_drawn: Box<dyn Fn() + Send>,
-    open: Option<(PathBuf, Access, Box<TakePlayer>)>,
+    open: Option<Open>,
     surroundings: SurroundingsLoader,
     window: WindowDevice,
     textures: Option<DeviceImages>,
@@ -137,15 +146,17 @@ impl Worker {
 
     fn draw(&mut self, request: &FilmstripRequest, renderer: &mut CpuRenderer) -> Result<(), ProjectError> {
         let Some(file) = &request.project.take.file else { return Ok(()) };
+        let around = CurveInputs::of(&file.path, &request.project);
         let same =
-            |open: &(PathBuf, Access, Box<TakePlayer>)| open.0 == file.path && open.1 == request.access;
+            |open: &Open| open.file == file.path && open.access == request.access && open.around == around;
         if !self.open.as_ref().is_some_and(same) {
             let path = request.access.read(Place::Take, file);
             let path = path.map_err(|problem| ProjectError::input(&file.path, problem))?;
             let (player, _) = TakePlayer::open_for(&path, &request.access, &request.project)?;
-            self.open = Some((file.path.clone(), request.access.clone(), Box::new(player)));
+            let (file, access) = (file.path.clone(), request.access.clone());
+            self.open = Some(Open { file, access, around, player: Box::new(player) });
         }
-        let Some((.., player)) = &mut self.open else { return Ok(()) };
+        let Some(Open { player, .. }) = &mut self.open else { return Ok(()) };
         // The window reports problems.
         let picture = self.surroundings.load(&request.project, &request.access, &mut Vec::new());
         player.set_surroundings(picture, Vec::new());
@@ -177,6 +188,40 @@ mod tests {
     use super::*;
     use crate::testing::{recorded, small_project};
     use lovelock_base::clock::Stopwatch;
+
+    /// Asks for one thumbnail and waits for it.
+    fn thumbnail(strip: &Filmstrip, project: &Project, access: &Access) -> Picture {
+        strip.request(FilmstripRequest {
+            project: Arc::new(project.clone()),
+            access: access.clone(),
+            secs: vec![0.1],
+            size: [64, 36],
+        });
+        let watch = Stopwatch::start();
+        loop {
+            assert!(watch.secs() < 60.0, "no thumbnail");
+            if let Some(drawn) = strip.pictures().pop() {
+                return Picture::clone(&drawn.image.picture().expect("pixels"));
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn thumbnails_of_curves_follow_the_body_and_the_motion_of_the_project() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.abc");
+        crate::testing::moving_curves(&path, 5);
+        let mut access = Access::new();
+        access.pick(&path);
+        let dancing = crate::take::project_of_cache(&small_project(), &path).expect("a project");
+        let mut resting = dancing.clone();
+        resting.motion.source = lovelock_project::project::MotionSource::Rest;
+        let strip = Filmstrip::start(WindowDevice::default(), || {}).expect("a thread");
+        let first = thumbnail(&strip, &dancing, &access);
+        assert!(thumbnail(&strip, &dancing, &access) == first, "control: nothing has changed");
+        assert!(thumbnail(&strip, &resting, &access) != first, "the body rests now");
+    }
 
     #[test]
     fn thumbnails_of_a_take_show_its_frames() {

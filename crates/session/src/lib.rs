@@ -12,6 +12,7 @@
 //!
 //! Nothing here depends on a window or a command line.
 
+mod aside;
 pub mod clock;
 pub mod dance;
 pub mod engine;

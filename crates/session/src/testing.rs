@@ -7,6 +7,7 @@ use glam::Vec3;
 use lovelock_project::error::Problem;
 use lovelock_project::files::Access;
 use lovelock_project::project::Project;
+use lovelock_record::{CurveFrame, CurveScene, CurveWriter, FrameRate};
 
 use crate::engine::Engine;
 use crate::scene::{Scene, SceneLoader};
@@ -100,4 +101,55 @@ pub fn played(path: &Path) -> TakePlayer {
     let (player, problems) = TakePlayer::open(path, &Access::new()).expect("a take that plays");
     assert_eq!(problems, []);
     player
+}
+
+/// Number of the first frame of [`moving_curves`], which have 30 per second.
+pub const CURVES_FIRST_FRAME: u64 = 6;
+
+/// A point of a curve in a frame: strands of four or five points above the head, which swing.
+fn point_of_curve(frame: u64, strand: usize, i: usize) -> Vec3 {
+    let angle = 0.1 * strand as f32;
+    let out = 0.08 + 0.03 * i as f32;
+    Vec3::new(out * angle.cos(), 1.7 - 0.04 * i as f32 + 0.01 * frame as f32, out * angle.sin())
+}
+
+fn strands_of_curves() -> impl Iterator<Item = (usize, usize)> {
+    (0..60).map(|strand| (strand, 4 + strand % 2))
+}
+
+/// The points of [`moving_curves`] in a frame.
+pub fn points_of_curves(frame: u64) -> Vec<Vec3> {
+    strands_of_curves()
+        .flat_map(|(strand, count)| (0..count).map(move |i| point_of_curve(frame, strand, i)))
+        .collect()
+}
+
+/// Writes curves over time as another program would, in the format of the extension.
+///
+/// # Panics
+/// If the file cannot be written.
+pub fn moving_curves(path: &Path, frames: u64) {
+    let mut first_point = vec![0];
+    for (_, count) in strands_of_curves() {
+        first_point.push(first_point[first_point.len() - 1] + count as u32);
+    }
+    let count = first_point[first_point.len() - 1] as usize;
+    let scene = CurveScene {
+        rate: FrameRate { num: 30, den: 1 },
+        first_frame: CURVES_FIRST_FRAME,
+        frames,
+        first_point,
+        widths: vec![1e-4; count],
+        colors: vec![Vec3::new(0.3, 0.05, 0.02); count],
+        are_guides: false,
+        body: None,
+    };
+    let mut writer = CurveWriter::create(path, scene).expect("a file");
+    for frame in 0..frames {
+        let points = points_of_curves(frame);
+        let axis = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
+        let [x, y, z] = [0, 1, 2].map(axis);
+        writer.push(&CurveFrame { points: [&x, &y, &z], body: None }).expect("a frame");
+    }
+    writer.finish().expect("a file");
 }

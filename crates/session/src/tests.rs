@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::Vec3;
+use lovelock_base::clock::Stopwatch;
 use lovelock_motion::Clip;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
@@ -259,6 +260,36 @@ fn a_load_can_be_cancelled() {
     let mut control = LoadControl { cancelled: &cancelled, progress: &mut |_, _| {} };
     let result = SceneLoader::new().load(&small_project(), &Access::new(), &mut control);
     assert!(matches!(result, Err(ProjectError::Cancelled)));
+}
+
+#[test]
+fn a_load_can_be_cancelled_while_a_file_is_read() {
+    const POINTS: usize = 300_000;
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("large.usda");
+    let text = format!(
+        "#usda 1.0\ndef BasisCurves \"a\"\n{{\n uniform token type = \"linear\"\n int[] curveVertexCounts = [{POINTS}]\n\
+         point3f[] points = [{}]\n}}\n",
+        "(1.5, 2.5, 3.5), ".repeat(POINTS)
+    );
+    std::fs::write(&path, text).expect("a file");
+    let mut project = small_project();
+    project.set_hair_file(&path);
+    let mut access = Access::new();
+    access.pick(&path);
+    let cancelled = AtomicBool::new(false);
+    let mut since = None;
+    let mut progress = |what: &str, _: f32| {
+        if what == "reading the hair" {
+            cancelled.store(true, std::sync::atomic::Ordering::Relaxed);
+            since.get_or_insert_with(Stopwatch::start);
+        }
+    };
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut progress };
+    let result = SceneLoader::new().load(&project, &access, &mut control);
+    let secs = since.expect("it took longer than a report").secs();
+    println!("left {secs:.3} s after the cancellation");
+    assert!(matches!(result, Err(ProjectError::Cancelled)) && secs < 0.5, "{secs} s");
 }
 
 #[test]

@@ -12,7 +12,6 @@ use crate::crate_bytes::{CrateBytes, u64_of};
 use crate::crate_samples::CrateSamples;
 use crate::crate_tokens::Tokens;
 use crate::crate_value::CrateValues;
-use crate::layer::sample_at;
 use crate::transform::DEEPEST;
 use crate::value::Value;
 use crate::{Layer, UsdError};
@@ -320,18 +319,12 @@ impl Layer for CrateLayer<'_> {
         self.time = Some(time);
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
-        let Some(property) = self.property(prim, name) else { return Ok(None) };
-        if let Some(stored) = self.field_of(property, "timeSamples") {
-            let sample = match self.time {
-                Some(time) => sample_at(&self.samples.times(&mut self.values, stored)?, |at| *at, time),
-                None => 0,
-            };
-            if let Some(value) = self.samples.value(&mut self.values, stored, sample, most)? {
-                return Ok(Some(value));
-            }
-        }
-        match self.field_of(property, "default") {
+    fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    fn default_value(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
+        match self.property(prim, name).and_then(|property| self.field_of(property, "default")) {
             Some(value) => self.values.value(value, most),
             None => Ok(None),
         }

@@ -18,6 +18,7 @@ const PAYLOAD: u64 = (1 << 48) - 1;
 mod kind {
     pub(crate) const BOOL: u64 = 1;
     pub(crate) const INT: u64 = 3;
+    pub(crate) const INT64: u64 = 5;
     pub(crate) const HALF: u64 = 7;
     pub(crate) const FLOAT: u64 = 8;
     pub(crate) const DOUBLE: u64 = 9;
@@ -154,6 +155,8 @@ impl CrateValues<'_> {
             kind::BOOL => Value::Bool(inlined != 0),
             kind::TOKEN => Value::Token(self.tokens.get(inlined).unwrap_or_default().to_owned()),
             kind::INT => Value::Numbers(vec![f64::from(inlined as i32)]),
+            kind::INT64 if is_inlined => Value::Numbers(vec![f64::from(inlined as i32)]),
+            kind::INT64 => Value::Numbers(vec![self.file.u64(at)? as i64 as f64]),
             kind::HALF => Value::Numbers(vec![f64::from(half(inlined as u16))]),
             kind::FLOAT | kind::DOUBLE if is_inlined => {
                 Value::Numbers(vec![f64::from(f32::from_bits(inlined))])

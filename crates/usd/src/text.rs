@@ -8,7 +8,6 @@ use openusd::sdf::{AbstractData, Data, Path, SpecType, Specifier, Value as Sdf};
 use openusd::usda::parser::Parser;
 use openusd::usda::token::Token;
 
-use crate::layer::sample_at;
 use crate::transform::DEEPEST;
 use crate::value::{Value, half};
 use crate::{Layer, UsdError};
@@ -156,12 +155,11 @@ impl Layer for TextLayer {
         self.time = Some(time);
     }
 
-    fn attribute(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, UsdError> {
-        let samples = self.samples(prim, name);
-        let sample = self.time.map_or(0, |time| sample_at(samples, |(at, _)| *at, time));
-        if let Some(value) = samples.get(sample).and_then(|(_, value)| value_of(value)) {
-            return Ok(Some(value));
-        }
+    fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    fn default_value(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, UsdError> {
         self.field(prim, name, "default")
     }
 

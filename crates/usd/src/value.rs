@@ -1,6 +1,6 @@
 //! Values of attributes that curves, meshes, skeletons and transforms have.
 
-use glam::Vec3;
+use glam::{DQuat, Quat, Vec3};
 
 /// A value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,6 +96,61 @@ impl Value {
             _ => Vec::new(),
         }
     }
+}
+
+impl Value {
+    /// Whether values between two samples of its type lie between them.
+    pub(crate) fn interpolates(&self) -> bool {
+        !matches!(self, Self::Token(_) | Self::Tokens(_) | Self::Bool(_) | Self::Ints(_))
+    }
+
+    /// The value at part `t` of the way to another one; itself where the other has another type or length.
+    pub(crate) fn toward(mut self, next: &Self, t: f64) -> Self {
+        let lerp = |a: f64, b: f64| a + (b - a) * t;
+        match (&mut self, next) {
+            // Of single values only quaternions have four numbers.
+            (Self::Numbers(from), Self::Numbers(to))
+                if let (&[w, x, y, z], &[v, a, b, c]) = (&from[..], &to[..]) =>
+            {
+                let turned = between(DQuat::from_xyzw(x, y, z, w), DQuat::from_xyzw(a, b, c, v), t);
+                if let Some(turn) = turned {
+                    *from = vec![turn.w, turn.x, turn.y, turn.z];
+                }
+            }
+            (Self::Numbers(from), Self::Numbers(to)) if from.len() == to.len() => {
+                from.iter_mut().zip(to).for_each(|(a, b)| *a = lerp(*a, *b));
+            }
+            (Self::Floats(from), Self::Floats(to)) if from.len() == to.len() => {
+                from.iter_mut().zip(to).for_each(|(a, b)| *a = lerp(f64::from(*a), f64::from(*b)) as f32);
+            }
+            (Self::Vectors(from), Self::Vectors(to)) if from.len() == to.len() => {
+                from.iter_mut().zip(to).for_each(|(a, b)| *a += (*b - *a) * t as f32);
+            }
+            (Self::Quaternions(from), Self::Quaternions(to)) if from.len() == to.len() => {
+                let turn = |[w, x, y, z]: [f32; 4]| Quat::from_xyzw(x, y, z, w).as_dquat();
+                for (a, b) in from.iter_mut().zip(to) {
+                    if let Some(turn) = between(turn(*a), turn(*b), t) {
+                        *a = [turn.w, turn.x, turn.y, turn.z].map(|part| part as f32);
+                    }
+                }
+            }
+            (Self::Matrices(from), Self::Matrices(to)) if from.len() == to.len() => {
+                let numbers = from.as_flattened_mut().iter_mut().zip(to.as_flattened());
+                numbers.for_each(|(a, b)| *a = lerp(*a, *b));
+            }
+            _ => {}
+        }
+        self
+    }
+}
+
+/// The rotation at part `t` of the shorter way from one to another; `None` for quaternions without a direction.
+fn between(from: DQuat, to: DQuat, t: f64) -> Option<DQuat> {
+    let unit = |q: DQuat| {
+        let length = q.length();
+        (length.is_finite() && length > 1e-9).then(|| q / length)
+    };
+    Some(unit(from)?.slerp(unit(to)?, t))
 }
 
 /// Converts a half-precision number (IEEE 754 binary16).

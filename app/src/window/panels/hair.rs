@@ -114,6 +114,16 @@ fn imported(ui: &mut Ui, hair: &mut HairSection) {
     setting(ui, "seed", import, &default);
 }
 
+/// The unit and the up axis of curves that play, and where they come from.
+pub(crate) fn curves(ui: &mut Ui, import: &mut ImportSettings, notes: &[String]) {
+    let default = ImportSettings::default();
+    unit(ui, &mut import.unit, default.unit);
+    settings(ui, &["up"], import, &default);
+    for text in notes {
+        note(ui, text.as_str());
+    }
+}
+
 /// The unit of the file; one that has no name is shown in metres.
 fn unit(ui: &mut Ui, unit: &mut Unit, default: Unit) {
     let info = &entry::<ImportSettings>("unit").info;

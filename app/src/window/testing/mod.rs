@@ -6,6 +6,7 @@ mod dialogs;
 mod health;
 mod keyboard;
 mod notices;
+mod opening;
 mod painting;
 mod playback;
 mod rows;

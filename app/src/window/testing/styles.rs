@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use lovelock_project::styles::{OwnStyles, Style, StyleParts, shipped};
 
 use super::control;
-use super::whole::{go, of, project, wait, window};
+use super::whole::{of, project, wait, window};
 use crate::window::Window;
 use crate::window::styles::Browser;
 
@@ -40,7 +40,7 @@ fn a_style_file_is_imported_and_applied() {
     let style = &shipped::by_id("curly").expect("shipped").style;
     Style { name: "A friend's".to_owned(), ..style.clone() }.save(&path).expect("saved");
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
-    go(&mut harness);
+    wait(&mut harness, "the style", |window| window.openings.running().is_none());
     let after = project(&harness);
     let mut wanted = (*before).clone();
     wanted.apply_style(style, StyleParts::ALL);
@@ -51,7 +51,7 @@ fn a_style_file_is_imported_and_applied() {
     // A file that is none changes nothing and is told.
     std::fs::write(&path, "(version: 3, hair: (").expect("a file");
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
-    go(&mut harness);
+    wait(&mut harness, "the style", |window| window.openings.running().is_none());
     assert_eq!(project(&harness), after);
     assert_eq!(own.list().len(), 1);
 }

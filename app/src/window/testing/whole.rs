@@ -243,6 +243,7 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
 
     key(&mut harness, CTRL, Key::O);
     answer(&mut harness, &path);
+    wait(&mut harness, "the project", |window| window.openings.running().is_none());
     assert_eq!(*project(&harness), saved);
     assert_eq!(of(&harness).project_path.as_deref(), Some(path.as_path()));
     assert_eq!(of(&harness).history.undo_len(), 0);
@@ -274,6 +275,7 @@ fn a_broken_hair_file_is_reported_and_the_scene_stays() {
     for path in [note, dir.path().join("no such.hair"), dir.path().to_owned()] {
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
         go(&mut harness);
+        wait(&mut harness, "the refusal", |window| window.openings.running().is_none());
         assert_eq!(project(&harness), before);
     }
 }

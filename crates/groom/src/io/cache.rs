@@ -6,12 +6,46 @@ use glam::Vec3;
 use lovelock_alembic::OGAWA_MAGIC;
 
 use super::clean::clean_keeping;
-use super::file::{Bounds, HairFile, RawHair};
+use super::file::{Bounds, HairFile};
 use super::format::HairFormat;
-use super::frames::CurveFrames;
+use super::frames::{CurveFrames, OpenedFrames};
 use super::source::Source;
 use super::units::{Facing, Unit, UpAxis, rotation_to_head_axes};
-use super::{HairFileError, alembic, guess_units, usd};
+use super::{HairFileError, UnitGuess, alembic, guess_units, usd};
+
+/// Whether the curves of a file move.
+#[derive(Debug)]
+pub enum CurveMotion {
+    /// They do not, or the file is of a format without curves over time, or it cannot be read at all.
+    Still,
+    /// At this number of times, two or more.
+    Moving(usize),
+    /// They move but cannot be played, for example because their number changes. As a still hairstyle they can be read.
+    Refused(HairFileError),
+}
+
+impl CurveMotion {
+    /// Looks into a file.
+    pub fn of(path: &Path) -> Self {
+        let name = path.display().to_string();
+        match open(&name, path) {
+            Ok(Some(((Ok(frames), _), _))) if frames.times().len() > 1 => Self::Moving(frames.times().len()),
+            Ok(Some(((Err(reason), _), _))) => Self::Refused(reason),
+            // Whoever reads the hair reports a file that cannot be read.
+            Ok(_) | Err(_) => Self::Still,
+        }
+    }
+
+    /// Why curves that move cannot be played, as a sentence that names the file.
+    pub fn problem(&self) -> Option<String> {
+        match self {
+            Self::Refused(reason) => Some(format!(
+                "{reason}; the motion of these curves cannot be played, they are a still hairstyle"
+            )),
+            Self::Still | Self::Moving(_) => None,
+        }
+    }
+}
 
 /// The curves of an Alembic archive or of a USD stage over time, in metres with Y up.
 ///
@@ -25,6 +59,7 @@ pub struct CurveCache {
     up: UpAxis,
     /// Which points of the file those of `hair` are; empty for all of them.
     kept: Vec<u32>,
+    notes: Vec<String>,
     /// The points of the last two times that were asked for, with the index of each.
     held: [(usize, Vec<Vec3>); 2],
     read: Vec<Vec3>,
@@ -40,20 +75,13 @@ impl std::fmt::Debug for CurveCache {
 const NONE: usize = usize::MAX;
 
 impl CurveCache {
-    /// Number of times of the curves in a file; `None` for a file without curves over time: of another format, or with one time.
-    pub fn times_in(path: &Path) -> Option<usize> {
-        let name = path.display().to_string();
-        let (frames, ..) = open(&name, path).ok().flatten()?;
-        Some(frames.times().len()).filter(|&times| times > 1)
-    }
-
     /// Opens a file. A unit or an up axis that is `Auto` is that of the file, or guessed.
     ///
     /// # Errors
     /// As [`load_hair`](super::load_hair), for files of other formats, and for curves whose number or points change over time.
     pub fn open(path: &Path, unit: Unit, up: UpAxis) -> Result<Self, HairFileError> {
         let name = path.display().to_string();
-        let Some((frames, raw, format)) = open(&name, path)? else {
+        let Some(((frames, raw), format)) = open(&name, path)? else {
             return Err(HairFileError::Malformed {
                 name,
                 offset: 0,
@@ -61,6 +89,7 @@ impl CurveCache {
                 wanted: "curves over time, in Alembic or USD".to_owned(),
             });
         };
+        let frames = frames?;
         let whole = raw.points.len();
         let guides = raw.left_out.clone();
         let mut kept = Vec::new();
@@ -73,7 +102,11 @@ impl CurveCache {
         } else if kept.len() == whole {
             kept.clear();
         }
-        let metres_per_unit = unit.metres().unwrap_or_else(|| guess_units(&hair).metres_per_unit);
+        let guess = guess_units(&hair);
+        let from_file = hair.is_in_metres;
+        let metres_per_unit = unit.metres().unwrap_or(guess.metres_per_unit);
+        let mut notes = notes_on_units(unit, up, from_file, &guess);
+        notes.extend(hair.notes.iter().cloned());
         // Without a statement Y points up, as is usual in both formats: hair that flies says nothing about it.
         let up = if up == UpAxis::Z { UpAxis::Z } else { UpAxis::Y };
         let mut cache = Self {
@@ -83,6 +116,7 @@ impl CurveCache {
             metres_per_unit,
             up,
             kept,
+            notes,
             held: [(NONE, Vec::new()), (NONE, Vec::new())],
             read: Vec::new(),
         };
@@ -110,6 +144,11 @@ impl CurveCache {
     /// The curves at the first time, in metres with Y up.
     pub fn hair(&self) -> &HairFile {
         &self.hair
+    }
+
+    /// Where the unit and the up axis come from, and what the reader left out, as sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Replaces `out` by the points of [`Self::hair`] at a time, which is clamped to the times of the file; metres, Y up.
@@ -164,26 +203,45 @@ impl CurveCache {
     }
 }
 
+/// Where the unit and the up axis of a file come from.
+fn notes_on_units(unit: Unit, up: UpAxis, from_file: bool, guess: &UnitGuess) -> Vec<String> {
+    let metres = |metres: f32| match Unit::NAMED.into_iter().find(|unit| unit.metres() == Some(metres)) {
+        Some(unit) => format!("one {}", unit.word()),
+        None => format!("{metres} m"),
+    };
+    let unit = match unit.metres() {
+        Some(chosen) => format!("Unit: {}, as set.", metres(chosen)),
+        None if from_file => "Unit: read from the file; its points are in metres.".to_owned(),
+        None => format!("Unit: {}, guessed. {}", metres(guess.metres_per_unit), guess.reason),
+    };
+    let up = match up {
+        UpAxis::Auto if from_file => "Up axis: read from the file; its points have Y up.",
+        UpAxis::Auto => "Up axis: Y, which is usual; the file states none.",
+        UpAxis::Y => "Up axis: Y, as set.",
+        UpAxis::Z => "Up axis: Z, as set.",
+    };
+    vec![unit, up.to_owned()]
+}
+
 /// A point in metres with Y up. Where Z points up, the face looks along -Y, as in modellers.
 fn in_metres(point: Vec3, metres_per_unit: f32, up: UpAxis) -> Vec3 {
     let point = point * metres_per_unit;
     if up == UpAxis::Z { rotation_to_head_axes(UpAxis::Z, Facing::MinusY) * point } else { point }
 }
 
-/// Curves over time, the hair at the first time, and the format.
-type Opened = (Box<dyn CurveFrames>, RawHair, &'static HairFormat);
-
-/// The content of a file; `None` for formats without curves over time.
-fn open(name: &str, path: &Path) -> Result<Option<Opened>, HairFileError> {
+/// The content of a file and its format; `None` for formats without curves over time.
+fn open(name: &str, path: &Path) -> Result<Option<(OpenedFrames, &'static HairFormat)>, HairFileError> {
     let source = Source::open(name, path)?;
     let start = source.start();
     if start.starts_with(OGAWA_MAGIC) {
-        let (frames, raw) = alembic::frames(name, source)?;
-        return Ok(Some((frames, raw, &alembic::FORMAT)));
+        return Ok(Some((alembic::frames(name, source)?, &alembic::FORMAT)));
     }
     if usd::FORMAT.magics.iter().any(|magic| start.starts_with(magic)) {
-        let (frames, raw) = usd::frames(name, source)?;
-        return Ok(Some((frames, raw, &usd::FORMAT)));
+        return Ok(Some((usd::frames(name, source)?, &usd::FORMAT)));
     }
     Ok(None)
 }
+
+#[cfg(test)]
+#[path = "cache_tests.rs"]
+mod tests;

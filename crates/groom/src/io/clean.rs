@@ -88,7 +88,7 @@ pub(super) fn clean_keeping(
             None => format.label.to_owned(),
         },
         common_up: format.common_up,
-        is_in_metres: format.states_unit,
+        is_in_metres: format.states_unit || raw.says_metres,
         first_point: Vec::with_capacity(strands + 1),
         points: raw.points,
         thickness: raw.thickness,

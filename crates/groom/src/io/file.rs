@@ -58,6 +58,8 @@ pub(super) struct RawHair {
     /// Counts of what the reader left out, by kind.
     pub(super) dropped: BTreeMap<String, u64>,
     pub(super) notes: Vec<String>,
+    /// Whether this file says that its points are in metres with Y up, although its format states no unit.
+    pub(super) says_metres: bool,
     /// Which points of the file are here, if the reader left some out.
     pub(super) left_out: Option<Vec<bool>>,
 }
@@ -79,6 +81,7 @@ impl RawHair {
             trailing_bytes: 0,
             dropped: BTreeMap::new(),
             notes: Vec::new(),
+            says_metres: false,
             left_out: None,
         }
     }
@@ -95,8 +98,8 @@ pub struct HairFile {
     pub format: String,
     /// The axis that points up in most files of this format.
     pub common_up: UpAxis,
-    /// Whether the points are in metres with Y up, because the format states its unit and axes or the file was
-    /// converted.
+    /// Whether the points are in metres with Y up, because the file or its format states its unit and axes, or the file
+    /// was converted.
     pub is_in_metres: bool,
     /// Index of the first point of each strand, then the number of points (strands + 1 entries).
     pub first_point: Vec<u32>,

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::HairFileError;
+use super::file::RawHair;
 
 /// The curves of a file at its times. The number of their points does not change.
 pub(super) trait CurveFrames: Send {
@@ -12,6 +13,12 @@ pub(super) trait CurveFrames: Send {
     /// Replaces `out` by the points of all polylines at a time, in the order of the file and in its unit and axes.
     fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError>;
 }
+
+/// The curves of a file over time, or why they cannot be played although the hair at their first time can be read.
+pub(super) type FramesOrReason = Result<Box<dyn CurveFrames>, HairFileError>;
+
+/// The curves of a file over time, and the hair at their first time.
+pub(super) type OpenedFrames = (FramesOrReason, RawHair);
 
 /// Sorted times without those that are equal up to rounding.
 pub(super) fn merged(mut times: Vec<f64>) -> Vec<f64> {

@@ -29,14 +29,15 @@ mod usd;
 mod words;
 mod yuksel;
 
-pub use cache::CurveCache;
+pub use alembic::METRES_Y_UP;
+pub use cache::{CurveCache, CurveMotion};
 pub use error::HairFileError;
 pub use file::{Bounds, HairFile};
 pub use format::HairFormat;
-pub use gltf::gltf_holds_lines;
+pub use gltf::{GltfContent, gltf_content};
 pub(crate) use guess::guess_facing;
 pub use guess::{UnitGuess, guess_units};
-pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes};
+pub use registry::{HAIR_FORMATS, load_hair, load_hair_bytes, load_hair_watched};
 pub(crate) use root_shape::{RootShape, fit_sphere};
 pub(crate) use units::rotation_to_head_axes;
 pub use units::{Facing, Unit, UpAxis};

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use lovelock_base::watch::Watch;
+
 use super::clean::clean;
 use super::file::HairFile;
 use super::format::HairFormat;
@@ -53,9 +55,17 @@ impl HairFormat {
 /// The file cannot be read, has no known format, contradicts itself, ends early, or holds no strand that can be
 /// drawn. Memory is allocated only after the counts in the file have been compared with its size.
 pub fn load_hair(path: &Path) -> Result<HairFile, HairFileError> {
+    load_hair_watched(path, &Watch::default())
+}
+
+/// As [`load_hair`]. Reports to `watch`, and stops when it says so.
+///
+/// # Errors
+/// As [`load_hair`], and if the load is cancelled.
+pub fn load_hair_watched(path: &Path, watch: &Watch) -> Result<HairFile, HairFileError> {
     let name = path.display().to_string();
     // The start is checked before the rest is read, so that a film dropped by mistake is refused at once.
-    let source = Source::open(&name, path)?;
+    let source = Source::open_watched(&name, path, watch)?;
     load(&name, source)
 }
 

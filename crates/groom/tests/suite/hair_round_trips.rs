@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::Vec3;
 use lovelock_groom::{
-    Facing, HairFile, HairFormat, ImportSettings, Unit, UpAxis, gltf_holds_lines, load_hair, load_hair_bytes,
+    Facing, HairFile, HairFormat, ImportSettings, Unit, UpAxis, gltf_content, load_hair, load_hair_bytes,
 };
 
 /// How the written files of a format are read: unit, up, face. Those of glTF state the first two.
@@ -104,7 +104,7 @@ fn lines_of_gltf_are_the_hair_from_which_they_were_made() {
     let original = load_hair(&folder.join("tressfx/sintel_vk.tfx")).expect("hair");
     for (name, has_widths) in [("sintel_LINES.glb", true), ("sintel_LINE_STRIP_x228.glb", false)] {
         let path = folder.join("gltf_lines").join(name);
-        assert!(gltf_holds_lines(&path), "{name}");
+        assert!(gltf_content(&path).is_some_and(|content| content.lines), "{name}");
         let lines = load_hair(&path).expect(name);
         assert_eq!((lines.strands(), lines.points.len()), (228, 228 * 32), "{name}");
         assert!(lines.is_in_metres && lines.dropped.is_empty() && lines.notes.is_empty(), "{name}");
@@ -117,7 +117,7 @@ fn lines_of_gltf_are_the_hair_from_which_they_were_made() {
     // The control: characters hold no lines, and are refused as hair.
     for name in ["characters/Fox.glb", "characters/SimpleSkin.gltf", "characters/broken/RecursiveNodes.gltf"]
     {
-        assert!(!gltf_holds_lines(&data.join(name)), "{name}");
+        assert!(gltf_content(&data.join(name)).is_some_and(|content| !content.lines), "{name}");
         assert!(load_hair(&data.join(name)).is_err(), "{name}");
     }
 }

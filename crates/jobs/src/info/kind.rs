@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use lovelock_groom::{HairFormat, gltf_holds_lines};
-use lovelock_motion::{UsdContent, is_fbx, usd_content};
+use lovelock_groom::{HairFormat, gltf_content};
+use lovelock_motion::{FigureContent, figure_content, is_fbx};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
@@ -16,9 +16,9 @@ use lovelock_record::TAKE_EXTENSION;
 pub enum FileKind {
     /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
     Hair,
-    /// glTF 2, VRM, FBX or USD.
+    /// A body in glTF 2, VRM, FBX or USD, with or without clips.
     Character,
-    /// BVH, VMD, or motion of VRM.
+    /// BVH, VMD, motion of VRM, or a glTF, FBX or USD file that has clips and no body.
     Motion,
     /// A project.
     Project,
@@ -79,10 +79,11 @@ impl FileKind {
         }
     }
 
-    /// The kind of a file: by its first bytes if they are unambiguous, otherwise by its extension.
+    /// The kind of a file: by its first bytes if they are unambiguous, otherwise by its extension. glTF, FBX and USD files are read for it,
+    /// because they may hold hair, a body or motion.
     ///
     /// # Errors
-    /// If the file cannot be read or is of an unknown kind; the message lists the readable kinds.
+    /// If the file cannot be read, is of an unknown kind (the message lists the readable kinds), or holds none of hair, body and motion.
     pub fn of(path: &Path) -> Result<Self, ProjectError> {
         let name = path.display();
         let cannot_read =
@@ -100,18 +101,11 @@ impl FileKind {
         // A style is a project with fewer sections: only its name tells it apart.
         // Motion of VRM is glTF without a body.
         let kind = match (Self::by_content(&start), by_name) {
-            // Lines are hair, whatever else the file holds.
-            (Some(Self::Character), _) if gltf_holds_lines(path) => Some(Self::Hair),
             (Some(Self::Project), Some(Self::Style)) | (Some(Self::Character), Some(Self::Motion)) => by_name,
-            // A stage holds hair, a body or motion; only its prims tell.
-            (Some(Self::Hair), _) if start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda") => {
-                Some(match usd_content(path) {
-                    UsdContent::Character => Self::Character,
-                    UsdContent::Motion => Self::Motion,
-                    UsdContent::Other => Self::Hair,
-                })
-            }
-            (by_content, _) => by_content.or(by_name),
+            (by_content, _) => match by_content.or(by_name) {
+                Some(kind @ (Self::Character | Self::Hair)) => Some(Self::of_parts(path, &start, kind)?),
+                kind => kind,
+            },
         };
         kind.ok_or_else(|| {
             let ending = path.extension().map_or_else(
@@ -123,6 +117,40 @@ impl FileKind {
                 format!("{name}: not a file that is known here: {ending}; wanted {}", readable()),
             )
         })
+    }
+
+    /// The kind of a file that begins as `kind` does, by what it holds. A file that cannot be read keeps it: its reader says why.
+    fn of_parts(path: &Path, start: &[u8], kind: Self) -> Result<Self, ProjectError> {
+        let is_stage = start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda");
+        let holds = if is_stage || is_fbx(start) || start.starts_with(b"PK\x03\x04") {
+            figure_content(path).ok().flatten()
+        } else if kind == Self::Character {
+            gltf_content(path).map(|content| match content {
+                // Lines are hair, whatever else the file holds.
+                content if content.lines => FigureContent::Curves,
+                content if content.triangles => FigureContent::Body,
+                content if content.clips > 0 => FigureContent::Clip,
+                _ => FigureContent::Nothing,
+            })
+        } else {
+            None
+        };
+        match holds {
+            None => Ok(kind),
+            Some(FigureContent::Curves) => Ok(Self::Hair),
+            Some(FigureContent::Body) => Ok(Self::Character),
+            Some(FigureContent::Clip) => Ok(Self::Motion),
+            Some(FigureContent::Nothing) => {
+                let hair = if is_fbx(start) { "; hair comes from Alembic, USD or glTF" } else { "" };
+                Err(ProjectError::input(
+                    path,
+                    format!(
+                        "{}: holds neither hair nor a mesh nor animation; wanted a file with one of them{hair}",
+                        path.display()
+                    ),
+                ))
+            }
+        }
     }
 
     /// The kind by file extension.

@@ -16,7 +16,7 @@ pub use take::{RegrownInfo, TakeInfo};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lovelock_groom::{CurveCache, HairInfo, ImportSettings, hair_info, load_hair};
+use lovelock_groom::{CurveMotion, HairInfo, ImportSettings, hair_info, load_hair};
 use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
@@ -104,8 +104,11 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
     let content = match FileKind::of(path)? {
         FileKind::Hair => {
             let mut file = load_hair(path).map_err(|error| refuse(&error))?;
-            if let Some(times) = CurveCache::times_in(path) {
-                file.notes.push(format!("The curves move: {times} times, which play like a take."));
+            match CurveMotion::of(path) {
+                CurveMotion::Moving(times) => {
+                    file.notes.push(format!("The curves move: {times} times, which play like a take."));
+                }
+                motion => file.notes.extend(motion.problem()),
             }
             Content::Hair(hair_info(&file, &ImportSettings::default()))
         }

@@ -114,12 +114,34 @@ fn a_style_is_described() {
 }
 
 #[test]
+fn curves_whose_motion_is_refused_are_described_with_the_reason() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = dir.path().join("grows.usda");
+    for (counts, said) in [("[2], 2: [1]", "cannot be played"), ("[2], 2: [2]", "The curves move: 2 times")] {
+        let text = format!(
+            "#usda 1.0\ndef BasisCurves \"a\"\n{{\n uniform token type = \"linear\"\n\
+             int[] curveVertexCounts.timeSamples = {{ 1: {counts} }}\n\
+             point3f[] points.timeSamples = {{ 1: [(0, 0, 0), (0, 1, 0)], 2: [(0, 0, 0), (0, 2, 0)] }}\n}}\n"
+        );
+        std::fs::write(&at, text).expect("a file");
+        let json = serde_json::to_value(info(&at).expect("hair")).expect("JSON");
+        let notes = json["notes"].to_string();
+        assert!(notes.contains(said), "{notes}");
+        assert_eq!(notes.contains("number of points changes"), said == "cannot be played", "{notes}");
+    }
+}
+
+#[test]
 fn content_speaks_before_the_ending() {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, content, kind) in [
         ("a.txt", &b"HIERARCHY\nROOT"[..], Some(FileKind::Motion)),
         ("b.bvh", b"HAIR....", Some(FileKind::Hair)),
-        ("c", b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"}}", Some(FileKind::Character)),
+        (
+            "c",
+            b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{}]}]}",
+            Some(FileKind::Character),
+        ),
         ("d.dat", b"\xef\xbb\xbf(\n version: 1)", Some(FileKind::Project)),
         ("d.lovelockstyle", b"(version: 3)", Some(FileKind::Style)),
         ("e.lovelockstyle", b"HAIR....", Some(FileKind::Hair)),
@@ -129,6 +151,8 @@ fn content_speaks_before_the_ending() {
         ("g.glb", b"glTF\x02\0\0\0", Some(FileKind::Character)),
         ("h.obj", b"v 0 0 0\nl 1 2", Some(FileKind::Hair)),
         ("i.pbrt.gz", b"\x1f\x8b\x08", Some(FileKind::Hair)),
+        ("j.gltf", b"{\"asset\":{},\"animations\":[{}]}", Some(FileKind::Motion)),
+        ("k.vrma", b"{\"asset\":{},\"animations\":[{}]}", Some(FileKind::Motion)),
         ("f.txt", b"nonsense", None),
         ("g", b"", None),
     ] {
@@ -141,6 +165,35 @@ fn content_speaks_before_the_ending() {
             }
             (other, _) => panic!("{name}: {other:?}"),
         }
+    }
+    // A body with a clip is a body, and hair with a body is hair.
+    for (name, content, kind) in [
+        (
+            "l.gltf",
+            "{\"asset\":{},\"animations\":[{}],\"meshes\":[{\"primitives\":[{}]}]}",
+            FileKind::Character,
+        ),
+        ("m.gltf", "{\"asset\":{},\"meshes\":[{\"primitives\":[{},{\"mode\":1}]}]}", FileKind::Hair),
+        ("n.usda", "#usda 1.0\ndef BasisCurves \"a\" {}\ndef Mesh \"b\" {}\n", FileKind::Hair),
+        ("o.usda", "#usda 1.0\ndef SkelAnimation \"a\" {}\ndef Mesh \"b\" {}\n", FileKind::Character),
+        ("p.usda", "#usda 1.0\ndef Skeleton \"a\" {}\ndef SkelAnimation \"b\" {}\n", FileKind::Motion),
+    ] {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        assert_eq!(FileKind::of(&path).expect(name), kind, "{name}");
+    }
+    for (name, content) in [
+        ("q.usda", "#usda 1.0\ndef Camera \"a\" {}\n"),
+        ("r.usda", "#usda 1.0\ndef Skeleton \"a\" {}\n"),
+        ("s.gltf", "{\"asset\":{},\"nodes\":[{}]}"),
+        ("t.gltf", "{\"asset\":{},\"meshes\":[{\"primitives\":[{\"mode\":0}]}]}"),
+    ] {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        let error = FileKind::of(&path).expect_err(name);
+        let said = error.to_string();
+        assert!(said.contains(name) && said.contains("neither hair nor a mesh nor animation"), "{said}");
+        assert_eq!((said.lines().count(), error.exit_code()), (1, 2));
     }
     assert!(FileKind::of(dir.path()).is_err(), "a folder");
     assert!(FileKind::of(&dir.path().join("gone.hair")).is_err(), "a missing file");

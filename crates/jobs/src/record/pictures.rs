@@ -16,6 +16,7 @@ use lovelock_session::dance::Dance;
 use lovelock_session::new_folders::NewFolders;
 use lovelock_session::prepare::check_frames;
 use lovelock_session::progress::{Progress, report_progress};
+use lovelock_session::scene::camera_for_size;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
@@ -43,11 +44,16 @@ pub fn record(
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, ProjectError> {
-    let job = Job::new(project, request)?;
+    let mut job = Job::new(project, request)?;
     let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
     report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     if request.dance_time {
         dance.count_on_dance();
+    }
+    if request.frame_body
+        && let Some(camera) = camera_for_size(&job.project.camera, 1.0, dance.scene().hair_scale)
+    {
+        job.project.camera = camera;
     }
 
     let frames = job.frames(&dance)?;

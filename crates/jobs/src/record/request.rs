@@ -49,6 +49,8 @@ pub struct RecordRequest {
     pub curves: Option<super::CurveSource>,
     /// Whether to export curves without the body.
     pub no_body: bool,
+    /// Whether the camera follows the size of a body whose head has another size than that of the shipped dancer.
+    pub frame_body: bool,
     /// The rendering backend.
     pub backend: Option<Backend>,
     /// The files that the project may read.

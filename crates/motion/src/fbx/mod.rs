@@ -8,12 +8,14 @@ mod mesh;
 mod nodes;
 
 use glam::{Affine3A, Quat, Vec3};
+use lovelock_base::watch::{Cancelled, Watch};
 use ufbx::{
     AllocatorOpts, CoordinateAxes, CoordinateAxis, ErrorType, GeometryTransformHandling, InheritModeHandling,
-    LoadOpts, Scene, SpaceConversion,
+    LoadOpts, ProgressCb, ProgressResult, Scene, SpaceConversion,
 };
 
 use crate::character::{Axes, Character, Draft, only_motion};
+use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -33,13 +35,27 @@ pub fn is_fbx(bytes: &[u8]) -> bool {
 
 /// Reads an FBX file. Without `needs_mesh` a file without a body, such as a clip alone, is read too, and meshes are left out.
 pub(crate) fn read(
-    file: &str,
+    (file, watch): (&str, &Watch),
     bytes: &[u8],
     settings: BodySettings,
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
-    let scene =
-        ufbx::load_memory(bytes, options(bytes.len(), needs_mesh)).map_err(|e| refuse(file, bytes, &e))?;
+    let mut cancelled = false;
+    let mut progress = |at: &ufbx::Progress| {
+        cancelled = watch.at(at.bytes_read as f32 / at.bytes_total.max(1) as f32).is_err();
+        if cancelled { ProgressResult::Cancel } else { ProgressResult::Continue }
+    };
+    let loaded = ufbx::load_memory(
+        bytes,
+        LoadOpts { progress_cb: ProgressCb::Mut(&mut progress), ..options(bytes.len(), needs_mesh) },
+    );
+    let scene = match loaded {
+        Ok(scene) => scene,
+        Err(_) if cancelled => {
+            return Err(MotionError::Read { file: file.to_owned(), source: Cancelled.into() });
+        }
+        Err(error) => return Err(refuse(file, bytes, &error)),
+    };
     let mut notes = warnings(&scene);
     let mut dropped = std::collections::BTreeMap::new();
     let nodes = nodes::Nodes::new(file, &scene, needs_mesh)?;
@@ -84,7 +100,19 @@ pub(crate) fn read(
     Ok(character)
 }
 
-fn options(file_bytes: usize, needs_mesh: bool) -> LoadOpts<'static> {
+/// What a file contains, without its geometry.
+pub(crate) fn content(file: &str, bytes: &[u8]) -> Result<FigureContent, MotionError> {
+    let scene = ufbx::load_memory(bytes, options(bytes.len(), false)).map_err(|e| refuse(file, bytes, &e))?;
+    Ok(if !scene.meshes.is_empty() {
+        FigureContent::Body
+    } else if !scene.anim_curves.is_empty() {
+        FigureContent::Clip
+    } else {
+        FigureContent::Nothing
+    })
+}
+
+fn options<'a>(file_bytes: usize, needs_mesh: bool) -> LoadOpts<'a> {
     // Arrays are compressed, and numbers are widened to 64 bits.
     let memory_limit = file_bytes.saturating_mul(60).saturating_add(256 << 20);
     let allocator = || AllocatorOpts { memory_limit, ..AllocatorOpts::default() };

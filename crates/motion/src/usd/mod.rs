@@ -9,12 +9,12 @@ mod package;
 mod skeleton;
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use glam::{Affine3A, DMat4, Mat3A, Mat4};
 use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value, stage_space};
 
 use crate::character::{Axes, Character, Draft, WornHair, only_motion};
+use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -23,42 +23,21 @@ pub(crate) fn is_usd(bytes: &[u8]) -> bool {
     bytes.starts_with(CRATE_MAGIC) || bytes.starts_with(TEXT_MAGIC) || package::is_package(bytes)
 }
 
-/// What a USD file is to this program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UsdContent {
-    /// It has a skeleton or a mesh and no curves.
-    Character,
-    /// It has animation of joints and no body.
-    Motion,
-    /// It has curves, or nothing that is known here.
-    Other,
-}
-
-/// What a USD file contains. Broken files are of the kind [`UsdContent::Other`].
-pub fn usd_content(path: &Path) -> UsdContent {
-    let content = || -> Option<UsdContent> {
-        let mut file = std::fs::File::open(path).ok()?;
-        let mut start = [0; 8];
-        std::io::Read::read_exact(&mut file, &mut start).ok()?;
-        if package::is_package(&start) {
-            return Some(UsdContent::Character);
-        }
-        let length = file.metadata().ok()?.len();
-        let is_crate = start.starts_with(CRATE_MAGIC);
-        let mut layer =
-            lovelock_usd::open(&path.display().to_string(), Source::File(file, length), is_crate).ok()?;
-        let mut holds = |types: &[&str]| layer.prims(types).is_ok_and(|prims| !prims.is_empty());
-        Some(if holds(&["BasisCurves"]) {
-            UsdContent::Other
-        } else if holds(&["Skeleton", "SkelRoot", "Mesh"]) {
-            UsdContent::Character
-        } else if holds(&["SkelAnimation"]) {
-            UsdContent::Motion
-        } else {
-            UsdContent::Other
-        })
-    };
-    content().unwrap_or(UsdContent::Other)
+/// What a stage or package contains.
+pub(crate) fn content(file: &str, bytes: &[u8]) -> Result<FigureContent, MotionError> {
+    let is_package = package::is_package(bytes);
+    let bytes = if is_package { package::first_layer(file, bytes)? } else { bytes };
+    let mut layer = lovelock_usd::open(file, Source::Memory(bytes), bytes.starts_with(CRATE_MAGIC))?;
+    let mut holds = |types: &[&str]| layer.prims(types).map(|prims| !prims.is_empty());
+    Ok(if !is_package && holds(&["BasisCurves"])? {
+        FigureContent::Curves
+    } else if holds(&["Mesh"])? {
+        FigureContent::Body
+    } else if holds(&["SkelAnimation"])? {
+        FigureContent::Clip
+    } else {
+        FigureContent::Nothing
+    })
 }
 
 impl From<UsdError> for MotionError {

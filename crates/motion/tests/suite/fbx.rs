@@ -1,7 +1,9 @@
 //! FBX: known positions in every unit and axis, motion alone, and files that are refused.
 
 use glam::Vec3;
-use lovelock_motion::{Character, MotionSettings, load_character_bytes, load_motion_bytes};
+use lovelock_motion::{
+    Character, FigureContent, MotionSettings, figure_content, load_character_bytes, load_motion_bytes,
+};
 use lovelock_testkit::fuzz::damaged;
 
 use crate::common::fbx::{Node, Space, Value, binary, figure, text};
@@ -63,6 +65,14 @@ fn a_clip_without_a_body_is_a_motion_and_no_character() {
         };
         node.children.retain(|node| !is_body(node));
     }
+    let folder = tempfile::tempdir().expect("a folder");
+    let content = |nodes: &[Node]| {
+        let path = folder.path().join("a.fbx");
+        std::fs::write(&path, binary(nodes)).expect("a file");
+        figure_content(&path).expect("FBX")
+    };
+    assert_eq!(content(&figure(SPACES[1])), Some(FigureContent::Body));
+    assert_eq!(content(&nodes), Some(FigureContent::Clip));
     let bytes = binary(&nodes);
     let error = load_character_bytes("clip.fbx", &bytes, None).expect_err("no body").to_string();
     assert!(error.starts_with("clip.fbx: contains") && error.contains("Motion file"), "{error}");
@@ -79,6 +89,10 @@ fn a_clip_without_a_body_is_a_motion_and_no_character() {
         let forward = joint.transform_vector3(Vec3::Z);
         assert!(forward.distance(Vec3::X) < 1e-4, "{forward}");
     }
+    for node in &mut nodes {
+        node.children.retain(|node| !node.name.starts_with("Animation"));
+    }
+    assert_eq!(content(&nodes), Some(FigureContent::Nothing));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::{Access, FileRef};
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_session::take::TakePlayer;
+use lovelock_session::take::{CurveInputs, TakePlayer};
 
 use crate::request::LiveRequest;
 
@@ -25,6 +25,8 @@ struct Source {
     access: Access,
     /// Size and modification time, to detect a replaced file.
     version: Option<(u64, SystemTime)>,
+    /// Body and motion around curves.
+    around: Option<CurveInputs>,
 }
 
 struct Held {
@@ -44,7 +46,8 @@ impl PaneTakes {
             let file = panes.get(pane)?.take.clone()?;
             let data = std::fs::metadata(&file.path).ok();
             let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
-            Some(Source { file, access: request.access.clone(), version })
+            let around = CurveInputs::of(&file.path, &request.project);
+            Some(Source { file, access: request.access.clone(), version, around })
         };
         self.held.retain(|held| wanted(held.pane).is_some_and(|source| source == held.source));
         for &pane in &request.panes {
@@ -54,13 +57,22 @@ impl PaneTakes {
                 self.held.push(Held { pane, source, player, instant: None, strands: Strands::default() });
             }
         }
+        // A simulation that loops starts again; curves count on its first round.
+        let simulated = request.project.take.file.is_none();
+        let snapshot = &request.snapshot;
+        let dance_secs = if simulated { snapshot.position_secs } else { snapshot.time_secs };
         for held in &mut self.held {
             if let Ok(player) = &mut held.player
                 && player.set_surroundings(request.snapshot.scene.surroundings.clone(), Vec::new())
             {
                 held.instant = None;
             }
-            held.go_to(request.snapshot.position_secs);
+            // A take starts with the window; curves belong to an instant of the dance.
+            let secs = match &held.player {
+                Ok(player) if player.is_cache() => dance_secs - player.header().start_secs,
+                _ => snapshot.position_secs,
+            };
+            held.go_to(secs);
         }
     }
 

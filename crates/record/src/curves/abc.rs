@@ -12,6 +12,7 @@ use std::path::Path;
 use bytemuck::{NoUninit, cast_slice};
 use glam::Vec3;
 use lovelock_alembic::{ArchiveWriter, CompoundTree, DataType, ObjectTree, Pod, Samples, Stored, Times};
+use lovelock_groom::METRES_Y_UP;
 
 use super::expected::Expected;
 use super::spool::bounds;
@@ -145,7 +146,7 @@ impl AbcWriter {
         }
         let top = transform("Lovelock", &inherits, about, body.into_iter().chain([hair]).collect());
         let metadata = format!(
-            "FramesPerTimeUnit={:.6};_ai_Application=Lovelock {};_ai_Description=metres, Y up",
+            "FramesPerTimeUnit={:.6};_ai_Application=Lovelock {};_ai_Description={METRES_Y_UP}",
             self.rate,
             env!("CARGO_PKG_VERSION")
         );

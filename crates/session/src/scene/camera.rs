@@ -29,6 +29,35 @@ fn from_target(section: &CameraSection) -> Vec3 {
     Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
+/// Bodies whose heads differ in size by this factor or more do not share a camera.
+const OTHER_SIZE: f32 = 2.0;
+
+/// The camera for another body, if its head has another size than the one before: target and distance are those of a new project in
+/// the size of the body, direction and field of view stay. Sizes are multiples of that of the shipped dancer's head
+/// ([`Scene::hair_scale`]).
+pub fn camera_for_size(section: &CameraSection, before: f32, scale: f32) -> Option<CameraSection> {
+    let ratio = scale / before;
+    if !(ratio.is_finite() && scale > 0.0) || (1.0 / OTHER_SIZE < ratio && ratio < OTHER_SIZE) {
+        return None;
+    }
+    let new = CameraSection::default();
+    let sized = CameraSection {
+        mode: new.mode,
+        follow_offset: new.follow_offset * scale,
+        distance: new.distance * scale,
+        ..*section
+    };
+    let [nearest, farthest] = DISTANCES;
+    Some(CameraSection {
+        follow_offset: sized.follow_offset.clamp(Vec3::splat(-3.0), Vec3::splat(3.0)),
+        distance: sized.distance.clamp(nearest, farthest),
+        ..sized
+    })
+}
+
+/// The distances that framing chooses, metres.
+const DISTANCES: [f32; 2] = [0.1, 30.0];
+
 /// Changes target and distance so that `points` (world space, at a time of the scene) fill the image.
 ///
 /// Direction and field of view stay. `aspect` is width divided by height.
@@ -50,7 +79,7 @@ pub fn frame_points(
     let half_angle = 0.5 * section.fov_y * aspect.clamp(0.1, 1.0);
     let mut framed = *section;
     // The distance at which the bounding sphere touches the edges of the image, plus a small margin.
-    framed.distance = (1.05 * radius / half_angle.sin().max(0.01)).clamp(0.1, 30.0);
+    framed.distance = (1.05 * radius / half_angle.sin().max(0.01)).clamp(DISTANCES[0], DISTANCES[1]);
     match section.mode {
         CameraMode::Follow => {
             let offset = center - (target(section, scene, time_secs) - section.follow_offset);
@@ -59,4 +88,27 @@ pub fn frame_points(
         CameraMode::Fixed => framed.fixed_target = center.clamp(Vec3::splat(-20.0), Vec3::splat(20.0)),
     }
     framed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_of_another_size_has_the_camera_of_a_new_project_in_its_size() {
+        let new = CameraSection::default();
+        let turned = CameraSection { azimuth: 2.0, distance: 0.7, mode: CameraMode::Fixed, ..new };
+        for (before, scale) in [(1.0, 8.0), (4.0, 1.0), (8.0, 0.5)] {
+            let framed = camera_for_size(&turned, before, scale).expect("another size");
+            assert!((framed.distance - scale * new.distance).abs() < 1e-6, "{framed:?}");
+            assert!(framed.follow_offset.abs_diff_eq(scale * new.follow_offset, 1e-6), "{framed:?}");
+            assert_eq!((framed.mode, framed.azimuth, framed.fov_y), (new.mode, 2.0, new.fov_y));
+        }
+        // The distance is one that the controls have.
+        assert_eq!(camera_for_size(&new, 1.0, 40.0).expect("another size").distance, 30.0);
+        // Controls: a body of about the same size, and sizes that are none.
+        for (before, scale) in [(1.0, 1.0), (1.0, 1.7), (1.6, 1.0), (8.0, 8.0), (1.0, f32::NAN), (0.0, 0.0)] {
+            assert_eq!(camera_for_size(&turned, before, scale), None, "{before} to {scale}");
+        }
+    }
 }

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use lovelock_groom::{
     GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_around,
-    load_hair,
+    load_hair, load_hair_watched,
 };
-use lovelock_project::error::{Place, Problem};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{HairSection, HairSource};
 
+use super::control::LoadControl;
 use super::parts::{Stamp, file_notes};
 use super::scalp_part::ScalpPart;
 
@@ -63,8 +64,29 @@ impl HairKey {
         Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
     }
 
-    /// The hairstyle in the size of the shipped dancer's head.
-    pub(super) fn load(&self, part: &ScalpPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
+    /// Reads the file of the hair, if it has one that `cache` does not hold.
+    ///
+    /// # Errors
+    /// If the load is cancelled. A file that cannot be read is a problem.
+    pub(super) fn read(
+        &self,
+        cache: &mut HairFileCache,
+        control: &mut LoadControl<'_>,
+    ) -> Result<Result<(), Problem>, ProjectError> {
+        let Self::File { stamp, .. } = self else { return Ok(Ok(())) };
+        if cache.as_ref().is_some_and(|(kept, _)| kept == stamp) {
+            return Ok(Ok(()));
+        }
+        let path = stamp.path.clone();
+        let read =
+            control.read("reading the hair", [0.5, 0.7], move |watch| load_hair_watched(&path, watch))?;
+        Ok(read
+            .map(|file| *cache = Some((stamp.clone(), Arc::new(file))))
+            .map_err(|error| Problem::not_loaded(Place::Hair, error)))
+    }
+
+    /// The hairstyle in the size of the shipped dancer's head. The file of the hair is that of `cache`.
+    pub(super) fn load(&self, part: &ScalpPart, cache: &HairFileCache) -> Result<HairPart, Problem> {
         let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
         if part.scalp.triangles.is_empty() {
             let body = &part.body;
@@ -86,7 +108,6 @@ impl HairKey {
                     Some((kept, file)) if kept == stamp => Arc::clone(file),
                     _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
                 };
-                *cache = Some((stamp.clone(), Arc::clone(&file)));
                 // Files have a size of their own.
                 let style = import_around(&file, import, &part.placed_scalp, Some(&part.placed_obstacle()))
                     .map_err(|error| refuse(&error))?;
@@ -117,7 +138,7 @@ mod tests {
         let mut part = ScalpPart::new(&body, &lovelock_motion::ScalpFit::default());
         part.scalp = Arc::default();
         let key = HairKey::grown(&small_project().hair);
-        let problem = key.load(&part, &mut None).expect_err("nothing to grow on");
+        let problem = key.load(&part, &None).expect_err("nothing to grow on");
         assert!(problem.message.contains("moves no surface"), "{problem}");
         let style = HairPart::bald(&part).style;
         style.check().expect("whole");

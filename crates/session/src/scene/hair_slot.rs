@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use lovelock_groom::Hairstyle;
-use lovelock_project::error::{Place, Problem, ProblemKind};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::HairSection;
 use lovelock_style::StyleCache;
 
+use super::control::LoadControl;
 use super::hair_part::{HairFileCache, HairKey, HairPart};
 use super::scalp_part::ScalpPart;
 
@@ -32,14 +33,18 @@ pub(super) struct LoadedHair {
 
 impl HairSlot {
     /// Loads the hair of a section. Hair that cannot be loaded is replaced by that of the last call, or by a grown one, with a problem.
+    ///
+    /// # Errors
+    /// If the load is cancelled.
     pub(super) fn load(
         &mut self,
         section: &HairSection,
         access: &Access,
         scalp: &Arc<ScalpPart>,
         problems: &mut Vec<Problem>,
-    ) -> LoadedHair {
-        let hair = self.part(section, access, scalp, problems);
+        control: &mut LoadControl<'_>,
+    ) -> Result<LoadedHair, ProjectError> {
+        let hair = self.part(section, access, scalp, problems, control)?;
         let tied = self.cut_and_ties.apply(&hair.style, &section.cut_and_ties(), scalp.obstacle.clone());
         let styled = self.layers.apply(&tied.style, &section.stack, scalp.obstacle.clone());
         let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
@@ -52,7 +57,7 @@ impl HairSlot {
         });
         let ignored = |message| Problem::new(Place::Hair, ProblemKind::Ignored, message);
         problems.extend(other_hair.chain(other_version).map(ignored));
-        LoadedHair { base: tied.style, style: styled.style, notes: hair.notes.clone() }
+        Ok(LoadedHair { base: tied.style, style: styled.style, notes: hair.notes.clone() })
     }
 
     fn part(
@@ -61,26 +66,31 @@ impl HairSlot {
         access: &Access,
         scalp: &Arc<ScalpPart>,
         problems: &mut Vec<Problem>,
-    ) -> Arc<HairPart> {
+        control: &mut LoadControl<'_>,
+    ) -> Result<Arc<HairPart>, ProjectError> {
         let wanted = HairKey::of(section, access);
         if let (Ok(key), Some((known, of, part))) = (&wanted, &self.grown)
             && known == key
             && Arc::ptr_eq(of, scalp)
         {
-            return Arc::clone(part);
+            return Ok(Arc::clone(part));
         }
-        let mut cache = self.file.take();
-        let loaded = wanted.and_then(|key| key.load(scalp, &mut cache).map(|part| (key, part)));
-        self.file = cache;
+        let loaded = match wanted {
+            Ok(key) => {
+                let read = key.read(&mut self.file, control)?;
+                read.and_then(|()| key.load(scalp, &self.file)).map(|part| (key, part))
+            }
+            Err(problem) => Err(problem),
+        };
         let (key, part) = match (loaded, &self.grown) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some((_, _, part))) => {
                 problems.push(problem.with_fallback("the previous hair is kept"));
-                return Arc::clone(part);
+                return Ok(Arc::clone(part));
             }
             (Err(problem), None) => {
                 let key = HairKey::grown(section);
-                let grown = key.load(scalp, &mut None);
+                let grown = key.load(scalp, &None);
                 let instead =
                     if grown.is_ok() { "the grown hairstyle is shown instead" } else { "no hair is shown" };
                 problems.push(problem.with_fallback(instead));
@@ -89,6 +99,6 @@ impl HairSlot {
         };
         let part = Arc::new(part);
         self.grown = Some((key, Arc::clone(scalp), Arc::clone(&part)));
-        part
+        Ok(part)
     }
 }

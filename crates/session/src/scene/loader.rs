@@ -1,7 +1,7 @@
 //! Loads the scene of a project. Each part is reused until its sources change.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use lovelock_groom::Obstacle;
 use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
@@ -9,30 +9,13 @@ use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 
+use super::control::LoadControl;
 use super::hair_slot::HairSlot;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
 use super::scalp_part::{Enlarged, ScalpPart};
 use super::styling::{MorphCache, MorphSource};
 use super::{Scene, StyleSource, SurroundingsLoader};
-
-/// Progress and cancellation of a load.
-pub struct LoadControl<'a> {
-    /// Set by any thread to stop the load at the next opportunity.
-    pub cancelled: &'a AtomicBool,
-    /// Called with the current work, such as `growing the hair`, and the fraction that is done.
-    pub progress: &'a mut dyn FnMut(&str, f32),
-}
-
-impl LoadControl<'_> {
-    fn at(&mut self, what: &str, fraction: f32) -> Result<(), ProjectError> {
-        if self.cancelled.load(Ordering::Relaxed) {
-            return Err(ProjectError::Cancelled);
-        }
-        (self.progress)(what, fraction);
-        Ok(())
-    }
-}
 
 /// A part and its sources.
 #[derive(Debug)]
@@ -98,15 +81,18 @@ impl SceneLoader {
         control.at("loading the body", 0.0)?;
         let body = self.body(&project, access, &mut problems, control)?;
         control.at("loading the motion", 0.3)?;
-        let motion = self.motion(&project, access, &body, &mut problems)?;
+        let motion = self.motion(&project, access, &body, &mut problems, control)?;
         control.at("creating the hair", 0.5)?;
         let scalp = self.scalp(&body, &project.body.scalp);
-        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems);
+        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems, control)?;
         let obstacle: Arc<dyn Obstacle + Send> = scalp.obstacle.clone();
-        let morph = project.hair.morph.to.as_ref().map(|to| MorphSource {
-            to: self.other_hair.load(&to.hair, access, &scalp, &mut problems).style,
-            amount: project.hair.morph.amount,
-        });
+        let morph = match &project.hair.morph.to {
+            Some(to) => {
+                let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control)?.style;
+                Some(MorphSource { to, amount: project.hair.morph.amount })
+            }
+            None => None,
+        };
         let styled = self.morph.of(&hair.style, morph.as_ref(), None, &*obstacle);
         let stack = project.hair.stack.clone();
         let source = StyleSource { base: hair.base, stack, obstacle, scale: scalp.scale, morph };
@@ -157,7 +143,7 @@ impl SceneLoader {
             return Ok(Arc::clone(&kept.part));
         }
         let loaded = match wanted {
-            Ok(key) => key.load_in_steps(&mut |what, done| control.at(what, done))?.map(|part| (key, part)),
+            Ok(key) => key.load_in_steps(control)?.map(|part| (key, part)),
             Err(problem) => Err(problem),
         };
         let (key, part) = match (loaded, &self.body) {
@@ -184,6 +170,7 @@ impl SceneLoader {
         access: &Access,
         body: &Arc<BodyPart>,
         problems: &mut Vec<Problem>,
+        control: &mut LoadControl<'_>,
     ) -> Result<Arc<MotionPart>, ProjectError> {
         // A clip belongs to the joints of one body, so a clip of another body cannot be reused.
         let kept = self.motion.take_if(|kept| kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body)));
@@ -196,7 +183,16 @@ impl SceneLoader {
                 Some(Kept { key: key.clone(), body: Some(Arc::clone(body)), part: Arc::clone(&part) });
             return Ok(part);
         }
-        let loaded = wanted.and_then(|key| key.load(body).map(|part| (key, Arc::new(part))));
+        let loaded = match wanted {
+            Ok(key) => match key.load(body, control) {
+                Ok(loaded) => loaded.map(|part| (key, Arc::new(part))),
+                Err(error) => {
+                    self.motion = kept;
+                    return Err(error);
+                }
+            },
+            Err(problem) => Err(problem),
+        };
         let (key, part) = match (loaded, kept) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
@@ -206,7 +202,7 @@ impl SceneLoader {
             (Err(problem), None) => {
                 problems.push(problem.with_fallback("the body's first clip is played instead"));
                 let key = MotionKey::first_clip();
-                let part = key.load(body).map_err(ProjectError::work)?;
+                let part = key.load(body, control)?.map_err(ProjectError::work)?;
                 (key, Arc::new(part))
             }
         };

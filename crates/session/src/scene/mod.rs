@@ -1,6 +1,7 @@
 //! The scene that is simulated and rendered: a body, its motion and its hair.
 
 mod camera;
+mod control;
 mod dancer;
 mod hair_part;
 mod hair_slot;
@@ -11,10 +12,11 @@ mod scalp_part;
 mod styling;
 mod surroundings;
 
-pub use camera::{camera_at, frame_points};
+pub use camera::{camera_at, camera_for_size, frame_points};
+pub use control::LoadControl;
 pub use dancer::dancer;
 pub use head_path::HeadPath;
-pub use loader::{LoadControl, SceneLoader};
+pub use loader::SceneLoader;
 pub(crate) use scalp_part::Enlarged;
 pub use styling::StyleSource;
 pub(crate) use styling::Styling;

@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::SystemTime;
 
 use lovelock_motion::{
-    Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
-    fit_colliders, joint_paths, load_character_with, load_motion_with, retarget,
+    Body, BodyField, BodySettings, Character, Clip, Collider, MotionError, MotionFile, MotionSettings,
+    RestDistance, Skeleton, fit_colliders, joint_paths, load_character_watched, load_motion_watched,
+    retarget,
 };
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, BodySource, MotionSection, MotionSource};
 
+use super::control::LoadControl;
 use super::dancer;
 
 /// Identity of a file's contents when it was read. The file is read again if this changes.
@@ -75,19 +78,24 @@ impl BodyKey {
 
     /// As [`BodyKey::load_in_steps`], in one go.
     pub(super) fn load(&self) -> Result<BodyPart, Problem> {
-        let loaded = self.load_in_steps(&mut |_, _| Ok(()));
+        let (cancelled, mut silent) = (AtomicBool::new(false), |_: &str, _| {});
+        let loaded = self.load_in_steps(&mut LoadControl { cancelled: &cancelled, progress: &mut silent });
         loaded.unwrap_or_else(|error| Err(Problem::not_loaded(Place::Body, error)))
     }
 
-    /// Loads the body. `step` is called before each part of the work with its name and the share of the whole load that is done; its
-    /// error, such as that the load was cancelled, ends the load.
+    /// Loads the body. `control` is told each part of the work and ends the load when it is cancelled.
     pub(super) fn load_in_steps(
         &self,
-        step: &mut dyn FnMut(&str, f32) -> Result<(), ProjectError>,
+        control: &mut LoadControl<'_>,
     ) -> Result<Result<BodyPart, Problem>, ProjectError> {
         let character = match &self.file {
             None => dancer(),
-            Some((stamp, settings)) => load_character_with(&stamp.path, *settings),
+            Some((stamp, settings)) => {
+                let (path, settings) = (stamp.path.clone(), *settings);
+                control.read("loading the body", [0.0, 0.08], move |watch| {
+                    load_character_watched(&path, settings, watch)
+                })?
+            }
         };
         let character = match character {
             Ok(character) => character,
@@ -109,11 +117,11 @@ impl BodyKey {
                 )),
             }
         }
-        step("measuring the body", 0.08)?;
+        control.at("measuring the body", 0.08)?;
         let rest = RestDistance::new(&body);
-        step("fitting shapes to the body", 0.18)?;
+        control.at("fitting shapes to the body", 0.18)?;
         let colliders = fit_colliders(&body).into();
-        step("measuring head and shoulders", 0.22)?;
+        control.at("measuring head and shoulders", 0.22)?;
         let field = BodyField::new(&body, &rest).map(Arc::new);
         Ok(Ok(BodyPart { colliders, field, rest: Arc::new(rest), clips: clips.into(), body, notes }))
     }
@@ -215,7 +223,33 @@ impl MotionKey {
         Self::Clip { name: String::new(), shape: Shape::default() }
     }
 
-    pub(super) fn load(&self, part: &BodyPart) -> Result<MotionPart, Problem> {
+    /// Loads the motion.
+    ///
+    /// # Errors
+    /// If the load is cancelled. A motion that cannot be loaded is a problem.
+    pub(super) fn load(
+        &self,
+        part: &BodyPart,
+        control: &mut LoadControl<'_>,
+    ) -> Result<Result<MotionPart, Problem>, ProjectError> {
+        let file = match self {
+            Self::File { stamp, settings, clip, .. } => {
+                let (path, settings, clip) = (stamp.path.clone(), *settings, clip.clone());
+                let read = control.read("loading the motion", [0.3, 0.5], move |watch| {
+                    load_motion_watched(&path, settings, &clip, watch)
+                })?;
+                Some(read)
+            }
+            Self::Rest | Self::Clip { .. } => None,
+        };
+        Ok(self.of_file(part, file))
+    }
+
+    fn of_file(
+        &self,
+        part: &BodyPart,
+        file: Option<Result<MotionFile, MotionError>>,
+    ) -> Result<MotionPart, Problem> {
         match self {
             Self::Rest => Ok(MotionPart { clip: None, notes: Vec::new() }),
             Self::Clip { name, shape } => {
@@ -240,9 +274,10 @@ impl MotionKey {
                     }),
                 }
             }
-            Self::File { stamp, settings, clip: wanted, shape } => {
+            Self::File { shape, .. } => {
                 let refuse = |error| Problem::not_loaded(Place::Motion, error);
-                let file = load_motion_with(&stamp.path, *settings, wanted).map_err(refuse)?;
+                let Some(file) = file else { return Ok(MotionPart { clip: None, notes: Vec::new() }) };
+                let file = file.map_err(refuse)?;
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
                 Ok(MotionPart {
                     clip: Some(shape.applied(&Arc::new(clip), &part.body)),

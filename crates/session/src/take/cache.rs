@@ -12,13 +12,13 @@ use glam::Vec3;
 use lovelock_appearance::environment::Panorama;
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{
-    CurveCache, GuideFrame, HairFormat, ImportedInPlace, Strands, hair_look, import_in_place,
+    CurveCache, GuideFrame, HairFormat, ImportSettings, ImportedInPlace, Strands, hair_look, import_in_place,
 };
 use lovelock_motion::{Pose, Skin, pose_at, skin};
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProjectError};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_project::project::{HairSection, SurroundingsSection};
+use lovelock_project::project::{BodySection, HairSection, MotionSection, SurroundingsSection};
 use lovelock_record::{FrameRate, TakeHeader};
 use lovelock_simulation::StepReport;
 
@@ -42,20 +42,57 @@ pub fn holds_curves(path: &Path) -> bool {
 /// # Errors
 /// If the file holds no curves over time.
 pub fn project_of_cache(base: &Project, path: &Path) -> Result<Project, ProjectError> {
-    let mut project = base.clone();
-    let cache = open(path, &project.hair)?;
-    let file = cache.hair();
-    if file.colours.is_some() || file.default_colour.is_some() {
-        let look = hair_look(file);
-        (project.look.eumelanin, project.look.pheomelanin) = (look.eumelanin, look.pheomelanin);
+    Ok(CurvesToPlay::read(path, &base.hair)?.played_in(base))
+}
+
+/// What a project takes over from curves over time in order to play them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvesToPlay {
+    path: PathBuf,
+    /// Eumelanin and pheomelanin, if the file has colours.
+    pigments: Option<(f32, f32)>,
+    /// The first time of the file, seconds.
+    start_secs: f64,
+}
+
+impl CurvesToPlay {
+    /// Reads the start of a file, in the unit and up axis of `hair`.
+    ///
+    /// # Errors
+    /// If the file holds no curves over time.
+    pub fn read(path: &Path, hair: &HairSection) -> Result<Self, ProjectError> {
+        let cache = open(path, hair)?;
+        let file = cache.hair();
+        let colored = file.colours.is_some() || file.default_colour.is_some();
+        let pigments = colored.then(|| hair_look(file)).map(|look| (look.eumelanin, look.pheomelanin));
+        Ok(Self { path: path.to_owned(), pigments, start_secs: cache.times()[0].max(0.0) })
     }
-    project.set_take(path);
-    // Markers, tracks and the sound move to the timeline of the curves, as they do for a take.
-    let start = cache.times()[0].max(0.0);
-    project.timeline.shift(-start, f64::INFINITY);
-    project.sound.offset_secs -= start;
-    (project.recording.first_frame, project.recording.end_frame) = (0, None);
-    Ok(project)
+
+    /// The project set to play the curves.
+    pub fn played_in(&self, base: &Project) -> Project {
+        let mut project = base.clone();
+        if let Some(pigments) = self.pigments {
+            (project.look.eumelanin, project.look.pheomelanin) = pigments;
+        }
+        project.set_take(&self.path);
+        // Markers, tracks and the sound move to the timeline of the curves, as they do for a take.
+        project.timeline.shift(-self.start_secs, f64::INFINITY);
+        project.sound.offset_secs -= self.start_secs;
+        (project.recording.first_frame, project.recording.end_frame) = (0, None);
+        project
+    }
+}
+
+/// The parts of a project that curves over time are shown with. A take brings its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveInputs(Box<(BodySection, MotionSection, ImportSettings)>);
+
+impl CurveInputs {
+    /// Those of a file; `None` for a take.
+    pub fn of(path: &Path, project: &Project) -> Option<Self> {
+        let Project { body, motion, hair, .. } = project;
+        holds_curves(path).then(|| Self(Box::new((body.clone(), motion.clone(), hair.import))))
+    }
 }
 
 /// Opens curves that move.
@@ -140,7 +177,10 @@ impl CachePlayer {
         header.strands = imported.style.strands.count() as u32;
         let guides = GuideFrame::at_rest(&imported.style.guides, pose.world_from_head, start);
         let first_point = Arc::from(imported.style.strands.first_point.as_slice());
-        let scene = Arc::new(Scene { style: Arc::new(imported.style.clone()), ..(*scene).clone() });
+        let of_file = cache.notes().iter().map(|note| Problem::new(Place::Take, ProblemKind::Note, note));
+        let others = scene.notes.iter().filter(|note| note.place != Place::Hair).cloned();
+        let notes = others.chain(of_file).collect();
+        let scene = Arc::new(Scene { style: Arc::new(imported.style.clone()), notes, ..(*scene).clone() });
         let player = Self {
             path: path.to_owned(),
             cache,

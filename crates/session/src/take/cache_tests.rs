@@ -3,57 +3,23 @@ use std::path::Path;
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_project::files::Access;
-use lovelock_record::{CurveFrame, CurveScene, CurveWriter, FrameRate};
 use lovelock_render::HairPose;
 
 use super::{TakePlayer, project_of_cache, project_of_take};
 use crate::dance::Dance;
-use crate::testing::small_project;
+use crate::testing::{CURVES_FIRST_FRAME, moving_curves, points_of_curves, small_project};
 
-/// First frame and number of frames of the tests' curves, which have 30 per second.
-const FIRST: u64 = 6;
+/// Number of frames of the tests' curves.
 const FRAMES: u64 = 5;
 
-/// A point of a curve in a frame: strands of four or five points above the head, which swing.
-fn at(frame: u64, strand: usize, i: usize) -> Vec3 {
-    let angle = 0.1 * strand as f32;
-    let out = 0.08 + 0.03 * i as f32;
-    Vec3::new(out * angle.cos(), 1.7 - 0.04 * i as f32 + 0.01 * frame as f32, out * angle.sin())
-}
-
-fn strands() -> impl Iterator<Item = (usize, usize)> {
-    (0..60).map(|strand| (strand, 4 + strand % 2))
+fn write(path: &Path, frames: u64) {
+    moving_curves(path, frames);
 }
 
 fn points(frame: u64) -> Vec<Vec3> {
-    strands().flat_map(|(strand, count)| (0..count).map(move |i| at(frame, strand, i))).collect()
-}
-
-fn write(path: &Path, frames: u64) {
-    let mut first_point = vec![0];
-    for (_, count) in strands() {
-        first_point.push(first_point[first_point.len() - 1] + count as u32);
-    }
-    let count = first_point[first_point.len() - 1] as usize;
-    let scene = CurveScene {
-        rate: FrameRate { num: 30, den: 1 },
-        first_frame: FIRST,
-        frames,
-        first_point,
-        widths: vec![1e-4; count],
-        colors: vec![Vec3::new(0.3, 0.05, 0.02); count],
-        are_guides: false,
-        body: None,
-    };
-    let mut writer = CurveWriter::create(path, scene).expect("a file");
-    for frame in 0..frames {
-        let points = points(frame);
-        let axis = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
-        let [x, y, z] = [0, 1, 2].map(axis);
-        writer.push(&CurveFrame { points: [&x, &y, &z], body: None }).expect("a frame");
-    }
-    writer.finish().expect("a file");
+    points_of_curves(frame)
 }
 
 /// The largest distance between each point of the strands and the closest wanted point.
@@ -78,6 +44,8 @@ fn plays(path: &Path) {
     let (mut player, problems) = TakePlayer::open_for(path, &Access::new(), &project).expect("curves");
     assert_eq!(problems, []);
     assert!(player.is_cache());
+    let notes: Vec<_> = player.scene().notes.iter().filter(|note| note.place == Place::Take).collect();
+    assert!(notes[0].message.contains("Unit: read from the file"), "{notes:?}");
     assert_eq!((player.frames(), player.header().strands), (FRAMES, 60));
     assert!((player.duration_secs() - 4.0 / 30.0).abs() < 1e-9);
     for frame in [0, 3, 1, FRAMES - 1] {
@@ -88,7 +56,7 @@ fn plays(path: &Path) {
         // Negative control.
         assert!(off(strands, &points(frame + 1)) > 1e-3, "frame {frame}");
         assert_eq!(*strands.first_point, *snapshot.scene.style.strands.first_point);
-        assert!((snapshot.time_secs - (FIRST + frame) as f64 / 30.0).abs() < 1e-9);
+        assert!((snapshot.time_secs - (CURVES_FIRST_FRAME + frame) as f64 / 30.0).abs() < 1e-9);
         let camera = snapshot.camera(&project.camera);
         let input = snapshot.frame_input(&project, &camera);
         assert!(matches!(input.hair, HairPose::Strands(_)));

@@ -10,7 +10,7 @@ mod playing;
 mod recording;
 mod transport;
 
-pub use cache::{holds_curves, project_of_cache};
+pub use cache::{CurveInputs, CurvesToPlay, holds_curves, project_of_cache};
 pub use player::TakePlayer;
 pub use recording::{TakeProgress, TakeRecording};
 pub(crate) use transport::TakeTransport;

@@ -6,11 +6,13 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::watch::Watch;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 
 use super::{Event, Outbox};
+use crate::aside::aside;
 use crate::scene::{LoadControl, Scene, SceneLoader, SurroundingsLoader};
 use crate::take::TakePlayer;
 
@@ -227,8 +229,16 @@ impl LoadState {
         let mut untaken = None;
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
-            match access.read(Place::Take, file).map(|path| TakePlayer::open_for(&path, access, project)) {
-                Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(ProjectError::Cancelled),
+            let opened = match access.read(Place::Take, file) {
+                Ok(path) => {
+                    let (access, project) = (access.clone(), Arc::clone(project));
+                    let mut tick = |done| progress("opening the take", 0.9 * done);
+                    let open = move |_: &Watch| TakePlayer::open_for(&path, &access, &project);
+                    Ok(aside(&self.cancelled, &mut tick, open)?)
+                }
+                Err(problem) => Err(problem),
+            };
+            match opened {
                 Ok(Ok((mut player, mut problems))) => {
                     progress("loading the surroundings", 0.9);
                     let light = &mut loaders.surroundings;

@@ -1,6 +1,7 @@
 //! Curves of Alembic archives in the Ogawa form, at the first time of each.
 //!
-//! The transforms of all ancestors are applied. Cubic curves become polylines. Alembic states neither unit nor up axis.
+//! The transforms of all ancestors are applied. Cubic curves become polylines. Alembic states neither unit nor up axis;
+//! archives of this program do, in their description.
 
 mod frames;
 mod objects;
@@ -9,13 +10,13 @@ mod transform;
 mod values;
 
 use glam::{DMat4, Vec3};
-use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes};
+use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes, metadata_value};
 
 use super::HairFileError;
 use super::basis::Spread;
 use super::file::RawHair;
 use super::format::HairFormat;
-use super::frames::CurveFrames;
+use super::frames::{FramesOrReason, OpenedFrames};
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use objects::{CurveObject, visit};
@@ -33,6 +34,9 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     write: None,
 };
 
+/// The description (`_ai_Description`) of an archive whose points are in metres with Y up.
+pub const METRES_Y_UP: &str = "metres, Y up";
+
 /// The most points of all polylines.
 const MOST_POINTS: usize = 1 << 28;
 /// How often the points of a file may be used by objects that share them.
@@ -48,10 +52,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
 }
 
 /// The curves of a file over time, and the hair at the first time.
-pub(super) fn frames(
-    name: &str,
-    source: Source<'_>,
-) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+pub(super) fn frames(name: &str, source: Source<'_>) -> Result<OpenedFrames, HairFileError> {
     let Source::File { file, length, .. } = source else {
         return Err(HairFileError::Io {
             name: name.to_owned(),
@@ -61,8 +62,11 @@ pub(super) fn frames(
     let mut archive = Archive::open(Bytes::File { file, length }).map_err(|error| named(name, error))?;
     let mut objects = Vec::new();
     let raw = read_archive(name, &mut archive, &mut |object| objects.push(object))?;
-    let frames = frames::Frames::new(name, archive, objects).map_err(|error| named(name, error))?;
-    Ok((Box::new(frames), raw))
+    let frames: FramesOrReason = match frames::Frames::new(name, archive, objects) {
+        Ok(frames) => Ok(Box::new(frames)),
+        Err(error) => Err(named(name, error)),
+    };
+    Ok((frames, raw))
 }
 
 fn read_archive(
@@ -85,7 +89,9 @@ fn read_archive(
             wanted: "one object of curves or more",
         }));
     }
-    Ok(hair.finish())
+    let mut raw = hair.finish();
+    raw.says_metres = metadata_value(archive.metadata(), "_ai_Description") == Some(METRES_Y_UP);
+    Ok(raw)
 }
 
 /// The error with the name of its file.

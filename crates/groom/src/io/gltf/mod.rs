@@ -52,6 +52,8 @@ pub(super) static TEXT: HairFormat = HairFormat {
 const LINES: u32 = 1;
 const LINE_LOOP: u32 = 2;
 const LINE_STRIP: u32 = 3;
+const TRIANGLES: u32 = 4;
+const TRIANGLE_FAN: u32 = 6;
 
 /// Attributes of lines.
 const POSITION: &str = "POSITION";
@@ -62,13 +64,24 @@ fn is_line(mode: Option<u32>) -> bool {
     matches!(mode, Some(LINES | LINE_LOOP | LINE_STRIP))
 }
 
-/// Whether a glTF file, binary or text, contains lines, so that it is hair rather than a character. `false` for files
-/// that cannot be read.
-pub fn gltf_holds_lines(path: &Path) -> bool {
-    #[derive(Deserialize)]
-    struct Modes {
-        #[serde(default)]
+/// What a glTF file contains, by its document alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GltfContent {
+    /// Whether there are lines, which are hair.
+    pub lines: bool,
+    /// Whether there are triangles, which are a body.
+    pub triangles: bool,
+    /// Number of animations.
+    pub clips: usize,
+}
+
+/// What a glTF file, binary or text, contains; `None` for a file that cannot be read.
+pub fn gltf_content(path: &Path) -> Option<GltfContent> {
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
+    struct Parts {
         meshes: Vec<Primitives>,
+        animations: Vec<serde::de::IgnoredAny>,
     }
     #[derive(Deserialize)]
     struct Primitives {
@@ -79,21 +92,22 @@ pub fn gltf_holds_lines(path: &Path) -> bool {
     struct Mode {
         mode: Option<u32>,
     }
-    let modes = || -> Option<Modes> {
-        let mut file = DiskFile::open(path).ok()?;
-        let mut head = [0; 20];
-        let read = file.read(&mut head).ok()?;
-        let length = if head.starts_with(MAGIC) && read == 20 {
-            u64::from(u32::from_le_bytes(*head[12..].first_chunk()?))
-        } else {
-            let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-            file.seek(SeekFrom::Start(mark)).ok()?;
-            u64::MAX
-        };
-        serde_json::from_reader(BufReader::with_capacity(1 << 16, file).take(length)).ok()
+    let mut file = DiskFile::open(path).ok()?;
+    let mut head = [0; 20];
+    let read = file.read(&mut head).ok()?;
+    let length = if head.starts_with(MAGIC) && read == 20 {
+        u64::from(u32::from_le_bytes(*head[12..].first_chunk()?))
+    } else {
+        let mark = if head.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        file.seek(SeekFrom::Start(mark)).ok()?;
+        u64::MAX
     };
-    modes().is_some_and(|modes| {
-        modes.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| is_line(primitive.mode))
+    let parts: Parts = serde_json::from_reader(BufReader::with_capacity(1 << 16, file).take(length)).ok()?;
+    let modes = || parts.meshes.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| primitive.mode);
+    Some(GltfContent {
+        lines: modes().any(is_line),
+        triangles: modes().any(|mode| (TRIANGLES..=TRIANGLE_FAN).contains(&mode.unwrap_or(TRIANGLES))),
+        clips: parts.animations.len(),
     })
 }
 

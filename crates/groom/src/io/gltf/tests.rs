@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use serde_json::{Value, json};
 
-use super::gltf_holds_lines;
+use super::{GltfContent, gltf_content};
 use crate::{HairFile, load_hair, load_hair_bytes};
 
 /// Nine points on the X axis as floats, radii, and a few lists of indices: 9 x 12 bytes, 9 x 4, then 8 x u16.
@@ -149,7 +149,7 @@ fn buffers_beside_the_file_are_found_and_others_are_refused() {
     std::fs::write(dir.path().join("hair 1.bin"), buffer()).expect("a file");
     let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
     std::fs::write(&path, document(&strip, "hair%201.bin").to_string()).expect("a file");
-    assert!(gltf_holds_lines(&path));
+    assert_eq!(gltf_content(&path), Some(GltfContent { lines: true, triangles: false, clips: 0 }));
     assert_eq!(load_hair(&path).expect("hair").points.len(), 9);
     for uri in ["gone.bin", "../hair.bin", "/etc/hostname", "http://a/b.bin", "data:,x"] {
         std::fs::write(&path, document(&strip, uri).to_string()).expect("a file");
@@ -159,7 +159,7 @@ fn buffers_beside_the_file_are_found_and_others_are_refused() {
     // The control: a surface is no hair.
     let surface = json!({ "attributes": { "POSITION": 0 } });
     std::fs::write(&path, document(&surface, &data_uri()).to_string()).expect("a file");
-    assert!(!gltf_holds_lines(&path));
+    assert_eq!(gltf_content(&path), Some(GltfContent { lines: false, triangles: true, clips: 0 }));
     assert!(load_hair(&path).expect_err("no lines").to_string().contains("no lines, and 1 primitives"));
 }
 

@@ -7,8 +7,7 @@ use super::stage::Stage;
 use super::{read_layer, shape};
 use crate::io::HairFileError;
 use crate::io::basis::{Shape, Spread};
-use crate::io::file::RawHair;
-use crate::io::frames::{CurveFrames, merged};
+use crate::io::frames::{CurveFrames, OpenedFrames, merged};
 
 /// The most times of a file.
 const MOST_TIMES: usize = 1 << 20;
@@ -25,39 +24,46 @@ struct Frames {
 }
 
 /// The curves of a layer over time, and the hair at the first time.
-pub(super) fn open(mut layer: Stage<'static>) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+pub(super) fn open(mut layer: Stage<'static>) -> Result<OpenedFrames, HairFileError> {
     let raw = read_layer(&mut layer)?;
-    let metres_from_stage = layer.space()?.metres_from_stage;
-    let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
-    let codes_per_sec = rate.unwrap_or(24.0);
-    if !(1e-3..=1e6).contains(&codes_per_sec) {
-        return Err(layer.malformed(format!("timeCodesPerSecond {codes_per_sec}"), "0.001 to 1000000"));
-    }
-    let (mut prims, mut times) = (Vec::new(), Vec::new());
-    for prim in layer.curves()? {
-        if layer.times(prim, "curveVertexCounts")?.len() > 1 {
-            let found = format!("{}: curves whose number of points changes", layer.path(prim));
-            return Err(layer.malformed(found, "the same ones at all times"));
+    let frames = Frames::of(layer).map(|frames| Box::new(frames) as Box<dyn CurveFrames>);
+    Ok((frames, raw))
+}
+
+impl Frames {
+    fn of(mut layer: Stage<'static>) -> Result<Self, HairFileError> {
+        let metres_from_stage = layer.space()?.metres_from_stage;
+        let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
+        let codes_per_sec = rate.unwrap_or(24.0);
+        if !(1e-3..=1e6).contains(&codes_per_sec) {
+            return Err(layer.malformed(format!("timeCodesPerSecond {codes_per_sec}"), "0.001 to 1000000"));
         }
-        times.extend(layer.times(prim, "points")?);
-        times.extend(layer.transform_times(prim)?);
-        times = merged(times);
-        if times.len() > MOST_TIMES {
-            return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
+        let (mut prims, mut times) = (Vec::new(), Vec::new());
+        for prim in layer.curves()? {
+            if layer.changes(prim, "curveVertexCounts")? {
+                let found = format!("{}: curves whose number of points changes", layer.path(prim));
+                return Err(layer.malformed(found, "the same ones at all times"));
+            }
+            times.extend(layer.times(prim, "points")?);
+            times.extend(layer.transform_times(prim)?);
+            times = merged(times);
+            if times.len() > MOST_TIMES {
+                return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
+            }
+            let counts = layer.attribute(prim, "curveVertexCounts", usize::MAX)?;
+            let counts = counts.map_or_else(Vec::new, Value::into_ints);
+            // `read_layer` has refused negative ones.
+            let counts = counts.into_iter().map(|count| count.max(0) as usize).collect();
+            let shape = shape(&mut layer, prim)?;
+            prims.push((prim, counts, shape));
         }
-        let counts = layer.attribute(prim, "curveVertexCounts", usize::MAX)?;
-        let counts = counts.map_or_else(Vec::new, Value::into_ints);
-        // `read_layer` has refused negative ones.
-        let counts = counts.into_iter().map(|count| count.max(0) as usize).collect();
-        let shape = shape(&mut layer, prim)?;
-        prims.push((prim, counts, shape));
+        // The clips of a stage begin at its start. A file of Lovelock counts on the dance.
+        let own = layer.metadata("defaultPrim")?.is_some_and(|prim| prim.token() == Some("Lovelock"));
+        let start = layer.metadata("startTimeCode")?.and_then(|value| value.numbers().first().copied());
+        let start_code = start.filter(|start| !own && start.is_finite()).unwrap_or(0.0);
+        let times = merged(times.into_iter().map(|code| (code - start_code) / codes_per_sec).collect());
+        Ok(Self { layer, prims, metres_from_stage, codes_per_sec, start_code, times })
     }
-    // The clips of a stage begin at its start. A file of Lovelock counts on the dance.
-    let own = layer.metadata("defaultPrim")?.is_some_and(|prim| prim.token() == Some("Lovelock"));
-    let start = layer.metadata("startTimeCode")?.and_then(|value| value.numbers().first().copied());
-    let start_code = start.filter(|start| !own && start.is_finite()).unwrap_or(0.0);
-    let times = merged(times.into_iter().map(|code| (code - start_code) / codes_per_sec).collect());
-    Ok((Box::new(Frames { layer, prims, metres_from_stage, codes_per_sec, start_code, times }), raw))
 }
 
 impl CurveFrames for Frames {
@@ -68,8 +74,7 @@ impl CurveFrames for Frames {
     fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
         out.clear();
         let layer = &mut self.layer;
-        // With a tolerance for the division by the rate.
-        layer.set_time(secs * self.codes_per_sec + self.start_code + 1e-4);
+        layer.set_time(secs * self.codes_per_sec + self.start_code);
         for (prim, counts, shape) in &self.prims {
             let transform = self.metres_from_stage * layer.transform(*prim)?;
             let points = layer.attribute(*prim, "points", usize::MAX)?;

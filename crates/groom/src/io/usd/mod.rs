@@ -14,7 +14,7 @@ use super::HairFileError;
 use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
-use super::frames::CurveFrames;
+use super::frames::OpenedFrames;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use stage::Stage;
@@ -39,10 +39,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
 }
 
 /// The curves of a stage over time, and the hair at the first time.
-pub(super) fn frames(
-    name: &str,
-    source: Source<'static>,
-) -> Result<(Box<dyn CurveFrames>, RawHair), HairFileError> {
+pub(super) fn frames(name: &str, source: Source<'static>) -> Result<OpenedFrames, HairFileError> {
     frames::open(Stage::open(name, source)?)
 }
 

@@ -51,6 +51,19 @@ impl<'a> Stage<'a> {
         self.0.sample_times(prim, name).map_err(refused)
     }
 
+    /// Whether the samples of an attribute differ.
+    pub(super) fn changes(&mut self, prim: usize, name: &str) -> Result<bool, HairFileError> {
+        let samples = self.times(prim, name)?.len();
+        let mut sample = |k| self.0.sample(prim, name, k, usize::MAX).map_err(refused);
+        let first = if samples > 1 { sample(0)? } else { None };
+        for k in 1..samples {
+            if sample(k)? != first {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// The time codes at which the transform of a prim or of an ancestor changes.
     pub(super) fn transform_times(&mut self, prim: usize) -> Result<Vec<f64>, HairFileError> {
         lovelock_usd::transform_times(&mut *self.0, prim).map_err(refused)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lovelock_project::files::FileRef;
 use lovelock_session::take::TakePlayer;
-use lovelock_session::testing::recorded;
+use lovelock_session::testing::{CURVES_FIRST_FRAME, moving_curves, recorded};
 
 use super::*;
 
@@ -71,4 +71,54 @@ fn a_take_that_is_not_allowed_or_not_there_is_said_in_its_pane_and_costs_no_othe
         assert!(own.problem.is_none() && !own.image.is_empty());
         assert!(other.problem.as_ref().is_some_and(|why| why.contains("gone.take")), "{:?}", other.problem);
     }
+}
+
+/// The picture of curves around `project`, so many seconds after their first frame.
+fn picture_of_curves(path: &Path, access: &Access, project: &Project, secs: f64) -> Picture {
+    let (mut player, _) = TakePlayer::open_for(path, access, project).expect("curves");
+    let snapshot = player.snapshot(secs).expect("a frame");
+    let shown = project.compare.panes[1].applied_to(project).compared();
+    let camera = snapshot.camera(&shown.camera);
+    let mut picture = Picture::default();
+    let input = snapshot.frame_input(&shown, &camera);
+    let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
+    renderer.picture(&input, 64, 48, &mut picture).expect("a picture");
+    picture
+}
+
+#[test]
+fn a_pane_of_curves_is_in_step_with_a_simulation_and_follows_the_motion_of_the_project() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("c.abc");
+    moving_curves(&path, 9);
+    let mut rig = Rig::new(Box::new(Renderer::open_for), Backend::Cpu, &[ShadowMethod::VoxelMap; 2]);
+    rig.project.compare.panes[1].take = Some(FileRef::new(&path));
+    let access = access_to(&path);
+    // The curves begin 0.2 s into the dance; 0.1 s later they have gone on by three frames.
+    let start = CURVES_FIRST_FRAME as f64 / 30.0;
+    let at = start + 0.1;
+    let snapshot = FrameSnapshot { position_secs: at, time_secs: at, ..FrameSnapshot::clone(&rig.snapshot) };
+    rig.snapshot = Arc::new(snapshot);
+    let shown = |rig: &Rig| {
+        rig.draw(LiveRequest { access: access.clone(), ..rig.request(&[1]) });
+        let pane = rig.pane(1);
+        assert_eq!(pane.problem, None);
+        pixels(&pane)
+    };
+    let drawn = shown(&rig);
+    assert!(drawn == picture_of_curves(&path, &access, &rig.project, 0.1));
+    // Control: out of step by the start of the curves.
+    assert!(drawn != picture_of_curves(&path, &access, &rig.project, at));
+    assert!(shown(&rig) == drawn, "control: nothing has changed");
+
+    // Another motion of the project moves the body under the curves.
+    rig.project.motion.source = lovelock_project::project::MotionSource::Rest;
+    let resting = shown(&rig);
+    assert!(resting != drawn && resting == picture_of_curves(&path, &access, &rig.project, 0.1));
+}
+
+fn access_to(path: &Path) -> Access {
+    let mut access = Access::new();
+    access.pick(path);
+    access
 }

@@ -2,12 +2,11 @@
 
 use std::time::SystemTime;
 
-use lovelock_groom::ImportSettings;
 use lovelock_project::Project;
 use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{BodySection, HairSection, MotionSection, SurroundingsSection};
 
-use crate::take::holds_curves;
+use crate::take::CurveInputs;
 
 /// The inputs of a scene. Changes of other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +17,7 @@ pub(super) enum SceneInputs {
         file: FileRef,
         version: Option<(u64, SystemTime)>,
         /// Body, motion and how curves are read: curves of another program bring none.
-        around: Option<Box<(BodySection, MotionSection, ImportSettings)>>,
+        around: Option<CurveInputs>,
         surroundings: SurroundingsSection,
         access: Access,
     },
@@ -32,7 +31,7 @@ impl SceneInputs {
             Some(file) => {
                 let data = std::fs::metadata(&file.path).ok();
                 let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
-                let around = holds_curves(&file.path).then(|| Box::new((body, motion, hair.import)));
+                let around = CurveInputs::of(&file.path, project);
                 Self::Take { file, version, around, surroundings, access }
             }
             None => Self::Simulated(Box::new((body, motion, hair, surroundings, access))),

@@ -1,0 +1,127 @@
+//! Files that the user opens: what they are is found out on a thread, because a large one takes seconds to read.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
+
+use lovelock_base::clock::Stopwatch;
+use lovelock_groom::CurveMotion;
+use lovelock_jobs::info::FileKind;
+use lovelock_project::Project;
+use lovelock_project::error::{Problem, ProjectError};
+use lovelock_project::project::HairSection;
+use lovelock_session::take::{CurvesToPlay, project_of_take};
+
+/// What a file is.
+pub(super) enum Found {
+    /// A project or a style, which are small.
+    Document(FileKind),
+    /// A part of the project, and a sentence about what of it is not used.
+    Part(FileKind, Option<String>),
+    /// A take: its project, with problems.
+    Take(Box<Project>, Vec<Problem>),
+    /// Curves over time.
+    Curves(CurvesToPlay),
+}
+
+impl Found {
+    /// Looks into a file. Curves are read in the unit and up axis of `hair`.
+    pub(super) fn of(path: &Path, hair: &HairSection) -> Result<Self, ProjectError> {
+        Ok(match FileKind::of(path)? {
+            kind @ (FileKind::Project | FileKind::Style) => Self::Document(kind),
+            FileKind::Take => {
+                let (project, problems) = project_of_take(path)?;
+                Self::Take(Box::new(project), problems)
+            }
+            FileKind::Hair => match CurveMotion::of(path) {
+                CurveMotion::Moving(_) => Self::Curves(CurvesToPlay::read(path, hair)?),
+                motion => Self::Part(FileKind::Hair, motion.problem()),
+            },
+            kind => Self::Part(kind, None),
+        })
+    }
+
+    /// The name of its kind in sentences.
+    pub(super) fn label(&self) -> &'static str {
+        match self {
+            Self::Document(kind) | Self::Part(kind, _) => kind.label(),
+            Self::Take(..) => FileKind::Take.label(),
+            Self::Curves(_) => FileKind::Hair.label(),
+        }
+    }
+}
+
+/// What a file is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Aim {
+    /// To become the project, or a part of it.
+    Open,
+    /// To play the take that was recorded last, in the same project.
+    PlayTake,
+    /// For a pane beside the project.
+    Beside,
+}
+
+/// A file that was looked into.
+pub(super) struct Opened {
+    pub(super) path: PathBuf,
+    pub(super) aim: Aim,
+    pub(super) found: Result<Found, ProjectError>,
+}
+
+struct Opening {
+    path: PathBuf,
+    aim: Aim,
+    found: Receiver<Result<Found, ProjectError>>,
+    since: Stopwatch,
+}
+
+/// The files that are looked into, in the order in which the user opened them.
+#[derive(Default)]
+pub(super) struct Openings(VecDeque<Opening>);
+
+impl Openings {
+    /// Looks into a file on a thread of its own, which requests a repaint at its end.
+    pub(super) fn start(
+        &mut self,
+        path: &Path,
+        aim: Aim,
+        hair: HairSection,
+        ctx: &egui::Context,
+    ) -> std::io::Result<()> {
+        let (sender, found) = sync_channel(1);
+        let (file, wake) = (path.to_owned(), ctx.clone());
+        std::thread::Builder::new().name("lovelock file".to_owned()).spawn(move || {
+            // The window may be closed already, or the user may have lost patience.
+            let _ = sender.send(Found::of(&file, &hair));
+            super::images::wake(&wake);
+        })?;
+        self.0.push_back(Opening { path: path.to_owned(), aim, found, since: Stopwatch::start() });
+        Ok(())
+    }
+
+    /// The first file, if it was looked into.
+    pub(super) fn next(&mut self) -> Option<Opened> {
+        let found = match self.0.front()?.found.try_recv() {
+            Err(TryRecvError::Empty) => return None,
+            Ok(found) => found,
+            Err(TryRecvError::Disconnected) => Err(ProjectError::work(
+                "the file could not be opened because of an internal error of its reader",
+            )),
+        };
+        let Opening { path, aim, .. } = self.0.pop_front()?;
+        Some(Opened { path, aim, found })
+    }
+
+    /// The name of the file that is looked into, and since when, seconds.
+    pub(super) fn running(&self) -> Option<(String, f64)> {
+        let first = self.0.front()?;
+        let name = first.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Some((name, first.since.secs()))
+    }
+
+    /// Opens none of the files. Their threads end by themselves.
+    pub(super) fn cancel(&mut self) {
+        self.0.clear();
+    }
+}

@@ -1,0 +1,134 @@
+//! Files that are opened in the whole window: what they are is found out on a thread.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT, Queryable};
+use lovelock_base::clock::Stopwatch;
+use lovelock_groom::UpAxis;
+use lovelock_project::project::{BodySource, CameraSection, HairSource};
+
+use super::whole::{CTRL, go, key, of, project, wait, window};
+use crate::window::Window;
+
+/// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
+fn write_curves(path: &Path, grows: bool) {
+    const STRANDS: usize = 40;
+    let points = |more: usize, lift: f32| {
+        let mut text = String::new();
+        for strand in 0..STRANDS {
+            let angle = 0.15 * strand as f32;
+            let count = if strand + 1 == STRANDS { 3 + more } else { 3 };
+            for point in 0..count {
+                let (x, z) = (0.1 * angle.cos(), 0.1 * angle.sin());
+                let _ = write!(text, "({x}, {}, {z}), ", 1.65 + lift - 0.05 * point as f32);
+            }
+        }
+        text
+    };
+    let counts = |more: usize| format!("{}{}", "3, ".repeat(STRANDS - 1), 3 + more);
+    let more = usize::from(grows);
+    let text = format!(
+        "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\ndef BasisCurves \"a\"\n{{\n uniform token type = \"linear\"\n\
+         int[] curveVertexCounts.timeSamples = {{ 0: [{}], 24: [{}] }}\n\
+         point3f[] points.timeSamples = {{ 0: [{}], 24: [{}] }}\n}}\n",
+        counts(0),
+        counts(more),
+        points(0, 0.0),
+        points(more, 0.1)
+    );
+    std::fs::write(path, text).expect("a file");
+}
+
+fn is_idle(window: &Window) -> bool {
+    window.openings.running().is_none()
+}
+
+#[test]
+fn curves_play_with_their_unit_in_the_panel_and_refused_ones_are_still_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (moves, grows) = (folder.path().join("moves ü.usda"), folder.path().join("grows.usda"));
+    write_curves(&moves, false);
+    write_curves(&grows, true);
+    let mut harness = window();
+    let before = project(&harness);
+    harness.state_mut().state.as_mut().expect("a window").open_any(&moves);
+    // The file is opened in a later pass: nothing waits for it.
+    assert_eq!(project(&harness), before);
+    assert!(!is_idle(of(&harness)));
+    wait(&mut harness, "the curves", |window| !window.session.take_notes.is_empty());
+    assert_eq!(project(&harness).take.file.as_ref().map(|file| file.path.clone()), Some(moves));
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert!(harness.query_by_label_contains("Unit: read from the file").is_some());
+    // The controls are those of the hair's import, here for the curves.
+    let ups: Vec<_> = harness.query_all_by_role_and_label(Role::ComboBox, "Up axis").collect();
+    assert!(ups.first().is_some_and(|up| !up.accesskit_node().is_disabled()), "{} controls", ups.len());
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.change("up", |project| project.hair.import.up = UpAxis::Z);
+    wait(&mut harness, "the curves in another axis", |window| {
+        window.session.take_notes.iter().any(|note| note == "Up axis: Z, as set.")
+    });
+    key(&mut harness, CTRL, Key::Z);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+
+    harness.state_mut().state.as_mut().expect("a window").open_any(&grows);
+    wait(&mut harness, "the hair", |window| window.history.project().hair.source == HairSource::File);
+    assert_eq!(project(&harness).take.file, None, "it does not play");
+    assert!(harness.query_by_label_contains("cannot be played").is_some(), "and says why");
+    assert!(harness.query_by_label_contains("grows.usda").is_some());
+}
+
+/// A pipe is a file whose reading takes for ever.
+#[cfg(unix)]
+#[test]
+fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("slow.usda");
+    let made = std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo");
+    assert!(made.success());
+    let mut harness = window();
+    let before = project(&harness);
+    harness.state_mut().state.as_mut().expect("a window").open_any(&path);
+    let (watch, mut longest_ms) = (Stopwatch::start(), 0.0_f64);
+    while harness.query_by_label_contains("Opening slow.usda").is_none() {
+        assert!(watch.secs() < 30.0, "the progress is shown");
+        let pass = Stopwatch::start();
+        harness.step();
+        longest_ms = longest_ms.max(pass.ms());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    println!("the longest pass took {longest_ms:.0} ms");
+    assert!(watch.secs() >= 0.4 && !is_idle(of(&harness)));
+    harness.get_by_role_and_label(Role::Button, "Cancel").click();
+    go(&mut harness);
+    assert!(is_idle(of(&harness)) && harness.query_by_label_contains("Opening").is_none());
+    assert_eq!(project(&harness), before);
+    // Lets the thread end.
+    drop(std::fs::OpenOptions::new().read(true).write(true).open(&path).expect("the pipe"));
+    go(&mut harness);
+    assert_eq!(project(&harness), before);
+}
+
+#[test]
+fn the_camera_follows_the_size_of_an_opened_body_in_the_same_undo_step() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    let path = data.join("characters/MorphStressTest.gltf");
+    let mut harness = window();
+    let before = project(&harness);
+    harness.state_mut().state.as_mut().expect("a window").open_any(&path);
+    wait(&mut harness, "the body", |window| {
+        window.session.scene.as_ref().is_some_and(|scene| scene.hair_scale > 2.0)
+    });
+    go(&mut harness);
+    let scale = of(&harness).session.scene.as_ref().map_or(0.0, |scene| scene.hair_scale);
+    let (new, framed) = (CameraSection::default(), project(&harness).camera);
+    println!("hair_scale {scale}, distance {}", framed.distance);
+    assert!((framed.distance - (new.distance * scale).min(30.0)).abs() < 1e-4, "{framed:?}");
+    assert_eq!(project(&harness).body.source, BodySource::File);
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+}
