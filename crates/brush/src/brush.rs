@@ -9,7 +9,7 @@ use lovelock_style::hand::{HandEdit, HandEdits, HandRoots, hand_input};
 use rayon::prelude::*;
 
 use crate::carry::CarriedGuide;
-use crate::chain::{lay, lengths};
+use crate::chain::{evened, lay, lengths};
 use crate::settings::{BrushMirror, BrushSettings};
 use crate::stroke::{Dab, Resampler, StrokeSample, mirror};
 use crate::tool::Tool;
@@ -238,7 +238,11 @@ impl Brush {
                 } else {
                     stretched(&links, &targets, carried.edit.length)
                 };
-                carried.move_to(&lay(&touched.points, &targets, &links, obstacle), factor)?;
+                let mut laid = lay(&touched.points, &targets, &links, obstacle);
+                if self.tool.pushes() {
+                    laid = lay(&touched.points, &evened(&touched.points, &laid), &links, obstacle);
+                }
+                carried.move_to(&laid, factor)?;
             }
             Change::Length(factor) => carried.relength(factor)?,
             Change::Cut(at) => carried.cut(at)?,

@@ -7,7 +7,7 @@ use lovelock_style::hand::{
     HandChannel, HandEdit, hand_input, link_frames, relength, resampled, smallest_turn, turn_to, turned_by,
 };
 
-use crate::chain::{along, directions, lengths};
+use crate::chain::{along, directions, lengths, mean_turn};
 
 /// Links that turned less than this keep their edit, as a difference of directions.
 const STILL: f32 = 1e-6;
@@ -16,15 +16,6 @@ const STILL: f32 = 1e-6;
 const AVERAGED: f32 = 0.2;
 /// A link flies if the links around it are turned from their mean by more than the first angle, and wholly from the second on, radians.
 const FLIES: [f32; 2] = [0.35, 0.9];
-
-/// The mean of some rotations.
-fn mean_turn(turns: &[Quat]) -> Quat {
-    let first = turns.first().copied().unwrap_or_default();
-    let sum = turns.iter().fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, turn| {
-        sum + if turn.dot(first) < 0.0 { -*turn } else { *turn }
-    });
-    if sum.length_squared() > 1e-6 { sum.normalize() } else { first }
-}
 
 /// The links around each that are averaged.
 fn around(i: usize, count: usize) -> std::ops::Range<usize> {

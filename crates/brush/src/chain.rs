@@ -1,13 +1,15 @@
 //! Laying the links of a guide after its points were moved.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use lovelock_groom::{Bounded, Obstacle};
-use lovelock_style::hand::turned_toward;
+use lovelock_style::hand::{smallest_turn, turned_toward};
 
 /// Clearance between the body and guides that had more of it before, metres.
 const CLEAR: f32 = 0.003;
 /// Links turn from one to the next by this angle at most, radians, unless they did before.
 const MOST_BEND: f32 = 0.6;
+/// Links to either side of a link whose turns are averaged with its own.
+const EVENED: usize = 2;
 
 /// A chain from the first of `before` along `targets`, with links of the given lengths, outside the body as far as it was before.
 pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: &dyn Obstacle) -> Vec<Vec3> {
@@ -47,6 +49,29 @@ pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: 
         out.push(p);
     }
     out
+}
+
+/// The chain `after` with the turn of each link since `before` averaged with those of the links beside it: hair that is pushed toward its
+/// root bends as a whole, and does not fold into a zigzag of links.
+pub(crate) fn evened(before: &[Vec3], after: &[Vec3]) -> Vec<Vec3> {
+    let (ways, new) = (directions(before), directions(after));
+    let turns: Vec<Quat> = ways.iter().zip(&new).map(|(from, to)| smallest_turn(*from, *to)).collect();
+    let count = turns.len();
+    let of = |i: usize| mean_turn(&turns[i.saturating_sub(EVENED)..(i + EVENED + 1).min(count)]) * ways[i];
+    let first = (0..count).find(|i| after[i + 1] != before[i + 1]).unwrap_or(count).saturating_sub(EVENED);
+    let ways: Vec<Vec3> = (first..count).map(of).collect();
+    let mut out = before[..first].to_vec();
+    out.extend(along(before[first], &ways, &lengths(after)[first..]));
+    out
+}
+
+/// The mean of some rotations.
+pub(crate) fn mean_turn(turns: &[Quat]) -> Quat {
+    let first = turns.first().copied().unwrap_or_default();
+    let sum = turns.iter().fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, turn| {
+        sum + if turn.dot(first) < 0.0 { -*turn } else { *turn }
+    });
+    if sum.length_squared() > 1e-6 { sum.normalize() } else { first }
 }
 
 /// The length of each link.
@@ -93,5 +118,44 @@ mod tests {
         for pair in directions(&after).windows(2) {
             assert!(pair[0].angle_between(pair[1]) < MOST_BEND + 1e-3);
         }
+    }
+
+    #[test]
+    fn hair_that_is_pushed_toward_its_root_does_not_become_a_zigzag() {
+        // A guide with the slightest waves, which folding makes larger.
+        let start: Vec<Vec3> =
+            (0..31_i16).map(|i| Vec3::new(0.0004 * f32::from(i % 2), -0.01 * f32::from(i), 0.0)).collect();
+        let links = lengths(&start);
+        // The sharpest bend of two links to opposite sides.
+        let zigzag = |even: bool| {
+            let mut points = start.clone();
+            for _ in 0..25 {
+                let pushed: Vec<Vec3> = (0..31_u8)
+                    .map(|i| points[usize::from(i)] + Vec3::Y * (0.002 * f32::from(i.clamp(8, 16) - 8)))
+                    .collect();
+                let mut after = lay(&points, &pushed, &links, &NoObstacle);
+                if even {
+                    after = lay(&points, &evened(&points, &after), &links, &NoObstacle);
+                }
+                points = after;
+            }
+            let ways = directions(&points);
+            let bends: Vec<Vec3> = ways.windows(2).map(|pair| pair[0].cross(pair[1])).collect();
+            bends.windows(2).map(|pair| (-pair[0].dot(pair[1])).max(0.0).sqrt()).fold(0.0, f32::max)
+        };
+        let (even, folded) = (zigzag(true), zigzag(false));
+        println!("evened {even}, else {folded}");
+        assert!(even < 0.12 && folded > 0.3, "{even} {folded}");
+    }
+
+    #[test]
+    fn a_turn_of_the_whole_chain_stays_as_it_is() {
+        let before: Vec<Vec3> = (0..20_u8).map(|i| Vec3::NEG_Y * (0.01 * f32::from(i))).collect();
+        let turn = Quat::from_rotation_x(0.4);
+        let after: Vec<Vec3> = before.iter().map(|p| turn * *p).collect();
+        for (a, b) in evened(&before, &after).into_iter().zip(&after) {
+            assert!(a.distance(*b) < 1e-6);
+        }
+        assert_eq!(evened(&before, &before), before);
     }
 }

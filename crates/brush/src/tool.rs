@@ -87,6 +87,11 @@ impl Tool {
         }
     }
 
+    /// Whether it pushes points of hair, which may go against the hair.
+    pub(crate) const fn pushes(self) -> bool {
+        matches!(self, Self::Comb | Self::Puff | Self::Flatten | Self::Attract)
+    }
+
     /// The tool that does the opposite, and whether that one is inverted.
     pub(crate) const fn resolved(self, inverted: bool) -> (Self, bool) {
         match (self, inverted) {

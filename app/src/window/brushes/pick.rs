@@ -122,23 +122,25 @@ impl Depths {
         }
     }
 
-    /// The nearest depth around a point of the screen.
+    /// The depth of the front of the hair around a point of the screen: behind a single strand that flies before it.
     fn at(&self, at: Pos2) -> Option<f32> {
         let Vec2 { x, y } = (at - self.origin) / self.cell;
         let reach = NEAR / self.cell;
         let range = |middle: f32, size: usize| {
             (middle - reach).max(0.0) as usize..((middle + reach).max(0.0) as usize + 1).min(size)
         };
-        let mut nearest = f32::INFINITY;
+        let mut found = Vec::new();
         for row in range(y, self.size[1]) {
             for column in range(x, self.size[0]) {
                 let off = Vec2::new(column as f32 + 0.5 - x, row as f32 + 0.5 - y);
-                if off.length() <= reach {
-                    nearest = nearest.min(self.nearest[row * self.size[0] + column]);
+                let depth = self.nearest[row * self.size[0] + column];
+                if off.length() <= reach && depth.is_finite() {
+                    found.push(depth);
                 }
             }
         }
-        nearest.is_finite().then_some(nearest)
+        found.sort_unstable_by(f32::total_cmp);
+        found.get(found.len() / 4).copied()
     }
 }
 
@@ -157,6 +159,7 @@ fn on_body(snapshot: &FrameSnapshot, eye: Vec3, along: Vec3) -> Option<f32> {
 mod tests {
     use egui::{Rect, pos2, vec2};
     use lovelock_project::Project;
+    use lovelock_project::files::Access;
     use lovelock_render::ValueRenderer;
     use lovelock_session::engine::Engine;
     use lovelock_session::scene::SceneLoader;
@@ -168,7 +171,8 @@ mod tests {
         let mut project = Project::default();
         project.hair.groom.wisps = 120;
         project.hair.groom.strands_per_wisp = 50;
-        let scene = SceneLoader::new().load_now(&project, &Default::default()).expect("a scene").0;
+        project.camera.distance = 0.9;
+        let scene = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene").0;
         let mut engine = Engine::new(scene, project.simulation);
         let snapshot = engine.snapshot();
         let camera = snapshot.camera(&project.camera);
@@ -187,7 +191,7 @@ mod tests {
                 let Some(hit) = drawn.pick(&input, width.into(), height.into(), pixel) else { continue };
                 match seen.at(view, head, &snapshot, at) {
                     Some(found) => {
-                        off.push((found.distance(view.eye) - hit.position.distance(view.eye)).abs())
+                        off.push((found.distance(view.eye) - hit.position.distance(view.eye)).abs());
                     }
                     None => missed += 1,
                 }
@@ -195,8 +199,14 @@ mod tests {
         }
         off.sort_by(f32::total_cmp);
         let worst = off[off.len() * 9 / 10];
-        println!("{} places, {missed} missed, nine of ten within {:.1} mm", off.len(), 1e3 * worst);
-        assert!(off.len() > 12 && missed == 0 && worst < 0.012);
+        let median = off[off.len() / 2];
+        let [median, worst] = [median, worst].map(|metres| 1e3 * metres);
+        println!(
+            "{} places, {missed} missed, half within {median:.1} mm, nine of ten within {worst:.1} mm",
+            off.len()
+        );
+        // The image may show another strand than the front one.
+        assert!(off.len() > 12 && missed == 0 && median < 5.0 && worst < 30.0);
         // Controls: beside the hair there is none, and the depth is that of the place.
         assert_eq!(seen.at(view, head, &snapshot, place.min + vec2(4.0, 4.0)), None);
         assert_eq!(seen.at(view, head, &snapshot, place.min - vec2(4.0, 4.0)), None);

@@ -7,7 +7,7 @@ use lovelock_style::operations::Lift;
 use lovelock_style::{HeadBox, Layer};
 
 use super::Shown;
-use super::tools::{drag_over, view, with_picture};
+use super::tools::{drag_over, unfold, view, with_picture};
 use super::whole::{CTRL, go, key, of, project, wait};
 use crate::window::Window;
 
@@ -114,6 +114,7 @@ fn a_map_is_painted_into_a_layer_of_its_own() {
     let Some(mut harness) = with_picture() else { return };
     let whole = of(&harness).session.scene.clone().expect("a scene").style.strands.count();
     key(&mut harness, Modifiers::NONE, Key::H);
+    unfold(&mut harness, "Brushes");
     let start = |harness: &mut Whole| {
         super::control(harness, egui::accesskit::Role::Button, "Density").click();
         go(harness);

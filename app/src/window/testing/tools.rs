@@ -41,7 +41,7 @@ pub(super) fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> 
 const CALM_PASSES: u32 = 60;
 
 /// Opens a section of a panel.
-fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
+pub(super) fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
     into_view(harness, Role::DisclosureTriangle, title);
     control(harness, Role::DisclosureTriangle, title).click();
     harness.run_steps(30);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Simulation;
 use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
-use crate::colliders::field::{MovingField, PlaneRow};
+use crate::colliders::field::{MovingField, PlaneRow, SkinNear};
 use crate::colliders::shape::Shape;
 use crate::colliders::transformed;
 use crate::lanes::{LANES, ZERO3, at, splat3};
@@ -30,8 +30,11 @@ impl BodyNow<'_> {
     /// such points is at least that.
     pub fn distance(&self, p: Vec3, at_rest: (f32, Vec3)) -> (f32, Vec3) {
         let reach = reach();
-        let skin = self.field.and_then(|field| field.skin_near(p, reach));
-        let mut nearest = skin.map_or(at_rest, |skin| skin.unwrap_or((at_rest.0.max(reach), at_rest.1)));
+        let mut nearest = match self.field.map_or(SkinNear::AtRest, |field| field.skin_near(p, reach)) {
+            SkinNear::AtRest => at_rest,
+            SkinNear::At(distance, normal) => (distance, normal),
+            SkinNear::Far => (at_rest.0.max(reach), at_rest.1),
+        };
         for shape in &self.shapes {
             let found = shape.nearest(&splat3(p), &ZERO3);
             if found.distance[0] < nearest.0 {

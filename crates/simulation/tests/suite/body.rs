@@ -62,8 +62,9 @@ fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
     let at_rest = RestDistance::new(&stage.body);
     let mut simulation = stage.simulation(Some(0.0));
     let mut surface = Skin::default();
-    // The worst error of the body of the last step, and that of the body at rest, of places a centimetre outside the skin.
-    let (mut worst, mut worst_at_rest, mut places) = (0.0_f32, 0.0_f32, 0);
+    // The errors of the body of the last step at places a centimetre outside neck and shoulders, where the body at rest is wrong.
+    let mut off = Vec::new();
+    let origin = stage.body.skeleton.rest_position(stage.body.head_joint);
     for step in 1..=240 {
         let input = stage.at(Some(f64::from(step) * f64::from(STEP_SECS)));
         simulation.step(&input, &SimulationSettings::default(), STEP_SECS);
@@ -74,22 +75,23 @@ fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
         let exact = SurfaceDistance::new(&surface.positions, &stage.body.mesh.triangles);
         let head_from_world = stage.pose.world_from_head.inverse();
         let now = simulation.body_now();
-        for (p, normal) in surface.positions.iter().zip(&surface.normals).step_by(7) {
+        let at_rest_of_vertices = stage.body.mesh.positions.iter().map(|p| *p - origin);
+        for ((p, normal), own) in surface.positions.iter().zip(&surface.normals).zip(at_rest_of_vertices) {
             let near = *p + 0.01 * *normal;
-            let place = head_from_world.transform_point3(near);
-            let distance = exact.distance(near);
-            // Neck and shoulders; not in the folds of skin.
-            let in_reach = place.y > -0.2 && place.y < 0.05 && place.x.abs() < 0.2 && distance > 0.008;
-            if !in_reach {
-                continue;
-            }
-            places += 1;
+            let (place, distance) = (head_from_world.transform_point3(near), exact.distance(near));
             let rest = at_rest.distance(place);
-            worst = worst.max((now.distance(place, rest).0 - distance).abs());
-            worst_at_rest = worst_at_rest.max((rest.0 - distance).abs());
+            // Not in folds of the skin.
+            let is_near = own.y > -0.2 && own.x.abs() < 0.15 && distance > 0.008;
+            if is_near && (rest.0 - distance).abs() > 0.01 {
+                off.push((now.distance(place, rest).0 - distance).abs());
+            }
         }
     }
-    println!("{places} places: {:.2} mm, at rest {:.2} mm", 1e3 * worst, 1e3 * worst_at_rest);
-    assert!(places > 100 && worst < 0.004, "{worst}");
-    assert!(worst_at_rest > 0.01, "control: at rest it is off by {worst_at_rest} m");
+    off.sort_by(f32::total_cmp);
+    let [half, most] = [2, 20].map(|n| 1e3 * off[off.len() - 1 - off.len() / n]);
+    println!(
+        "{} places where the body at rest is wrong: half within {half:.2} mm, 95 % within {most:.2} mm",
+        off.len()
+    );
+    assert!(off.len() > 100 && half < 1.0 && most < 4.0);
 }

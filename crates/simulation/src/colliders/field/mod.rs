@@ -60,6 +60,16 @@ const IMPLAUSIBLE_DEPTH: f32 = 0.02;
 /// Smallest determinant of the Newton matrix; below it the skin is folded too much to be inverted.
 const LEAST_DETERMINANT: f32 = 0.05;
 
+/// The skin near a point.
+pub(crate) enum SkinNear {
+    /// The head alone moves it: it is there as it is at rest.
+    AtRest,
+    /// Signed distance, metres, and normal.
+    At(f32, Vec3),
+    /// There is none.
+    Far,
+}
+
 /// A field and its motion during the current step.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingField {
@@ -165,12 +175,10 @@ impl MovingField {
         self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, true);
     }
 
-    /// Distance from the skin and its normal at the end of the last step, at a point of head space. `None` if the skin is further away
-    /// than `reach`. The outer result is `None` where the head alone moves the skin, which is there as it is at rest. Needs
-    /// [`MovingField::find_body`].
-    pub(crate) fn skin_near(&self, p: Vec3, reach: f32) -> Option<Option<(f32, Vec3)>> {
+    /// The skin at the end of the last step near a point of head space, within `reach`. Needs [`MovingField::find_body`].
+    pub(crate) fn skin_near(&self, p: Vec3, reach: f32) -> SkinNear {
         if self.is_moved_by_head_alone(p).0 {
-            return None;
+            return SkinNear::AtRest;
         }
         let identity = HeadPose::IDENTITY;
         let here = substep(&identity, &identity, Vec3::ZERO, self.dt_secs);
@@ -179,7 +187,10 @@ impl MovingField {
         let mut alone = splat3(Vec3::NAN);
         put(&mut alone, 0, p);
         let row = self.row(&alone, &here, 1.0, reach, &mut planes);
-        Some(row.map(|row| (row.distance[0], at(&row.normal, 0))).filter(|(distance, _)| *distance < reach))
+        match row.map(|row| (row.distance[0], at(&row.normal, 0))) {
+            Some((distance, normal)) if distance < reach => SkinNear::At(distance, normal),
+            _ => SkinNear::Far,
+        }
     }
 
     /// Restores the joints returned by [`MovingField::joints`].
