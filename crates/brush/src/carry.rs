@@ -28,20 +28,18 @@ fn around(i: usize, count: usize) -> std::ops::Range<usize> {
 ///
 /// Where hair is bent evenly, that is the turn by which the changed shape comes back exactly in the same pose. Where hair flies, links beside
 /// each other are turned to very different sides for an instant. There it is the mean of what the links around would do, seen through the
-/// mean of their turns: by their own turns they would fold against each other at rest.
+/// mean of their turns: by their own turns they would fold against each other at rest. Links that the brush did not turn stay.
 fn turns_at_rest(rest: &[Vec3], turns: &[Quat], [before, after]: [&[Vec3]; 2]) -> Vec<Quat> {
     let count = rest.len();
     let still = |i: usize| before[i].distance_squared(after[i]) < STILL * STILL;
-    let exact = |i: usize| {
-        if still(i) {
-            return Quat::IDENTITY;
-        }
-        smallest_turn(rest[i], (turns[i].inverse() * after[i]).normalize_or(rest[i]))
-    };
+    let exact = |i: usize| smallest_turn(rest[i], (turns[i].inverse() * after[i]).normalize_or(rest[i]));
     let means: Vec<Quat> = (0..count).map(|i| mean_turn(&turns[around(i, count)])).collect();
     let through_mean = |i: usize| means[i].inverse() * smallest_turn(before[i], after[i]) * means[i];
     let even: Vec<Quat> = (0..count).map(through_mean).collect();
     let of = |i: usize| {
+        if still(i) {
+            return Quat::IDENTITY;
+        }
         let near = around(i, count);
         let most = near.clone().map(|j| turns[j].angle_between(means[i])).fold(0.0, f32::max);
         let flies = smoothstep(FLIES[0], FLIES[1], most);
@@ -211,5 +209,41 @@ impl CarriedGuide<'_> {
         }
         self.edit.tidy();
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sharpest bend between two links at rest after all seen links from the tenth on were turned by the same angle, while every other
+    /// link is turned by `angle` to one side and the others to the other. The links are straight at rest.
+    fn sharpest_bend(angle: f32, is_even: bool) -> f32 {
+        let rest = vec![Vec3::NEG_Y; 30];
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let turns: Vec<Quat> = (0..30).map(|i| Quat::from_rotation_z(angle * sign(i))).collect();
+        let before: Vec<Vec3> = turns.iter().zip(&rest).map(|(turn, rest)| *turn * *rest).collect();
+        let combed = Quat::from_rotation_x(0.5);
+        let after: Vec<Vec3> =
+            before.iter().enumerate().map(|(i, way)| if i < 10 { *way } else { combed * *way }).collect();
+        let made: Vec<Vec3> = if is_even {
+            let made = turns_at_rest(&rest, &turns, [&before, &after]);
+            assert!(made[..10].iter().all(|turn| *turn == Quat::IDENTITY), "the root stays");
+            made.iter().zip(&rest).map(|(turn, rest)| *turn * *rest).collect()
+        } else {
+            turns.iter().zip(&after).map(|(turn, way)| turn.inverse() * *way).collect()
+        };
+        assert!(made[25].angle_between(rest[25]) > 0.2, "the combed links turn at rest");
+        made[12..].windows(2).map(|pair| pair[0].angle_between(pair[1])).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn links_that_fly_to_opposite_sides_do_not_fold_at_rest() {
+        let [even, exact] = [true, false].map(|is_even| sharpest_bend(1.2, is_even));
+        println!("evenly {even} rad, each by its own turn {exact} rad");
+        assert!(even < 0.1 && exact > 0.6, "{even} {exact}");
+        // Hair that is hardly bent is carried back exactly.
+        let [even, exact] = [true, false].map(|is_even| sharpest_bend(0.1, is_even));
+        assert!((even - exact).abs() < 1e-5, "{even} {exact}");
     }
 }

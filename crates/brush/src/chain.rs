@@ -57,8 +57,12 @@ pub(crate) fn evened(before: &[Vec3], after: &[Vec3]) -> Vec<Vec3> {
     let (ways, new) = (directions(before), directions(after));
     let turns: Vec<Quat> = ways.iter().zip(&new).map(|(from, to)| smallest_turn(*from, *to)).collect();
     let count = turns.len();
-    let of = |i: usize| mean_turn(&turns[i.saturating_sub(EVENED)..(i + EVENED + 1).min(count)]) * ways[i];
-    let first = (0..count).find(|i| after[i + 1] != before[i + 1]).unwrap_or(count).saturating_sub(EVENED);
+    let Some(first) = (0..count).find(|i| after[i + 1] != before[i + 1]) else { return before.to_vec() };
+    // What is above the moved links stays.
+    let of = |i: usize| {
+        let near = i.saturating_sub(EVENED).max(first)..(i + EVENED + 1).min(count);
+        mean_turn(&turns[near]) * ways[i]
+    };
     let ways: Vec<Vec3> = (first..count).map(of).collect();
     let mut out = before[..first].to_vec();
     out.extend(along(before[first], &ways, &lengths(after)[first..]));

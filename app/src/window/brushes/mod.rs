@@ -103,6 +103,7 @@ impl crate::window::Window {
     pub(in crate::window) fn paint_map(&mut self, project: &mut lovelock_project::Project, id: &str) {
         if self.layers.paint_map(&mut project.hair.stack, id) {
             self.brushes.on = false;
+            self.scissors.held = false;
         } else {
             let why =
                 "There are as many layers as there can be. Remove one, so that the map gets one of its own.";

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Simulation;
 use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
-use crate::colliders::field::{MovingField, PlaneRow, SkinNear};
+use crate::colliders::field::{MovingField, PlaneRow};
 use crate::colliders::shape::Shape;
 use crate::colliders::transformed;
 use crate::lanes::{LANES, ZERO3, at, splat3};
@@ -30,11 +30,16 @@ impl BodyNow<'_> {
     /// such points is at least that.
     pub fn distance(&self, p: Vec3, at_rest: (f32, Vec3)) -> (f32, Vec3) {
         let reach = reach();
-        let mut nearest = match self.field.map_or(SkinNear::AtRest, |field| field.skin_near(p, reach)) {
-            SkinNear::AtRest => at_rest,
-            SkinNear::At(distance, normal) => (distance, normal),
-            SkinNear::Far => (at_rest.0.max(reach), at_rest.1),
-        };
+        let mut nearest = at_rest;
+        if let Some(field) = self.field {
+            // Other skin may come near a place where only the head has skin at rest.
+            let skin = field.skin_near(p, reach);
+            nearest = match skin {
+                Some(skin) if !field.is_at_rest(p) || skin.0 < at_rest.0 => skin,
+                None if !field.is_at_rest(p) => (at_rest.0.max(reach), at_rest.1),
+                _ => at_rest,
+            };
+        }
         for shape in &self.shapes {
             let found = shape.nearest(&splat3(p), &ZERO3);
             if found.distance[0] < nearest.0 {

@@ -139,7 +139,7 @@ fn culling_does_not_change_the_motion() {
             (0..16).map(|i| Vec3::new(0.0, 0.09 - 0.012 * i as f32, 0.0) + out * 0.13).collect();
         guides.push(&points);
     }
-    let run = |culling: bool, with_field: bool| {
+    let run = |culling: bool, with_field: bool, is_asked: bool| {
         let mut simulation =
             Simulation::new(Arc::new(Hairstyle { guides: guides.clone(), ..Hairstyle::default() }));
         simulation.culling = culling;
@@ -157,12 +157,16 @@ fn culling_does_not_change_the_motion() {
             } else {
                 simulation.step(&input, &settings(), 1.0 / 60.0);
             }
+            if is_asked {
+                simulation.body_now().distance(Vec3::new(0.1, -0.1, 0.0), (1.0, Vec3::Y));
+            }
         }
         simulation.state_hash()
     };
-    let culled = run(true, true);
-    assert_eq!(culled, run(false, true), "culling changes the motion");
-    assert_ne!(culled, run(true, false), "no hair touches the field: the test proves nothing");
+    let culled = run(true, true, false);
+    assert_eq!(culled, run(false, true, false), "culling changes the motion");
+    assert_eq!(culled, run(true, true, true), "asking for the body changes the motion");
+    assert_ne!(culled, run(true, false, false), "no hair touches the field: the test proves nothing");
 }
 
 #[test]

@@ -7,7 +7,13 @@ use lovelock_groom::Hairstyle;
 use crate::Scope;
 use crate::operate::{Kind, Operate, Subject};
 
+/// What random numbers of strands are for, apart from those of other operations.
+const STRANDS: u32 = 0xde;
+
 /// Removes a part of the strands, as thinning scissors do: with a ramp along the hair, strands end where there are to be fewer.
+///
+/// A removed strand keeps its place in the hairstyle with no width, so that layers after this one do the same to the other strands as before,
+/// and the strands that are left do not become wider for those that are missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Density {
     /// The part of the strands that stays.
@@ -34,26 +40,26 @@ impl Operate for Density {
     const KIND: Kind = Kind {
         id: "density",
         label: "Density",
-        text: "Thins hair out: removes a part of its strands, or shortens them where the ramp rises along the hair.",
+        text: "Thins hair out: removes a part of its strands. Where its curve rises along the hair, they end earlier or later.",
         subject: Subject::Strands,
     };
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         let strengths = scope.strands(style);
-        let points = |strand: usize| {
-            let set = &style.strands;
-            let removed = strengths[strand] * (1.0 - self.share);
-            // From 0 to 1, without 1: nothing is removed of no strand.
-            let place = scope.random(0, strand).unit();
-            let params =
-                &set.guide_param[set.first_point[strand] as usize..set.first_point[strand + 1] as usize];
-            let end = params[params.len() - 1].max(1e-6);
-            let stays = |u: &&f32| place >= removed * scope.along(**u / end);
-            params.iter().take_while(stays).count()
-        };
-        let points: Vec<usize> = (0..style.strands.count()).map(points).collect();
-        let set = std::mem::take(&mut style.strands);
-        style.strands = set.shortened(&mut style.wisps, |strand| points[strand]);
+        let set = &mut style.strands;
+        for (strand, strength) in strengths.into_iter().enumerate() {
+            let removed = strength * (1.0 - self.share);
+            if removed <= 0.0 {
+                continue;
+            }
+            let points = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+            let end = set.guide_param[points.end - 1].max(1e-6);
+            // From 0 up to, but without, 1.
+            let own = scope.random(STRANDS, strand).unit();
+            let is_removed = |i: &usize| own < removed * scope.along(set.guide_param[*i] / end);
+            let Some(first) = points.clone().find(is_removed) else { continue };
+            set.taper[first..points.end].fill(0.0);
+        }
     }
 }
 
@@ -62,12 +68,16 @@ mod tests {
     use lovelock_groom::{GroomSettings, Hairstyle, NoObstacle, PlainHead, grow};
 
     use super::*;
+    use crate::operations::Strays;
     use crate::{Layer, Ramp, apply_layer};
 
-    /// The number of strands that reach a place along the guides, in links.
+    /// The number of strands that have a width at a place along the guides, in links.
     fn reach(style: &Hairstyle, place: f32) -> f32 {
         let set = &style.strands;
-        let reaches = |strand: &usize| set.guide_param[set.first_point[strand + 1] as usize - 1] >= place;
+        let reaches = |strand: &usize| {
+            let points = set.first_point[*strand] as usize..set.first_point[strand + 1] as usize;
+            points.into_iter().any(|i| set.guide_param[i] >= place && set.taper[i] > 0.0)
+        };
         (0..set.count()).filter(reaches).count() as f32
     }
 
@@ -93,8 +103,28 @@ mod tests {
             assert!((found / all - wanted).abs() < allowed, "{found} of {all} against {wanted}");
         }
         assert_eq!(made(&even).guides, style.guides);
-        // Only strands that would be shorter than a link are left out.
-        assert!(reach(&made(&rising), 0.0) > 0.96 * reach(&style, 0.0));
-        assert_eq!(made(&Layer::of(Density { share: 0.0 })).strands.count(), 0);
+        assert_eq!(made(&even).strands.count(), style.strands.count());
+        // At the root nothing is removed yet.
+        assert!(reach(&made(&rising), 0.0) == reach(&style, 0.0));
+        assert_eq!(reach(&made(&Layer::of(Density { share: 0.0 })), 0.0), 0.0);
+    }
+
+    #[test]
+    fn other_operations_choose_their_strands_apart_from_it() {
+        let settings = GroomSettings { wisps: 12, strands_per_wisp: 100, ..GroomSettings::default() };
+        let style = grow(&settings, &PlainHead.scalp(16), &PlainHead).expect("hair");
+        let strays = apply_layer(&Layer::of(Strays::default()), 1.0, &style, &NoObstacle).expect("strays");
+        let thin =
+            apply_layer(&Layer::of(Density { share: 0.3 }), 1.0, &strays, &NoObstacle).expect("thinned");
+        let first = |strand: usize| thin.strands.first_point[strand] as usize;
+        let is_stray = |strand: &usize| {
+            let points = first(*strand)..first(strand + 1);
+            strays.strands.offset_normal[points.clone()] != style.strands.offset_normal[points]
+        };
+        let all: Vec<usize> = (0..style.strands.count()).filter(is_stray).collect();
+        let left = all.iter().filter(|strand| thin.strands.taper[first(**strand)] > 0.0).count();
+        let (all, left) = (all.len() as f32, left as f32);
+        println!("{left} of {all} strays are left");
+        assert!(all > 80.0 && (left / all - 0.3).abs() < 4.0 * (0.21 / all).sqrt());
     }
 }

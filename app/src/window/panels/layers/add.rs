@@ -52,7 +52,9 @@ impl LayersView {
     /// Starts to paint where an operation acts: in the selected layer or in the last one that has a painted mask, or in a new layer, which
     /// acts where it is painted. Returns whether there was room for one.
     pub(crate) fn paint_map(&mut self, stack: &mut StyleStack, id: &str) -> bool {
-        let fits = |layer: &&Layer| layer.operation.id() == id && layer.mask.painted().is_some();
+        let acts = |layer: &Layer| layer.on && layer.weight > 0.0 && stack.factor(layer) > 0.0;
+        let fits =
+            |layer: &&Layer| layer.operation.id() == id && layer.mask.painted().is_some() && acts(layer);
         let selected = self.selected.and_then(|id| stack.layer(id)).filter(fits);
         let layer = selected.or_else(|| stack.layers.iter().rev().find(fits)).map(|layer| layer.id);
         let new = |stack: &mut StyleStack| {

@@ -60,16 +60,6 @@ const IMPLAUSIBLE_DEPTH: f32 = 0.02;
 /// Smallest determinant of the Newton matrix; below it the skin is folded too much to be inverted.
 const LEAST_DETERMINANT: f32 = 0.05;
 
-/// The skin near a point.
-pub(crate) enum SkinNear {
-    /// The head alone moves it: it is there as it is at rest.
-    AtRest,
-    /// Signed distance, metres, and normal.
-    At(f32, Vec3),
-    /// There is none.
-    Far,
-}
-
 /// A field and its motion during the current step.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingField {
@@ -175,22 +165,25 @@ impl MovingField {
         self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, true);
     }
 
-    /// The skin at the end of the last step near a point of head space, within `reach`. Needs [`MovingField::find_body`].
-    pub(crate) fn skin_near(&self, p: Vec3, reach: f32) -> SkinNear {
-        if self.is_moved_by_head_alone(p).0 {
-            return SkinNear::AtRest;
-        }
+    /// Distance from the skin near a point of head space at the end of the last step, and its normal; `None` if there is none within
+    /// `reach`. Needs [`MovingField::find_body`].
+    pub(crate) fn skin_near(&self, p: Vec3, reach: f32) -> Option<(f32, Vec3)> {
         let identity = HeadPose::IDENTITY;
         let here = substep(&identity, &identity, Vec3::ZERO, self.dt_secs);
         let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
         // Nothing is searched for lanes that are not numbers.
         let mut alone = splat3(Vec3::NAN);
         put(&mut alone, 0, p);
-        let row = self.row(&alone, &here, 1.0, reach, &mut planes);
-        match row.map(|row| (row.distance[0], at(&row.normal, 0))) {
-            Some((distance, normal)) if distance < reach => SkinNear::At(distance, normal),
-            _ => SkinNear::Far,
-        }
+        let row = self.row(&alone, &here, 1.0, reach, &mut planes)?;
+        // Skin that is only guessed is at least that deep.
+        let is_deep = row.guess[0] > 0.0 && row.distance[0] < 0.0;
+        let distance = if is_deep { -IMPLAUSIBLE_DEPTH } else { row.distance[0] };
+        (distance < reach).then(|| (distance, at(&row.normal, 0)))
+    }
+
+    /// Whether the head alone moves the skin at a point of head space: it is there as it is at rest.
+    pub(crate) fn is_at_rest(&self, p: Vec3) -> bool {
+        self.is_moved_by_head_alone(p).0
     }
 
     /// Restores the joints returned by [`MovingField::joints`].
