@@ -67,9 +67,11 @@ impl Window {
         }
     }
 
-    /// Opens the files that were looked into.
+    /// Opens the files that were looked into, in their order: those behind a project wait until it is opened, and become parts of it.
     pub(super) fn take_opened(&mut self) {
-        while let Some(Opened { path, aim, found }) = self.openings.next() {
+        while self.pending.is_none()
+            && let Some(Opened { path, aim, found }) = self.openings.next()
+        {
             match (aim, found) {
                 (_, Err(error)) => self.warn([error.to_string()]),
                 (Aim::Beside, Ok(found)) => self.put_beside(&path, &found),
@@ -174,6 +176,7 @@ impl Window {
             Ok((project, problems)) => {
                 self.overdub.let_go();
                 self.cancel_strokes();
+                self.framing = None;
                 self.history = lovelock_project::history::History::new(project);
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());

@@ -331,9 +331,9 @@ impl Window {
                 if left > 0.0 {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
-                    let tip = "Opens nothing. The project stays unchanged.";
+                    let tip = "Does not open this file. The project stays unchanged.";
                     if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
-                        self.openings.cancel();
+                        self.openings.cancel_first();
                     }
                     row += 1;
                 }

@@ -12,6 +12,7 @@ use lovelock_project::project::{BodySource, CameraSection, HairSource};
 
 use super::whole::{CTRL, go, key, of, project, wait, window};
 use crate::window::Window;
+use crate::window::command::Command;
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
 fn write_curves(path: &Path, grows: bool) {
@@ -81,14 +82,63 @@ fn curves_play_with_their_unit_in_the_panel_and_refused_ones_are_still_with_the_
     assert!(harness.query_by_label_contains("grows.usda").is_some());
 }
 
-/// A pipe is a file whose reading takes for ever.
+/// Makes a pipe: a file whose reading takes for ever.
+#[cfg(unix)]
+fn make_pipe(path: &Path) {
+    let made = std::process::Command::new("mkfifo").arg(path).status().expect("mkfifo");
+    assert!(made.success());
+}
+
+/// Lets the thread end that reads a pipe.
+#[cfg(unix)]
+fn end_pipe(path: &Path) {
+    drop(std::fs::OpenOptions::new().read(true).write(true).open(path).expect("the pipe"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (slow, moves) = (folder.path().join("slow.usda"), folder.path().join("moves.usda"));
+    make_pipe(&slow);
+    write_curves(&moves, false);
+    let mut harness = window();
+    let before = project(&harness);
+    let ctx = harness.ctx.clone();
+    let open_both = |window: &mut Window| {
+        window.open_any(&slow);
+        window.open_any(&moves);
+    };
+    open_both(harness.state_mut().state.as_mut().expect("a window"));
+    go(&mut harness);
+    assert!(!is_idle(of(&harness)) && project(&harness) == before, "the second waits for the first");
+    harness.state_mut().state.as_mut().expect("a window").run(Command::NewProject, &ctx);
+    assert!(is_idle(of(&harness)));
+    go(&mut harness);
+    let new = project(&harness);
+    assert!(new != before && new.take.file.is_none());
+
+    // The control: without a new project, the second file is opened when the first is cancelled.
+    open_both(harness.state_mut().state.as_mut().expect("a window"));
+    wait(&mut harness, "the progress", |window| {
+        let is_shown =
+            window.openings.running().is_some_and(|(name, secs)| name == "slow.usda" && secs > 0.6);
+        // The scene of the new project has a progress with a button of its own.
+        is_shown && window.session.worker().load_progress().is_none()
+    });
+    harness.get_by_role_and_label(Role::Button, "Cancel").click();
+    wait(&mut harness, "the curves", |window| window.history.project().take.file.is_some());
+    assert_eq!(project(&harness).take.file.as_ref().map(|file| file.path.clone()), Some(moves));
+    assert!(is_idle(of(&harness)));
+    end_pipe(&slow);
+}
+
 #[cfg(unix)]
 #[test]
 fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("slow.usda");
-    let made = std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo");
-    assert!(made.success());
+    make_pipe(&path);
     let mut harness = window();
     let before = project(&harness);
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
@@ -106,8 +156,7 @@ fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     go(&mut harness);
     assert!(is_idle(of(&harness)) && harness.query_by_label_contains("Opening").is_none());
     assert_eq!(project(&harness), before);
-    // Lets the thread end.
-    drop(std::fs::OpenOptions::new().read(true).write(true).open(&path).expect("the pipe"));
+    end_pipe(&path);
     go(&mut harness);
     assert_eq!(project(&harness), before);
 }
