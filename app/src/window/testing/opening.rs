@@ -12,7 +12,6 @@ use lovelock_project::project::{BodySource, CameraSection, HairSource};
 
 use super::whole::{CTRL, go, key, of, project, wait, window};
 use crate::window::Window;
-use crate::window::command::Command;
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
 fn write_curves(path: &Path, grows: bool) {
@@ -98,6 +97,7 @@ fn end_pipe(path: &Path) {
 #[cfg(unix)]
 #[test]
 fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file() {
+    use crate::window::command::Command::NewProject;
     let folder = tempfile::tempdir().expect("a folder");
     let (slow, moves) = (folder.path().join("slow.usda"), folder.path().join("moves.usda"));
     make_pipe(&slow);
@@ -112,7 +112,7 @@ fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file(
     open_both(harness.state_mut().state.as_mut().expect("a window"));
     go(&mut harness);
     assert!(!is_idle(of(&harness)) && project(&harness) == before, "the second waits for the first");
-    harness.state_mut().state.as_mut().expect("a window").run(Command::NewProject, &ctx);
+    harness.state_mut().state.as_mut().expect("a window").run(NewProject, &ctx);
     assert!(is_idle(of(&harness)));
     go(&mut harness);
     let new = project(&harness);
