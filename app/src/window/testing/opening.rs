@@ -180,4 +180,16 @@ fn the_camera_follows_the_size_of_an_opened_body_in_the_same_undo_step() {
     assert_eq!(of(&harness).history.undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
+
+    // A camera that was moved before the body was loaded stays.
+    let is_large =
+        |window: &Window| window.session.scene.as_ref().is_some_and(|scene| scene.hair_scale > 2.0);
+    wait(&mut harness, "the dancer", |window| !is_large(window));
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.open_body(&path);
+    window.change("camera", |project| project.camera.distance *= 0.5);
+    let moved = project(&harness).camera;
+    wait(&mut harness, "the body", is_large);
+    go(&mut harness);
+    assert_eq!(project(&harness).camera, moved);
 }
