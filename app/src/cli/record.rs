@@ -5,6 +5,7 @@ use lovelock_jobs::record::{
     record_take,
 };
 use lovelock_project::error::ProjectError;
+use lovelock_project::project::CameraSection;
 use lovelock_session::health::{Gauge, HealthLevel};
 use lovelock_session::stats::Stage;
 
@@ -36,7 +37,9 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
         curves: task.curves,
         no_body: task.no_body,
         backend: task.backend,
+        // A camera that the project or an option states stays.
         frame_body: task.source.body.is_some()
+            && scene.project.camera == CameraSection::default()
             && !task.source.set.iter().any(|set| set.name.starts_with("camera.")),
         panes,
         access: std::mem::take(&mut scene.access),

@@ -323,6 +323,9 @@ impl Window {
             Pending::New => {
                 self.overdub.let_go();
                 self.cancel_strokes();
+                // They were opened for the project that goes.
+                self.openings.cancel();
+                self.framing = None;
                 self.history = lovelock_project::history::History::new(Project::default());
                 self.project_path = None;
                 self.session.set_project_path(None);
@@ -361,6 +364,10 @@ impl Window {
             self.go_on(pending, ctx);
         } else if stay || modal.should_close() {
             self.pending = None;
+        }
+        if self.pending.is_none() {
+            // Files that were opened meanwhile have waited for the answer.
+            ctx.request_repaint();
         }
     }
 

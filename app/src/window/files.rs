@@ -20,6 +20,8 @@ pub(super) struct Framing {
     gesture: GestureId,
     /// The scene before it.
     before: Option<Arc<Scene>>,
+    /// The camera when it was opened. One that was moved since stays.
+    camera: CameraSection,
 }
 
 impl Framing {
@@ -27,7 +29,7 @@ impl Framing {
     pub(super) fn at_start(project: &Project, path: Option<&PathBuf>) -> Option<Self> {
         let opened = path.is_none() && project.body.file.is_some() && project.take.file.is_none();
         let framed = opened && project.camera == CameraSection::default();
-        framed.then(|| Self { body: project.body.clone(), gesture: 0, before: None })
+        framed.then(|| Self { body: project.body.clone(), gesture: 0, before: None, camera: project.camera })
     }
 }
 
@@ -67,9 +69,11 @@ impl Window {
         }
     }
 
-    /// Opens the files that were looked into.
+    /// Opens the files that were looked into, in their order: those behind a project wait until it is opened, and become parts of it.
     pub(super) fn take_opened(&mut self) {
-        while let Some(Opened { path, aim, found }) = self.openings.next() {
+        while self.pending.is_none()
+            && let Some(Opened { path, aim, found }) = self.openings.next()
+        {
             match (aim, found) {
                 (_, Err(error)) => self.warn([error.to_string()]),
                 (Aim::Beside, Ok(found)) => self.put_beside(&path, &found),
@@ -107,22 +111,29 @@ impl Window {
             body: self.history.project().body.clone(),
             gesture: self.gestures.id() - 1,
             before: self.session.scene.clone(),
+            camera: self.history.project().camera,
         });
     }
 
-    /// Moves the camera away from a large body and to a small one, as a part of the undo step that opened it.
+    /// Moves the camera away from a large body and to a small one, as a part of the undo step that opened it. Called when a load has ended.
     pub(super) fn frame_opened_body(&mut self) {
-        let (Some(framing), Some(scene)) = (&self.framing, &self.session.scene) else { return };
+        let Some(framing) = &self.framing else { return };
         let before = framing.before.as_ref();
-        // A load that began earlier.
-        if before.is_some_and(|before| Arc::ptr_eq(&before.body, &scene.body)) {
+        let is_other =
+            |scene: &&Arc<Scene>| before.is_none_or(|before| !Arc::ptr_eq(&before.body, &scene.body));
+        let Some(scene) = self.session.scene.as_ref().filter(is_other) else {
+            // Another load began earlier, or this one ended without the body: then the next scene is none of its.
+            if !self.session.worker().is_loading() {
+                self.framing = None;
+            }
             return;
-        }
+        };
         let (gesture, project) = (framing.gesture, self.history.project());
         let before_scale = before.map_or(1.0, |before| before.hair_scale);
         let camera = camera_for_size(&project.camera, before_scale, scene.hair_scale);
-        // Undone or replaced meanwhile.
-        let camera = camera.filter(|_| project.body == framing.body);
+        // Undone or replaced meanwhile, or seen from a place that the user chose.
+        let is_same = project.body == framing.body && project.camera == framing.camera;
+        let camera = camera.filter(|_| is_same);
         if let Some(camera) = camera {
             let framed = Project { camera, ..(**project).clone() };
             self.history.edit("file", Some(gesture), framed);
@@ -174,6 +185,7 @@ impl Window {
             Ok((project, problems)) => {
                 self.overdub.let_go();
                 self.cancel_strokes();
+                self.framing = None;
                 self.history = lovelock_project::history::History::new(project);
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());

@@ -24,10 +24,10 @@ impl Window {
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
-        let scene = self.session.scene.as_ref().map(Arc::as_ptr);
+        let loads_ended = self.session.loads_ended;
         let said = self.session.update();
         self.warn(said);
-        if self.session.scene.as_ref().map(Arc::as_ptr) != scene {
+        if self.session.loads_ended != loads_ended {
             self.frame_opened_body();
         }
         self.follow_sound(&ctx);
@@ -323,6 +323,7 @@ impl Window {
                 let tip = "Stops loading. The scene stays unchanged.";
                 if progress_overlay(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
+                    self.framing = None;
                 }
                 row += 1;
             }
@@ -331,9 +332,9 @@ impl Window {
                 if left > 0.0 {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
-                    let tip = "Opens nothing. The project stays unchanged.";
+                    let tip = "Does not open this file. The project stays unchanged.";
                     if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
-                        self.openings.cancel();
+                        self.openings.cancel_first();
                     }
                     row += 1;
                 }

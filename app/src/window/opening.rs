@@ -120,6 +120,11 @@ impl Openings {
         Some((name, first.since.secs()))
     }
 
+    /// Does not open the file that [`Self::running`] names. Its thread ends by itself.
+    pub(super) fn cancel_first(&mut self) {
+        self.0.pop_front();
+    }
+
     /// Opens none of the files. Their threads end by themselves.
     pub(super) fn cancel(&mut self) {
         self.0.clear();

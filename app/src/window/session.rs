@@ -78,6 +78,8 @@ pub(crate) struct Session {
     pub(crate) saved_take: Option<PathBuf>,
     /// What brushes have done since the last pass.
     pub(crate) brushed: Vec<StrokeReport>,
+    /// How many loads have ended, with a scene or without.
+    pub(crate) loads_ended: u64,
 }
 
 impl Session {
@@ -137,6 +139,7 @@ impl Session {
             done: Vec::new(),
             saved_take: None,
             brushed: Vec::new(),
+            loads_ended: 0,
         })
     }
 
@@ -211,6 +214,14 @@ impl Session {
     pub(crate) fn update(&mut self) -> Vec<String> {
         let mut said = Vec::new();
         while let Some(event) = self.worker.poll_event() {
+            // The thread that panicked may be the loader.
+            self.loads_ended += u64::from(matches!(
+                event,
+                Event::Loaded { .. }
+                    | Event::LoadCancelled
+                    | Event::LoadFailed { .. }
+                    | Event::Panicked { .. }
+            ));
             match event {
                 Event::Loaded { scene, problems } => self.take_scene(scene, problems),
                 Event::LoadCancelled => {

@@ -121,7 +121,7 @@ fn archives_that_are_cut_are_refused() {
 fn damaged_alembic() {
     let whole = archive();
     let all = read_all(&whole).expect("an archive");
-    damaged("ogawa", &[whole], 3000, |bytes| match read_all(bytes) {
+    let counts = damaged("ogawa", &[whole], 3000, |bytes| match read_all(bytes) {
         Ok(numbers) => {
             assert!(
                 numbers <= 40 * all.max(bytes.len() as u64),
@@ -135,6 +135,8 @@ fn damaged_alembic() {
             false
         }
     });
+    // Measured: 14 % of 33.6 million.
+    counts.assert_mixed(0.02);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Recognises the format of a file by its first bytes and calls its reader.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use lovelock_base::watch::Watch;
@@ -18,8 +20,16 @@ const FILE_LIMIT: u64 = 2 << 30;
 /// # Errors
 /// For a file that cannot be read.
 pub fn figure_content(path: &Path) -> Result<Option<FigureContent>, MotionError> {
-    let bytes = read_file(path, FILE_LIMIT)?;
     let file = path.display().to_string();
+    let cannot_read = |source| MotionError::Read { file: file.clone(), source };
+    let mut opened = File::open(path).map_err(cannot_read)?;
+    let mut start = Vec::new();
+    opened.by_ref().take(8).read_to_end(&mut start).map_err(cannot_read)?;
+    if usd::is_crate(&start) {
+        let length = opened.metadata().map_err(cannot_read)?.len();
+        return usd::crate_content(&file, opened, length).map(Some);
+    }
+    let bytes = read_file(path, FILE_LIMIT)?;
     if fbx::is_fbx(&bytes) {
         fbx::content(&file, &bytes).map(Some)
     } else if usd::is_usd(&bytes) {

@@ -42,8 +42,25 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
         fs::remove_file(&manifest_path)
             .map_err(|error| RecordError::io(&manifest_path, "remove the old manifest", error))?;
     }
-    for (folder, frame) in found.values() {
-        copy(folder, frame, out)?;
+    let write = |manifest: &Manifest| {
+        let write = || {
+            let mut file = PartialFile::create(&manifest_path, &open_file)?;
+            serde_json::to_writer_pretty(&mut file, manifest)?;
+            file.write_all(b"\n")?;
+            file.commit(true)
+        };
+        write().map_err(|error| RecordError::io(&manifest_path, "write the manifest", error))
+    };
+    let copied = found.values().try_for_each(|(folder, frame)| copy(folder, frame, out));
+    if let Err(error) = copied {
+        if old_sound.is_some() {
+            // A later recording must know that the sound is not the user's. The first error is returned.
+            let first_frame = frames.start;
+            let listed =
+                Manifest { complete: false, first_frame, frames: Vec::new(), sound: old_sound, ..head };
+            let _ = write(&listed);
+        }
+        return Err(error);
     }
     let manifest = Manifest {
         complete: true,
@@ -53,13 +70,7 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
         sound: None,
         ..head
     };
-    let write = || {
-        let mut file = PartialFile::create(&manifest_path, &open_file)?;
-        serde_json::to_writer_pretty(&mut file, &manifest)?;
-        file.write_all(b"\n")?;
-        file.commit(true)
-    };
-    write().map_err(|error| RecordError::io(&manifest_path, "write the manifest", error))?;
+    write(&manifest)?;
     for frame in old.iter().filter(|old| is_plain(&old.file) && !frames.contains(&old.number)) {
         // Frames of the sequence that was here before. Errors do no harm, because the new manifest does not list them.
         let _ = fs::remove_file(out.join(&frame.file));

@@ -241,12 +241,16 @@ impl PictureSink {
 
     /// Gives the output a sound, which ends with its last frame: Opus in a film, the file [`crate::SOUND_NAME`] in the folder of a sequence. A
     /// preview has none. Call it before the first frame.
-    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) {
+    ///
+    /// # Errors
+    /// As [`SequenceWriter::set_sound`].
+    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) -> Result<(), RecordError> {
         match self {
             Self::Film(writer) => writer.set_sound(sound),
-            Self::Sequence(writer) => writer.set_sound(sound),
+            Self::Sequence(writer) => return writer.set_sound(sound),
             Self::Preview(_) => {}
         }
+        Ok(())
     }
 
     /// Whether the next frame already exists and is complete; see [`SequenceWriter::next_is_kept`].

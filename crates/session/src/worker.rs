@@ -271,6 +271,11 @@ impl Worker {
         self.loader.progress()
     }
 
+    /// Whether a load is running or waiting, also one that has no progress yet.
+    pub fn is_loading(&self) -> bool {
+        self.loader.is_busy()
+    }
+
     /// The newest frame; `None` before the first scene is loaded.
     pub fn frame(&self) -> Option<Arc<FrameSnapshot>> {
         self.frames.latest()

@@ -14,7 +14,7 @@ use crate::crate_tokens::Tokens;
 use crate::crate_value::CrateValues;
 use crate::transform::DEEPEST;
 use crate::value::Value;
-use crate::{Layer, UsdError};
+use crate::{Around, Layer, UsdError};
 
 /// The first bytes of a crate.
 pub(crate) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
@@ -334,6 +334,13 @@ impl Layer for CrateLayer<'_> {
         match self.field_of_property(prim, name, "timeSamples") {
             Some(samples) => Ok(self.samples.times(&mut self.values, samples)?.to_vec()),
             None => Ok(Vec::new()),
+        }
+    }
+
+    fn around(&mut self, prim: usize, name: &str, time: f64) -> Result<Around, UsdError> {
+        match self.field_of_property(prim, name, "timeSamples") {
+            Some(samples) => Ok(Around::of(&self.samples.times(&mut self.values, samples)?, time, |at| *at)),
+            None => Ok(Around { before: 0, next: None }),
         }
     }
 

@@ -35,7 +35,7 @@ pub trait Layer {
     /// See [`Layer::prims`].
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, UsdError> {
         let around = match self.time() {
-            Some(time) => Around::of(&self.sample_times(prim, name)?, time),
+            Some(time) => self.around(prim, name, time)?,
             None => Around { before: 0, next: None },
         };
         let Some(value) = self.sample(prim, name, around.before, most)? else {
@@ -67,6 +67,12 @@ pub trait Layer {
     /// # Errors
     /// See [`Layer::prims`].
     fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError>;
+
+    /// The samples of an attribute around a time code. Without a copy of all times: players ask for every attribute of every frame.
+    ///
+    /// # Errors
+    /// See [`Layer::prims`].
+    fn around(&mut self, prim: usize, name: &str, time: f64) -> Result<Around, UsdError>;
 
     /// Value of the sample of a number, as [`Layer::sample_times`] counts them.
     ///
@@ -109,18 +115,20 @@ pub trait Layer {
 const SAME_CODE: f64 = 1e-6;
 
 /// A time among the samples of an attribute.
-#[derive(Debug, PartialEq)]
-struct Around {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
     /// The sample at it or before it; the first one for an earlier time.
-    before: usize,
+    pub before: usize,
     /// The part of the way to the next sample, above 0 and below 1, if there is a way to go.
-    next: Option<f64>,
+    pub next: Option<f64>,
 }
 
 impl Around {
-    fn of(times: &[f64], time: f64) -> Self {
-        let before = times.partition_point(|at| *at <= time + SAME_CODE).saturating_sub(1);
-        let next = times.get(before).zip(times.get(before + 1)).and_then(|(&from, &to)| {
+    /// The place of a time among samples, whose times `time_of` gives, ascending.
+    pub(crate) fn of<T>(samples: &[T], time: f64, time_of: impl Fn(&T) -> f64) -> Self {
+        let before = samples.partition_point(|sample| time_of(sample) <= time + SAME_CODE).saturating_sub(1);
+        let next = samples.get(before).zip(samples.get(before + 1)).and_then(|(from, to)| {
+            let (from, to) = (time_of(from), time_of(to));
             let t = (time - from) / (to - from);
             (time - from > SAME_CODE && t < 1.0).then_some(t)
         });
@@ -145,10 +153,10 @@ mod tests {
             (3.75, 1, Some(0.75)),
             (9.0, 2, None),
         ] {
-            assert_eq!(Around::of(&times, time), Around { before, next }, "{time}");
+            assert_eq!(Around::of(&times, time, |at| *at), Around { before, next }, "{time}");
         }
-        assert_eq!(Around::of(&[], 1.0), Around { before: 0, next: None });
-        assert_eq!(Around::of(&times, f64::NAN), Around { before: 0, next: None });
+        assert_eq!(Around::of(&[0.0; 0], 1.0, |at| *at), Around { before: 0, next: None });
+        assert_eq!(Around::of(&times, f64::NAN, |at| *at), Around { before: 0, next: None });
     }
 
     /// Attributes of several types with two samples each, of which one is asked half-way.
@@ -179,7 +187,7 @@ def Xform "a"
         layer.attribute(prim, name, 1 << 10).expect(name).expect(name)
     }
 
-    /// The largest difference of the numbers of two values of the same type.
+    /// The largest difference of the numbers of two values of the same type, each of which must be a number.
     fn off(a: Value, b: Value) -> f32 {
         let numbers = |value: Value| match value {
             Value::Quaternions(turns) => turns.concat(),
@@ -188,6 +196,7 @@ def Xform "a"
         };
         let (a, b) = (numbers(a), numbers(b));
         assert!(a.len() == b.len() && !a.is_empty());
+        assert!(a.iter().chain(&b).all(|number| number.is_finite()), "{a:?} {b:?}");
         a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
     }
 

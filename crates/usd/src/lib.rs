@@ -16,7 +16,7 @@ mod transform;
 mod value;
 
 pub use error::UsdError;
-pub use layer::Layer;
+pub use layer::{Around, Layer};
 pub use source::Source;
 pub use transform::{StageSpace, own_transform, stage_space, to_stage, transform_times};
 pub use value::Value;

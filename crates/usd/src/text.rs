@@ -10,7 +10,7 @@ use openusd::usda::token::Token;
 
 use crate::transform::DEEPEST;
 use crate::value::{Value, half};
-use crate::{Layer, UsdError};
+use crate::{Around, Layer, UsdError};
 
 /// The longest text; parsing needs several times as much memory.
 const LONGEST: usize = 512 << 20;
@@ -165,6 +165,10 @@ impl Layer for TextLayer {
 
     fn sample_times(&mut self, prim: usize, name: &str) -> Result<Vec<f64>, UsdError> {
         Ok(self.samples(prim, name).iter().map(|(time, _)| *time).collect())
+    }
+
+    fn around(&mut self, prim: usize, name: &str, time: f64) -> Result<Around, UsdError> {
+        Ok(Around::of(self.samples(prim, name), time, |(at, _)| *at))
     }
 
     fn sample(

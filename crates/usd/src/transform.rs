@@ -19,6 +19,8 @@ pub struct StageSpace {
     pub metres: f64,
     /// Whether the file states its unit. A stage without one is in centimetres.
     pub is_stated: bool,
+    /// Whether the file states its up axis. In a stage without one Y points up.
+    pub up_is_stated: bool,
 }
 
 /// Unit and axis of a stage.
@@ -32,9 +34,12 @@ pub fn stage_space(layer: &mut dyn Layer) -> Result<StageSpace, UsdError> {
     if !(1e-9..=1e9).contains(&metres) {
         return Err(layer.malformed(format!("metersPerUnit {metres}"), "1e-9 to 1e9"));
     }
-    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
+    let axis = layer.metadata("upAxis")?;
+    let up_is_stated = axis.is_some();
+    let z_up = axis.is_some_and(|axis| axis.token() == Some("Z"));
     let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
-    Ok(StageSpace { metres_from_stage: turn * DMat4::from_scale(DVec3::splat(metres)), metres, is_stated })
+    let metres_from_stage = turn * DMat4::from_scale(DVec3::splat(metres));
+    Ok(StageSpace { metres_from_stage, metres, is_stated, up_is_stated })
 }
 
 /// The transform from a prim's own space to the stage: its operations and those of all its ancestors, at their first time samples.

@@ -81,14 +81,64 @@ fn curves_play_with_their_unit_in_the_panel_and_refused_ones_are_still_with_the_
     assert!(harness.query_by_label_contains("grows.usda").is_some());
 }
 
-/// A pipe is a file whose reading takes for ever.
+/// Makes a pipe: a file whose reading takes for ever.
+#[cfg(unix)]
+fn make_pipe(path: &Path) {
+    let made = std::process::Command::new("mkfifo").arg(path).status().expect("mkfifo");
+    assert!(made.success());
+}
+
+/// Lets the thread end that reads a pipe.
+#[cfg(unix)]
+fn end_pipe(path: &Path) {
+    drop(std::fs::OpenOptions::new().read(true).write(true).open(path).expect("the pipe"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file() {
+    use crate::window::command::Command::NewProject;
+    let folder = tempfile::tempdir().expect("a folder");
+    let (slow, moves) = (folder.path().join("slow.usda"), folder.path().join("moves.usda"));
+    make_pipe(&slow);
+    write_curves(&moves, false);
+    let mut harness = window();
+    let before = project(&harness);
+    let ctx = harness.ctx.clone();
+    let open_both = |window: &mut Window| {
+        window.open_any(&slow);
+        window.open_any(&moves);
+    };
+    open_both(harness.state_mut().state.as_mut().expect("a window"));
+    go(&mut harness);
+    assert!(!is_idle(of(&harness)) && project(&harness) == before, "the second waits for the first");
+    harness.state_mut().state.as_mut().expect("a window").run(NewProject, &ctx);
+    assert!(is_idle(of(&harness)));
+    go(&mut harness);
+    let new = project(&harness);
+    assert!(new != before && new.take.file.is_none());
+
+    // The control: without a new project, the second file is opened when the first is cancelled.
+    open_both(harness.state_mut().state.as_mut().expect("a window"));
+    wait(&mut harness, "the progress", |window| {
+        let is_shown =
+            window.openings.running().is_some_and(|(name, secs)| name == "slow.usda" && secs > 0.6);
+        // The scene of the new project has a progress with a button of its own.
+        is_shown && window.session.worker().load_progress().is_none()
+    });
+    harness.get_by_role_and_label(Role::Button, "Cancel").click();
+    wait(&mut harness, "the curves", |window| window.history.project().take.file.is_some());
+    assert_eq!(project(&harness).take.file.as_ref().map(|file| file.path.clone()), Some(moves));
+    assert!(is_idle(of(&harness)));
+    end_pipe(&slow);
+}
+
 #[cfg(unix)]
 #[test]
 fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("slow.usda");
-    let made = std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo");
-    assert!(made.success());
+    make_pipe(&path);
     let mut harness = window();
     let before = project(&harness);
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
@@ -106,8 +156,7 @@ fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     go(&mut harness);
     assert!(is_idle(of(&harness)) && harness.query_by_label_contains("Opening").is_none());
     assert_eq!(project(&harness), before);
-    // Lets the thread end.
-    drop(std::fs::OpenOptions::new().read(true).write(true).open(&path).expect("the pipe"));
+    end_pipe(&path);
     go(&mut harness);
     assert_eq!(project(&harness), before);
 }
@@ -131,4 +180,16 @@ fn the_camera_follows_the_size_of_an_opened_body_in_the_same_undo_step() {
     assert_eq!(of(&harness).history.undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
+
+    // A camera that was moved before the body was loaded stays.
+    let is_large =
+        |window: &Window| window.session.scene.as_ref().is_some_and(|scene| scene.hair_scale > 2.0);
+    wait(&mut harness, "the dancer", |window| !is_large(window));
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.open_body(&path);
+    window.change("camera", |project| project.camera.distance *= 0.5);
+    let moved = project(&harness).camera;
+    wait(&mut harness, "the body", is_large);
+    go(&mut harness);
+    assert_eq!(project(&harness).camera, moved);
 }

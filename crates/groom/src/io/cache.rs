@@ -8,7 +8,7 @@ use lovelock_alembic::OGAWA_MAGIC;
 use super::clean::clean_keeping;
 use super::file::{Bounds, HairFile};
 use super::format::HairFormat;
-use super::frames::{CurveFrames, OpenedFrames};
+use super::frames::{CurveFrames, OpenedFrames, Stated};
 use super::source::Source;
 use super::units::{Facing, Unit, UpAxis, rotation_to_head_axes};
 use super::{HairFileError, UnitGuess, alembic, guess_units, usd};
@@ -49,7 +49,7 @@ impl CurveMotion {
 
 /// The curves of an Alembic archive or of a USD stage over time, in metres with Y up.
 ///
-/// The file stays open, and two of its times are in memory. Between them points move in straight lines.
+/// The file stays open, and two of its times are in memory. Between them points move in straight lines, unless a transform turns them.
 pub struct CurveCache {
     name: String,
     frames: Box<dyn CurveFrames>,
@@ -105,7 +105,7 @@ impl CurveCache {
         let guess = guess_units(&hair);
         let from_file = hair.is_in_metres;
         let metres_per_unit = unit.metres().unwrap_or(guess.metres_per_unit);
-        let mut notes = notes_on_units(unit, up, from_file, &guess);
+        let mut notes = notes_on_units(unit, up, from_file.then(|| frames.stated()), &guess);
         notes.extend(hair.notes.iter().cloned());
         // Without a statement Y points up, as is usual in both formats: hair that flies says nothing about it.
         let up = if up == UpAxis::Z { UpAxis::Z } else { UpAxis::Y };
@@ -157,6 +157,13 @@ impl CurveCache {
     /// For a file that cannot be read or contradicts itself at that time.
     pub fn points_at(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
         let times = self.frames.times();
+        if self.frames.bends() {
+            let at = secs.clamp(times[0], times[times.len() - 1]);
+            self.read_into(0, at)?;
+            out.clear();
+            out.extend_from_slice(&self.held[0].1);
+            return Ok(());
+        }
         let after = times.partition_point(|&time| time <= secs);
         let (from, to) = (after.saturating_sub(1), after.min(times.len() - 1));
         let (start, end) = (times[from], times[to]);
@@ -176,6 +183,13 @@ impl CurveCache {
         }
         let place = self.held.iter().position(|(held, _)| *held != other).unwrap_or(0);
         let secs = self.frames.times()[index];
+        self.read_into(place, secs)?;
+        self.held[place].0 = index;
+        Ok(place)
+    }
+
+    /// Reads the points at a time into a place in memory, which is then that of no time of the file.
+    fn read_into(&mut self, place: usize, secs: f64) -> Result<(), HairFileError> {
         self.held[place].0 = NONE;
         self.frames.points(secs, &mut self.read)?;
         let (metres, up) = (self.metres_per_unit, self.up);
@@ -194,8 +208,7 @@ impl CurveCache {
                 wanted: "finite coordinates".to_owned(),
             });
         }
-        self.held[place].0 = index;
-        Ok(place)
+        Ok(())
     }
 
     fn in_metres(&self, point: Vec3) -> Vec3 {
@@ -203,19 +216,26 @@ impl CurveCache {
     }
 }
 
-/// Where the unit and the up axis of a file come from.
-fn notes_on_units(unit: Unit, up: UpAxis, from_file: bool, guess: &UnitGuess) -> Vec<String> {
+/// Where the unit and the up axis of a file come from. `of_file` is what a file states that is read in metres.
+fn notes_on_units(unit: Unit, up: UpAxis, of_file: Option<Stated>, guess: &UnitGuess) -> Vec<String> {
     let metres = |metres: f32| match Unit::NAMED.into_iter().find(|unit| unit.metres() == Some(metres)) {
         Some(unit) => format!("one {}", unit.word()),
         None => format!("{metres} m"),
     };
     let unit = match unit.metres() {
         Some(chosen) => format!("Unit: {}, as set.", metres(chosen)),
-        None if from_file => "Unit: read from the file; its points are in metres.".to_owned(),
+        None if of_file.is_some_and(|stated| stated.unit) => {
+            "Unit: read from the file; its points are in metres.".to_owned()
+        }
+        None if of_file.is_some() => {
+            "Unit: one centimetre, as USD says, because the file states none.".to_owned()
+        }
         None => format!("Unit: {}, guessed. {}", metres(guess.metres_per_unit), guess.reason),
     };
     let up = match up {
-        UpAxis::Auto if from_file => "Up axis: read from the file; its points have Y up.",
+        UpAxis::Auto if of_file.is_some_and(|stated| stated.up) => {
+            "Up axis: read from the file; its points have Y up."
+        }
         UpAxis::Auto => "Up axis: Y, which is usual; the file states none.",
         UpAxis::Y => "Up axis: Y, as set.",
         UpAxis::Z => "Up axis: Z, as set.",

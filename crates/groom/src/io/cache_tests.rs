@@ -151,3 +151,74 @@ fn an_archive_that_states_its_unit_is_not_guessed() {
         assert_eq!(set.notes()[..2], ["Unit: one centimetre, as set.", "Up axis: Z, as set."]);
     }
 }
+
+/// A stage of one curve with lines of metadata and of the prim.
+fn write_stage(path: &Path, metadata: &str, lines: &str) {
+    let text = format!(
+        "#usda 1.0\n(\n{metadata})\ndef BasisCurves \"a\"\n{{\n uniform token type = \"linear\"\n \
+         int[] curveVertexCounts = [2]\n{lines}}}\n"
+    );
+    std::fs::write(path, text).expect("a file");
+}
+
+const STILL: &str = " point3f[] points = [(1, 0, 0), (2, 0, 0)]\n";
+
+#[test]
+fn curves_under_a_turning_transform_move_along_circles() {
+    let (_folder, at) = folder();
+    let turn = " float xformOp:rotateZ.timeSamples = { 0: 0, 10: 90 }\n \
+                uniform token[] xformOpOrder = [\"xformOp:rotateZ\"]\n";
+    let metadata = " metersPerUnit = 1\n upAxis = \"Y\"\n timeCodesPerSecond = 10\n";
+    write_stage(&at("turns.usda"), metadata, &format!("{STILL}{turn}"));
+    let mut cache = CurveCache::open(&at("turns.usda"), Unit::Auto, UpAxis::Auto).expect("curves");
+    assert_eq!(cache.times(), [0.0, 1.0]);
+    let mut points = Vec::new();
+    for (secs, degrees) in [(-1.0, 0.0_f32), (0.0, 0.0), (0.5, 45.0), (0.25, 22.5), (1.0, 90.0), (2.0, 90.0)]
+    {
+        cache.points_at(secs, &mut points).expect("a time");
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        for (radius, point) in [1.0_f32, 2.0].into_iter().zip(&points) {
+            let wanted = radius * Vec3::new(cos, sin, 0.0);
+            assert!(point.distance(wanted) < 1e-5, "{secs} s: {point}, not {wanted}");
+        }
+    }
+    // The control: half-way on the chord the outer point would be 0.59 m nearer to the axis.
+    let chord = 0.5 * (2.0 * Vec3::X + 2.0 * Vec3::Y);
+    cache.points_at(0.5, &mut points).expect("a time");
+    assert!(points[1].distance(chord) > 0.5, "{points:?}");
+}
+
+#[test]
+fn a_unit_that_a_stage_does_not_state_is_not_said_to_be_read_from_it() {
+    let (_folder, at) = folder();
+    let moves = " point3f[] points.timeSamples = { 0: [(1, 0, 0), (2, 0, 0)], 1: [(1, 1, 0), (2, 1, 0)] }\n";
+    for (name, metadata, of_unit, of_up) in [
+        ("both.usda", " metersPerUnit = 0.01\n upAxis = \"Y\"\n", true, true),
+        ("up.usda", " upAxis = \"Y\"\n", false, true),
+        ("unit.usda", " metersPerUnit = 0.01\n", true, false),
+    ] {
+        write_stage(&at(name), metadata, moves);
+        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto).expect("curves");
+        let [unit, up] = [&cache.notes()[0], &cache.notes()[1]];
+        for (note, stated) in [(unit, of_unit), (up, of_up)] {
+            assert_eq!(note.contains("read from the file"), stated, "{name}: {note}");
+            assert_eq!(note.contains("states none"), !stated, "{name}: {note}");
+        }
+        assert!(of_unit || unit.contains("centimetre"), "{unit}");
+        assert!((cache.hair().points[1].x - 0.02).abs() < 1e-6, "the same unit in each of them");
+    }
+}
+
+#[test]
+fn curves_that_stay_need_no_rate() {
+    let (_folder, at) = folder();
+    let metadata = " metersPerUnit = 1\n timeCodesPerSecond = 0\n";
+    write_stage(&at("still.usda"), metadata, STILL);
+    let motion = CurveMotion::of(&at("still.usda"));
+    assert!(matches!(motion, CurveMotion::Still), "{motion:?}");
+    // The control: with two times the rate matters.
+    let moves = " point3f[] points.timeSamples = { 0: [(1, 0, 0), (2, 0, 0)], 1: [(1, 1, 0), (2, 1, 0)] }\n";
+    write_stage(&at("moves.usda"), metadata, moves);
+    let said = CurveMotion::of(&at("moves.usda")).problem().expect("a reason");
+    assert!(said.contains("timeCodesPerSecond 0"), "{said}");
+}

@@ -78,7 +78,7 @@ pub fn record(
     let settings = job.sink_settings(&frames, &dance, &drawer)?;
     let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
     if let Some(sound) = sound {
-        sink.set_sound(Box::new(sound));
+        sink.set_sound(Box::new(sound)).map_err(refused)?;
     }
     let mut begun = false;
     let mut drawn = Drawn::default();

@@ -9,6 +9,7 @@ mod package;
 mod skeleton;
 
 use std::collections::BTreeMap;
+use std::fs::File;
 
 use glam::{Affine3A, DMat4, Mat3A, Mat4};
 use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value, stage_space};
@@ -23,11 +24,26 @@ pub(crate) fn is_usd(bytes: &[u8]) -> bool {
     bytes.starts_with(CRATE_MAGIC) || bytes.starts_with(TEXT_MAGIC) || package::is_package(bytes)
 }
 
+/// Whether a file is a binary crate of USD, by its first bytes.
+pub(crate) fn is_crate(bytes: &[u8]) -> bool {
+    bytes.starts_with(CRATE_MAGIC)
+}
+
+/// What a crate of a length in bytes contains. Only the tables of its prims are read, which are small beside their points.
+pub(crate) fn crate_content(file: &str, data: File, length: u64) -> Result<FigureContent, MotionError> {
+    let mut layer = lovelock_usd::open(file, Source::File(data, length), true)?;
+    content_of(&mut *layer, false)
+}
+
 /// What a stage or package contains.
 pub(crate) fn content(file: &str, bytes: &[u8]) -> Result<FigureContent, MotionError> {
     let is_package = package::is_package(bytes);
     let bytes = if is_package { package::first_layer(file, bytes)? } else { bytes };
-    let mut layer = lovelock_usd::open(file, Source::Memory(bytes), bytes.starts_with(CRATE_MAGIC))?;
+    let mut layer = lovelock_usd::open(file, Source::Memory(bytes), is_crate(bytes))?;
+    content_of(&mut *layer, is_package)
+}
+
+fn content_of(layer: &mut dyn Layer, is_package: bool) -> Result<FigureContent, MotionError> {
     let mut holds = |types: &[&str]| layer.prims(types).map(|prims| !prims.is_empty());
     Ok(if !is_package && holds(&["BasisCurves"])? {
         FigureContent::Curves
@@ -62,7 +78,7 @@ pub(crate) fn read(
 ) -> Result<Character, MotionError> {
     let is_package = package::is_package(bytes);
     let bytes = if is_package { package::first_layer(file, bytes)? } else { bytes };
-    let is_crate = bytes.starts_with(CRATE_MAGIC);
+    let is_crate = is_crate(bytes);
     let mut stage = lovelock_usd::open(file, Source::Memory(bytes), is_crate)?;
     let layer = &mut *stage;
     let mut notes = Vec::new();

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use glam::Vec3;
-use lovelock_motion::{MotionSettings, load_character_bytes, load_motion_bytes};
+use lovelock_motion::{
+    FigureContent, MotionSettings, figure_content, load_character_bytes, load_motion_bytes,
+};
 use lovelock_testkit::fuzz::damaged;
 
 use crate::common::{assert_near, points_at, reads_character};
@@ -209,6 +211,29 @@ fn files_cut_anywhere_are_survived() {
             survives(&bytes[..end]);
         }
     }
+}
+
+/// Files of more than 2 GiB are not read into memory, so a longer one shows that the content of a crate is found without its points.
+#[test]
+fn the_content_of_a_crate_is_found_without_reading_it_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("large.usd");
+    let large = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).expect("a file");
+        // The rest is a hole, which takes no room on the disk.
+        std::fs::OpenOptions::new()
+            .write(true)
+            .open(&path)
+            .and_then(|file| file.set_len(3 << 30))
+            .expect("a longer file");
+        figure_content(&path)
+    };
+    assert_eq!(large(&crate_of(STAGE)).expect("a crate"), Some(FigureContent::Body));
+    let curves = "#usda 1.0\ndef BasisCurves \"a\"\n{\n int[] curveVertexCounts = [2]\n}\n";
+    assert_eq!(large(&crate_of(curves)).expect("a crate"), Some(FigureContent::Curves));
+    // The control: text is read whole.
+    let error = large(STAGE.as_bytes()).expect_err("too long").to_string();
+    assert!(error.contains("bytes are read"), "{error}");
 }
 
 #[test]

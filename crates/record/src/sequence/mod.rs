@@ -40,7 +40,7 @@ const LARGE: u64 = 4_000_000;
 /// Each frame gets its final name when its file is complete, so frames can be used while later ones are rendered. The manifest
 /// is written last. Until then `manifest.partial` lists the frames and keeps a second recording out of the folder. After a
 /// cancel (dropping without [`SequenceWriter::finish`]) or an error, complete frames are kept, and the manifest has
-/// `"complete": false`.
+/// `"complete": false`; without any frame, the manifest of the sequence before is restored.
 pub struct SequenceWriter {
     folder: PathBuf,
     settings: SequenceSettings,
@@ -60,6 +60,8 @@ pub struct SequenceWriter {
     new_sound: Option<ManifestSound>,
     /// The sound of the sequence that was in the folder before.
     old_sound: Option<ManifestSound>,
+    /// The whole manifest of that sequence.
+    old: Option<Manifest>,
     ended: bool,
 }
 
@@ -120,6 +122,7 @@ impl SequenceWriter {
             sound: None,
             new_sound: None,
             old_sound: None,
+            old: None,
             ended: true,
         };
         let journal = writer.begin()?;
@@ -136,6 +139,7 @@ impl SequenceWriter {
         let there = journal.earlier(&folder);
         if let Some(there) = &there {
             self.old_sound.clone_from(&there.sound);
+            self.old = Some(there.clone());
         }
         let head = self.manifest(false, Vec::new());
         if let Some(there) = there {
@@ -235,8 +239,13 @@ impl SequenceWriter {
     }
 
     /// Gives the sequence a sound, which [`SequenceWriter::finish`] writes as [`SOUND_NAME`] into the folder. It ends with the last frame.
-    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) {
+    ///
+    /// # Errors
+    /// [`RecordError::Request`] if there is a file of this name that the recording before did not write.
+    pub fn set_sound(&mut self, sound: Box<dyn SoundSource>) -> Result<(), RecordError> {
+        sound_file::check_place(&self.folder, self.old_sound.as_ref())?;
         self.sound = Some(sound);
+        Ok(())
     }
 
     /// Whether the next frame already exists and is complete, so that it can be skipped with [`SequenceWriter::keep_next`].
@@ -342,9 +351,14 @@ impl SequenceWriter {
         let all = (first..first + self.at).all(|number| frames.contains_key(&number));
         let whole = finished && error.is_none() && !panicked && all;
         let manifest = self.manifest(whole, frames.into_values().collect());
-        // A folder without frames needs no manifest. After an error there may be no room for one; the first error is then
-        // returned.
-        let written = if manifest.frames.is_empty() { Ok(()) } else { self.write_manifest(&manifest) };
+        // After an error there may be no room for a manifest; the first error is then returned.
+        let written = match &self.old {
+            _ if !manifest.frames.is_empty() => self.write_manifest(&manifest),
+            // No frame was replaced, so the folder holds what it held before.
+            Some(old) => self.write_manifest(old),
+            // A folder without frames needs no manifest.
+            None => Ok(()),
+        };
         // If the manifest could not be written, the journal stays.
         if let Some(journal) = journal.filter(|_| written.is_ok()) {
             journal.remove();

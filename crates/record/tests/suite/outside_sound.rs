@@ -34,7 +34,7 @@ impl SoundSource for Clicks {
 fn write(path: &Path) {
     let mut sink =
         PictureSink::for_path(path, SinkSettings { frames: 90, ..SinkSettings::new(64, 64, 30.0) }).unwrap();
-    sink.set_sound(Box::new(Clicks));
+    sink.set_sound(Box::new(Clicks)).unwrap();
     for frame in 0..90 {
         let value = if FRAMES.contains(&frame) { 255 } else { 0 };
         sink.push(&[value; 64 * 64 * 4]).unwrap();

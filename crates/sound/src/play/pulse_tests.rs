@@ -98,7 +98,8 @@ fn a_server_that_closes_is_found_again_when_it_comes_back() {
     let (mixer, heard) = (Arc::new(Mixer::new(Arc::new(Sound::default()))), SharedHeard::default());
     heard.want(true);
     let at = socket.clone();
-    let _output = Output::at(move || Some(at.clone()), Duration::from_millis(100), &mixer, &heard);
+    let patience = Patience { reopened: Duration::from_millis(100), answered: ANSWERED };
+    let _output = Output::at(move || Some(at.clone()), patience, &mixer, &heard);
     // There is none at first.
     wait_until("no server", || heard.failure().is_some_and(|why| why.contains("does not answer")));
     for round in 1..=2 {
@@ -117,9 +118,39 @@ fn a_server_that_closes_is_found_again_when_it_comes_back() {
     std::thread::sleep(Duration::from_millis(150));
     let got = Arc::new(AtomicU64::new(0));
     let server = serve(socket.clone(), 3, Arc::clone(&got));
-    std::thread::sleep(Duration::from_millis(400));
+    std::thread::sleep(Duration::from_secs(1));
     assert!(heard.failure().is_some() && got.load(Ordering::Relaxed) == 0);
     heard.want(true);
     wait_until("a server", || heard.failure().is_none());
     server.join().expect("a server");
+}
+
+#[test]
+fn a_server_that_stops_to_answer_is_lost() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let socket = dir.path().join("server");
+    let (mixer, heard) = (Arc::new(Mixer::new(Arc::new(Sound::default()))), SharedHeard::default());
+    heard.want(true);
+    let listener = UnixListener::bind(&socket).expect("a socket");
+    let (until_dropped, stopped) = sync_channel::<()>(0);
+    let got = Arc::new(AtomicU64::new(0));
+    let server = std::thread::Builder::new().name("a stopped server".to_owned()).spawn(move || {
+        let (mut stream, _) = listener.accept().expect("a client");
+        // It answers once and then keeps the connection without a word.
+        let _ = converse(&stream, 1, &got);
+        let _ = stopped.recv();
+        // The client has shut the connection down, so that its thread does not wait for ever.
+        stream.set_read_timeout(Some(Duration::from_secs(5))).expect("a time");
+        let ended = std::io::copy(&mut stream, &mut std::io::sink());
+        ended.err().is_none_or(|error| error.kind() == std::io::ErrorKind::ConnectionReset)
+    });
+    let server = server.expect("a thread");
+    let patience = Patience { reopened: Duration::from_millis(100), answered: Duration::from_millis(400) };
+    let output = Output::at(move || Some(socket.clone()), patience, &mixer, &heard);
+    wait_until("a server", || heard.frame(0.0).is_some());
+    assert_eq!(heard.failure(), None, "control: while it answers");
+    wait_until("its loss", || heard.failure().is_some_and(|why| why.contains("no answer within 1 s")));
+    assert!(heard.frame(0.0).is_none());
+    drop((output, until_dropped));
+    assert!(server.join().expect("a server"), "the connection is shut down");
 }

@@ -4,6 +4,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use cpal::ErrorKind;
 use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
 
 use super::SharedHeard;
@@ -83,6 +84,10 @@ fn connect(
         }
     };
     let failed = move |error: cpal::Error| {
+        // A gap, a thread of ordinary priority, or another way to the same device: the stream goes on.
+        if matches!(error.kind(), ErrorKind::Xrun | ErrorKind::RealtimeDenied | ErrorKind::DeviceChanged) {
+            return;
+        }
         *lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
     };
     let stream = device.build_output_stream(config, fill, failed, None).map_err(|error| error.to_string())?;

@@ -31,6 +31,18 @@ pub struct Counts {
     pub secs: f64,
 }
 
+impl Counts {
+    /// Checks that the reader accepted more than the share `least` of the inputs, and refused most: a reader that refuses everything
+    /// keeps all its promises.
+    ///
+    /// # Panics
+    /// If it did not.
+    pub fn assert_mixed(&self, least: f64) {
+        let share = self.accepted as f64 / self.inputs as f64;
+        assert!(share > least && share < 0.5, "accepted {share}, not {least} to 0.5 of them: {self:?}");
+    }
+}
+
 /// A number from the environment.
 fn named(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().and_then(|value| value.parse().ok())

@@ -87,18 +87,27 @@ fn ten_times_the_prims_take_about_ten_times_as_long() {
 }
 
 #[test]
-fn a_time_gives_the_sample_before_it() {
+fn points_between_two_samples_are_interpolated_and_integers_are_held() {
+    let own = "float primvars:own2 = 2\n";
     let text = stage(3);
+    assert!(text.contains(own));
+    let text = text.replace(own, &format!("{own}int count.timeSamples = {{ 0: 0, 3: 1 }}\n"));
+    let times = [-1.0, 0.0, 2.9, 3.0, 9.0, -1.0, 0.0, 2.9, 3.0, 9.0];
     for (bytes, is_crate) in [(text.clone().into_bytes(), false), (crate_of(&text), true)] {
         let mut layer = open("a.usd", Source::Memory(&bytes), is_crate).expect("a stage");
         let prim = layer.prim_at("/w/c2").expect("a prim");
-        let mut first = |time: f64| {
+        // Twice each: the second time from memory.
+        let found = times.map(|time| {
             layer.set_time(time);
             let points = layer.attribute(prim, "points", 4).expect("points").expect("points").into_vectors();
-            points[0].x
-        };
-        // Twice each: the second time from memory.
-        let found = [-1.0, 0.0, 2.9, 3.0, 9.0, -1.0, 0.0, 2.9, 3.0, 9.0].map(&mut first);
-        assert_eq!(found, [0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+            let count = layer.attribute(prim, "count", 1).expect("a count").expect("a count");
+            (f64::from(points[0].x), count)
+        });
+        for (time, (x, count)) in times.into_iter().zip(found) {
+            let (part, held) = ((time / 3.0).clamp(0.0, 1.0), if time < 3.0 { 0.0 } else { 1.0 });
+            assert!((x - part).abs() < 1e-6, "{time}: {x}, not {part}");
+            // The control: integers have no values between their samples.
+            assert_eq!(count, Value::Numbers(vec![held]), "{time}");
+        }
     }
 }

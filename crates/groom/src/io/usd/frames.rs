@@ -7,7 +7,7 @@ use super::stage::Stage;
 use super::{read_layer, shape};
 use crate::io::HairFileError;
 use crate::io::basis::{Shape, Spread};
-use crate::io::frames::{CurveFrames, OpenedFrames, merged};
+use crate::io::frames::{CurveFrames, OpenedFrames, Stated, merged};
 
 /// The most times of a file.
 const MOST_TIMES: usize = 1 << 20;
@@ -17,6 +17,9 @@ struct Frames {
     /// Each prim with the number of control points of its curves.
     prims: Vec<(usize, Vec<usize>, Shape)>,
     metres_from_stage: DMat4,
+    stated: Stated,
+    /// Whether a transform of the curves is animated.
+    is_moved: bool,
     codes_per_sec: f64,
     /// The time code of 0 seconds.
     start_code: f64,
@@ -32,20 +35,17 @@ pub(super) fn open(mut layer: Stage<'static>) -> Result<OpenedFrames, HairFileEr
 
 impl Frames {
     fn of(mut layer: Stage<'static>) -> Result<Self, HairFileError> {
-        let metres_from_stage = layer.space()?.metres_from_stage;
-        let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
-        let codes_per_sec = rate.unwrap_or(24.0);
-        if !(1e-3..=1e6).contains(&codes_per_sec) {
-            return Err(layer.malformed(format!("timeCodesPerSecond {codes_per_sec}"), "0.001 to 1000000"));
-        }
-        let (mut prims, mut times) = (Vec::new(), Vec::new());
+        let space = layer.space()?;
+        let (mut prims, mut times, mut is_moved) = (Vec::new(), Vec::new(), false);
         for prim in layer.curves()? {
             if layer.changes(prim, "curveVertexCounts")? {
                 let found = format!("{}: curves whose number of points changes", layer.path(prim));
                 return Err(layer.malformed(found, "the same ones at all times"));
             }
             times.extend(layer.times(prim, "points")?);
-            times.extend(layer.transform_times(prim)?);
+            let of_transform = layer.transform_times(prim)?;
+            is_moved |= of_transform.len() > 1;
+            times.extend(of_transform);
             times = merged(times);
             if times.len() > MOST_TIMES {
                 return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
@@ -57,18 +57,46 @@ impl Frames {
             let shape = shape(&mut layer, prim)?;
             prims.push((prim, counts, shape));
         }
+        let rate = layer.metadata("timeCodesPerSecond")?.and_then(|value| value.numbers().first().copied());
+        let mut codes_per_sec = rate.unwrap_or(24.0);
+        if !(1e-3..=1e6).contains(&codes_per_sec) {
+            if times.len() > 1 {
+                return Err(
+                    layer.malformed(format!("timeCodesPerSecond {codes_per_sec}"), "0.001 to 1000000")
+                );
+            }
+            // Curves that stay need no rate.
+            codes_per_sec = 24.0;
+        }
         // The clips of a stage begin at its start. A file of Lovelock counts on the dance.
         let own = layer.metadata("defaultPrim")?.is_some_and(|prim| prim.token() == Some("Lovelock"));
         let start = layer.metadata("startTimeCode")?.and_then(|value| value.numbers().first().copied());
         let start_code = start.filter(|start| !own && start.is_finite()).unwrap_or(0.0);
         let times = merged(times.into_iter().map(|code| (code - start_code) / codes_per_sec).collect());
-        Ok(Self { layer, prims, metres_from_stage, codes_per_sec, start_code, times })
+        Ok(Self {
+            layer,
+            prims,
+            metres_from_stage: space.metres_from_stage,
+            stated: Stated { unit: space.is_stated, up: space.up_is_stated },
+            is_moved,
+            codes_per_sec,
+            start_code,
+            times,
+        })
     }
 }
 
 impl CurveFrames for Frames {
     fn times(&self) -> &[f64] {
         &self.times
+    }
+
+    fn bends(&self) -> bool {
+        self.is_moved
+    }
+
+    fn stated(&self) -> Stated {
+        self.stated
     }
 
     fn points(&mut self, secs: f64, out: &mut Vec<Vec3>) -> Result<(), HairFileError> {
