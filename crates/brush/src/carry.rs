@@ -16,6 +16,8 @@ const STILL: f32 = 1e-6;
 const AVERAGED: f32 = 0.2;
 /// A link flies if the links around it are turned from their mean by more than the first angle, and wholly from the second on, radians.
 const FLIES: [f32; 2] = [0.35, 0.9];
+/// A link that the brush turns by this angle takes part wholly, radians.
+const TURNED: f32 = 0.02;
 
 /// The links around each that are averaged.
 fn around(i: usize, count: usize) -> std::ops::Range<usize> {
@@ -28,22 +30,26 @@ fn around(i: usize, count: usize) -> std::ops::Range<usize> {
 ///
 /// Where hair is bent evenly, that is the turn by which the changed shape comes back exactly in the same pose. Where hair flies, links beside
 /// each other are turned to very different sides for an instant. There it is the mean of what the links around would do, seen through the
-/// mean of their turns: by their own turns they would fold against each other at rest. Links that the brush did not turn stay.
+/// mean of their turns: by their own turns they would fold against each other at rest. Links that the brush hardly turned stay.
 fn turns_at_rest(rest: &[Vec3], turns: &[Quat], [before, after]: [&[Vec3]; 2]) -> Vec<Quat> {
     let count = rest.len();
     let still = |i: usize| before[i].distance_squared(after[i]) < STILL * STILL;
-    let exact = |i: usize| smallest_turn(rest[i], (turns[i].inverse() * after[i]).normalize_or(rest[i]));
-    let means: Vec<Quat> = (0..count).map(|i| mean_turn(&turns[around(i, count)])).collect();
-    let through_mean = |i: usize| means[i].inverse() * smallest_turn(before[i], after[i]) * means[i];
-    let even: Vec<Quat> = (0..count).map(through_mean).collect();
-    let of = |i: usize| {
+    let exact = |i: usize| {
         if still(i) {
             return Quat::IDENTITY;
         }
+        smallest_turn(rest[i], (turns[i].inverse() * after[i]).normalize_or(rest[i]))
+    };
+    let mean = |turns: &[Quat]| mean_turn(turns.iter().map(|turn| (1.0, *turn)));
+    let means: Vec<Quat> = (0..count).map(|i| mean(&turns[around(i, count)])).collect();
+    let through_mean = |i: usize| means[i].inverse() * smallest_turn(before[i], after[i]) * means[i];
+    let even: Vec<Quat> = (0..count).map(through_mean).collect();
+    let of = |i: usize| {
         let near = around(i, count);
         let most = near.clone().map(|j| turns[j].angle_between(means[i])).fold(0.0, f32::max);
-        let flies = smoothstep(FLIES[0], FLIES[1], most);
-        if flies > 0.0 { exact(i).slerp(mean_turn(&even[near]), flies) } else { exact(i) }
+        let own = smoothstep(0.0, TURNED, before[i].angle_between(after[i]));
+        let flies = own * smoothstep(FLIES[0], FLIES[1], most);
+        if flies > 0.0 { exact(i).slerp(mean(&even[near]), flies) } else { exact(i) }
     };
     (0..count).map(of).collect()
 }
@@ -223,7 +229,7 @@ mod tests {
         let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let turns: Vec<Quat> = (0..30).map(|i| Quat::from_rotation_z(angle * sign(i))).collect();
         let before: Vec<Vec3> = turns.iter().zip(&rest).map(|(turn, rest)| *turn * *rest).collect();
-        let combed = Quat::from_rotation_x(0.5);
+        let combed = Quat::from_axis_angle(Vec3::new(1.0, 1.0, 0.0).normalize_or(Vec3::X), 0.8);
         let after: Vec<Vec3> =
             before.iter().enumerate().map(|(i, way)| if i < 10 { *way } else { combed * *way }).collect();
         let made: Vec<Vec3> = if is_even {
@@ -233,13 +239,13 @@ mod tests {
         } else {
             turns.iter().zip(&after).map(|(turn, way)| turn.inverse() * *way).collect()
         };
-        assert!(made[25].angle_between(rest[25]) > 0.2, "the combed links turn at rest");
+        assert!(made[25].angle_between(rest[25]) > 0.1, "the combed links turn at rest");
         made[12..].windows(2).map(|pair| pair[0].angle_between(pair[1])).fold(0.0, f32::max)
     }
 
     #[test]
     fn links_that_fly_to_opposite_sides_do_not_fold_at_rest() {
-        let [even, exact] = [true, false].map(|is_even| sharpest_bend(1.2, is_even));
+        let [even, exact] = [true, false].map(|is_even| sharpest_bend(1.0, is_even));
         println!("evenly {even} rad, each by its own turn {exact} rad");
         assert!(even < 0.1 && exact > 0.6, "{even} {exact}");
         // Hair that is hardly bent is carried back exactly.

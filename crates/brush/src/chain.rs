@@ -8,8 +8,8 @@ use lovelock_style::hand::{smallest_turn, turned_toward};
 const CLEAR: f32 = 0.003;
 /// Links turn from one to the next by this angle at most, radians, unless they did before.
 const MOST_BEND: f32 = 0.6;
-/// Links to either side of a link whose turns are averaged with its own.
-const EVENED: usize = 2;
+/// Weights of the turns of the links around a link: binomial, so that a change to alternate sides cancels out.
+const EVENED: [f32; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
 /// A chain from the first of `before` along `targets`, with links of the given lengths, outside the body as far as it was before.
 pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: &dyn Obstacle) -> Vec<Vec3> {
@@ -57,11 +57,17 @@ pub(crate) fn evened(before: &[Vec3], after: &[Vec3]) -> Vec<Vec3> {
     let (ways, new) = (directions(before), directions(after));
     let turns: Vec<Quat> = ways.iter().zip(&new).map(|(from, to)| smallest_turn(*from, *to)).collect();
     let count = turns.len();
-    let Some(first) = (0..count).find(|i| after[i + 1] != before[i + 1]) else { return before.to_vec() };
-    // What is above the moved links stays.
+    let reach = EVENED.len() / 2;
+    let Some(moved) = (0..count).find(|i| after[i + 1] != before[i + 1]) else { return before.to_vec() };
+    let first = moved.saturating_sub(reach);
     let of = |i: usize| {
-        let near = i.saturating_sub(EVENED).max(first)..(i + EVENED + 1).min(count);
-        mean_turn(&turns[near]) * ways[i]
+        // The link at the scalp takes no part in what is beyond it.
+        if i == 0 {
+            return turns[0] * ways[0];
+        }
+        let near =
+            (0..EVENED.len()).filter_map(|k| Some((EVENED[k], *turns.get((i + k).checked_sub(reach)?)?)));
+        mean_turn(near) * ways[i]
     };
     let ways: Vec<Vec3> = (first..count).map(of).collect();
     let mut out = before[..first].to_vec();
@@ -69,13 +75,14 @@ pub(crate) fn evened(before: &[Vec3], after: &[Vec3]) -> Vec<Vec3> {
     out
 }
 
-/// The mean of some rotations.
-pub(crate) fn mean_turn(turns: &[Quat]) -> Quat {
-    let first = turns.first().copied().unwrap_or_default();
-    let sum = turns.iter().fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, turn| {
-        sum + if turn.dot(first) < 0.0 { -*turn } else { *turn }
+/// The mean of some rotations with their weights.
+pub(crate) fn mean_turn(turns: impl Iterator<Item = (f32, Quat)>) -> Quat {
+    let mut first = None;
+    let sum = turns.fold(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), |sum, (weight, turn)| {
+        let sign = if turn.dot(*first.get_or_insert(turn)) < 0.0 { -weight } else { weight };
+        sum + turn * sign
     });
-    if sum.length_squared() > 1e-6 { sum.normalize() } else { first }
+    if sum.length_squared() > 1e-6 { sum.normalize() } else { first.unwrap_or_default() }
 }
 
 /// The length of each link.

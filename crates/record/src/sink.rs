@@ -168,6 +168,7 @@ impl SinkReport {
 
 /// The output that receives the frames of a recording. Dropping it without [`PictureSink::finish`] cancels the recording.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one of them at a time")]
 pub enum PictureSink {
     /// A film.
     Film(FilmWriter),
