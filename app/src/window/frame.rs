@@ -483,7 +483,10 @@ fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &s
     let bar = Rect::from_min_size(corner, vec2(width, 20.0));
     ui.put(bar, ProgressBar::new(fraction).text(text).corner_radius(4));
     let button = Rect::from_min_size(bar.right_top() + vec2(6.0, 0.0), vec2(button_width, 20.0));
-    ui.put(button, egui::Button::new("Cancel")).on_hover_text(tip).clicked()
+    let cancel = ui.put(button, egui::Button::new("Cancel"));
+    // Several of them may be shown: a screen reader says which.
+    cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Cancel: {text}")));
+    cancel.on_hover_text(tip).clicked()
 }
 
 /// The name of the part that differs, for the undo history.

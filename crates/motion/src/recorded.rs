@@ -13,6 +13,9 @@ const RATE: f64 = 60.0;
 /// Most rotations of a motion: about a gigabyte.
 const LIMIT: usize = 32 << 20;
 
+/// The longest motion, seconds: a wrong time of a key would otherwise give hours of frames.
+const LONGEST_SECS: f64 = 7200.0;
+
 /// The motion of one clip of a figure. Its zero pose is the figure's rest pose.
 ///
 /// Of several clips, that called `wanted` is taken, otherwise the first.
@@ -48,11 +51,11 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         .collect();
     let duration = playable_secs(clip);
     let frames = ((duration * RATE).round() as usize).saturating_add(1);
-    if frames.saturating_mul(joints.len()) > LIMIT {
+    let longest = (LIMIT as f64 / joints.len() as f64 / RATE).min(LONGEST_SECS);
+    if duration > LONGEST_SECS || frames.saturating_mul(joints.len()) > LIMIT {
         let problem = format!(
-            "lasts {duration:.0} s with {} joints; at most {:.0} s of them are read",
-            joints.len(),
-            LIMIT as f64 / joints.len() as f64 / RATE
+            "lasts {duration:.0} s with {} joints; at most {longest:.0} s of them are read",
+            joints.len()
         );
         return Err(MotionError::malformed(file, format!("clip `{}`", clip.name), problem));
     }
