@@ -149,7 +149,7 @@ fn a_server_that_stops_to_answer_is_lost() {
     let output = Output::at(move || Some(socket.clone()), patience, &mixer, &heard);
     wait_until("a server", || heard.frame(0.0).is_some());
     assert_eq!(heard.failure(), None, "control: while it answers");
-    wait_until("its loss", || heard.failure().is_some_and(|why| why.contains("no answer within 1 s")));
+    wait_until("its loss", || heard.failure().is_some_and(|why| why.contains("no answer within 0.4 s")));
     assert!(heard.frame(0.0).is_none());
     drop((output, until_dropped));
     assert!(server.join().expect("a server"), "the connection is shut down");
