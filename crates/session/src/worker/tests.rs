@@ -366,7 +366,13 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(second.edits != first.edits && second.edits.count() >= first.edits.count());
     // Paused hair that was brushed stays as it was left.
-    let left = worker.frame().expect("a frame");
+    // The frame of its last dab may come after the report.
+    let mut last = worker.frame();
+    let left = wait("a frame that stays", || {
+        std::thread::sleep(Duration::from_millis(50));
+        let before = std::mem::replace(&mut last, worker.frame())?;
+        last.clone().filter(|now| Arc::ptr_eq(now, &before))
+    });
     project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: second.edits.clone() });
     worker.set_project(Arc::new(project), Access::new());
     let now = wait("the layer's hair", || {
