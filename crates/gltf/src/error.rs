@@ -49,6 +49,16 @@ pub enum GltfError {
 }
 
 impl GltfError {
+    /// The file at fault as the user named it.
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Read { file, .. }
+            | Self::Malformed { file, .. }
+            | Self::Extension { file, .. }
+            | Self::Outside { file, .. } => file,
+        }
+    }
+
     pub(crate) fn malformed(
         file: &str,
         place: impl Into<String>,

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use lovelock_gltf::GltfError;
+
 /// Why a character or a motion was refused. Every message contains the file, what was found and what is
 /// valid.
 #[derive(Debug, thiserror::Error)]
@@ -24,24 +26,9 @@ pub enum MotionError {
         /// What was found and what was expected.
         problem: String,
     },
-    /// The file needs a glTF extension that is not supported.
-    #[error("{file}: needs the glTF extension {extension}, which is not supported; {advice}")]
-    Extension {
-        /// The file as the user named it.
-        file: String,
-        /// Name of the extension.
-        extension: String,
-        /// How to fix it.
-        advice: &'static str,
-    },
-    /// The file refers to data outside its own folder.
-    #[error("{file}: refers to `{uri}`; only files in its own folder and its subfolders are read")]
-    Outside {
-        /// The file as the user named it.
-        file: String,
-        /// The reference as written in the file.
-        uri: String,
-    },
+    /// What is wrong with a glTF file as such.
+    #[error(transparent)]
+    Gltf(#[from] GltfError),
     /// The file is well formed but contains nothing usable.
     #[error("{file}: contains {found}; must contain {wanted}")]
     Empty {
@@ -68,11 +55,8 @@ impl MotionError {
     /// The file at fault as the user named it (for a pair, the motion).
     pub fn file(&self) -> &str {
         match self {
-            Self::Read { file, .. }
-            | Self::Malformed { file, .. }
-            | Self::Extension { file, .. }
-            | Self::Outside { file, .. }
-            | Self::Empty { file, .. } => file,
+            Self::Read { file, .. } | Self::Malformed { file, .. } | Self::Empty { file, .. } => file,
+            Self::Gltf(error) => error.file(),
             Self::Retarget { motion, .. } => motion,
         }
     }

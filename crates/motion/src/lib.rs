@@ -52,7 +52,7 @@ pub use load::{
     figure_content, load_character, load_character_bytes, load_character_bytes_with, load_character_watched,
     load_character_with, load_motion, load_motion_bytes, load_motion_watched, load_motion_with,
 };
-pub use lovelock_gltf::gltf_reference;
+pub use lovelock_gltf::{GltfError, gltf_reference};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;

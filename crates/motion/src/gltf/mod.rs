@@ -9,7 +9,7 @@ mod vrm;
 
 use std::path::Path;
 
-use lovelock_gltf::{Asset, GltfError};
+use lovelock_gltf::Asset;
 
 use crate::character::Character;
 use crate::{BodySettings, MotionError};
@@ -30,17 +30,4 @@ pub(crate) fn read(
         None => asset.format.to_owned(),
     };
     Ok(character)
-}
-
-impl From<GltfError> for MotionError {
-    fn from(error: GltfError) -> Self {
-        match error {
-            GltfError::Read { file, source } => Self::Read { file, source },
-            GltfError::Malformed { file, place, found, wanted, .. } => {
-                Self::Malformed { file, place, problem: format!("found {found}, wanted {wanted}") }
-            }
-            GltfError::Extension { file, extension, advice } => Self::Extension { file, extension, advice },
-            GltfError::Outside { file, uri } => Self::Outside { file, uri },
-        }
-    }
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use glam::Vec3;
 use lovelock_motion::{
-    BodySettings, Character, LengthUnit, MotionError, Pose, Skin, UpAxis, joint_paths, load_character,
-    load_character_bytes, load_character_with, pose_at, skin,
+    BodySettings, Character, GltfError, LengthUnit, MotionError, Pose, Skin, UpAxis, joint_paths,
+    load_character, load_character_bytes, load_character_with, pose_at, skin,
 };
 
 /// Expected content of a file: joints, skins, vertices, triangles, clips, morph targets, head, height in
@@ -178,7 +178,8 @@ fn unit_and_axis_can_be_chosen() {
 fn files_outside_the_folder_are_refused() {
     let text = br#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":"../secret.bin"}]}"#;
     let error = load_character_bytes("x.gltf", text, Some(Path::new("."))).unwrap_err();
-    assert!(matches!(&error, MotionError::Outside { uri, .. } if uri == "../secret.bin"), "{error}");
+    let MotionError::Gltf(GltfError::Outside { uri, .. }) = &error else { panic!("{error}") };
+    assert_eq!(uri, "../secret.bin");
 }
 
 #[test]
