@@ -2,6 +2,7 @@
 
 mod cli;
 mod window;
+mod words;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
 //! `lovelock farm` and `lovelock assemble`.
 
+use crate::words::counted;
 use lovelock_jobs::farm::{FarmReport, FarmRequest, assemble, farm};
 use lovelock_project::error::ProjectError;
 
@@ -31,7 +32,9 @@ pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), Projec
         "frames": report.frames,
         "bytes": report.bytes,
     });
-    output.result(&json, || format!("{}: {} frames", report.folder.display(), report.frames))
+    output.result(&json, || {
+        format!("{}: {}", report.folder.display(), counted(report.frames, "frame", "frames"))
+    })
 }
 
 fn summary(report: &FarmReport) -> String {

@@ -1,5 +1,6 @@
 //! `lovelock style`.
 
+use crate::words::counted;
 use lovelock_brush::StrokeFile;
 use lovelock_jobs::strokes::StrokeFilm;
 use lovelock_project::error::ProjectError;
@@ -46,6 +47,6 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
         } else {
             String::new()
         };
-        format!("{}: {} strokes{missed}", task.out.display(), report.strokes)
+        format!("{}: {}{missed}", task.out.display(), counted(report.strokes, "stroke", "strokes"))
     })
 }

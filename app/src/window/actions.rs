@@ -173,6 +173,9 @@ impl Window {
                 self.layout.compare.shown = false;
             }
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
+            Command::Manual => self.manual.toggle(),
+            Command::WhatIsThis => self.what_is_this(ctx),
+            Command::About => self.about_shown = !self.about_shown,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }

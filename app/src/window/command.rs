@@ -97,8 +97,14 @@ pub enum Command {
     CompareTakes,
     /// Hides or shows the panels.
     TogglePanels,
+    /// Opens or closes the manual.
+    Manual,
+    /// Starts or ends the mode in which a click on a control opens what the manual writes about it.
+    WhatIsThis,
     /// Shows the list of keys.
     ShowKeys,
+    /// Shows version, licence and graphics card.
+    About,
     /// Quits the program.
     Quit,
 }
@@ -133,6 +139,19 @@ impl CommandGroup {
             Self::Edit => "Edit",
             Self::Hair => "Hair",
             Self::Help => "Help",
+        }
+    }
+
+    /// The letter that opens its menu with Alt.
+    pub fn letter(self) -> char {
+        match self {
+            Self::Playback => 'P',
+            Self::View => 'V',
+            Self::File => 'F',
+            Self::Edit => 'E',
+            // H is that of Help, as elsewhere.
+            Self::Hair => 'A',
+            Self::Help => 'H',
         }
     }
 }
@@ -250,6 +269,9 @@ mod tests {
             ("Ctrl+S", Command::Save),
             ("Ctrl+K", Command::Palette),
             ("Tab", Command::TogglePanels),
+            ("F9", Command::TogglePanels),
+            ("F1", Command::Manual),
+            ("Shift+F1", Command::WhatIsThis),
             ("?", Command::ShowKeys),
         ] {
             assert!(command.info().shortcuts.contains(&key), "{key}");

@@ -1,8 +1,10 @@
 //! One pass of the window, from top to bottom.
 
+use crate::words::counted;
 use std::sync::Arc;
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
+use lovelock_base::settings::Info;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::PROJECT_EXTENSION;
@@ -10,9 +12,10 @@ use lovelock_project::styles::STYLE_EXTENSION;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
+use super::focus::{Area, Focus};
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::{self, Viewport};
-use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline, title};
+use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
 
 /// Shorter pre-rolls show no progress bar, seconds.
 const SHOW_SETTLING_SECS: f64 = 0.15;
@@ -59,6 +62,8 @@ impl Window {
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
         }
+        self.focus.begin_pass(&ctx);
+        self.menu_keys.begin_pass(&ctx);
         for command in keys::pressed(&ctx) {
             self.run(command, &ctx);
         }
@@ -67,15 +72,25 @@ impl Window {
         }
         self.take_opened();
 
+        let begin = Focus::begin_area(ui);
         self.menu_bar(ui);
+        self.focus.end_area(ui, Area::Menu, begin);
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
+        let begin = Focus::begin_area(ui);
         let playback = self.timeline(ui, &mut project);
+        self.focus.end_area(ui, Area::Timeline, begin);
         if !self.layout.panels_hidden {
+            let begin = Focus::begin_area(ui);
             self.left_panel(ui, &mut project);
+            self.focus.end_area(ui, Area::Left, begin);
+            let begin = Focus::begin_area(ui);
             self.right_panel(ui, &mut project, &ctx);
+            self.focus.end_area(ui, Area::Right, begin);
         }
+        self.focus.set_image(ui.available_rect_before_wrap());
+        let begin = Focus::begin_area(ui);
         if self.layout.wall.shown {
             self.wall_page(ui, &mut project);
         } else if self.layout.compare.shown {
@@ -83,12 +98,15 @@ impl Window {
         } else {
             self.picture(ui, &mut project);
         }
+        self.focus.end_area(ui, Area::Page, begin);
         if !std::mem::take(&mut self.brushes.handled) {
             // Another page, another tool, or no image.
             self.end_stroke();
         }
         self.take_edit(&seen, project, &ctx);
         self.answer_styles();
+        let said = control::said(&ctx);
+        self.warn(said);
         if let Some(ask) = playback {
             match ask {
                 timeline::TimelineRequest::Run(command) => self.run(command, &ctx),
@@ -102,8 +120,11 @@ impl Window {
         let mut palette = std::mem::take(&mut self.palette);
         let chosen = palette.show(&ctx, |command| self.can(command));
         self.palette = palette;
-        if let Some(command) = chosen {
-            self.run(command, &ctx);
+        match chosen {
+            Some(palette::Found::Command(info)) => self.run(info.command, &ctx),
+            Some(palette::Found::Layer(kind)) => self.add_layer(kind, &ctx),
+            Some(palette::Found::Setting(_, info)) => self.show_setting(info, &ctx),
+            None => {}
         }
         self.windows(&ctx);
         // The single image is not visible while panes are shown.
@@ -133,6 +154,14 @@ impl Window {
             self.display.title = title;
         }
         self.notices.show(&ctx);
+        if let Some(info) = control::end_reveal(&ctx) {
+            self.explain_missing(info);
+        }
+        self.manual.show(&ctx);
+        if let Some(asked) = self.what.end_pass(&ctx) {
+            self.explain(&asked);
+        }
+        self.focus.end_pass(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
             let shown = if walls {
                 self.wall.has_pictures()
@@ -148,12 +177,13 @@ impl Window {
 
     fn menu_bar(&mut self, ui: &mut Ui) {
         let mut open_recent = None;
+        let mut menu_keys = std::mem::take(&mut self.menu_keys);
         let chosen = Panel::top("menu")
             .show(ui, |ui| {
                 egui::MenuBar::new()
                     .ui(ui, |ui| {
-                        let chosen = keys::menus(ui, |command| self.can(command));
-                        ui.menu_button("Recent", |ui| {
+                        let chosen = keys::menus(ui, &mut menu_keys, |command| self.can(command));
+                        menu_keys.menu(ui, "Recent", 'R', |ui| {
                             for path in &self.layout.recent {
                                 if ui.button(path.display().to_string()).clicked() {
                                     open_recent = Some(path.clone());
@@ -164,7 +194,7 @@ impl Window {
                                 ui.label(RichText::new("No project yet").color(theme::QUIET));
                             }
                         });
-                        ui.menu_button("Image size", |ui| {
+                        menu_keys.menu(ui, "Image size", 'I', |ui| {
                             for (scale, name) in
                                 [(0.0, "Automatic"), (1.0, "Every pixel"), (0.5, "Half"), (0.25, "Quarter")]
                             {
@@ -191,6 +221,7 @@ impl Window {
                     .inner
             })
             .inner;
+        self.menu_keys = menu_keys;
         if let Some(path) = open_recent {
             self.open_any(&path);
         }
@@ -265,6 +296,10 @@ impl Window {
             let most_pixels = viewport::most_pixels_at_rest(self.session.painter().adapter().as_deref());
             let painted = (self.session.painted.as_deref(), &self.display.textures);
             let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
+            if response.contains_pointer() && ui.input(|input| input.pointer.any_pressed()) {
+                // The keys are shortcuts again.
+                ui.memory_mut(egui::Memory::stop_text_input);
+            }
             if self.tools(ui, &response, project) {
                 camera_control::apply(&mut project.camera, &response);
             }
@@ -381,6 +416,26 @@ impl Window {
         }
     }
 
+    /// Shows the control of a setting.
+    fn show_setting(&mut self, info: &'static Info, ctx: &egui::Context) {
+        self.layout.panels_hidden = false;
+        control::reveal(ctx, info);
+    }
+
+    /// Adds a layer of that kind and shows its first control.
+    fn add_layer(&mut self, kind: &lovelock_style::Kind, ctx: &egui::Context) {
+        let Some(operation) = lovelock_style::Operation::new(kind.id) else { return };
+        let first = operation.known().and_then(|known| known.settings().infos().first().copied());
+        let mut layers = std::mem::take(&mut self.layers);
+        self.change("layer", |project| {
+            layers.add(&mut project.hair.stack, operation);
+        });
+        self.layers = layers;
+        if let Some(info) = first {
+            self.show_setting(info, ctx);
+        }
+    }
+
     /// Shows the dialogs above everything else.
     fn windows(&mut self, ctx: &egui::Context) {
         if let Some(dialog) = &mut self.dialog {
@@ -401,6 +456,7 @@ impl Window {
             });
             self.keys_shown = !modal.should_close();
         }
+        self.about(ctx);
         self.confirm_loss(ctx);
     }
 
@@ -464,8 +520,9 @@ impl Window {
         let first = recording.first_frame;
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
         let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
+        let counted = counted(frames, "frame", "frames");
         format!(
-            "{what}{frames} frames of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",
+            "{what}{counted} of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",
             recording.width,
             recording.height,
             recording.fps,

@@ -1,51 +1,169 @@
 //! Keys and menus, made from the table of commands.
 
 use super::command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
-use egui::{Key, KeyboardShortcut, Modifiers, RichText, Ui};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{
+    Event, Id, Key, KeyboardShortcut, LayerId, Modifiers, Order, Popup, RichText, Stroke, TextStyle, Ui,
+};
 
-use super::theme;
+use super::{focus, theme};
 
 /// The commands whose keys were pressed in this pass, unless a text field takes the keys.
 pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
     let typing = ctx.egui_wants_keyboard_input();
     let editing = ctx.text_edit_focused();
     let mut commands = Vec::new();
-    // Keys with more modifiers first: Ctrl+Shift+Z must not also be Ctrl+Z.
-    let mut bound: Vec<(KeyboardShortcut, Command)> = COMMANDS
+    let bound = COMMANDS
         .iter()
-        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, info.command))))
-        .collect();
-    bound.sort_by_key(|(shortcut, _)| std::cmp::Reverse(weight(shortcut.modifiers)));
+        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, info.command))));
     for (shortcut, command) in bound {
-        if typing && !shortcut.modifiers.command {
+        let KeyboardShortcut { modifiers, logical_key } = shortcut;
+        // A control with the focus takes plain keys. Function keys are never its own.
+        if typing && !modifiers.command && !is_function_key(logical_key) {
             continue;
         }
         // A text field has its own undo and redo.
         if editing && matches!(command, Command::Undo | Command::Redo) {
             continue;
         }
-        if ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
-            // Tab also moves the keyboard focus to the next control, which would then receive all other keys.
-            ctx.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
+        if consume(ctx, modifiers, logical_key) {
             commands.push(command);
         }
     }
     commands
 }
 
-fn weight(modifiers: Modifiers) -> u32 {
-    u32::from(modifiers.command) + u32::from(modifiers.shift) + u32::from(modifiers.alt)
+fn is_function_key(key: Key) -> bool {
+    let name = key.name();
+    name.len() > 1 && name.starts_with('F')
+}
+
+/// Whether a key was pressed in this pass with these modifiers and no others; it is taken from whoever comes later.
+///
+/// `?`, `[` and `]` need Shift or `AltGr` on many keyboards, which are therefore no modifiers of these keys.
+pub(crate) fn consume(ctx: &egui::Context, modifiers: Modifiers, key: Key) -> bool {
+    let is_symbol = matches!(key, Key::Questionmark | Key::OpenBracket | Key::CloseBracket);
+    let fits = |pressed: Modifiers| {
+        if is_symbol && modifiers.is_none() {
+            // Control and Alt together are AltGr on some systems.
+            return pressed.alt == pressed.ctrl && (pressed.alt || !pressed.command);
+        }
+        pressed.matches_exact(modifiers)
+    };
+    let mut found = false;
+    ctx.input_mut(|input| {
+        input.events.retain(|event| {
+            let is_it = matches!(event, Event::Key { key: pressed_key, modifiers: pressed, pressed: true, .. }
+                if *pressed_key == key && fits(*pressed));
+            found |= is_it;
+            !is_it
+        });
+    });
+    if found {
+        // Tab and arrow keys also move the keyboard focus to another control, which would then receive all other keys.
+        focus::keep(ctx);
+    }
+    found
+}
+
+/// The menus that are opened by Alt and a letter, and those that the arrow keys leave for the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MenuKeys {
+    /// The letter and the button of each menu, from left to right.
+    menus: Vec<(char, Id)>,
+    /// The menu whose first entry gets the focus as soon as it is shown.
+    entered: Option<Id>,
+}
+
+/// The popup that the button of a menu opens.
+fn popup_of(button: Id) -> Id {
+    // As `Popup::default_response_id` makes it.
+    button.with("popup")
+}
+
+impl MenuKeys {
+    /// Opens the menu whose letter was pressed with Alt. Comes before the menu bar.
+    pub(crate) fn begin_pass(&mut self, ctx: &egui::Context) {
+        if ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+            return;
+        }
+        let menus = std::mem::take(&mut self.menus);
+        let open = menus.iter().position(|(_, button)| Popup::is_id_open(ctx, popup_of(*button)));
+        let mut wanted = None;
+        for (at, (letter, _)) in menus.iter().enumerate() {
+            if let Some(key) = Key::from_name(&letter.to_string())
+                && consume(ctx, Modifiers::ALT, key)
+            {
+                // Some systems also type the letter.
+                ctx.input_mut(|input| input.events.retain(|event| !matches!(event, Event::Text(_))));
+                wanted = Some(at);
+            }
+        }
+        if let Some(at) = open
+            && !ctx.text_edit_focused()
+            && !menus.is_empty()
+        {
+            if consume(ctx, Modifiers::NONE, Key::ArrowRight) {
+                wanted = Some((at + 1) % menus.len());
+            } else if consume(ctx, Modifiers::NONE, Key::ArrowLeft) {
+                wanted = Some((at + menus.len() - 1) % menus.len());
+            }
+        }
+        if let Some(at) = wanted {
+            let button = menus[at].1;
+            ctx.memory_mut(|memory| memory.request_focus(button));
+            Popup::open_id(ctx, popup_of(button));
+            self.entered = Some(popup_of(button));
+        }
+        if let Some(popup) = self.entered.filter(|_| wanted.is_none()) {
+            let layer = LayerId::new(Order::Foreground, popup);
+            let first = ctx.viewport(|viewport| {
+                let mut widgets = viewport.prev_pass.widgets.get_layer(layer);
+                widgets.find(|widget| widget.enabled && widget.sense.is_focusable()).map(|widget| widget.id)
+            });
+            if let Some(first) = first {
+                ctx.memory_mut(|memory| memory.request_focus(first));
+            }
+            if first.is_some() || !Popup::is_id_open(ctx, popup) {
+                self.entered = None;
+            }
+        }
+    }
+
+    /// A menu of the bar that Alt and `letter`, one of the letters of its name, open.
+    pub(crate) fn menu<R>(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        letter: char,
+        content: impl FnOnce(&mut Ui) -> R,
+    ) -> Option<R> {
+        let shown = ui.menu_button(underlined(ui, name, letter), content);
+        self.menus.push((letter, shown.response.id));
+        shown.inner
+    }
+}
+
+/// A name with one of its letters underlined while Alt is held.
+fn underlined(ui: &Ui, name: &str, letter: char) -> egui::WidgetText {
+    let at = name.char_indices().find(|(_, c)| c.eq_ignore_ascii_case(&letter));
+    let Some((at, found)) = at.filter(|_| ui.input(|input| input.modifiers.alt)) else {
+        return RichText::new(name).into();
+    };
+    let plain = TextFormat::simple(TextStyle::Button.resolve(ui.style()), ui.visuals().text_color());
+    let line = TextFormat { underline: Stroke::new(1.0, theme::BRIGHT), ..plain.clone() };
+    let end = at + found.len_utf8();
+    let mut job = LayoutJob::default();
+    for (text, format) in [(&name[..at], &plain), (&name[at..end], &line), (&name[end..], &plain)] {
+        job.append(text, 0.0, format.clone());
+    }
+    job.into()
 }
 
 /// The key of that name in egui; `None` if egui has none.
 fn shortcut(text: &str) -> Option<KeyboardShortcut> {
     let Shortcut { ctrl, shift, alt, key } = Shortcut::parse(text)?;
-    let logical = match key {
-        "Left" => Key::ArrowLeft,
-        "Right" => Key::ArrowRight,
-        "?" => Key::Questionmark,
-        name => Key::from_name(name)?,
-    };
+    let logical = key_of(key)?;
     let mut modifiers = Modifiers::NONE;
     modifiers.command = ctrl;
     modifiers.shift = shift;
@@ -53,11 +171,21 @@ fn shortcut(text: &str) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(modifiers, logical))
 }
 
+/// The key of that name in the table of commands.
+pub(super) fn key_of(name: &str) -> Option<Key> {
+    match name {
+        "Left" => Some(Key::ArrowLeft),
+        "Right" => Some(Key::ArrowRight),
+        "?" => Some(Key::Questionmark),
+        name => Key::from_name(name),
+    }
+}
+
 /// Shows a menu per group of commands. Returns the command that was chosen.
-pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Command> {
+pub(crate) fn menus(ui: &mut Ui, keys: &mut MenuKeys, enabled: impl Fn(Command) -> bool) -> Option<Command> {
     let mut chosen = None;
     for group in CommandGroup::ALL {
-        ui.menu_button(group.label(), |ui| {
+        keys.menu(ui, group.label(), group.letter(), |ui| {
             let mut part = None;
             for info in in_order(group) {
                 if part.is_some_and(|part| part != part_of(info.command)) {
@@ -92,6 +220,7 @@ fn part_of(command: Command) -> u8 {
         | Command::LeaveTake
         | Command::Palette
         | Command::TogglePanels
+        | Command::ShowKeys
         | Command::Compare => 1,
         Command::RecordTake
         | Command::Record
@@ -100,6 +229,7 @@ fn part_of(command: Command) -> u8 {
         | Command::PickSound
         | Command::AddMarker
         | Command::MarkIn
+        | Command::About
         | Command::MarkOut => 2,
         Command::Quit => 3,
         _ => 0,
@@ -123,6 +253,10 @@ pub(crate) fn list(ui: &mut Ui) {
             ui.end_row();
         }
         for (keys, what) in [
+            ("F6, Shift+F6", "Move the keyboard to the next or the previous area of the window."),
+            ("Tab, Shift+Tab", "Move to the next or the previous control of the area."),
+            ("Alt+letter", "Opens a menu. Its letter is underlined while Alt is held."),
+            ("Escape", "Returns the keyboard to the image, whose keys are those of this list."),
             ("Drag", "Turns the camera about the hair."),
             ("Shift+drag, right drag", "Pans the camera."),
             ("Wheel", "Moves the camera closer or farther away."),

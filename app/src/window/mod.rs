@@ -1,5 +1,6 @@
 //! The window.
 
+mod about;
 mod actions;
 mod aim;
 mod brushes;
@@ -9,21 +10,25 @@ mod compare;
 mod control;
 mod display;
 mod files;
+mod focus;
 mod frame;
 mod gesture;
 mod health_view;
 mod images;
 mod keys;
 mod light_sphere;
+mod manual;
 mod notices;
 mod opening;
 mod overlay;
 mod palette;
 mod panels;
 mod path_dialog;
+mod picker;
 mod ramp;
 mod recorder;
 mod screenshot;
+mod search;
 mod session;
 mod side_panels;
 mod soundtrack;
@@ -37,6 +42,7 @@ mod tools;
 mod viewport;
 mod wall;
 
+use crate::words::counted;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -130,6 +136,8 @@ pub(crate) struct Window {
     wall: WallPage,
     recorder: Recorder,
     palette: Palette,
+    focus: focus::Focus,
+    menu_keys: keys::MenuKeys,
     layout: Layout,
     dialog: Option<PathDialog>,
     /// The files that are being looked into, and the context that their threads wake.
@@ -140,6 +148,9 @@ pub(crate) struct Window {
     pending: Option<Pending>,
     notices: Notices,
     keys_shown: bool,
+    manual: manual::Manual,
+    what: manual::what::WhatIsThis,
+    about_shown: bool,
     selected_light: usize,
     /// The gauge whose place is marked in the image, with its values when the mark was requested.
     marked_gauge: Option<Gauge>,
@@ -197,10 +208,8 @@ pub(crate) fn open(
     let shown = shows.mask.map(|place| {
         let layer = layers.get(place as usize - 1);
         layer.map(|layer| layer.id).ok_or_else(|| {
-            ProjectError::option(format!(
-                "--mask {place}: found {} layers; must be one of them",
-                layers.len()
-            ))
+            let found = counted(layers.len(), "layer", "layers");
+            ProjectError::option(format!("--mask {place}: found {found}; must be the place of one"))
         })
     });
     let shown = shown.transpose()?;
@@ -254,6 +263,8 @@ impl Window {
             wall: WallPage::default(),
             recorder: Recorder::default(),
             palette: Palette::default(),
+            focus: focus::Focus::default(),
+            menu_keys: keys::MenuKeys::default(),
             layout,
             dialog: None,
             openings: opening::Openings::default(),
@@ -262,6 +273,9 @@ impl Window {
             pending: None,
             notices: Notices::default(),
             keys_shown: false,
+            manual: manual::Manual::default(),
+            what: manual::what::WhatIsThis::default(),
+            about_shown: false,
             selected_light: 0,
             marked_gauge: None,
             colliders: panels::colliders::Shown::default(),

@@ -1,16 +1,98 @@
-//! The command palette: finds a command by part of its name.
+//! The command palette: finds commands, layers and settings by what they are called and what they do.
+
+use std::sync::LazyLock;
 
 use super::command::{COMMANDS, Command, CommandInfo};
-use egui::{Key, Modal, RichText, ScrollArea};
+use egui::{Layout, Modal, RichText, ScrollArea};
+use lovelock_base::settings::{Info, Settings as _};
+use lovelock_brush::BrushSettings;
+use lovelock_project::project::settings_of;
+use lovelock_style::{Kind, Operation};
 
+use super::picker::Picker;
+use super::search::{Fit, best_first, fit};
 use super::theme;
+
+/// Size of the list, points. It does not follow the number of matches, so that nothing jumps.
+const LIST: egui::Vec2 = egui::vec2(460.0, 320.0);
+
+/// What the palette finds.
+#[derive(Clone, Copy)]
+pub(crate) enum Found {
+    /// A command, which is run.
+    Command(&'static CommandInfo),
+    /// A kind of layer, which is added.
+    Layer(&'static Kind),
+    /// A setting with its path, whose control is shown.
+    Setting(&'static str, &'static Info),
+}
+
+impl Found {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Command(info) => info.label,
+            Self::Layer(kind) => kind.label,
+            Self::Setting(_, info) => info.label,
+        }
+    }
+
+    fn text(&self) -> &'static str {
+        match self {
+            Self::Command(info) => info.tooltip,
+            Self::Layer(kind) => kind.text,
+            Self::Setting(_, info) => info.text,
+        }
+    }
+
+    /// What stands at the right of its row.
+    fn aside(&self) -> &'static str {
+        match self {
+            Self::Command(info) => info.shortcuts.first().copied().unwrap_or(""),
+            Self::Layer(_) => "add layer",
+            Self::Setting(path, _) => path,
+        }
+    }
+
+    fn fit(&self, typed: &str) -> Option<Fit> {
+        match self {
+            Self::Setting(path, info) => fit(typed, info.label, &[info.text, path]),
+            Self::Command(_) | Self::Layer(_) => fit(typed, self.name(), &[self.text(), self.aside()]),
+        }
+    }
+}
+
+/// The settings that have a control in the panels: those of a project and those of the brush.
+static SETTINGS: LazyLock<Vec<(String, &'static Info)>> = LazyLock::new(|| {
+    // Panes and the camera are set in the image itself.
+    let in_panels = |path: &str| !["compare.", "camera."].iter().any(|start| path.starts_with(start));
+    let project = settings_of("").into_iter().map(|entry| (entry.path, entry.info));
+    let brush =
+        BrushSettings::TABLE.iter().map(|setting| (format!("brush.{}", setting.info.name), &setting.info));
+    project.chain(brush).filter(|(path, _)| in_panels(path)).collect()
+});
+
+/// The path of a setting of the project; the first one where several have the same entry.
+pub(crate) fn path_of(info: &Info) -> Option<&'static str> {
+    let same = |known: &Info| (known.name, known.label, known.text) == (info.name, info.label, info.text);
+    SETTINGS.iter().find(|(_, known)| same(known)).map(|(path, _)| path.as_str())
+}
+
+/// The matches, the best first.
+fn matches(typed: &str, enabled: impl Fn(Command) -> bool) -> Vec<Found> {
+    let commands =
+        COMMANDS.iter().filter(|info| info.in_palette && enabled(info.command)).map(Found::Command);
+    // Without anything typed it is a list of commands.
+    let others = !typed.trim().is_empty();
+    let layers = Operation::KINDS.iter().filter(|kind| others && kind.id != "scissors").map(Found::Layer);
+    let settings = SETTINGS.iter().filter(|_| others).map(|(path, info)| Found::Setting(path.as_str(), info));
+    best_first(typed, commands.chain(layers).chain(settings), |typed, found| found.fit(typed))
+}
 
 /// The typed text and the selected match.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Palette {
     open: bool,
-    typed: String,
-    chosen: usize,
+    picker: Picker,
 }
 
 impl Palette {
@@ -19,54 +101,37 @@ impl Palette {
         *self = Self { open: !self.open, ..Self::default() };
     }
 
-    /// Shows the palette if it is open. Returns the command that was chosen.
-    pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(Command) -> bool) -> Option<Command> {
+    /// Shows the palette if it is open. Returns what was chosen.
+    pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(Command) -> bool) -> Option<Found> {
         if !self.open {
             return None;
         }
         let mut result = None;
         let response = Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
-            ui.set_width(420.0);
-            let (up, down, enter) = ui.input_mut(|input| {
-                let none = egui::Modifiers::NONE;
-                (
-                    input.consume_key(none, Key::ArrowUp),
-                    input.consume_key(none, Key::ArrowDown),
-                    input.consume_key(none, Key::Enter),
-                )
-            });
-            let edit = egui::TextEdit::singleline(&mut self.typed)
-                .hint_text("Type a command")
-                .desired_width(f32::INFINITY);
-            let field = ui.add(edit).on_hover_text("Part of the command's name.");
+            ui.set_width(LIST.x);
+            let name = "Find a command or a setting";
+            let (field, picked) = self.picker.field(ui, name, f32::INFINITY, false);
             field.request_focus();
-            let found: Vec<_> = matches(&self.typed).filter(|info| enabled(info.command)).collect();
-            if field.changed() {
-                self.chosen = 0;
-            }
-            if down {
-                self.chosen += 1;
-            }
-            if up {
-                self.chosen = self.chosen.saturating_sub(1);
-            }
-            self.chosen = self.chosen.min(found.len().saturating_sub(1));
-            ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                for (i, info) in found.iter().enumerate() {
-                    let key = info.shortcuts.first().copied().unwrap_or("");
+            let found = matches(&self.picker.typed, enabled);
+            self.picker.among(found.len());
+            let list = ScrollArea::vertical().min_scrolled_height(LIST.y).max_height(LIST.y);
+            list.auto_shrink(false).show(ui, |ui| {
+                for (i, found) in found.iter().enumerate() {
                     let row = ui.horizontal(|ui| {
-                        let label = ui.selectable_label(i == self.chosen, info.label);
-                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                            ui.label(RichText::new(key).monospace().color(theme::QUIET));
+                        let label = ui.selectable_label(self.picker.is_chosen(i), found.name());
+                        ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
+                            let aside = RichText::new(found.aside()).monospace().small().color(theme::QUIET);
+                            ui.add(egui::Label::new(aside).truncate());
                         });
-                        label.on_hover_text(info.tooltip)
+                        label.on_hover_text(found.text())
                     });
-                    if row.inner.clicked() || (enter && i == self.chosen) {
-                        result = Some(info.command);
+                    self.picker.show(i, &row.response);
+                    if row.inner.clicked() || (picked.entered && self.picker.is_chosen(i)) {
+                        result = Some(*found);
                     }
                 }
                 if found.is_empty() {
-                    ui.label(RichText::new("No matching command").color(theme::QUIET));
+                    ui.label(RichText::new("No command and no setting is called so.").color(theme::QUIET));
                 }
             });
         });
@@ -77,24 +142,36 @@ impl Palette {
     }
 }
 
-/// The commands whose label contains every word of `typed`.
-fn matches(typed: &str) -> impl Iterator<Item = &'static CommandInfo> {
-    let words: Vec<String> = typed.split_whitespace().map(str::to_lowercase).collect();
-    COMMANDS.iter().filter(move |info| {
-        let label = info.label.to_lowercase();
-        info.in_palette && words.iter().all(|word| label.contains(word.as_str()))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn names(typed: &str) -> Vec<&'static str> {
+        matches(typed, |_| true).iter().map(Found::name).collect()
+    }
+
     #[test]
     fn words_in_any_order_find_a_command() {
-        let found: Vec<_> = matches("hair frame").map(|info| info.command).collect();
-        assert_eq!(found, [Command::FrameHair]);
-        assert!(matches("no such thing").next().is_none());
-        assert!(matches("").count() > 10);
+        assert!(
+            matches!(matches("hair frame", |_| true)[0], Found::Command(info) if info.command == Command::FrameHair)
+        );
+        assert_eq!(names("no such thing"), [""; 0]);
+        assert!(names("").len() > 10);
+        assert!(matches("", |_| true).iter().all(|found| matches!(found, Found::Command(_))));
+    }
+
+    #[test]
+    fn settings_and_layers_are_found_the_exact_name_first() {
+        let curl = names("curl");
+        assert_eq!(curl[0], "Curl", "{curl:?}");
+        assert!(curl.contains(&"Curl radius"), "{curl:?}");
+        // By its path, as the command line calls it.
+        let wind = matches("simulation.wind.speed", |_| true);
+        assert!(matches!(wind[0], Found::Setting("simulation.wind.speed", _)));
+        assert!(
+            matches("brush radius", |_| true)
+                .iter()
+                .any(|found| matches!(found, Found::Setting("brush.radius", _)))
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! A recording that runs in the background.
 
+use crate::words::counted;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -95,7 +96,11 @@ impl Recorder {
                     0 => String::new(),
                     kept => format!(", {kept} of which were there"),
                 };
-                State::Done(format!("{} frames in {}{kept}", report.frames, report.out.display()))
+                State::Done(format!(
+                    "{} in {}{kept}",
+                    counted(report.frames, "frame", "frames"),
+                    report.out.display()
+                ))
             }
             Err(_) if self.cancelled => State::Cancelled,
             Err(error) => State::Failed(error.to_string()),

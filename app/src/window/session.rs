@@ -1,5 +1,6 @@
 //! The threads behind the window: simulation and rendering, with their latest results.
 
+use crate::words::counted;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -232,10 +233,10 @@ impl Session {
                 Event::TakeSaved { report, because } => {
                     let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
                     self.done.push(format!(
-                        "Saved the take {}: {:.1} s, {} frames{why}.",
+                        "Saved the take {}: {:.1} s, {}{why}.",
                         report.path.display(),
                         report.duration_secs,
-                        report.frames
+                        counted(report.frames, "frame", "frames")
                     ));
                     self.saved_take = Some(report.path);
                 }

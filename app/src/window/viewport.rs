@@ -43,7 +43,8 @@ impl Viewport {
         most_pixels: f32,
         scale: f32,
     ) -> Response {
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        // No control: Tab passes it by, and keys are shortcuts while nothing else has the focus.
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::CLICK | Sense::DRAG);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
         if let Some(painted) = painted {

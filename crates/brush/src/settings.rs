@@ -12,9 +12,9 @@ pub enum BrushMirror {
     /// Nothing.
     #[default]
     Off,
-    /// The mirrored stroke, on the hair as it is there.
+    /// The mirrored stroke, on the hair as it is there: each side keeps its own shape.
     Own,
-    /// The hair there takes the mirrored shape.
+    /// The hair there takes the mirrored shape: both sides become alike.
     Same,
 }
 
@@ -24,8 +24,8 @@ impl Choices for BrushMirror {
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Off => ("off", "Off"),
-            Self::Own => ("own", "Own shape"),
-            Self::Same => ("same", "Same shape"),
+            Self::Own => ("own", "Mirrored stroke"),
+            Self::Same => ("same", "Mirrored hair"),
         }
     }
 }
@@ -106,7 +106,8 @@ impl Settings for BrushSettings {
         Setting::choice::<BrushMirror>(
             field!(Self, mirror),
             "Mirror",
-            "Acts on the other side of the head too: on the shape that hair has there, or so that both sides become alike.",
+            "Whether brushes act on the other side of the head too. Mirrored stroke: the same stroke on the hair as it is there. \
+             Mirrored hair: the hair there becomes a mirror image. Holds for all brushes.",
         ),
         Setting::switch(
             field!(Self, keep_lengths),

@@ -3,6 +3,7 @@
 mod bar;
 mod circle;
 mod keys;
+mod mirror;
 mod panel;
 mod pick;
 mod pointer;
@@ -11,7 +12,7 @@ mod strokes;
 use std::collections::BTreeMap;
 
 use lovelock_base::settings::{Choices as _, Settings as _};
-use lovelock_brush::{BrushSettings, Tool};
+use lovelock_brush::{BrushMirror, BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use panel::{BrushRequest, ui};
@@ -24,12 +25,15 @@ use strokes::Strokes;
 pub(crate) struct Kept {
     /// The settings of tools by their ids; those of the others are the defaults.
     settings: BTreeMap<String, BrushSettings>,
+    /// What every tool does on the other side of the head.
+    mirror: BrushMirror,
 }
 
 impl Kept {
     /// The settings of a tool.
     pub(crate) fn of(&self, tool: Tool) -> BrushSettings {
-        self.settings.get(tool.names().0).cloned().unwrap_or_default().clamped()
+        let settings = self.settings.get(tool.names().0).cloned().unwrap_or_default();
+        BrushSettings { mirror: self.mirror, ..settings }.clamped()
     }
 
     /// Sets the settings of a tool.
@@ -39,6 +43,7 @@ impl Kept {
     }
 
     fn set(&mut self, tool: Tool, settings: BrushSettings) {
+        self.mirror = settings.mirror;
         self.settings.insert(tool.names().0.to_owned(), settings);
     }
 }
@@ -109,5 +114,21 @@ impl crate::window::Window {
                 "There are as many layers as there can be. Remove one, so that the map gets one of its own.";
             self.notices.push(crate::window::notices::Kind::Warning, why.to_owned());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mirror_holds_for_all_tools_and_the_rest_for_one() {
+        let mut kept = Kept::default();
+        let mirrored = BrushSettings { mirror: BrushMirror::Same, radius: 0.1, ..kept.of(Tool::Comb) };
+        kept.set(Tool::Comb, mirrored);
+        let smooth = kept.of(Tool::Smooth);
+        assert_eq!(smooth.mirror, BrushMirror::Same);
+        assert_eq!(smooth.radius, BrushSettings::default().radius);
+        assert_eq!(kept.of(Tool::Comb).radius, 0.1);
     }
 }

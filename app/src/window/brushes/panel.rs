@@ -86,7 +86,8 @@ pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
     let default = BrushSettings::default();
     let before = kept.of(tool);
     let mut now = before.clone();
-    settings(ui, &["radius", "strength", "share", "mirror", "front_only"], &mut now, &default);
+    settings(ui, &["radius", "strength", "share", "front_only"], &mut now, &default);
+    super::mirror::choose(ui, &mut now, &default);
     match tool {
         Tool::Comb | Tool::Attract | Tool::Place | Tool::Part => {
             settings(ui, &["keep_lengths"], &mut now, &default);

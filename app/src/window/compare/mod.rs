@@ -256,7 +256,7 @@ impl Window {
         let count = project.compare.panes.len();
         self.compare.textures.keep(count);
         let typing = ui.ctx().egui_wants_keyboard_input();
-        let flicked = !typing && ui.input(|input| input.key_down(Key::V));
+        let flicked = !typing && ui.input(|input| input.key_down(Key::V) && input.modifiers.is_none());
         let asked = if self.layout.compare.wipe {
             self.wipe(ui, page, project, flicked)
         } else {

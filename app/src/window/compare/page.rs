@@ -158,7 +158,7 @@ impl Window {
 
     /// Applies the pointer's input over a pane to the camera, the magnification and the probe.
     fn steer(&mut self, ui: &Ui, place: Rect, index: usize, project: &mut Project) -> Response {
-        let response = ui.interact(place, Id::unique(("pane", index)), Sense::click_and_drag());
+        let response = ui.interact(place, Id::unique(("pane", index)), Sense::CLICK | Sense::DRAG);
         let name = format!("Pane {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
         if !self.compare.zoom.apply(&response, place) {

@@ -2,18 +2,39 @@
 
 mod curve;
 mod number;
+mod reveal;
 mod setting;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
-pub(crate) use number::{Number, is_escaped, typed};
+pub(crate) use number::{Limits, Number, is_escaped, typed};
+pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
 pub(crate) use setting::{all_settings, entry, setting, settings};
 
 use super::theme;
 
 /// Width of the column of labels, points.
 const LABEL_WIDTH: f32 = 118.0;
+
+/// Tells the user something about a control, in a message that takes no place from the others.
+fn say(ctx: &egui::Context, sentence: String) {
+    ctx.data_mut(|data| {
+        let said: &mut Vec<String> = data.get_temp_mut_or_default(said_key());
+        if !said.contains(&sentence) {
+            said.push(sentence);
+        }
+    });
+}
+
+fn said_key() -> Id {
+    Id::unique("said by controls")
+}
+
+/// What controls told the user since the last call.
+pub(crate) fn said(ctx: &egui::Context) -> Vec<String> {
+    ctx.data_mut(|data| data.remove_temp(said_key())).unwrap_or_default()
+}
 
 /// A choice among a few.
 pub(crate) fn choice<T: Copy + PartialEq>(
@@ -94,7 +115,8 @@ pub(crate) fn row<T>(
         let name = ui
             .allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.set_min_width(LABEL_WIDTH);
-                ui.add(egui::Label::new(text).sense(Sense::click()).truncate())
+                // Not focusable: Tab goes from control to control.
+                ui.add(egui::Label::new(text).sense(Sense::CLICK).truncate())
             })
             .inner;
         let tip = if differs {
@@ -137,7 +159,17 @@ pub(crate) fn restore_all<T: Clone>(ui: &mut Ui, label: &'static str, tip: &str,
 ///
 /// Returns what `add` returned if the part is unfolded.
 pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
-    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add).body_returned
+    let header = egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open);
+    let shown = match reveal::enter(ui.ctx(), title) {
+        reveal::Section::Usual => header.show(ui, add).body_returned,
+        reveal::Section::Through => {
+            ui.ctx().allow_widget_id_changes_in(egui::Rect::EVERYTHING);
+            Some(ui.push_id(title, add).inner)
+        }
+        reveal::Section::Unfolded => header.open(Some(true)).show(ui, add).body_returned,
+    };
+    reveal::leave(ui.ctx());
+    shown
 }
 
 /// A line of quiet text.

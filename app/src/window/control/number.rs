@@ -15,7 +15,10 @@ const NUMBER_WIDTH: f32 = 78.0;
 pub(crate) struct Number {
     label: &'static str,
     tip: String,
+    /// What the slider offers.
     range: RangeInclusive<f64>,
+    /// What can be typed.
+    typed: [f64; 2],
     unit: Unit,
     logarithmic: bool,
 }
@@ -23,13 +26,15 @@ pub(crate) struct Number {
 impl Number {
     /// A number in `range`; `tip` says what it changes in the image.
     pub(crate) fn new(label: &'static str, range: RangeInclusive<f64>, unit: Unit, tip: &str) -> Self {
-        Self { label, tip: tip.to_owned(), range, unit, logarithmic: false }
+        let typed = [*range.start(), *range.end()];
+        Self { label, tip: tip.to_owned(), range, typed, unit, logarithmic: false }
     }
 
     /// The number of a setting, called `label`.
     pub(super) fn of(info: &Info, range: &Range, label: &'static str) -> Self {
         let [low, high] = range.soft;
-        Self { logarithmic: range.logarithmic, ..Self::new(label, low..=high, info.unit, &info.tooltip()) }
+        let number = Self::new(label, low..=high, info.unit, &info.tooltip());
+        Self { logarithmic: range.logarithmic, typed: range.hard, ..number }
     }
 
     /// The row. Double-click restores `default`.
@@ -50,40 +55,104 @@ impl Number {
         // Angles come and go through sines: less than a millionth of the range is no difference.
         let differs = (*value - default).abs() > 1e-6 * (self.range.end() - self.range.start());
         row(ui, self.label, &self.tip, differs, value, default, |ui, value| {
-            let canceled = is_escaped(ui);
+            let limits = Limits::of(ui, self.label, self.typed.map(|v| v * factor), (suffix, decimals));
+            let dragged = ui.input(|input| input.pointer.any_down());
             ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
-            Slider::from_get_set(range, |new| {
+            let [low, high] = limits.range;
+            Slider::from_get_set(range.clone(), |new| {
                 // The slider rounds to what it shows; that alone is no change.
                 let shown = 0.5 * 0.1_f64.powi(decimals as i32);
                 let old = *value * factor;
                 if let Some(new) = new.filter(|new| new.is_finite() && (new - old).abs() > shown) {
-                    *value = new / factor;
+                    // More can be typed than dragged.
+                    let new =
+                        if dragged { new.clamp(range.start().min(old), range.end().max(old)) } else { new };
+                    *value = new.clamp(low.min(old), high.max(old)) / factor;
                 }
                 *value * factor
             })
             .logarithmic(self.logarithmic)
             // A project may hold values outside the slider's range: showing them must not change them.
-            .clamping(SliderClamping::Edits)
+            .clamping(SliderClamping::Never)
             // A typed number takes effect when it is entered, and Escape restores the old one.
             .update_while_editing(false)
             .fixed_decimals(decimals)
             .suffix(suffix)
-            .custom_parser(|text| typed(text, suffix).filter(|_| !canceled))
+            .custom_parser(limits.parser())
             .ui(ui)
         })
     }
+}
+
+/// What can be typed into a number. A number outside is brought inside, and a message says so.
+#[derive(Clone)]
+pub(crate) struct Limits {
+    ctx: egui::Context,
+    label: String,
+    /// The lowest and the highest number, as shown.
+    range: [f64; 2],
+    suffix: String,
+    decimals: usize,
+    canceled: bool,
+}
+
+impl Limits {
+    /// The limits of the number called `label`, as the window shows it with a suffix and some decimals.
+    pub(crate) fn of(ui: &Ui, label: &str, range: [f64; 2], (suffix, decimals): (&str, usize)) -> Self {
+        let (label, suffix) = (label.to_owned(), suffix.to_owned());
+        Self { ctx: ui.ctx().clone(), label, range, suffix, decimals, canceled: is_escaped(ui) }
+    }
+
+    /// Reads what was typed; `None` where it is no number or Escape was pressed.
+    pub(crate) fn parser(self) -> impl Fn(&str) -> Option<f64> {
+        move |text| {
+            let number = typed(text, &self.suffix).filter(|_| !self.canceled)?;
+            let [low, high] = self.range;
+            // The text of an untouched field is rounded.
+            let rounding = 0.5 * 0.1_f64.powi(self.decimals as i32);
+            let inside = number.clamp(low, high);
+            if (number - inside).abs() > rounding {
+                let say = |v: f64| short(v, self.decimals);
+                let (label, suffix) = (&self.label, &self.suffix);
+                super::say(
+                    &self.ctx,
+                    format!(
+                        "{label}: found {}{suffix}; must be {} to {}{suffix}. {}{suffix} is taken.",
+                        say(number),
+                        say(low),
+                        say(high),
+                        say(inside),
+                    ),
+                );
+            }
+            Some(inside)
+        }
+    }
+}
+
+/// A number with at most that many decimals and no zeros at its end.
+fn short(number: f64, decimals: usize) -> String {
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// The row of a whole number with a slider.
 pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, default: u64) -> Response {
     let Unit { suffix, factor, decimals, .. } = info.unit;
     row(ui, info.label, &info.tooltip(), *value != default, value, default, |ui, value| {
-        let canceled = is_escaped(ui);
+        let decimals = if factor == 1.0 { 0 } else { decimals };
+        let least = if counts.zero { 0 } else { counts.hard[0] };
+        let range = [least, counts.hard[1]].map(|bound| bound as f64 * factor);
+        let limits = Limits::of(ui, info.label, range, (suffix, decimals));
+        let dragged = ui.input(|input| input.pointer.any_down());
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
         let [low, high] = counts.soft.map(|bound| bound as f64 * factor);
         let slider = Slider::from_get_set(low..=high, |new| {
             if let Some(new) = new.filter(|new| new.is_finite()) {
-                *value = (new / factor).round() as u64;
+                let old = *value as f64 * factor;
+                // More can be typed than dragged.
+                let new = if dragged { new.clamp(low.min(old), high.max(old)) } else { new };
+                *value = (new.clamp(range[0].min(old), range[1].max(old)) / factor).round() as u64;
             }
             *value as f64 * factor
         });
@@ -91,9 +160,9 @@ pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
         let slider = if factor == 1.0 { slider.integer() } else { slider.fixed_decimals(decimals) };
         slider
             .suffix(suffix)
-            .custom_parser(|text| typed(text, suffix).filter(|_| !canceled))
+            .custom_parser(limits.parser())
             .logarithmic(counts.logarithmic)
-            .clamping(SliderClamping::Edits)
+            .clamping(SliderClamping::Never)
             .update_while_editing(false)
             .ui(ui)
     })

@@ -4,7 +4,8 @@ use egui::{Response, Ui};
 use lovelock_base::settings::{AnySettings, Counts, Info, Kind, Setting, Settings, Value};
 
 use super::number::{Number, count};
-use super::{choice, color, toggle};
+use super::{choice, color, reveal, toggle};
+use crate::window::manual::what::note_row;
 
 /// The rows of several settings of one struct, in this order.
 pub(crate) fn settings<S: Settings>(ui: &mut Ui, names: &[&str], settings: &mut S, default: &S) {
@@ -53,6 +54,13 @@ pub(crate) fn entry<S: Settings>(name: &str) -> &'static Setting<S> {
 }
 
 fn show(ui: &mut Ui, info: &'static Info, value: &mut Value, default: Value) -> Response {
+    let response = control_of(ui, info, value, default);
+    reveal::shown(ui, info, &response);
+    note_row(ui, info, response.rect);
+    response
+}
+
+fn control_of(ui: &mut Ui, info: &'static Info, value: &mut Value, default: Value) -> Response {
     match (&info.kind, value, default) {
         (Kind::Number(range), Value::Number(value), Value::Number(default)) => {
             Number::of(info, range, info.label).show_wide(ui, value, default)

@@ -5,7 +5,7 @@ use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
-use crate::window::control::{note, section, setting, settings};
+use crate::window::control::{note, row, section, setting, settings};
 
 /// What the panel shows of the body that is loaded.
 #[derive(Clone, Debug, Default)]
@@ -65,28 +65,38 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
             &BodySettings::default(),
         );
     }
-    let chosen = project.body.head_joint.clone().unwrap_or_else(|| format!("{} (guess)", loaded.head));
-    ui.horizontal(|ui| {
-        let label = ui.label("Head joint").on_hover_text("The joint that carries the hair.");
-        egui::ComboBox::from_id_salt("head joint")
-            .selected_text(chosen)
-            .width(ui.available_width() - 4.0)
-            .truncate()
-            .show_ui(ui, |ui| {
-                ui.selectable_value(&mut project.body.head_joint, None, "Guess");
-                for joint in &loaded.joints {
-                    ui.selectable_value(&mut project.body.head_joint, Some(joint.clone()), joint);
-                }
-            })
-            .response
-            .labelled_by(label.id)
-            .on_hover_text("The joint that carries the hair.");
-    });
+    head_joint(ui, &mut project.body.head_joint, loaded);
     section(ui, "Motion", true, |ui| request = motion(ui, project, loaded).or(request));
     for text in &loaded.notes {
         note(ui, text.as_str());
     }
     request
+}
+
+/// The choice of the joint that carries the hair. The name of a joint is the end of its path, which the tooltip shows.
+fn head_joint(ui: &mut Ui, chosen: &mut Option<String>, loaded: &LoadedBody) {
+    let name = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
+    let shown = match chosen.as_deref() {
+        Some(path) => name(path),
+        None if loaded.head.is_empty() => "Guess".to_owned(),
+        None => format!("{} (guess)", name(&loaded.head)),
+    };
+    let path = chosen.clone().unwrap_or_else(|| loaded.head.clone());
+    let tip = format!("The joint that carries the hair.\n\n{path}");
+    row(ui, "Head joint", &tip, chosen.is_some(), chosen, None, |ui, chosen| {
+        egui::ComboBox::from_id_salt("head joint")
+            .selected_text(shown)
+            .width(ui.available_width() - 4.0)
+            .height(320.0)
+            .truncate()
+            .show_ui(ui, |ui| {
+                ui.selectable_value(chosen, None, "Guess");
+                for joint in &loaded.joints {
+                    ui.selectable_value(chosen, Some(joint.clone()), joint);
+                }
+            })
+            .response
+    });
 }
 
 fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<BodyRequest> {

@@ -1,5 +1,6 @@
 //! The hairstyle: a shipped style and its controls, or a file and how it is placed.
 
+use crate::words::counted;
 use egui::Ui;
 use lovelock_base::settings::Choices;
 use lovelock_groom::{HAIR_FORMATS, ImportSettings, Unit};
@@ -46,7 +47,8 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Opt
     }
     let [wisps, strands, segments] = loaded.counts;
     let [x, y, z] = loaded.size_m.map(|v| v * 100.0);
-    note(ui, format!("{wisps} wisps, {strands} strands, {segments} segments"));
+    let (wisps, strands) = (counted(wisps, "wisp", "wisps"), counted(strands, "strand", "strands"));
+    note(ui, format!("{wisps}, {strands}, {}", counted(segments, "segment", "segments")));
     note(ui, format!("{x:.0} × {y:.0} × {z:.0} cm"));
     for text in &loaded.notes {
         note(ui, text.as_str());

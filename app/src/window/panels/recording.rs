@@ -4,7 +4,7 @@ use egui::{ProgressBar, RichText, Ui};
 use lovelock_project::project::RecordingSection;
 use lovelock_session::clock::Pace;
 
-use crate::window::control::{choice, entry, is_escaped, note, row, setting, settings, typed};
+use crate::window::control::{Limits, choice, entry, note, row, setting, settings};
 use crate::window::theme;
 
 /// The state of the newest recording.
@@ -70,13 +70,13 @@ const SIZES: [((u32, u32), &str); 6] = [
 ];
 
 /// A field for the number of a frame. A value outside its range is shown and not changed.
-fn frame_number(ui: &mut Ui, frame: &mut u64) -> egui::Response {
-    let canceled = is_escaped(ui);
+fn frame_number(ui: &mut Ui, label: &str, frame: &mut u64) -> egui::Response {
+    let limits = Limits::of(ui, label, [0.0, 1e6], ("", 0));
     let field = egui::DragValue::new(frame)
         .range(0..=1_000_000)
         .clamp_existing_to_range(false)
         .update_while_editing(false)
-        .custom_parser(move |text| typed(text, "").filter(|_| !canceled));
+        .custom_parser(limits.parser());
     ui.add(field)
 }
 
@@ -115,13 +115,13 @@ fn frame_range(ui: &mut Ui, section: &mut RecordingSection, default: &RecordingS
         *first != default.first_frame,
         first,
         default.first_frame,
-        frame_number,
+        |ui, frame| frame_number(ui, info.label, frame),
     );
     let info = &entry::<RecordingSection>("end_frame").info;
     let end = &mut section.end_frame;
     row(ui, info.label, &info.tooltip(), end.is_some(), end, None, |ui, end| {
         let mut frame = end.unwrap_or(clip_frames);
-        let response = frame_number(ui, &mut frame);
+        let response = frame_number(ui, info.label, &mut frame);
         if response.changed() {
             *end = Some(frame);
         }

@@ -10,7 +10,7 @@ use lovelock_satf::features::features_of;
 use lovelock_satf::layout::{ANGLES, SECTORS, TEXELS};
 use lovelock_satf::{Curl, Database, Features};
 
-use crate::window::control::{is_escaped, note, row, typed};
+use crate::window::control::{Limits, is_escaped, note, row, typed};
 
 /// Height of a row of texels in the picture, points.
 const ROW: f32 = 7.0;
@@ -51,9 +51,9 @@ pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
     let Shown { sector, light } = &mut view.shown;
     let tip = "The sector of the database whose records are shown, 0 to 383.";
     row(ui, "Sector", tip, *sector != FIRST, sector, FIRST, |ui, sector| {
-        let canceled = is_escaped(ui);
+        let limits = Limits::of(ui, "Sector", [0.0, (SECTORS - 1) as f64], ("", 0));
         let drag = DragValue::new(sector).range(0..=SECTORS - 1).update_while_editing(false);
-        ui.add(drag.custom_parser(move |text| typed(text, "").filter(|_| !canceled)))
+        ui.add(drag.custom_parser(limits.parser()))
     });
     let tip = "The azimuth of the light in the plane of the sector, from the outward normal.";
     row(ui, "Light angle", tip, *light != 0, light, 0, |ui, light| {

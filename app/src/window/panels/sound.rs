@@ -29,7 +29,7 @@ pub(crate) fn ui(
     row(ui, "Sound", tip, file.is_some(), file, None, |ui, file| {
         let name = file.as_ref().and_then(|file| file.path.file_name());
         let name = name.map_or_else(|| "Silence".into(), |name| name.to_string_lossy());
-        ui.add(Label::new(name).truncate().sense(Sense::click()))
+        ui.add(Label::new(name).truncate().sense(Sense::CLICK))
     });
     ui.horizontal_wrapped(|ui| {
         let tip = "Picks the sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC.";

@@ -1,5 +1,6 @@
 //! Rendering times and facts about the scene.
 
+use crate::words::counted;
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
 use lovelock_render::PassTime;
@@ -91,8 +92,12 @@ fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
                 continue;
             }
             let sum: f64 = of_group.iter().map(|(_, ms)| ms).sum();
-            ui.label(RichText::new(format!("{title}, {} passes", of_group.len())).small().strong())
-                .on_hover_text(tip);
+            ui.label(
+                RichText::new(format!("{title}, {}", counted(of_group.len(), "pass", "passes")))
+                    .small()
+                    .strong(),
+            )
+            .on_hover_text(tip);
             ui.label(RichText::new(format!("{sum:.2} ms")).small().strong());
             ui.end_row();
             for (name, ms) in of_group {

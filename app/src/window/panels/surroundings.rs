@@ -41,7 +41,7 @@ pub(crate) fn ui(
     row(ui, "Surroundings", tip, file.is_some(), file, None, |ui, file| {
         let name = file.as_ref().and_then(|file| file.path.file_name());
         let name = name.map_or_else(|| "Sky and ground".into(), |name| name.to_string_lossy());
-        ui.add(Label::new(name).truncate().sense(Sense::click()))
+        ui.add(Label::new(name).truncate().sense(Sense::CLICK))
     });
     ui.horizontal_wrapped(|ui| {
         let tip = "Takes the light from a picture of all directions: Radiance (.hdr) or OpenEXR (.exr).";

@@ -20,6 +20,8 @@ use lovelock_project::project::HairSource;
 use lovelock_project::styles::{OwnStyle, OwnStyles, Style, StyleParts, shipped};
 use serde::{Deserialize, Serialize};
 
+use super::picker::Picker;
+use super::search::{best_first, fit};
 use dialogs::Dialog;
 pub(crate) use panel::ui;
 use shelf::Shelf;
@@ -63,7 +65,9 @@ struct Hover {
 /// The state of the browser.
 #[derive(Clone)]
 pub(crate) struct Browser {
-    search: String,
+    search: Picker,
+    /// The tiles of the last pass, in the order of the grid.
+    tiles: Vec<egui::Id>,
     /// Only styles with all of these are shown.
     tags: BTreeSet<String>,
     only_favourites: bool,
@@ -88,7 +92,8 @@ impl Default for Browser {
     /// The shipped styles alone.
     fn default() -> Self {
         let mut browser = Self {
-            search: String::new(),
+            search: Picker::default(),
+            tiles: Vec::new(),
             tags: BTreeSet::new(),
             only_favourites: false,
             parts: StyleParts::ALL,
@@ -190,14 +195,18 @@ impl Browser {
         Some((id, &entry.style, self.parts))
     }
 
-    /// The entries that are shown.
+    /// The entries that are shown: those that fit best what is searched come first.
     fn shown(&self, kept: &Kept) -> Vec<Entry> {
         let fits = |entry: &&Entry| {
-            entry.style.matches(&self.search)
-                && self.tags.iter().all(|tag| tags_of(entry).any(|own| own == tag))
+            self.tags.iter().all(|tag| tags_of(entry).any(|own| own == tag))
                 && (!self.only_favourites || kept.favourites.contains(&entry.id))
         };
-        self.entries.iter().filter(fits).cloned().collect()
+        let found = best_first(&self.search.typed, self.entries.iter().filter(fits), |typed, entry| {
+            let mut others = vec![entry.style.text.as_str()];
+            others.extend(tags_of(entry));
+            fit(typed, &entry.style.name, &others)
+        });
+        found.into_iter().cloned().collect()
     }
 
     /// The tags of all entries, those of most entries first.

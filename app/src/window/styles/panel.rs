@@ -1,6 +1,6 @@
 //! The browser in the panel of the hairstyle.
 
-use egui::{Button, ScrollArea, TextEdit, Ui, vec2};
+use egui::{Button, Key, Modifiers, ScrollArea, Ui, vec2};
 use egui_material_icons::icons::ICON_STAR;
 use lovelock_project::Project;
 use lovelock_project::styles::{Style, StyleParts};
@@ -9,7 +9,8 @@ use super::dialogs::{self, Dialog};
 use super::tile::{GAP, Tile, height, tile};
 use super::{Browser, Entry, Hover, Kept, Request, current};
 use crate::window::control::note;
-use crate::window::theme;
+use crate::window::picker::Picked;
+use crate::window::{keys, theme};
 
 /// Time for which the pointer rests on a tile before the hair is shown in that style, seconds.
 const REST_SECS: f64 = 0.3;
@@ -31,11 +32,15 @@ enum Action {
 /// The browser: what is applied to `project`, and the user's own styles.
 pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
     browser.update(ui.ctx());
-    ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut browser.search).hint_text("Search styles");
-        let field = ui.add(field.desired_width(ui.available_width() - 104.0));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search styles"));
-        field.on_hover_text("Shows styles with these words in their name, description or tags.");
+    let picked = ui.horizontal(|ui| {
+        let width = ui.available_width() - 104.0;
+        let (field, picked) = browser.search.field(ui, "Search styles", width, false);
+        if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            browser.search.clear();
+        }
+        let tip = "Shows styles with these words in their name, description or tags. Enter applies the first, the down key goes to \
+                   the pictures.";
+        field.on_hover_text(tip);
         let save = ui.add_enabled(browser.own.is_some(), Button::new("Save as style…"));
         let tip = "Keeps this hairstyle with its colours and motion among your own.";
         if save.on_hover_text(tip).on_disabled_hover_text("The system has no folder for your data.").clicked()
@@ -43,11 +48,12 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
             let style = Style::of_project(project);
             browser.dialog = Some(Dialog::Save { style: Box::new(style), name: String::new() });
         }
+        picked
     });
     super::morph::ui(ui, project);
     parts(ui, &mut browser.parts);
     chips(ui, browser);
-    grid(ui, project, browser, kept);
+    grid(ui, project, browser, kept, picked.inner);
     for why in &browser.broken {
         ui.label(egui::RichText::new(why).small().color(theme::WRONG));
     }
@@ -97,13 +103,17 @@ fn chips(ui: &mut Ui, browser: &mut Browser) {
     });
 }
 
-fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept, picked: Picked) {
     let shown = browser.shown(kept);
+    arrows(ui, browser, picked);
+    let entered = picked.entered && !browser.search.typed.trim().is_empty();
     if shown.is_empty() {
         note(ui, "No style has all of this. Clear the search and the filters to see every style.");
     }
-    let mut action = None;
+    let first = shown.first().filter(|_| entered);
+    let mut action = first.map(|entry| (entry.clone(), Action::Apply(browser.parts)));
     let mut hovered = None;
+    browser.tiles.clear();
     let area = ScrollArea::vertical().id_salt("styles").max_height(TALL).auto_shrink([false, true]);
     area.show(ui, |ui| {
         let wide = ui.available_width() - ui.spacing().scroll.allocated_width();
@@ -124,6 +134,34 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
     preview(ui, browser, hovered);
     if let Some((entry, action)) = action {
         act(&entry, &action, project, browser, kept);
+    }
+}
+
+/// Moves the focus through the pictures by the arrow keys, and to them from the search field.
+fn arrows(ui: &Ui, browser: &mut Browser, picked: Picked) {
+    let focused = ui.memory(|memory| memory.focused());
+    let at = browser.tiles.iter().position(|id| Some(*id) == focused);
+    let next = match at {
+        None if picked.down => Some(0),
+        None => None,
+        Some(at) => {
+            let pressed = |key| keys::consume(ui.ctx(), Modifiers::NONE, key);
+            let last = browser.tiles.len() - 1;
+            if pressed(Key::ArrowRight) {
+                Some((at + 1).min(last))
+            } else if pressed(Key::ArrowLeft) {
+                Some(at.saturating_sub(1))
+            } else if pressed(Key::ArrowDown) {
+                Some(if at + COLUMNS <= last { at + COLUMNS } else { at })
+            } else if pressed(Key::ArrowUp) {
+                Some(at.checked_sub(COLUMNS).unwrap_or(at))
+            } else {
+                None
+            }
+        }
+    };
+    if let Some(id) = next.and_then(|next| browser.tiles.get(next)) {
+        ui.memory_mut(|memory| memory.request_focus(*id));
     }
 }
 
@@ -155,7 +193,12 @@ fn one(
     } else if response.clicked() {
         action = Some(Action::Apply(browser.parts));
     }
-    let over = response.hovered();
+    browser.tiles.push(response.id);
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    // Resting on it with the keyboard shows it too.
+    let over = response.hovered() || response.has_focus();
     let tip = format!("{}\n\nA click applies it. More by a right click.", look.text);
     response.on_hover_text(tip).context_menu(|ui| {
         let name = if favourite { "No favourite" } else { "Favourite" };

@@ -54,6 +54,45 @@ fn project(harness: &Shelf) -> Project {
 }
 
 #[test]
+fn a_style_is_found_and_applied_by_keys_alone() {
+    let mut harness = shelf(None);
+    control(&harness, Role::TextInput, "Search styles").click();
+    harness.run();
+    harness.event(egui::Event::Text("bob".to_owned()));
+    harness.run();
+    let first = names(&harness)[0].clone();
+    assert!(first.to_lowercase().contains("bob"), "{:?}", names(&harness));
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    let wanted = shipped().iter().find(|style| style.style.name == first).expect("a shipped style").id;
+    assert_eq!(super::current(&project(&harness)), Some(wanted));
+    // Escape clears the search; the pictures are reached and moved through by the arrow keys, which scroll to them.
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    let all = names(&harness);
+    assert_eq!(all.len(), shipped().len());
+    control(&harness, Role::TextInput, "Search styles").click();
+    harness.run();
+    harness.key_press(egui::Key::ArrowDown);
+    harness.run();
+    for _ in 0..6 {
+        harness.key_press(egui::Key::ArrowDown);
+        harness.run_steps(4);
+    }
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(30);
+    let wanted = &all[3 * 6 + 1];
+    let node = control(&harness, Role::RadioButton, wanted);
+    assert!(node.is_focused(), "{wanted}");
+    let (rect, search) = (node.rect(), control(&harness, Role::TextInput, "Search styles").rect());
+    assert!(rect.top() > search.bottom() && rect.bottom() < search.bottom() + 560.0, "{rect}");
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+    assert_eq!(&shipped()[3 * 6 + 1].style.name, wanted);
+    assert_eq!(super::current(&project(&harness)), Some(shipped()[3 * 6 + 1].id));
+}
+
+#[test]
 fn the_search_and_the_filters_find_styles() {
     let mut harness = shelf(None);
     assert_eq!(names(&harness).len(), shipped().len());
@@ -62,7 +101,7 @@ fn the_search_and_the_filters_find_styles() {
     harness.event(egui::Event::Text("red cur".to_owned()));
     harness.run();
     assert_eq!(names(&harness), ["Red curls"]);
-    harness.state_mut().state.browser.search = "no such style".to_owned();
+    harness.state_mut().state.browser.search.typed = "no such style".to_owned();
     harness.run();
     assert!(names(&harness).is_empty());
     assert!(harness.query_by_label_contains("Clear the search").is_some());

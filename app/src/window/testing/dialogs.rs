@@ -8,14 +8,18 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::{Shown, screen_of};
-use crate::window::palette::Palette;
+use crate::window::palette::{Found, Palette};
 use crate::window::path_dialog::{Answer, PathDialog, Purpose};
 
 fn palette() -> Harness<'static, Shown<(Palette, Vec<Command>)>> {
     let mut state = (Palette::default(), Vec::new());
     state.0.toggle();
     screen_of(vec2(800.0, 600.0), state, |ui, (palette, chosen): &mut (Palette, Vec<Command>)| {
-        chosen.extend(palette.show(ui.ctx(), |command| command != Command::Undo));
+        let found = palette.show(ui.ctx(), |command| command != Command::Undo);
+        chosen.extend(found.and_then(|found| match found {
+            Found::Command(info) => Some(info.command),
+            _ => None,
+        }));
     })
 }
 
@@ -60,10 +64,13 @@ fn the_palette_closes_without_a_command() {
     harness.event(Event::Text("no such thing".to_owned()));
     harness.key_press(Key::Enter);
     harness.run();
-    assert!(harness.query_by_label("No matching command").is_some(), "Enter finds nothing and stays");
+    assert!(
+        harness.query_by_label("No command and no setting is called so.").is_some(),
+        "Enter finds nothing and stays"
+    );
     harness.key_press(Key::Escape);
     harness.run();
-    assert!(harness.query_by_label("No matching command").is_none());
+    assert!(harness.query_by_label("No command and no setting is called so.").is_none());
     assert!(harness.state().state.1.is_empty());
 }
 

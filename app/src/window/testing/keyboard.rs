@@ -132,7 +132,8 @@ pub(super) fn entry<'t, S>(harness: &'t Harness<'_, S>, info: &CommandInfo) -> N
 fn menus_contain_every_command_once_and_disable_unavailable_ones() {
     let mut harness = screen_of(vec2(900.0, 700.0), None, |ui, chosen: &mut Option<Command>| {
         let enabled = |command| command != Command::Undo;
-        let asked = egui::MenuBar::new().ui(ui, |ui| keys::menus(ui, enabled)).inner;
+        let asked =
+            egui::MenuBar::new().ui(ui, |ui| keys::menus(ui, &mut keys::MenuKeys::default(), enabled)).inner;
         *chosen = asked.or(*chosen);
     });
     for group in CommandGroup::ALL {

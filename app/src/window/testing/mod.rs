@@ -3,7 +3,9 @@
 mod brushes;
 mod compare;
 mod dialogs;
+mod focus;
 mod health;
+mod help;
 mod keyboard;
 mod notices;
 mod opening;

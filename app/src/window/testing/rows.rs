@@ -4,9 +4,10 @@ use egui::accesskit::Role;
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
 use lovelock_base::settings::Unit;
+use lovelock_project::Project;
 
 use super::{Shown, click, controls, screen, tooltip_at, type_at};
-use crate::window::control::Number;
+use crate::window::control::{self, Number};
 
 /// A row, and whether a dialog covers it.
 fn row() -> Harness<'static, Shown<(f32, bool)>> {
@@ -35,6 +36,31 @@ fn a_typed_number_applies_on_enter() {
     assert_eq!(harness.state().state.0.to_bits(), 0.27_f32.to_bits(), "Escape leaves what was there");
     type_at(&mut harness, field, "30 cm");
     assert!((harness.state().state.0 - 0.3).abs() < 1e-6, "{}", harness.state().state.0);
+}
+
+#[test]
+fn a_number_beyond_its_range_is_brought_into_it_and_says_so() {
+    let mut harness = row();
+    let field = controls(&harness, Role::SpinButton)[0].1.center();
+    type_at(&mut harness, field, "90");
+    assert!((harness.state().state.0 - 0.7).abs() < 1e-6, "{}", harness.state().state.0);
+    let said = control::said(&harness.ctx);
+    assert_eq!(said, ["Length: found 90 cm; must be 2 to 70 cm. 70 cm is taken."]);
+    // A number within the range says nothing.
+    type_at(&mut harness, field, "69.5");
+    assert!((harness.state().state.0 - 0.695).abs() < 1e-6, "{}", harness.state().state.0);
+    assert!(control::said(&harness.ctx).is_empty());
+    // Settings can be typed beyond their sliders.
+    let mut harness = screen(Project::default(), |ui, project| {
+        control::settings(ui, &["length", "wisps"], &mut project.hair.groom, &Project::default().hair.groom);
+    });
+    let fields: Vec<_> = controls(&harness, Role::SpinButton).iter().map(|(_, rect)| rect.center()).collect();
+    type_at(&mut harness, fields[0], "90");
+    assert!((harness.state().state.hair.groom.length - 0.9).abs() < 1e-6, "the setting goes to 1 m");
+    assert!(control::said(&harness.ctx).is_empty());
+    type_at(&mut harness, fields[1], "5000");
+    assert_eq!(harness.state().state.hair.groom.wisps, 1000);
+    assert_eq!(control::said(&harness.ctx), ["Wisps: found 5000; must be 8 to 1000. 1000 is taken."]);
 }
 
 #[test]

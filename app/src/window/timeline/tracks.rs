@@ -1,5 +1,6 @@
 //! Tracks below the ruler: their curves, keys and buttons.
 
+use crate::words::counted;
 use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_material_icons::icons;
 use lovelock_project::tracks::Track;
@@ -127,7 +128,7 @@ fn head_ui(
         let text = egui::Label::new(RichText::new(label).size(10.5).color(color)).truncate();
         let room = vec2(ui.available_width(), head.height());
         ui.allocate_ui_with_layout(room, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.add(text).on_hover_text(format!("{label}: {} keys", track.keys.len()));
+            ui.add(text).on_hover_text(format!("{label}: {}", counted(track.keys.len(), "key", "keys")));
         });
     });
     asked

@@ -114,8 +114,8 @@ impl Choices for MaskMix {
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Multiply => ("multiply", "Within"),
-            Self::Add => ("add", "And"),
-            Self::Subtract => ("subtract", "Without"),
+            Self::Add => ("add", "Plus"),
+            Self::Subtract => ("subtract", "Minus"),
         }
     }
 }
@@ -163,8 +163,8 @@ impl Settings for MaskPart {
         Setting::choice::<MaskMix>(
             field!(Self, mix),
             "Combine",
-            "How the region is combined with those before it: where both are, where either is, or where those before \
-             are and this is not.",
+            "How the region is combined with those before it. Within: where both are. Plus: where either is. Minus: where \
+             those before are and this is not.",
         ),
         Setting::switch(
             field!(Self, inverted),

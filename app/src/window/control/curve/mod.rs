@@ -11,8 +11,8 @@ use lovelock_style::Ramp;
 
 pub(crate) use model::CurveModel;
 
-use super::number::{is_escaped, typed};
-use crate::window::theme;
+use super::number::Limits;
+use crate::window::{keys, theme};
 
 /// Height of the curve, points, and the margin around it for the handles.
 const HEIGHT: f32 = 74.0;
@@ -79,7 +79,7 @@ impl Curve<'_> {
         ui.horizontal(|ui| {
             let text = RichText::new(self.label);
             let text = if differs { text.color(theme::ACCENT) } else { text };
-            let name = ui.add(egui::Label::new(text).sense(Sense::click()));
+            let name = ui.add(egui::Label::new(text).sense(Sense::CLICK));
             if differs && name.double_clicked() {
                 value.clone_from(default);
             }
@@ -214,11 +214,9 @@ impl Curve<'_> {
             if steps != [0.0; 2] {
                 value.nudge(point, steps);
             }
-            let gone = |input: &mut egui::InputState| {
-                input.consume_key(egui::Modifiers::NONE, Key::Delete)
-                    || input.consume_key(egui::Modifiers::NONE, Key::Backspace)
-            };
-            if can_go && ui.input_mut(gone) {
+            let none = egui::Modifiers::NONE;
+            let removing = [Key::Delete, Key::Backspace];
+            if can_go && removing.into_iter().any(|key| keys::consume(ui.ctx(), none, key)) {
                 removes = Some(true);
             }
         }
@@ -249,7 +247,7 @@ impl Curve<'_> {
             let label = ui.label(RichText::new(format!("At ({name})")).small().color(theme::QUIET));
             let mut to = place * 100.0;
             let tip = "The place of the selected point: 0 % is the root, 100 % the tip.";
-            let shown = ui.add_enabled_ui(free, |ui| number(ui, &mut to, 0.0..=100.0, " %")).inner;
+            let shown = ui.add_enabled_ui(free, |ui| number(ui, "At", &mut to, 0.0..=100.0, " %")).inner;
             let fixed = "\n\nThis point stays at its place.";
             let tip = if free { tip.to_owned() } else { format!("{tip}{fixed}") };
             if shown.labelled_by(label.id).on_hover_text(&tip).on_disabled_hover_text(&tip).changed() {
@@ -257,7 +255,8 @@ impl Curve<'_> {
             }
             let label = ui.label(RichText::new("Value").small().color(theme::QUIET));
             let mut to = height * factor;
-            let shown = number(ui, &mut to, low * factor..=high * factor, unit).labelled_by(label.id);
+            let shown =
+                number(ui, "Value", &mut to, low * factor..=high * factor, unit).labelled_by(label.id);
             let shown = shown.on_hover_text("The value at the selected point.");
             if shown.double_clicked() {
                 value.restore(point, default);
@@ -343,8 +342,14 @@ impl Curve<'_> {
 }
 
 /// A number that is typed or dragged.
-fn number(ui: &mut Ui, value: &mut f32, range: std::ops::RangeInclusive<f32>, suffix: &str) -> Response {
-    let canceled = is_escaped(ui);
+fn number(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut f32,
+    range: std::ops::RangeInclusive<f32>,
+    suffix: &str,
+) -> Response {
+    let limits = Limits::of(ui, label, [range.start(), range.end()].map(|v| f64::from(*v)), (suffix, 1));
     let drag = egui::DragValue::new(value)
         .range(range)
         .clamp_existing_to_range(false)
@@ -352,7 +357,7 @@ fn number(ui: &mut Ui, value: &mut f32, range: std::ops::RangeInclusive<f32>, su
         .speed(0.5)
         .update_while_editing(false)
         .suffix(suffix)
-        .custom_parser(|text| typed(text, suffix).filter(|_| !canceled));
+        .custom_parser(limits.parser());
     ui.add_sized(vec2(58.0, ui.spacing().interact_size.y), drag)
 }
 

@@ -1,10 +1,15 @@
 //! The menu of new layers.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{PopupCloseBehavior, Ui};
+use egui::{Button, PopupCloseBehavior, ScrollArea, Ui};
 use lovelock_style::{Kind, Layer, Mask, MaskPart, MaskRegion, Operation, StyleStack, Subject};
 
 use super::LayersView;
+use crate::window::picker::Picker;
+use crate::window::search::{best_first, fit};
+
+/// Greatest height of the list of matches, points.
+const LIST: f32 = 320.0;
 
 /// Menus of new layers.
 const MENUS: [(Subject, &str); 4] = [
@@ -24,7 +29,7 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
             if let Some(kind) = choose(ui, &mut view.search)
                 && let Some(operation) = Operation::new(kind.id)
             {
-                add(stack, view, operation);
+                view.add(stack, operation);
                 view.search.clear();
                 ui.close();
             }
@@ -38,17 +43,19 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     });
 }
 
-/// Adds a layer after the selected one, in its group, and selects it.
-fn add(stack: &mut StyleStack, view: &mut LayersView, operation: Operation) {
-    let after = view.selected.and_then(|id| stack.layers.iter().position(|layer| layer.id == id));
-    let group = after.and_then(|i| stack.layers[i].group);
-    let at = after.map_or(stack.layers.len(), |i| i + 1);
-    if let Some(id) = stack.insert(at, Layer { group, ..Layer::of(operation) }) {
-        view.select(Some(id));
-    }
-}
-
 impl LayersView {
+    /// Adds a layer after the selected one, in its group, and selects it. Returns whether there was room for it.
+    pub(crate) fn add(&mut self, stack: &mut StyleStack, operation: Operation) -> bool {
+        let after = self.selected.and_then(|id| stack.layers.iter().position(|layer| layer.id == id));
+        let group = after.and_then(|i| stack.layers[i].group);
+        let at = after.map_or(stack.layers.len(), |i| i + 1);
+        let added = stack.insert(at, Layer { group, ..Layer::of(operation) });
+        if added.is_some() {
+            self.select(added);
+        }
+        added.is_some()
+    }
+
     /// Starts to paint where an operation acts: in the selected layer or in the last one that has a painted mask, or in a new layer, which
     /// acts where it is painted. Returns whether there was room for one.
     pub(crate) fn paint_map(&mut self, stack: &mut StyleStack, id: &str) -> bool {
@@ -68,46 +75,45 @@ impl LayersView {
     }
 }
 
-/// The kinds of layers by their subject, or those that fit what is searched. Returns the chosen one.
-fn choose(ui: &mut Ui, search: &mut String) -> Option<&'static Kind> {
+/// The kinds of layers by their subject, or those that fit what is searched, the best first. Returns the chosen one.
+fn choose(ui: &mut Ui, search: &mut Picker) -> Option<&'static Kind> {
     ui.set_min_width(170.0);
-    let field = egui::TextEdit::singleline(search).hint_text("Search").char_limit(40);
-    let field = ui.add(field.desired_width(f32::INFINITY));
-    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search layers"));
-    if ui.memory(|memory| memory.focused().is_none()) {
-        field.request_focus();
-    }
-    let wanted = search.trim().to_lowercase();
+    let (field, picked) = search.field(ui, "Search layers", 170.0, true);
     let mut chosen = None;
-    let mut entry = |ui: &mut Ui, kind: &'static Kind| {
-        if ui.button(kind.label).on_hover_text(kind.text).clicked() {
-            chosen = Some(kind);
-        }
-    };
     // Scissors make their own layers.
     let kinds = || Operation::KINDS.iter().filter(|kind| kind.id != "scissors");
-    if wanted.is_empty() {
+    if search.typed.trim().is_empty() {
         for (subject, name) in MENUS {
             if kinds().any(|kind| kind.subject == subject) {
-                ui.menu_button(name, |ui| {
-                    kinds().filter(|kind| kind.subject == subject).for_each(|kind| entry(ui, kind));
+                let menu = ui.menu_button(name, |ui| {
+                    for kind in kinds().filter(|kind| kind.subject == subject) {
+                        if ui.button(kind.label).on_hover_text(kind.text).clicked() {
+                            chosen = Some(kind);
+                        }
+                    }
                 });
+                // From here on the arrow keys move through the menus.
+                if picked.down && field.has_focus() {
+                    menu.response.request_focus();
+                }
             }
         }
         return chosen;
     }
-    let fits = |kind: &&Kind| {
-        [kind.label, kind.text].iter().any(|text| text.to_lowercase().contains(wanted.as_str()))
-    };
-    let found: Vec<_> = kinds().filter(fits).collect();
-    for kind in &found {
-        entry(ui, kind);
-    }
+    let found = best_first(&search.typed, kinds(), |typed, kind| fit(typed, kind.label, &[kind.text]));
+    search.among(found.len());
+    let most = ScrollArea::vertical().max_height(LIST);
+    most.show(ui, |ui| {
+        for (i, kind) in found.iter().enumerate() {
+            let row = ui.add(Button::selectable(search.is_chosen(i), kind.label)).on_hover_text(kind.text);
+            search.show(i, &row);
+            if row.clicked() || (picked.entered && search.is_chosen(i)) {
+                chosen = Some(*kind);
+            }
+        }
+    });
     if found.is_empty() {
         ui.weak("No layer has that name.");
-    }
-    if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-        chosen = chosen.or(found.first().copied());
     }
     chosen
 }

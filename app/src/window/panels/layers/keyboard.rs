@@ -6,20 +6,14 @@ use lovelock_style::StyleStack;
 use super::LayersView;
 use super::list::Row;
 use super::picked::{duplicate, remove};
+use crate::window::keys;
 
 /// Carries out the keys that were pressed while the list has them.
 pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     if !view.has_keys || !ui.is_enabled() || ui.ctx().text_edit_focused() || view.renamed.is_some() {
         return;
     }
-    let pressed = |modifiers: Modifiers, key: Key| {
-        let is_pressed = ui.input_mut(|input| input.consume_key(modifiers, key));
-        if is_pressed {
-            // An arrow key also moves the keyboard focus.
-            ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
-        }
-        is_pressed
-    };
+    let pressed = |modifiers: Modifiers, key: Key| keys::consume(ui.ctx(), modifiers, key);
     if pressed(Modifiers::COMMAND, Key::D) {
         duplicate(stack, view);
     }

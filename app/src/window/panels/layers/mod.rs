@@ -15,6 +15,7 @@ use lovelock_style::{Layer, Mask, MaskBrush, Operation, StyleStack};
 
 use super::pigments::pigments;
 use crate::window::control::{all_settings, curve, note, section, settings};
+use crate::window::picker::Picker;
 use list::Row;
 use thumbnail::Thumbnails;
 
@@ -38,7 +39,7 @@ pub(crate) struct LayersView {
     /// Whether keys go to the list, because it was clicked last.
     has_keys: bool,
     /// What is searched in the menu of new layers.
-    search: String,
+    search: Picker,
     thumbnails: Thumbnails,
     /// Passes in which the panel is scrolled to the list, while sections unfold.
     revealed: u8,

@@ -3,7 +3,7 @@
 use egui::{Align, Color32, Layout, Rect, Response, RichText, Ui, UiBuilder, Widget, pos2, vec2};
 use egui_material_icons::icons::{ICON_DRAG_INDICATOR, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
-use crate::window::control::{is_escaped, typed};
+use crate::window::control::{Limits, is_escaped};
 use crate::window::theme;
 
 /// Height of a row, and the margin around what is in it, points.
@@ -108,7 +108,7 @@ pub(super) fn rename(ui: &mut Ui, rect: Rect, text: &mut String, longest: usize)
 
 /// The weight of a row, marked where it is not 100 %. A double-click restores that.
 pub(super) fn weight(ui: &mut Ui, rect: Rect, value: &mut f32, (name, tip): (&str, &str)) {
-    let canceled = is_escaped(ui);
+    let limits = Limits::of(ui, name, [0.0, 200.0], (" %", 0));
     let mut percent = *value * 100.0;
     let differs = (*value - 1.0).abs() > 1e-6;
     let drag = egui::DragValue::new(&mut percent)
@@ -117,7 +117,7 @@ pub(super) fn weight(ui: &mut Ui, rect: Rect, value: &mut f32, (name, tip): (&st
         .suffix(" %")
         .max_decimals(0)
         .update_while_editing(false)
-        .custom_parser(|text| typed(text, " %").filter(|_| !canceled));
+        .custom_parser(limits.parser());
     let place = UiBuilder::new().id_salt("weight").max_rect(rect);
     let mut child = ui.new_child(place);
     if differs {

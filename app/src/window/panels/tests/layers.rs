@@ -9,6 +9,7 @@ use lovelock_style::operations::{Curl, Dye, Length, Melanin, Wave};
 use lovelock_style::{Layer, MaskRegion, Operation, Ramp, StyleStack};
 
 use super::{Bench, panel};
+use crate::window::search::{best_first, fit};
 use crate::window::testing::{
     Shown, click_at, control, controls, double_click, drag, is_marked, type_at, unfold,
 };
@@ -115,6 +116,42 @@ fn the_menu_of_layers_is_searched() {
     click(&mut harness, "Frizz");
     assert_eq!(kinds(&harness), ["length", "wave", "frizz", "curl"], "after the selected one");
     assert_eq!(selected(&harness), Some("frizz"));
+}
+
+#[test]
+fn the_search_of_layers_is_used_by_keys_alone() {
+    let mut harness = with_layers();
+    let before = kinds(&harness).len();
+    click(&mut harness, "Add layer");
+    harness.event(egui::Event::Text("curl".to_owned()));
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(kinds(&harness).len(), before + 1);
+    assert_eq!(selected(&harness), Some("curl"), "the exact name comes first");
+    assert!(harness.query_by_label("Search layers").is_none(), "the menu is closed");
+    // The arrow keys choose another match, and Escape adds nothing.
+    click(&mut harness, "Add layer");
+    harness.event(egui::Event::Text("st".to_owned()));
+    harness.run();
+    harness.key_press(Key::ArrowDown);
+    harness.run();
+    harness.key_press(Key::ArrowUp);
+    harness.key_press(Key::ArrowDown);
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    let second = best_first("st", lovelock_style::Operation::KINDS, |typed, kind| {
+        fit(typed, kind.label, &[kind.text])
+    })[1];
+    assert_eq!(selected(&harness), Some(second.id));
+    let count = kinds(&harness).len();
+    click(&mut harness, "Add layer");
+    harness.event(egui::Event::Text("curl".to_owned()));
+    harness.run();
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert_eq!(kinds(&harness).len(), count);
 }
 
 #[test]

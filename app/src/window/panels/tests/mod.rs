@@ -3,6 +3,7 @@ mod layers;
 mod one_by_one;
 mod reasons;
 mod recording;
+mod reveal;
 mod scalp;
 mod sound;
 mod surroundings;

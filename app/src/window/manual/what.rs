@@ -1,0 +1,178 @@
+//! *What is this?*: a click on a control opens what the manual writes about it.
+
+use egui::accesskit;
+use egui::{
+    Area, Context, CornerRadius, Id, Key, LayerId, Modifiers, Order, Pos2, Rect, Sense, Stroke, StrokeKind,
+};
+use lovelock_base::settings::Info;
+
+use crate::window::{keys, theme};
+
+/// A control that the user asks about.
+#[derive(Clone, Debug)]
+pub(crate) struct Asked {
+    /// Its name in the window.
+    pub(crate) name: String,
+    /// The setting that it changes, if it is made from a table.
+    pub(crate) info: Option<&'static Info>,
+}
+
+/// The mode in which a click asks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WhatIsThis {
+    is_on: bool,
+    /// Whether names of controls were made already, for a screen reader.
+    had_names: bool,
+    /// The control that had the focus: no click is needed.
+    focused: Option<Id>,
+}
+
+/// The rows of this pass that are made from tables: where they are, and what they set.
+#[derive(Clone, Default)]
+struct Rows(Vec<(Rect, LayerId, &'static Info)>);
+
+fn key() -> Id {
+    Id::unique("what is this")
+}
+
+/// Notes where the row of a setting is, if anybody asks.
+pub(crate) fn note_row(ui: &egui::Ui, info: &'static Info, control: Rect) {
+    let rect = Rect::from_x_y_ranges(ui.max_rect().x_range(), control.y_range()).intersect(ui.clip_rect());
+    let layer = ui.layer_id();
+    ui.data_mut(|data| {
+        if let Some(mut rows) = data.get_temp::<Rows>(key()) {
+            rows.0.push((rect, layer, info));
+            data.insert_temp(key(), rows);
+        }
+    });
+}
+
+impl WhatIsThis {
+    /// Starts or ends the mode.
+    pub(crate) fn toggle(&mut self, ctx: &Context) {
+        self.is_on = !self.is_on;
+        if self.is_on {
+            self.had_names = ctx.viewport(|viewport| viewport.this_pass.accesskit_state.is_some());
+            ctx.enable_accesskit();
+            // The entry of the menu that starts this is no control to ask about.
+            let focused = ctx.memory(|memory| memory.focused());
+            self.focused = focused.filter(|id| {
+                let layer = ctx.viewport(|viewport| viewport.prev_pass.widgets.order(*id));
+                layer.is_some_and(|(layer, _)| layer.order == Order::Background)
+            });
+            ctx.data_mut(|data| data.insert_temp(key(), Rows::default()));
+        } else {
+            self.end(ctx);
+        }
+        ctx.request_repaint();
+    }
+
+    fn end(&mut self, ctx: &Context) {
+        self.is_on = false;
+        if !self.had_names {
+            ctx.disable_accesskit();
+        }
+        ctx.data_mut(|data| data.remove::<Rows>(key()));
+    }
+
+    /// Shows what the pointer is over and ends with a click. Comes after all controls. Returns what was clicked; its name is empty
+    /// where there is no control.
+    pub(crate) fn end_pass(&mut self, ctx: &Context) -> Option<Asked> {
+        if !self.is_on {
+            return None;
+        }
+        if keys::consume(ctx, Modifiers::NONE, Key::Escape) {
+            self.end(ctx);
+            return None;
+        }
+        if let Some(id) = self.focused {
+            let rows = take_rows(ctx);
+            let has_names = ctx.viewport(|viewport| viewport.this_pass.accesskit_state.is_some());
+            let rect = ctx.viewport(|viewport| viewport.this_pass.widgets.get(id).map(|w| w.interact_rect));
+            ctx.request_repaint();
+            if !has_names {
+                return None;
+            }
+            self.end(ctx);
+            return rect.and_then(|rect| under(ctx, rect.center(), &rows)).map(|(_, asked)| asked);
+        }
+        let screen = ctx.content_rect();
+        // The click is that of this layer, so that no control gets it.
+        let cover =
+            Area::new(key()).order(Order::Tooltip).fixed_pos(screen.min).movable(false).show(ctx, |ui| {
+                let response = ui.allocate_rect(screen, Sense::CLICK);
+                ui.painter().text(
+                    screen.center_top() + egui::vec2(0.0, 34.0),
+                    egui::Align2::CENTER_TOP,
+                    "Click a control to read about it. Escape ends this.",
+                    egui::FontId::proportional(14.0),
+                    theme::ACCENT,
+                );
+                response.on_hover_cursor(egui::CursorIcon::Help)
+            });
+        let cover = cover.inner;
+        let rows = take_rows(ctx);
+        ctx.request_repaint();
+        let at = cover.hover_pos().or_else(|| cover.interact_pointer_pos())?;
+        let found = under(ctx, at, &rows);
+        if let Some((rect, _)) = &found {
+            let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, key()));
+            let edge = Stroke::new(1.5, theme::ACCENT);
+            painter.rect_stroke(rect.expand(2.0), CornerRadius::same(4), edge, StrokeKind::Middle);
+        }
+        if !cover.clicked() {
+            return None;
+        }
+        self.end(ctx);
+        Some(found.map_or(Asked { name: String::new(), info: None }, |(_, asked)| asked))
+    }
+}
+
+/// The rows of this pass. Those of the next one are noted anew.
+fn take_rows(ctx: &Context) -> Rows {
+    ctx.data_mut(|data| {
+        let rows = data.get_temp::<Rows>(key()).unwrap_or_default();
+        data.insert_temp(key(), Rows::default());
+        rows
+    })
+}
+
+/// The control at a place: the row of a setting, or whatever has a name.
+fn under(ctx: &Context, at: Pos2, rows: &Rows) -> Option<(Rect, Asked)> {
+    // From the top layer down.
+    let layers: Vec<LayerId> = ctx.memory(|memory| memory.layer_ids().collect());
+    let above = layers.into_iter().rev().chain([LayerId::background()]);
+    for layer in above.filter(|layer| layer.order != Order::Tooltip) {
+        if let Some((rect, _, info)) =
+            rows.0.iter().rev().find(|(rect, of, _)| *of == layer && rect.contains(at))
+        {
+            return Some((*rect, Asked { name: info.label.to_owned(), info: Some(info) }));
+        }
+        let widgets: Vec<(Id, Rect)> = ctx.viewport(|viewport| {
+            let widgets = viewport.this_pass.widgets.get_layer(layer);
+            widgets.filter(|w| w.interact_rect.contains(at)).map(|w| (w.id, w.interact_rect)).collect()
+        });
+        // The smallest is the innermost.
+        let named = widgets.into_iter().filter_map(|(id, rect)| Some((rect, name_of(ctx, id)?)));
+        if let Some((rect, name)) = named.min_by(|a, b| a.0.area().total_cmp(&b.0.area())) {
+            return Some((rect, Asked { name, info: None }));
+        }
+    }
+    None
+}
+
+/// The name that a control has for screen readers.
+fn name_of(ctx: &Context, id: Id) -> Option<String> {
+    ctx.viewport(|viewport| {
+        let nodes = &viewport.this_pass.accesskit_state.as_ref()?.nodes;
+        let node: &accesskit::Node = nodes.get(&id)?;
+        let own = node.label().map(str::to_owned).filter(|label| !label.is_empty());
+        // Controls of rows are named by another node.
+        let by = || {
+            let by = node.labelled_by().first()?;
+            let named = nodes.iter().find(|(id, _)| id.accesskit_id() == *by)?;
+            named.1.label().or_else(|| named.1.value()).map(str::to_owned)
+        };
+        own.or_else(by)
+    })
+}

@@ -1,0 +1,61 @@
+//! The palette jumps to the control of a setting.
+
+use egui::{ScrollArea, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_project::Project;
+use lovelock_project::project::settings_of;
+
+use super::{Bench, PANELS};
+use crate::window::control::{self, section};
+use crate::window::testing::{Shown, screen_of};
+
+/// All panels, folded, in a column of the height of a small window, and the settings that were not found.
+fn panels() -> Harness<'static, Shown<(Bench, Vec<&'static str>)>> {
+    let state = (Bench::new(Project::default()), Vec::new());
+    screen_of(vec2(300.0, 500.0), state, |ui, (bench, missing): &mut (Bench, Vec<&'static str>)| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (title, show) in PANELS {
+                section(ui, title, false, |ui| show(ui, bench));
+            }
+        });
+        missing.extend(control::end_reveal(ui.ctx()).map(|info| info.name));
+    })
+}
+
+fn show(harness: &mut Harness<'_, Shown<(Bench, Vec<&'static str>)>>, path: &str) {
+    let entry = settings_of("").into_iter().find(|entry| entry.path == path).expect("a setting");
+    control::reveal(&harness.ctx, entry.info);
+    harness.run_steps(40);
+}
+
+#[test]
+fn a_setting_is_unfolded_scrolled_to_and_focused() {
+    let mut harness = panels();
+    for (path, label) in [
+        ("hair.groom.curl_radius", "Curl radius"),
+        ("simulation.wind.speed", "Wind speed"),
+        ("picture.exposure_stops", "Exposure"),
+        ("hair.groom.length", "Length"),
+    ] {
+        let before = harness.query_all_by_label(label).count();
+        assert!(before == 0 || path.ends_with("length"), "{label} is folded before");
+        show(&mut harness, path);
+        assert!(harness.state().state.1.is_empty(), "{path}: {:?}", harness.state().state.1);
+        let focused = harness.query_all_by(|node| node.is_focused()).find(|node| node.rect().is_positive());
+        let rect = focused.unwrap_or_else(|| panic!("{path}: nothing is focused")).rect();
+        assert!(rect.top() >= 0.0 && rect.bottom() <= 500.0, "{path}: {rect}");
+        let named =
+            harness.get_all_by_label(label).any(|node| node.rect().y_range().intersects(rect.y_range()));
+        assert!(named, "{path}: the control beside the label is focused");
+    }
+}
+
+#[test]
+fn a_setting_without_a_control_says_so() {
+    let mut harness = panels();
+    show(&mut harness, "camera.distance");
+    assert_eq!(harness.state().state.1, ["distance"]);
+    // Nothing was unfolded by looking for it.
+    assert_eq!(harness.query_all_by_label("Wind speed").count(), 0);
+}
