@@ -198,6 +198,7 @@ impl Focus {
     }
 
     /// Whether the image has the focus.
+    #[cfg(test)]
     pub(crate) fn is_at_image(&self) -> bool {
         self.area == Area::Image
     }

@@ -5,7 +5,7 @@ mod number;
 mod reveal;
 mod setting;
 
-use egui::{Id, PointerButton, Response, RichText, Sense, Ui, Vec2};
+use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
 pub(crate) use number::{Limits, Number, is_escaped, typed};
@@ -35,6 +35,9 @@ fn said_key() -> Id {
 pub(crate) fn said(ctx: &egui::Context) -> Vec<String> {
     ctx.data_mut(|data| data.remove_temp(said_key())).unwrap_or_default()
 }
+
+/// The smallest text of a name, as a fraction of the usual.
+const SMALLEST: f32 = 0.8;
 
 /// A choice among a few.
 pub(crate) fn choice<T: Copy + PartialEq>(
@@ -109,7 +112,12 @@ pub(crate) fn row<T>(
     add: impl FnOnce(&mut Ui, &mut T) -> Response,
 ) -> Response {
     ui.horizontal(|ui| {
-        let text = RichText::new(label);
+        // A longer name is written smaller, so that none is cut off.
+        let plain = egui::WidgetText::from(label);
+        let galley = plain.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);
+        let size = TextStyle::Body.resolve(ui.style()).size;
+        let fitting = size * (LABEL_WIDTH / galley.size().x.max(1.0)).clamp(SMALLEST, 1.0);
+        let text = RichText::new(label).size((2.0 * fitting).floor() / 2.0);
         let text = if differs { text.color(theme::ACCENT) } else { text };
         let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
         let name = ui

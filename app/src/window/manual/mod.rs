@@ -32,6 +32,8 @@ pub(crate) struct Manual {
     /// A block that is marked, and since when, seconds.
     marked: Option<(Place, Option<f64>)>,
     search: Picker,
+    /// Whether the search gets the focus, because the manual was just opened.
+    is_new: bool,
     /// The width of the text in the last pass, and the heights of the blocks at it.
     heights: (usize, f32, Vec<f32>),
     pictures: BTreeMap<&'static str, Option<TextureHandle>>,
@@ -46,6 +48,7 @@ impl Manual {
     /// Opens or closes the manual.
     pub(crate) fn toggle(&mut self) {
         self.is_open = !self.is_open;
+        self.is_new = self.is_open;
     }
 
     /// Opens the manual at a place, which is marked for a moment if it is not the beginning of a page.

@@ -77,7 +77,10 @@ impl Manual {
                 self.back();
             }
         });
-        let (_, picked) = self.search.field(ui, "Search the manual", CONTENTS - 8.0, true);
+        let (field, picked) = self.search.field(ui, "Search the manual", CONTENTS - 8.0, false);
+        if std::mem::take(&mut self.is_new) {
+            field.request_focus();
+        }
         let typed = self.search.typed.clone();
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         ScrollArea::vertical().id_salt("contents").auto_shrink(false).show(ui, |ui| {
