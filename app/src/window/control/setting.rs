@@ -26,8 +26,27 @@ pub(crate) fn setting<S: Settings>(ui: &mut Ui, name: &str, settings: &mut S, de
     if value != before {
         // A slider may offer values between those that are allowed.
         setting.set(settings, setting.info.clamp(value, before));
+        // More can be typed than dragged, and numbers may limit each other.
+        if !ui.input(|input| input.pointer.any_down()) {
+            reconcile(ui, settings);
+        }
     }
     response
+}
+
+/// Brings settings that limit each other into agreement, and says which of them has changed.
+fn reconcile<S: Settings>(ui: &Ui, settings: &mut S) {
+    let before = settings.clone();
+    settings.reconcile();
+    for Setting { info, .. } in S::TABLE {
+        let of = |settings: &S| entry::<S>(info.name).get(settings);
+        let (found, taken) = (of(&before), of(settings));
+        if found != taken {
+            let (found, taken) = (info.format(found), info.format(taken));
+            let sentence = format!("{}: found {found}; other settings limit it to {taken}.", info.label);
+            super::say(ui.ctx(), sentence);
+        }
+    }
 }
 
 /// The rows of every setting in the struct's own table.
