@@ -2,7 +2,6 @@
 
 mod cli;
 mod window;
-mod words;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;

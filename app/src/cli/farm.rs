@@ -1,6 +1,6 @@
 //! `lovelock farm` and `lovelock assemble`.
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use lovelock_jobs::farm::{FarmReport, FarmRequest, assemble, farm};
 use lovelock_project::error::ProjectError;
 

@@ -1,6 +1,6 @@
 //! `lovelock style`.
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use lovelock_brush::StrokeFile;
 use lovelock_jobs::strokes::StrokeFilm;
 use lovelock_project::error::ProjectError;

@@ -1,6 +1,6 @@
 //! One pass of the window, from top to bottom.
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use std::sync::Arc;
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};

@@ -42,7 +42,7 @@ mod tools;
 mod viewport;
 mod wall;
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

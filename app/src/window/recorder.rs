@@ -1,6 +1,6 @@
 //! A recording that runs in the background.
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use std::path::Path;
 use std::sync::Arc;
 

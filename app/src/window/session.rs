@@ -1,6 +1,6 @@
 //! The threads behind the window: simulation and rendering, with their latest results.
 
-use crate::words::counted;
+use lovelock_base::words::counted;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;

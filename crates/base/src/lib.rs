@@ -9,3 +9,4 @@ pub mod settings;
 pub mod statistics;
 pub mod triangle;
 pub mod watch;
+pub mod words;

@@ -1,8 +1,8 @@
 //! The hairstyle: a shipped style and its controls, or a file and how it is placed.
 
-use crate::words::counted;
 use egui::Ui;
 use lovelock_base::settings::Choices;
+use lovelock_base::words::counted;
 use lovelock_groom::{HAIR_FORMATS, ImportSettings, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{HairSection, HairSource};

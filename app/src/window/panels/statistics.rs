@@ -1,8 +1,8 @@
 //! Rendering times and facts about the scene.
 
-use crate::words::counted;
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
+use lovelock_base::words::counted;
 use lovelock_render::PassTime;
 use lovelock_session::stats::{PassHistory, Stage, StageHistory};
 

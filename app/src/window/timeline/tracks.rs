@@ -1,8 +1,8 @@
 //! Tracks below the ruler: their curves, keys and buttons.
 
-use crate::words::counted;
 use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_material_icons::icons;
+use lovelock_base::words::counted;
 use lovelock_project::tracks::Track;
 
 use super::scale::Scale;

@@ -1,5 +1,6 @@
 //! Polylines of Wavefront OBJ: the records `v` and `l`. The rest of a file is ignored.
 
+use lovelock_base::words::counted;
 use std::fmt::Write as _;
 use std::io::BufRead;
 
@@ -160,7 +161,8 @@ impl Content {
         }
         let mut notes = Vec::new();
         if self.faces > 0 {
-            notes.push(format!("{} faces were left out: only lines are hair.", self.faces));
+            let faces = counted(self.faces, "face was", "faces were");
+            notes.push(format!("{faces} left out: only lines are hair."));
         }
         let chains = chain(&self.pairs, self.positions.len());
         let (mut counts, mut vertices) = (Vec::new(), Vec::new());

@@ -3,6 +3,7 @@
 //! The format specifies none of these. Each rule here is correct for the files in circulation, and the
 //! settings override all of them.
 
+use lovelock_base::words::counted;
 use std::path::Path;
 
 use glam::{Affine3A, Quat, Vec3};
@@ -177,7 +178,8 @@ fn overrule_offsets(raw: &RawMotion, figure: &Humanoid, motion: &mut MotionFile)
         }
     }
     if overruled > 0 {
-        motion.notes.push(format!("the positions of {overruled} joints overrule their offsets"));
+        let joints = counted(overruled, "joint overrule its offset", "joints overrule their offsets");
+        motion.notes.push(format!("the positions of {joints}"));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Meshes as pieces of the surface: triangles, normals, weights and blend shapes.
 
+use lovelock_base::words::counted;
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3};
@@ -68,7 +69,8 @@ impl Reader<'_> {
             }
         }
         if hidden > 0 {
-            notes.push(format!("left out, because they are hidden in the file: {hidden} meshes"));
+            let meshes = counted(hidden, "mesh", "meshes");
+            notes.push(format!("left out, because hidden in the file: {meshes}"));
         }
         let mut worn = WornHair::new(settings);
         for &(node, mesh) in &parts {
@@ -82,9 +84,8 @@ impl Reader<'_> {
             }
         }
         if textured > 0 {
-            notes.push(format!(
-                "{textured} materials have textures, which are ignored; only their base colour is used"
-            ));
+            let materials = counted(textured, "material has", "materials have");
+            notes.push(format!("{materials} textures, which are ignored; only the base colour is used"));
         }
         Ok(())
     }

@@ -9,6 +9,7 @@ mod nodes;
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::watch::{Cancelled, Watch};
+use lovelock_base::words::counted;
 use ufbx::{
     AllocatorOpts, CoordinateAxes, CoordinateAxis, ErrorType, GeometryTransformHandling, InheritModeHandling,
     LoadOpts, ProgressCb, ProgressResult, Scene, SpaceConversion,
@@ -213,7 +214,9 @@ fn describe(scene: &Scene, bytes: &[u8]) -> String {
     if value.is_some_and(|value| value != 0) {
         return "an encrypted document".to_owned();
     }
-    format!("{} nodes and {} meshes without a usable triangle", scene.nodes.len(), scene.meshes.len())
+    let nodes = counted(scene.nodes.len(), "node", "nodes");
+    let meshes = counted(scene.meshes.len(), "mesh", "meshes");
+    format!("{nodes} and {meshes} without a usable triangle")
 }
 
 fn vec3(v: ufbx::Vec3) -> Vec3 {

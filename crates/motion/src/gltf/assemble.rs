@@ -1,5 +1,6 @@
 //! Assembles a body and its clips from the nodes, meshes and animations of a document.
 
+use lovelock_base::words::counted;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::Affine3A;
@@ -216,11 +217,9 @@ fn describe_contents(document: &Document, dropped: &BTreeMap<String, u64>) -> St
         .iter()
         .filter_map(|&what| dropped.get(what).map(|n| format!("{n} {} dropped", what.replace('_', " "))))
         .collect();
-    let found = format!(
-        "{} nodes and {} meshes without a usable triangle",
-        document.nodes.len(),
-        document.meshes.len()
-    );
+    let nodes = counted(document.nodes.len(), "node", "nodes");
+    let meshes = counted(document.meshes.len(), "mesh", "meshes");
+    let found = format!("{nodes} and {meshes} without a usable triangle");
     if dropped_parts.is_empty() { found } else { format!("{found} ({})", dropped_parts.join(", ")) }
 }
 
@@ -235,8 +234,7 @@ fn note_textures(document: &Document, notes: &mut Vec<String>) {
     let textured =
         document.materials.iter().filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some()).count();
     if textured > 0 && !document.textures.is_empty() {
-        notes.push(format!(
-            "{textured} materials have textures, which are ignored; only their base colour is used"
-        ));
+        let materials = counted(textured, "material has", "materials have");
+        notes.push(format!("{materials} textures, which are ignored; only the base colour is used"));
     }
 }

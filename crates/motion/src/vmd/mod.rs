@@ -8,6 +8,7 @@ mod parse;
 mod skeleton;
 mod track;
 
+use lovelock_base::words::counted;
 use std::path::Path;
 
 use glam::{Affine3A, Quat, Vec3};
@@ -75,7 +76,8 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
         }
     }
     if unknown > 0 {
-        motion.notes.push(format!("{unknown} bones without a standard name were left out"));
+        let many = "bones without a standard name were left out";
+        motion.notes.push(counted(unknown, "bone without a standard name was left out", many));
     }
     let by_targets = figure.legs.iter().filter(|leg| leg.is_some()).count();
     let how = if by_targets > 0 { "follow the targets of their feet" } else { "are turned joint by joint" };

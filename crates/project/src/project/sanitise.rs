@@ -1,6 +1,7 @@
 //! Clamps all values to their ranges, so that no file and no slider can break an image.
 
 use lovelock_base::settings::Settings;
+use lovelock_base::words::counted;
 use lovelock_render::MAX_LIGHTS;
 
 use super::super::Project;
@@ -32,7 +33,7 @@ impl Project {
         }
         let (found, kept) = (self.compare.panes.len(), project.compare.panes.len());
         if found != kept {
-            note(Place::Compare, vec![format!("there were {found} panes; there are {kept} now")]);
+            note(Place::Compare, vec![format!("found {}; {kept} now", counted(found, "pane", "panes"))]);
         }
         let preroll_of = |timeline: &TimelineSection| TimelineSection {
             preroll_secs: timeline.preroll_secs,
@@ -41,7 +42,10 @@ impl Project {
         note(Place::Timeline, differences(&preroll_of(&self.timeline), &preroll_of(&project.timeline)));
         let lost = self.timeline.markers.len() - project.timeline.markers.len();
         if lost > 0 {
-            note(Place::Timeline, vec![format!("{lost} markers without a time, or too many, were left out")]);
+            note(
+                Place::Timeline,
+                vec![format!("left out: {} without a time, or too many", counted(lost, "marker", "markers"))],
+            );
         }
         let keys =
             |project: &Self| project.timeline.tracks.iter().map(|track| track.keys.len()).sum::<usize>();
@@ -49,7 +53,10 @@ impl Project {
         if lost > 0 {
             note(
                 Place::Timeline,
-                vec![format!("{lost} keys of tracks without a time or a value, or too many, were left out")],
+                vec![format!(
+                    "left out: {} of tracks without a time or a value, or too many",
+                    counted(lost, "key", "keys")
+                )],
             );
         }
         for (before, after) in self.lights.iter().zip(&project.lights) {

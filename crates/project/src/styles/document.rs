@@ -141,16 +141,6 @@ impl Style {
         grown.then(|| u64::from(groom.wisps) * u64::from(groom.strands_per_wisp))
     }
 
-    /// Whether the style has what somebody looks for: every word of `words` begins a word of its name, its text or its tags, or stands
-    /// inside its name, whatever the case. Nothing is found in everything.
-    pub fn matches(&self, words: &str) -> bool {
-        let name = self.name.to_lowercase();
-        let all = format!("{name} {} {}", self.text, self.tags.join(" ")).to_lowercase();
-        words.to_lowercase().split_whitespace().all(|word| {
-            name.contains(word) || all.split(|c: char| !c.is_alphanumeric()).any(|w| w.starts_with(word))
-        })
-    }
-
     /// The style with words that can be shown in one line, within their lengths.
     fn tidied(mut self) -> Self {
         let short = |text: &str, most: usize| -> String {

@@ -148,22 +148,6 @@ fn a_picked_hair_file_can_be_returned_to() {
 }
 
 #[test]
-fn words_find_styles() {
-    let style = Style {
-        name: "Long waves".to_owned(),
-        text: "Golden waves far past the shoulders.".to_owned(),
-        tags: vec!["loose".to_owned()],
-        ..Style::default()
-    };
-    for words in ["", "LONG", "wav lo", "gold", "loose"] {
-        assert!(style.matches(words), "{words}");
-    }
-    for words in ["short", "long short", "olden"] {
-        assert!(!style.matches(words), "{words}");
-    }
-}
-
-#[test]
 fn every_file_reads_without_problems_and_says_what_it_is() {
     let mut ids = std::collections::BTreeSet::new();
     for (id, text) in shipped::FILES {

@@ -11,6 +11,7 @@ mod values;
 
 use glam::{DMat4, Vec3};
 use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes, metadata_value};
+use lovelock_base::words::counted;
 
 use super::HairFileError;
 use super::basis::Spread;
@@ -251,9 +252,9 @@ impl Hair {
         if guides == 0 || guides == self.guides.len() {
             return self.raw;
         }
-        self.raw
-            .notes
-            .push(format!("Left out {guides} guides (groom_guide), which stand for the other curves."));
+        let many = "guides (groom_guide), which stand";
+        let guides = counted(guides, "guide (groom_guide), which stands", many);
+        self.raw.notes.push(format!("Left out {guides} for the other curves."));
         let of_points: Vec<bool> = (self.guides.iter().zip(&self.raw.point_counts))
             .flat_map(|(&is_guide, &count)| std::iter::repeat_n(!is_guide, count as usize))
             .collect();

@@ -6,6 +6,7 @@
 mod shared;
 mod write;
 
+use lovelock_base::words::counted;
 use std::fs::File as DiskFile;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -328,11 +329,12 @@ impl Lines<'_> {
             return Err(self.malformed(found, "primitives of the mode LINES, LINE_LOOP or LINE_STRIP"));
         }
         if self.surfaces > 0 {
-            let note = format!(
-                "{} meshes of points or triangles were left out: only lines are hair.",
-                self.surfaces
+            let meshes = counted(
+                self.surfaces,
+                "mesh of points or triangles was",
+                "meshes of points or triangles were",
             );
-            self.raw.notes.push(note);
+            self.raw.notes.push(format!("{meshes} left out: only lines are hair."));
         }
         self.raw.thickness = self.widths;
         self.raw.colours = self.colours;

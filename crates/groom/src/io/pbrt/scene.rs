@@ -1,5 +1,6 @@
 //! The state of a scene while its directives are read.
 
+use lovelock_base::words::counted;
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -97,9 +98,9 @@ impl<'a> Scene<'a> {
             }
         }
         if self.unfit > 0 {
+            let curves = counted(self.unfit, "curve", "curves");
             self.notes.push(format!(
-                "Left out {} curves whose number of control points does not fit their degree and basis.",
-                self.unfit
+                "Left out {curves} whose number of control points does not fit the degree and basis."
             ));
         }
         if self.strands.counts.is_empty() {
