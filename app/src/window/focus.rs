@@ -87,7 +87,8 @@ impl Focus {
         }
         ctx.input(|input| {
             let moves = [Key::Tab, Key::ArrowUp, Key::ArrowDown, Key::ArrowLeft, Key::ArrowRight];
-            self.is_marked |= moves.into_iter().any(|key| input.key_pressed(key));
+            // At the image the same keys are shortcuts.
+            self.is_marked |= focused.is_some() && moves.into_iter().any(|key| input.key_pressed(key));
             self.is_marked &= !input.pointer.any_pressed();
         });
         self.controls = Default::default();
