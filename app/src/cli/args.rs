@@ -139,6 +139,9 @@ pub(crate) struct Record {
     /// manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
+    /// Replace a take of that name, or what this program did not make. Films, curves and images of this program are always replaced.
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) film: FilmArguments,
     /// Shadow method.
@@ -341,6 +344,9 @@ pub(crate) struct Presets {
     /// Hairstyles side by side in the sheet.
     #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) columns: Option<u32>,
+    /// Replace the sheet even if it is no image.
+    #[arg(long, requires = "sheet")]
+    pub(crate) force: bool,
     /// Write the thumbnails of the window's browser into this folder, ID.jpg each; those of the program are in assets/styles.
     #[arg(long, value_name = "DIR", conflicts_with = "sheet")]
     pub(crate) thumbnails: Option<PathBuf>,
@@ -373,6 +379,9 @@ pub(crate) struct Convert {
     pub(crate) input: PathBuf,
     #[arg(help = format!("The new file, in the format of its extension: .{}", written_extensions().join(", .")))]
     pub(crate) out: PathBuf,
+    /// Replace the new file if it is there already.
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Unit of IN: auto, m, cm, mm or in.
     #[arg(long, default_value = "auto", value_parser = unit)]
     pub(crate) unit: Unit,
@@ -397,6 +406,9 @@ pub(crate) struct StyleTask {
     /// The new project.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
+    /// Replace the new project if it is there already.
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Record what is seen meanwhile as a film (.mp4), with the size and rate of the project's recordings. The brush is a circle.
     #[arg(long, value_name = "FILE")]
     pub(crate) film: Option<PathBuf>,

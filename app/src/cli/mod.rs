@@ -10,6 +10,7 @@ mod info;
 mod output;
 mod presets;
 mod record;
+mod replace;
 mod satf;
 mod settings;
 mod source;

@@ -27,7 +27,9 @@ pub(crate) fn run(task: &Presets, output: Output) -> Result<(), ProjectError> {
         (task.preset.iter().map(|name| style_named(name)).collect::<Result<_, _>>()?, Vec::new())
     };
     if let Some(path) = &task.sheet {
+        let replaced = super::replace::check(path, super::replace::Holds::IMAGE, task.force)?;
         draw_sheet(task, &styles, path)?;
+        replaced.tell();
     }
     if let Some(folder) = &task.thumbnails {
         draw_thumbnails(&styles, folder)?;

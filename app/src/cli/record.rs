@@ -6,15 +6,32 @@ use lovelock_jobs::record::{
 };
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::CameraSection;
+use lovelock_record::OutputKind;
 use lovelock_session::health::{Gauge, HealthLevel};
 use lovelock_session::stats::Stage;
 
 use super::args::Record;
 use super::output::Output;
+use super::replace::{self, Holds};
 use super::source::Source;
 
 /// Simulates and renders the dance of a project.
 pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
+    let holds = match OutputKind::of(&task.out) {
+        _ if is_take(&task.out) => Holds::Work("a take"),
+        Ok(OutputKind::Sequence) => Holds::Images,
+        // Other names are refused later.
+        Ok(OutputKind::Film | OutputKind::Preview) | Err(_) => Holds::RECORDING,
+    };
+    let replaced = (!task.resume).then(|| replace::check(&task.out, holds, task.force)).transpose()?;
+    record(task, output)?;
+    if let Some(replaced) = replaced {
+        replaced.tell();
+    }
+    Ok(())
+}
+
+fn record(task: &Record, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
     let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
     let request = RecordRequest {

@@ -32,7 +32,7 @@ pub(super) struct Source {
 impl Source {
     /// Reads the project and applies the other options.
     pub(super) fn open(task: &SourceArguments) -> Result<Self, ProjectError> {
-        let mut access = Access::new();
+        let mut access = Access::of_command();
         let (mut project, problems) = match &task.project {
             Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
                 access.pick(path);

@@ -9,6 +9,7 @@ use lovelock_session::strokes::{PlayStrokes, SeeStrokes, play_strokes};
 
 use super::args::StyleTask;
 use super::output::Output;
+use super::replace::{self, Holds};
 use super::source::Source;
 
 /// The latest start of strokes on the dance, seconds.
@@ -22,6 +23,9 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
     let mut strokes = StrokeFile::from_text(&text)
         .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
     strokes.strokes.truncate(task.count.unwrap_or(usize::MAX));
+    let replaced = replace::check(&task.out, Holds::Work("a project"), task.force)?;
+    let film_replaced =
+        task.film.as_ref().map(|film| replace::check(film, Holds::RECORDING, task.force)).transpose()?;
     let source = Source::open(&task.source)?;
     if let Some(secs) = task.on_dance.filter(|secs| !(secs.is_finite() && (0.0..=MOST_SECS).contains(secs))) {
         return Err(ProjectError::option(format!(
@@ -41,6 +45,7 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
         eprintln!("lovelock: {problem}");
     }
     save_project(&task.out, &project)?;
+    [Some(replaced), film_replaced].iter().flatten().for_each(replace::Replaced::tell);
     output.result(&report, || {
         let missed = if report.missed > 0 {
             format!(", of which {} touched no hair", report.missed)

@@ -1,6 +1,7 @@
 //! The effects of commands.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
@@ -15,13 +16,23 @@ use lovelock_session::scene::frame_points;
 use crate::cli::Assignment;
 
 use super::command::Command;
-use super::files::set_part;
-use super::opening::Found;
+use super::files::{place_of, set_part};
+use super::opening::{Aim, Found};
 use super::path_dialog::Purpose;
+use super::trial::Trial;
 use super::{Pending, Window, copy, notices};
 
 /// Factor by which a key changes the radius of the brush.
 const BRUSH_STEP: f32 = 1.15;
+
+/// What became of a path that the user picked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Used {
+    /// It was used.
+    Done,
+    /// A thread looks into the file.
+    Waits,
+}
 
 /// A project to start with.
 #[derive(Debug, Default)]
@@ -30,16 +41,25 @@ pub(super) struct Opened {
     pub(super) project_path: Option<PathBuf>,
     pub(super) picked: Vec<PathBuf>,
     pub(super) problems: Vec<Problem>,
+    /// The file that it was started with, as a part of the project.
+    pub(super) trial: Option<Trial>,
 }
 
 /// Opens the file that is named on the command line, or the default project, and changes settings of it.
 pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
-    let mut opened = path.map_or_else(|| Ok(Opened::default()), open_file)?;
+    let (mut opened, place) = path.map_or_else(|| Ok((Opened::default(), None)), open_file)?;
     crate::cli::apply(set, &mut opened.project)?;
+    if let (Some(place), Some(path)) = (place, path) {
+        let mut before = Project::default();
+        crate::cli::apply(set, &mut before)?;
+        opened.trial = Some(Trial::new(place, path, Arc::new(before)));
+    }
     Ok(opened)
 }
 
-fn open_file(path: &Path) -> Result<Opened, ProjectError> {
+/// Opens a file; also returns the part of the project that it becomes, if it is one.
+fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
+    let mut place = None;
     let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
     match Found::of(path, &opened.project.hair)? {
         Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
@@ -47,6 +67,7 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
             let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
             opened.problems.extend(unused);
             set_part(&mut opened.project, kind, path);
+            place = Some(place_of(kind));
         }
         Found::Document(FileKind::Style) => {
             let listed = lovelock_jobs::presets::style_in(path)?;
@@ -59,7 +80,7 @@ fn open_file(path: &Path) -> Result<Opened, ProjectError> {
         }
         Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
     }
-    Ok(opened)
+    Ok((opened, place))
 }
 
 impl Window {
@@ -153,7 +174,11 @@ impl Window {
             Command::NewProject => self.unless_modified(Pending::New, ctx),
             Command::Open => self.open_path_dialog(Purpose::Open),
             Command::Save => match self.project_path.clone() {
-                Some(path) => self.save_to(&path),
+                Some(path) => {
+                    if let Err(error) = self.save_to(&path) {
+                        self.fail(error);
+                    }
+                }
                 None => self.open_path_dialog(Purpose::SaveProject),
             },
             Command::SaveAs => self.open_path_dialog(Purpose::SaveProject),
@@ -222,7 +247,7 @@ impl Window {
                 self.session.set_playing(true);
                 self.session.worker().record_take(path);
             }
-            Err(error) => self.warn([error]),
+            Err(error) => self.fail(error),
         }
     }
 
@@ -269,44 +294,66 @@ impl Window {
     }
 
     /// Uses the path that the user picked.
-    pub(super) fn answer(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
+    ///
+    /// # Errors
+    /// Why it cannot be used, as a sentence.
+    pub(super) fn answer(
+        &mut self,
+        purpose: Purpose,
+        path: &Path,
+        ctx: &egui::Context,
+    ) -> Result<Used, String> {
+        let aim = match purpose {
+            Purpose::Open => Some(Aim::Open),
+            Purpose::Beside => Some(Aim::Beside),
+            // Another kind of file is a problem of the part, which its loader reports.
+            Purpose::Body => Some(Aim::Part(Place::Body)),
+            Purpose::Motion => Some(Aim::Part(Place::Motion)),
+            Purpose::Surroundings => Some(Aim::Part(Place::Surroundings)),
+            Purpose::Sound => Some(Aim::Part(Place::Sound)),
+            _ => None,
+        };
+        if let Some(aim) = aim {
+            self.look_into(path, aim)?;
+            return Ok(Used::Waits);
+        }
         match purpose {
-            Purpose::Open => self.open_any(path),
-            Purpose::Beside => self.compare_with(path),
-            // Another kind of file is a problem of the surroundings, which the loader reports.
-            Purpose::Body => self.open_body(path),
-            Purpose::Motion => self.open_part(path, |project| project.set_motion_file(path)),
-            Purpose::Surroundings => self.open_part(path, |project| project.set_surroundings_file(path)),
-            // Another kind of file is a problem of the sound, which its reader reports.
-            Purpose::Sound => self.open_part(path, |project| project.set_sound_file(path)),
-            Purpose::SaveProject => self.save_to(path),
+            Purpose::SaveProject => {
+                self.save_to(path)?;
+                if let Some(pending) = self.after_saving.take() {
+                    self.go_on(pending, ctx);
+                }
+            }
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume | Purpose::Curves => {
-                let access = self.session.access().clone();
                 let pictures = purpose != Purpose::Curves;
+                if pictures {
+                    recording::OutputKind::of(path).map_err(|error| error.to_string())?;
+                }
+                let access = self.session.access().clone();
                 let panes = (self.layout.compare.shown && pictures).then(|| self.layout.compare.sheet());
                 let resume = purpose == Purpose::Resume;
                 self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }
-            Purpose::ExportStyle => self.export_style(path),
-            Purpose::SaveStrokes => self.save_strokes(path),
+            Purpose::ExportStyle => self.export_style(path)?,
+            Purpose::SaveStrokes => self.save_strokes(path)?,
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
-                let Some(painted) = self.session.painted.clone() else { return };
+                let Some(painted) = self.session.painted.clone() else { return Ok(Used::Done) };
                 let [width, height] = painted.image.size();
-                let written =
-                    painted.image.picture().map_err(|error| error.to_string()).and_then(|picture| {
-                        recording::write_png(path, picture.width, picture.height, &picture.rgba)
-                            .map_err(|error| error.to_string())
-                    });
-                match written {
-                    Ok(()) => {
-                        let what = format!("Saved {}, {width} × {height} pixels", path.display());
-                        self.notices.push(notices::Kind::Done, what);
-                    }
-                    Err(error) => self.warn([error]),
-                }
+                let picture = painted.image.picture().map_err(|error| error.to_string())?;
+                recording::write_png(path, picture.width, picture.height, &picture.rgba)
+                    .map_err(|error| error.to_string())?;
+                let what = format!("Saved {}, {width} × {height} pixels", path.display());
+                self.notices.push(notices::Kind::Done, what);
             }
+            Purpose::Open
+            | Purpose::Beside
+            | Purpose::Body
+            | Purpose::Motion
+            | Purpose::Surroundings
+            | Purpose::Sound => {}
         }
+        Ok(Used::Done)
     }
 
     fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
@@ -329,11 +376,16 @@ impl Window {
                 // They were opened for the project that goes.
                 self.openings.cancel();
                 self.framing = None;
+                self.trials.clear();
                 self.history = lovelock_project::history::History::new(Project::default());
                 self.project_path = None;
                 self.session.set_project_path(None);
             }
-            Pending::Open(path) => self.open_project(&path),
+            Pending::Open(path) => {
+                if let Err(error) = self.open_project(&path) {
+                    self.fail(error);
+                }
+            }
         }
     }
 
@@ -343,10 +395,14 @@ impl Window {
         let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
             ui.heading("The project has unsaved changes.");
             ui.horizontal(|ui| {
-                let save = ui.button("Save").clicked();
+                let save = ui.button("Save");
+                // Enter saves: nothing is lost by it.
+                if ui.memory(|memory| memory.focused().is_none()) {
+                    save.request_focus();
+                }
                 let lose = ui.button("Discard changes").clicked();
-                let stay = ui.button("Stay").clicked();
-                (save, lose, stay)
+                let stay = ui.button("Cancel").clicked();
+                (save.clicked(), lose, stay)
             })
             .inner
         });
@@ -354,13 +410,14 @@ impl Window {
         if save {
             self.pending = None;
             match self.project_path.clone() {
-                Some(path) => {
-                    self.save_to(&path);
-                    if !self.history.is_modified() {
-                        self.go_on(pending, ctx);
-                    }
+                Some(path) => match self.save_to(&path) {
+                    Ok(()) => self.go_on(pending, ctx),
+                    Err(error) => self.fail(error),
+                },
+                None => {
+                    self.open_path_dialog(Purpose::SaveProject);
+                    self.after_saving = Some(pending);
                 }
-                None => self.open_path_dialog(Purpose::SaveProject),
             }
         } else if lose {
             self.pending = None;

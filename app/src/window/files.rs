@@ -5,12 +5,14 @@ use std::sync::Arc;
 
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_project::files::FileRef;
 use lovelock_project::history::GestureId;
 use lovelock_project::project::{BodySection, CameraSection, Contender, load_project_with, save_project};
 use lovelock_session::scene::{Scene, camera_for_size};
 
 use super::opening::{Aim, Found, Opened};
+use super::trial::Trial;
 use super::{Pending, Window, notices, remember};
 
 /// A body that was opened and is not loaded yet.
@@ -33,6 +35,17 @@ impl Framing {
     }
 }
 
+/// The part of the project that a file of that kind becomes.
+pub(super) fn place_of(kind: FileKind) -> Place {
+    match kind {
+        FileKind::Hair => Place::Hair,
+        FileKind::Character => Place::Body,
+        FileKind::Surroundings => Place::Surroundings,
+        FileKind::Sound => Place::Sound,
+        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => Place::Motion,
+    }
+}
+
 /// Makes a file a part of the project.
 pub(super) fn set_part(project: &mut Project, kind: FileKind, path: &Path) {
     match kind {
@@ -49,64 +62,90 @@ pub(super) fn set_part(project: &mut Project, kind: FileKind, path: &Path) {
 impl Window {
     /// Opens a file of any kind that the program reads. What it is, is found out on a thread.
     pub(super) fn open_any(&mut self, path: &Path) {
-        self.look_into(path, Aim::Open);
+        self.look_into_or_tell(path, Aim::Open);
     }
 
     /// Plays a take with the project that it was recorded from. One undo step restores the previous project.
     pub(super) fn open_take(&mut self, path: &Path) {
-        self.look_into(path, Aim::PlayTake);
+        self.look_into_or_tell(path, Aim::PlayTake);
     }
 
-    /// Adds a pane that shows a take, rendered with the settings of the project.
-    pub(super) fn compare_with(&mut self, path: &Path) {
-        self.look_into(path, Aim::Beside);
-    }
-
-    fn look_into(&mut self, path: &Path, aim: Aim) {
+    /// Starts to look into a file that a dialog has picked.
+    pub(super) fn look_into(&mut self, path: &Path, aim: Aim) -> Result<(), String> {
         let hair = self.history.project().hair.clone();
-        if let Err(error) = self.openings.start(path, aim, hair, &self.ctx) {
-            self.warn([format!("{}: a thread that reads it could not start: {error}", path.display())]);
+        self.openings
+            .start(path, aim, hair, &self.ctx)
+            .map_err(|error| format!("{}: a thread that reads it could not start: {error}", path.display()))
+    }
+
+    fn look_into_or_tell(&mut self, path: &Path, aim: Aim) {
+        if let Err(error) = self.look_into(path, aim) {
+            self.fail(error);
         }
     }
 
     /// Opens the files that were looked into, in their order: those behind a project wait until it is opened, and become parts of it.
+    /// The dialog that asked for a file stays open if it cannot be used.
     pub(super) fn take_opened(&mut self) {
         while self.pending.is_none()
             && let Some(Opened { path, aim, found }) = self.openings.next()
         {
-            match (aim, found) {
-                (_, Err(error)) => self.warn([error.to_string()]),
-                (Aim::Beside, Ok(found)) => self.put_beside(&path, &found),
-                (aim, Ok(Found::Take(project, problems))) => {
-                    self.play(&path, |_| *project);
-                    self.warn(problems.into_iter().map(|problem| problem.message));
-                    if aim == Aim::Open {
-                        // Saving must not write the take's project to the file of the previous project.
-                        self.project_path = None;
-                        self.session.set_project_path(None);
+            let dialog = self.dialog.take_if(|dialog| dialog.waiting() == Some(path.as_path()));
+            match found
+                .map_err(|error| error.to_string())
+                .and_then(|found| self.open_found(&path, aim, found))
+            {
+                Ok(()) => remember(&mut self.layout.files, &path),
+                Err(error) => match dialog {
+                    Some(mut dialog) => {
+                        dialog.refuse(error);
+                        self.dialog = Some(dialog);
                     }
-                }
-                (_, Ok(Found::Curves(curves))) => self.play(&path, |project| curves.played_in(project)),
-                (_, Ok(Found::Document(FileKind::Style))) => self.open_style(&path),
-                (_, Ok(Found::Document(_))) if self.history.is_modified() => {
-                    self.pending = Some(Pending::Open(path));
-                }
-                (_, Ok(Found::Document(_))) => self.open_project(&path),
-                (_, Ok(Found::Part(kind, unused))) => {
-                    self.warn(unused);
-                    if kind == FileKind::Character {
-                        self.open_body(&path);
-                    } else {
-                        self.open_part(&path, |project| set_part(project, kind, &path));
-                    }
-                }
+                    None => self.fail(error),
+                },
             }
         }
     }
 
+    fn open_found(&mut self, path: &Path, aim: Aim, found: Found) -> Result<(), String> {
+        match (aim, found) {
+            (Aim::Beside, found) => self.put_beside(path, &found)?,
+            (Aim::Part(Place::Body), _) => self.open_body(path),
+            (Aim::Part(place), _) => self.open_part(place, path, |project| match place {
+                Place::Surroundings => project.set_surroundings_file(path),
+                Place::Sound => project.set_sound_file(path),
+                _ => project.set_motion_file(path),
+            }),
+            (aim, Found::Take(project, problems)) => {
+                self.play(path, |_| *project);
+                self.warn(problems.into_iter().map(|problem| problem.message));
+                if aim == Aim::Open {
+                    // Saving must not write the take's project to the file of the previous project.
+                    self.project_path = None;
+                    self.session.set_project_path(None);
+                }
+            }
+            (_, Found::Curves(curves)) => self.play(path, |project| curves.played_in(project)),
+            (_, Found::Document(FileKind::Style)) => self.open_style(path)?,
+            (_, Found::Document(_)) if self.history.is_modified() => {
+                self.pending = Some(Pending::Open(path.to_owned()));
+            }
+            (_, Found::Document(_)) => self.open_project(path)?,
+            (_, Found::Part(kind, unused)) => {
+                self.warn(unused);
+                if kind == FileKind::Character {
+                    self.open_body(path);
+                } else {
+                    self.open_part(place_of(kind), path, |project| set_part(project, kind, path));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Makes a character the body of the project. The camera follows its size when it is loaded.
     pub(super) fn open_body(&mut self, path: &Path) {
-        self.open_part(path, |project| project.set_body_file(path));
+        self.open_part(Place::Body, path, |project| project.set_body_file(path));
         self.framing = Some(Framing {
             body: self.history.project().body.clone(),
             gesture: self.gestures.id() - 1,
@@ -141,10 +180,12 @@ impl Window {
         self.framing = None;
     }
 
-    /// Makes a file that the user picked a part of the project.
-    pub(super) fn open_part(&mut self, path: &Path, set: impl FnOnce(&mut Project)) {
+    /// Makes a file that the user picked a part of the project. One that cannot be loaded leaves the project again.
+    pub(super) fn open_part(&mut self, place: Place, path: &Path, set: impl FnOnce(&mut Project)) {
         self.session.pick(path);
+        let before = Arc::clone(self.history.project());
         self.change("file", set);
+        self.trials.push(Trial::new(place, path, before));
         // The project may have named the file before without having access to it.
         let project = self.history.project().clone();
         self.session.reload(&project);
@@ -153,12 +194,15 @@ impl Window {
     /// Plays a take or curves: `made` returns the project that does. One undo step restores the previous one.
     fn play(&mut self, path: &Path, made: impl FnOnce(&Project) -> Project) {
         self.session.pick(path);
+        let before = Arc::clone(self.history.project());
         self.change("take", |project| *project = made(project));
+        self.trials.push(Trial::new(Place::Take, path, before));
         let project = self.history.project().clone();
         self.session.reload(&project);
     }
 
-    fn put_beside(&mut self, path: &Path, found: &Found) {
+    /// Adds a pane that shows a take, rendered with the settings of the project.
+    fn put_beside(&mut self, path: &Path, found: &Found) -> Result<(), String> {
         match found {
             Found::Take(..) | Found::Curves(_) => {
                 self.session.pick(path);
@@ -171,41 +215,37 @@ impl Window {
                 self.layout.compare.shown = true;
                 self.layout.wall.shown = false;
             }
-            Found::Part(_, Some(reason)) => self.warn([reason.clone()]),
+            Found::Part(_, Some(reason)) => return Err(reason.clone()),
             found => {
-                self.warn([format!("{}: found a {} file; must be a take", path.display(), found.label())]);
+                return Err(format!("{}: found a {} file; must be a take", path.display(), found.label()));
             }
         }
+        Ok(())
     }
 
-    pub(super) fn open_project(&mut self, path: &Path) {
+    pub(super) fn open_project(&mut self, path: &Path) -> Result<(), String> {
         let mut access = self.session.access().clone();
         access.set_project(Some(path));
-        match load_project_with(path, &mut access) {
-            Ok((project, problems)) => {
-                self.overdub.let_go();
-                self.cancel_strokes();
-                self.framing = None;
-                self.history = lovelock_project::history::History::new(project);
-                self.project_path = Some(path.to_owned());
-                self.session.set_project_path(self.project_path.as_ref());
-                remember(&mut self.layout.recent, path);
-                self.warn(problems.into_iter().map(|problem| problem.message));
-            }
-            Err(error) => self.warn([error.to_string()]),
-        }
+        let (project, problems) = load_project_with(path, &mut access).map_err(|error| error.to_string())?;
+        self.overdub.let_go();
+        self.cancel_strokes();
+        self.framing = None;
+        self.trials.clear();
+        self.history = lovelock_project::history::History::new(project);
+        self.project_path = Some(path.to_owned());
+        self.session.set_project_path(self.project_path.as_ref());
+        remember(&mut self.layout.recent, path);
+        self.warn(problems.into_iter().map(|problem| problem.message));
+        Ok(())
     }
 
-    pub(super) fn save_to(&mut self, path: &Path) {
-        match save_project(path, self.history.project()) {
-            Ok(()) => {
-                self.history.mark_saved();
-                self.project_path = Some(path.to_owned());
-                self.session.set_project_path(self.project_path.as_ref());
-                remember(&mut self.layout.recent, path);
-                self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
-            }
-            Err(error) => self.warn([error.to_string()]),
-        }
+    pub(super) fn save_to(&mut self, path: &Path) -> Result<(), String> {
+        save_project(path, self.history.project()).map_err(|error| error.to_string())?;
+        self.history.mark_saved();
+        self.project_path = Some(path.to_owned());
+        self.session.set_project_path(self.project_path.as_ref());
+        remember(&mut self.layout.recent, path);
+        self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
+        Ok(())
     }
 }

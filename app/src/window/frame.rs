@@ -1,19 +1,16 @@
 //! One pass of the window, from top to bottom.
 
-use lovelock_base::words::counted;
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
+use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, vec2};
 use lovelock_base::settings::Info;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
-use lovelock_project::project::PROJECT_EXTENSION;
-use lovelock_project::styles::STYLE_EXTENSION;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
 use super::focus::{Area, Focus};
-use super::path_dialog::{Answer, PathDialog, Purpose};
+use super::path_dialog::Purpose;
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
 
@@ -27,10 +24,13 @@ impl Window {
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
-        let loads_ended = self.session.loads_ended;
         let said = self.session.update();
         self.warn(said);
-        if self.session.loads_ended != loads_ended {
+        for failed in std::mem::take(&mut self.session.failed) {
+            self.fail(failed);
+        }
+        if !self.session.load_ends.is_empty() {
+            self.take_load_ends();
             self.frame_opened_body();
         }
         self.follow_sound(&ctx);
@@ -64,8 +64,12 @@ impl Window {
         }
         self.focus.begin_pass(&ctx);
         self.menu_keys.begin_pass(&ctx);
-        for command in keys::pressed(&ctx) {
-            self.run(command, &ctx);
+        let held = self.holds_keys(&ctx);
+        for command in keys::pressed(&ctx, |command| !held || self.closes(command)) {
+            // The dialog that one key opens takes those that follow it.
+            if held || !self.holds_keys(&ctx) {
+                self.run(command, &ctx);
+            }
         }
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
             self.open_any(file.path());
@@ -89,7 +93,8 @@ impl Window {
             self.right_panel(ui, &mut project, &ctx);
             self.focus.end_area(ui, Area::Right, begin);
         }
-        self.focus.set_image(ui.available_rect_before_wrap());
+        let image = ui.available_rect_before_wrap();
+        self.focus.set_image(image);
         let begin = Focus::begin_area(ui);
         if self.layout.wall.shown {
             self.wall_page(ui, &mut project);
@@ -153,7 +158,7 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.display.title = title;
         }
-        self.notices.show(&ctx);
+        self.notices.show(&ctx, image);
         if let Some(info) = control::end_reveal(&ctx) {
             self.explain_missing(info);
         }
@@ -285,7 +290,7 @@ impl Window {
     fn follow_sound(&mut self, ctx: &egui::Context) {
         let project = Arc::clone(self.history.project());
         let said = self.soundtrack.update(&project.sound, self.session.access(), ctx);
-        self.warn(said);
+        self.judge_sound(said);
         let rate = if self.session.backwards { -self.session.rate } else { self.session.rate };
         let playing = self.session.playing && self.session.frame.is_some();
         self.soundtrack.follow(&project.sound, self.now_secs(), playing, rate);
@@ -396,10 +401,16 @@ impl Window {
         }
     }
 
-    /// Shows the problems of a part of the project where that part is edited.
-    pub(super) fn problems(&self, ui: &mut Ui, places: &[Place]) {
-        for problem in self.session.problems.iter().filter(|problem| places.contains(&problem.place)) {
-            ui.label(RichText::new(&problem.message).color(theme::WRONG));
+    /// The problems of a part of the project, which are marked where that part is edited.
+    pub(super) fn problems(&self, places: &[Place]) -> Vec<String> {
+        let here = self.session.problems.iter().filter(|problem| places.contains(&problem.place));
+        here.map(|problem| problem.message.clone()).collect()
+    }
+
+    /// Shows problems again, whose mark was clicked.
+    pub(super) fn tell_again(&mut self, problems: Vec<String>, clicked: bool) {
+        for problem in problems.into_iter().filter(|_| clicked) {
+            self.notices.push(notices::Kind::Failed, problem);
         }
     }
 
@@ -434,100 +445,6 @@ impl Window {
         if let Some(info) = first {
             self.show_setting(info, ctx);
         }
-    }
-
-    /// Shows the dialogs above everything else.
-    fn windows(&mut self, ctx: &egui::Context) {
-        if let Some(dialog) = &mut self.dialog {
-            match dialog.show(ctx) {
-                Answer::Pending => {}
-                Answer::Closed => self.dialog = None,
-                Answer::Path(purpose, path) => {
-                    self.dialog = None;
-                    self.answer(purpose, &path, ctx);
-                }
-            }
-        }
-        if self.keys_shown {
-            let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
-                ui.heading("Keys");
-                let most = ctx.content_rect().height() * 0.85;
-                ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
-            });
-            self.keys_shown = !modal.should_close();
-        }
-        self.about(ctx);
-        self.confirm_loss(ctx);
-    }
-
-    /// Opens the dialog for a path.
-    pub(super) fn open_path_dialog(&mut self, purpose: Purpose) {
-        let folder = self
-            .project_path
-            .as_deref()
-            .and_then(std::path::Path::parent)
-            .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
-        let suggestion = match purpose {
-            Purpose::Open
-            | Purpose::Beside
-            | Purpose::Body
-            | Purpose::Motion
-            | Purpose::Surroundings
-            | Purpose::Sound => folder,
-            Purpose::SaveProject => self
-                .project_path
-                .clone()
-                .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
-            Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
-            Purpose::Film => folder.join("out").join("dance.mp4"),
-            Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
-            Purpose::Preview => folder.join("out").join("dance.apng"),
-            Purpose::Curves => folder.join("out").join("dance.usdc"),
-            Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
-            Purpose::ExportStyle => {
-                let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
-                folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
-            }
-            Purpose::SaveStrokes => folder.join("hair").with_extension(lovelock_brush::StrokeFile::EXTENSION),
-            Purpose::Picture => folder.join("hair.png"),
-        };
-        let dialog = PathDialog::new(purpose, &suggestion);
-        self.dialog = Some(match purpose {
-            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
-                dialog.about(self.recording_in_words())
-            }
-            Purpose::Curves => dialog.about(
-                "USD and Alembic hold all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
-                    .to_owned(),
-            ),
-            Purpose::Open
-            | Purpose::Beside
-            | Purpose::Body
-            | Purpose::Motion
-            | Purpose::Surroundings
-            | Purpose::Sound
-            | Purpose::SaveProject
-            | Purpose::ExportStyle
-            | Purpose::SaveStrokes
-            | Purpose::Picture => dialog,
-        });
-    }
-
-    /// Describes the recording that would start now.
-    fn recording_in_words(&self) -> String {
-        let recording = &self.history.project().recording;
-        let clip = self.session.frames(recording.fps);
-        let first = recording.first_frame;
-        let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
-        let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
-        let counted = counted(frames, "frame", "frames");
-        format!(
-            "{what}{counted} of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",
-            recording.width,
-            recording.height,
-            recording.fps,
-            frames as f64 / recording.fps,
-        )
     }
 }
 

@@ -8,13 +8,20 @@ use egui::{
 
 use super::{focus, theme};
 
-/// The commands whose keys were pressed in this pass, unless a text field takes the keys.
-pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
+/// Whether a dialog is open. It holds the keyboard until it is answered: no key means a command or a tool meanwhile.
+pub(crate) fn are_held(ctx: &egui::Context) -> bool {
+    ctx.memory(|memory| memory.top_modal_layer().is_some())
+}
+
+/// The commands whose keys were pressed in this pass, unless a text field takes the keys. Keys of commands that are not `allowed` stay
+/// for others.
+pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(Command) -> bool) -> Vec<Command> {
     let typing = ctx.egui_wants_keyboard_input();
     let editing = ctx.text_edit_focused();
     let mut commands = Vec::new();
     let bound = COMMANDS
         .iter()
+        .filter(|info| allowed(info.command))
         .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, info.command))));
     for (shortcut, command) in bound {
         let KeyboardShortcut { modifiers, logical_key } = shortcut;

@@ -8,6 +8,7 @@ mod camera_control;
 mod command;
 mod compare;
 mod control;
+mod dialogs;
 mod display;
 mod files;
 mod focus;
@@ -39,6 +40,7 @@ mod testing;
 mod theme;
 mod timeline;
 mod tools;
+mod trial;
 mod viewport;
 mod wall;
 
@@ -84,6 +86,8 @@ const RECENT: usize = 10;
 struct Layout {
     panels_hidden: bool,
     recent: Vec<PathBuf>,
+    /// Other files that were opened, newest first.
+    files: Vec<PathBuf>,
     /// Rendered pixels per pixel of the screen; 0 is automatic.
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
@@ -100,6 +104,7 @@ impl Default for Layout {
         Self {
             panels_hidden: false,
             recent: Vec::new(),
+            files: Vec::new(),
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
             compare: CompareLayout::default(),
@@ -145,7 +150,14 @@ pub(crate) struct Window {
     ctx: egui::Context,
     /// The body that was opened last, until it is loaded.
     framing: Option<files::Framing>,
+    /// Files that were opened and are not loaded yet, and the failures of the last load.
+    trials: Vec<trial::Trial>,
+    told: Vec<lovelock_project::error::Problem>,
+    /// Whether what the command line names is not loaded yet: its errors are printed too.
+    starting: bool,
     pending: Option<Pending>,
+    /// What waits until the project is saved under a name.
+    after_saving: Option<Pending>,
     notices: Notices,
     keys_shown: bool,
     manual: manual::Manual,
@@ -244,7 +256,7 @@ impl Window {
 
     /// Starts the session behind the window.
     fn start(ctx: &egui::Context, layout: Layout, opened: actions::Opened) -> Result<Self, ProjectError> {
-        let actions::Opened { project, project_path, picked, problems } = opened;
+        let actions::Opened { project, project_path, picked, problems, trial } = opened;
         let mut access = Access::new();
         for path in &picked {
             access.pick(path);
@@ -270,7 +282,11 @@ impl Window {
             openings: opening::Openings::default(),
             ctx: ctx.clone(),
             framing,
+            trials: trial.into_iter().collect(),
+            told: Vec::new(),
+            starting: true,
             pending: None,
+            after_saving: None,
             notices: Notices::default(),
             keys_shown: false,
             manual: manual::Manual::default(),
@@ -301,7 +317,10 @@ impl Window {
             quitting: false,
             screenshot: None,
         };
-        window.warn(problems.iter().map(|problem| problem.message.clone()));
+        for problem in &problems {
+            eprintln!("lovelock: {}", problem.message);
+        }
+        window.warn(problems.into_iter().map(|problem| problem.message));
         Ok(window)
     }
 
@@ -311,6 +330,13 @@ impl Window {
             tracing::warn!("{sentence}");
             self.notices.push(notices::Kind::Warning, sentence);
         }
+    }
+
+    /// Shows why something failed. The message stays until it is closed.
+    fn fail(&mut self, sentence: impl Into<String>) {
+        let sentence = sentence.into();
+        tracing::warn!("{sentence}");
+        self.notices.push(notices::Kind::Failed, sentence);
     }
 
     /// Applies a changed project. The changes of one gesture are one undo step.

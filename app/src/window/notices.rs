@@ -1,6 +1,6 @@
-//! Messages in a corner of the window that disappear after a while.
+//! Messages in a corner of the image. They disappear after a while, but for errors, which stay until they are closed.
 
-use egui::{Align2, Area, Color32, Frame, Id, Order, RichText};
+use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, RichText, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON_WARNING};
 
@@ -9,8 +9,12 @@ use super::theme;
 /// Seconds for which a message stays, and the seconds added per letter.
 const STAYS_SECS: f64 = 6.0;
 const READING_SECS: f64 = 0.06;
-/// The most messages that are shown; the oldest are removed first.
+/// The most messages that are shown. Of those that disappear by themselves the oldest are removed first; errors wait.
 const MOST: usize = 5;
+/// The most errors that wait to be read.
+const MOST_WAITING: usize = 100;
+/// Distance from the corner of the image, points.
+const MARGIN: f32 = 12.0;
 /// Width of the longest line, points.
 const WIDTH: f32 = 360.0;
 
@@ -21,7 +25,7 @@ pub(crate) enum Kind {
     Done,
     /// Something succeeded only in part.
     Warning,
-    /// Something failed.
+    /// Something failed. The message stays until it is closed.
     Failed,
 }
 
@@ -56,51 +60,96 @@ impl Notices {
     pub(crate) fn push(&mut self, kind: Kind, text: impl Into<String>) {
         let text = text.into();
         self.list.retain(|notice| notice.text != text);
-        if self.list.len() == MOST {
-            self.list.remove(0);
+        let most = if kind == Kind::Failed { MOST_WAITING } else { MOST };
+        if self.list.len() >= most {
+            let passing = self.list.iter().position(|notice| notice.kind != Kind::Failed);
+            match passing {
+                Some(at) => drop(self.list.remove(at)),
+                // The first errors say most: later ones often follow from them.
+                None if kind == Kind::Failed => return,
+                None => {}
+            }
         }
         self.told += 1;
         self.list.push(Notice { id: self.told, kind, text, until_secs: None });
     }
 
-    /// Shows the messages, the newest at the bottom.
-    pub(crate) fn show(&mut self, ctx: &egui::Context) {
+    /// The errors that were not closed yet.
+    #[cfg(test)]
+    pub(crate) fn errors(&self) -> Vec<&str> {
+        let failed = self.list.iter().filter(|notice| notice.kind == Kind::Failed);
+        failed.map(|notice| notice.text.as_str()).collect()
+    }
+
+    /// Shows the messages in the lower right corner of `image`, where they cover no control; the newest at the bottom.
+    pub(crate) fn show(&mut self, ctx: &egui::Context, image: Rect) {
         let now = ctx.input(|input| input.time);
-        for notice in &mut self.list {
+        let visible = self.visible();
+        for notice in self.list.iter_mut().filter(|notice| visible.contains(&notice.id)) {
             let stays = STAYS_SECS + READING_SECS * notice.text.chars().count() as f64;
-            notice.until_secs.get_or_insert(now + stays);
+            let until = if notice.kind == Kind::Failed { f64::INFINITY } else { now + stays };
+            notice.until_secs.get_or_insert(until);
         }
         self.list.retain(|notice| notice.until_secs.is_none_or(|until| until > now));
-        let Some(first) = self.list.iter().filter_map(|notice| notice.until_secs).reduce(f64::min) else {
+        if self.list.is_empty() {
             return;
-        };
-        ctx.request_repaint_after(std::time::Duration::from_secs_f64((first - now).max(0.0)));
-        let mut closed = None;
+        }
+        let next = self.list.iter().filter_map(|notice| notice.until_secs).fold(f64::INFINITY, f64::min);
+        if next.is_finite() {
+            ctx.request_repaint_after(std::time::Duration::from_secs_f64((next - now).max(0.0)));
+        }
+        let visible = self.visible();
+        let waiting = self.list.len().saturating_sub(visible.len());
+        let width = WIDTH.min(image.width() - 2.0 * MARGIN).max(160.0);
+        let mut closed = Vec::new();
         Area::new(Id::unique("notices"))
-            .anchor(Align2::RIGHT_BOTTOM, [-12.0, -52.0])
+            .pivot(Align2::RIGHT_BOTTOM)
+            .fixed_pos(image.right_bottom() - vec2(MARGIN, MARGIN))
             .order(Order::Foreground)
             .show(ctx, |ui| {
-                ui.set_max_width(WIDTH);
-                for notice in &self.list {
+                ui.set_max_width(width);
+                if waiting > 0 {
                     Frame::popup(ui.style()).show(ui, |ui| {
-                        ui.horizontal_top(|ui| {
-                            let (icon, color) = notice.kind.icon();
-                            ui.label(RichText::from(icon).color(color));
-                            ui.vertical(|ui| {
-                                ui.set_width(WIDTH - 72.0);
-                                ui.add(egui::Label::new(&notice.text).wrap());
-                            });
-                            let close = ui.small_button(ICON_CLOSE).on_hover_text("Closes this message.");
-                            close.widget_info(|| {
-                                egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message")
-                            });
-                            if close.clicked() {
-                                closed = Some(notice.id);
+                        ui.horizontal(|ui| {
+                            ui.label(format!("{waiting} more"));
+                            let all = ui.button("Close all").on_hover_text("Closes every message.");
+                            if all.clicked() {
+                                closed.extend(self.list.iter().map(|notice| notice.id));
                             }
                         });
                     });
                 }
+                for notice in self.list.iter().filter(|notice| visible.contains(&notice.id)) {
+                    if one(ui, notice, width) {
+                        closed.push(notice.id);
+                    }
+                }
             });
-        self.list.retain(|notice| Some(notice.id) != closed);
+        self.list.retain(|notice| !closed.contains(&notice.id));
     }
+
+    /// The messages that are shown: all that disappear by themselves, and the oldest errors.
+    fn visible(&self) -> Vec<u64> {
+        let is_error = |notice: &&Notice| notice.kind == Kind::Failed;
+        let passing = self.list.iter().filter(|notice| !is_error(notice));
+        let room = MOST.saturating_sub(passing.clone().count()).max(1);
+        let errors = self.list.iter().filter(is_error).take(room);
+        errors.chain(passing).map(|notice| notice.id).collect()
+    }
+}
+
+/// One message; returns whether it was closed.
+fn one(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
+    let row = |ui: &mut Ui| {
+        let (icon, color) = notice.kind.icon();
+        ui.label(RichText::from(icon).color(color));
+        ui.vertical(|ui| {
+            ui.set_width(width - 72.0);
+            ui.add(egui::Label::new(&notice.text).wrap());
+        });
+        let close = ui.small_button(ICON_CLOSE).on_hover_text("Closes this message.");
+        close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message"));
+        close.clicked()
+    };
+    Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_top(row).inner).inner
 }

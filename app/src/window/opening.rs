@@ -8,7 +8,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_groom::CurveMotion;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, ProjectError};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::project::HairSection;
 use lovelock_session::take::{CurvesToPlay, project_of_take};
 
@@ -60,6 +60,8 @@ pub(super) enum Aim {
     PlayTake,
     /// For a pane beside the project.
     Beside,
+    /// To become this part of the project.
+    Part(Place),
 }
 
 /// A file that was looked into.
@@ -123,6 +125,13 @@ impl Openings {
     /// Does not open the file that [`Self::running`] names. Its thread ends by itself.
     pub(super) fn cancel_first(&mut self) {
         self.0.pop_front();
+    }
+
+    /// Does not open the file for which a dialog is open. Its thread ends by itself.
+    pub(super) fn cancel_asked(&mut self, path: &Path) {
+        if let Some(at) = self.0.iter().rposition(|opening| opening.path == path) {
+            self.0.remove(at);
+        }
     }
 
     /// Opens none of the files. Their threads end by themselves.

@@ -101,6 +101,11 @@ impl Palette {
         *self = Self { open: !self.open, ..Self::default() };
     }
 
+    /// Whether it is open.
+    pub(crate) fn is_open(&self) -> bool {
+        self.open
+    }
+
     /// Shows the palette if it is open. Returns what was chosen.
     pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(Command) -> bool) -> Option<Found> {
         if !self.open {

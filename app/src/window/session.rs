@@ -36,6 +36,14 @@ pub(crate) struct ViewOptions {
     pub(crate) measured: bool,
 }
 
+/// How a load has ended.
+pub(crate) enum LoadEnd {
+    /// With the scene of a project, and what could not be loaded.
+    Loaded(Arc<Project>, Vec<Problem>),
+    /// Without a scene: it was cancelled, or it failed as a whole.
+    Nothing,
+}
+
 /// The engine's threads and their latest results.
 pub(crate) struct Session {
     worker: Worker,
@@ -75,12 +83,14 @@ pub(crate) struct Session {
     pub(crate) draw_error: Option<String>,
     /// Messages that have not been shown yet.
     pub(crate) done: Vec<String>,
+    /// Errors that have not been shown yet.
+    pub(crate) failed: Vec<String>,
     /// The latest recorded take.
     pub(crate) saved_take: Option<PathBuf>,
     /// What brushes have done since the last pass.
     pub(crate) brushed: Vec<StrokeReport>,
-    /// How many loads have ended, with a scene or without.
-    pub(crate) loads_ended: u64,
+    /// How loads have ended since the last pass.
+    pub(crate) load_ends: Vec<LoadEnd>,
 }
 
 impl Session {
@@ -138,9 +148,10 @@ impl Session {
             view: ViewOptions::default(),
             draw_error: None,
             done: Vec::new(),
+            failed: Vec::new(),
             saved_take: None,
             brushed: Vec::new(),
-            loads_ended: 0,
+            load_ends: Vec::new(),
         })
     }
 
@@ -215,20 +226,22 @@ impl Session {
     pub(crate) fn update(&mut self) -> Vec<String> {
         let mut said = Vec::new();
         while let Some(event) = self.worker.poll_event() {
-            // The thread that panicked may be the loader.
-            self.loads_ended += u64::from(matches!(
-                event,
-                Event::Loaded { .. }
-                    | Event::LoadCancelled
-                    | Event::LoadFailed { .. }
-                    | Event::Panicked { .. }
-            ));
+            match &event {
+                Event::Loaded { problems, project, .. } => {
+                    self.load_ends.push(LoadEnd::Loaded(Arc::clone(project), problems.clone()));
+                }
+                // The thread that panicked may be the loader.
+                Event::LoadCancelled | Event::LoadFailed { .. } | Event::Panicked { .. } => {
+                    self.load_ends.push(LoadEnd::Nothing);
+                }
+                _ => {}
+            }
             match event {
-                Event::Loaded { scene, problems } => self.take_scene(scene, problems),
+                Event::Loaded { scene, problems, .. } => self.take_scene(scene, problems),
                 Event::LoadCancelled => {
                     said.push("Loading was cancelled. The scene is unchanged.".to_owned());
                 }
-                Event::LoadFailed { message } | Event::TakeFailed { message } => said.push(message),
+                Event::LoadFailed { message } | Event::TakeFailed { message } => self.failed.push(message),
                 Event::EndReached => self.playing = false,
                 Event::TakeSaved { report, because } => {
                     let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
@@ -242,11 +255,11 @@ impl Session {
                 }
                 Event::TakeUnreadable { message } => {
                     self.playing = false;
-                    said.push(message);
+                    self.failed.push(message);
                 }
                 Event::Brushed(brushed) => self.brushed.push(brushed),
                 Event::Panicked { thread, message } => {
-                    said.push(format!(
+                    self.failed.push(format!(
                         "The {thread} thread failed and was restarted. Save your project. ({message})"
                     ));
                 }

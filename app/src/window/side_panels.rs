@@ -5,7 +5,7 @@ use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_render::HairDrawing;
 
-use super::control::section;
+use super::control::{section, section_with};
 use super::path_dialog::Purpose;
 use super::{Window, camera_control, panels};
 
@@ -16,8 +16,11 @@ impl Window {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 let curves = project.plays_curves();
                 if project.take.file.is_some() {
-                    self.problems(ui, &[Place::Take]);
-                    let note = if curves {
+                    let problems = self.problems(&[Place::Take]);
+                    // In place of the note, so that nothing below it moves more than it must.
+                    let note = if let Some(problem) = problems.first() {
+                        problem.as_str()
+                    } else if curves {
                         "Curves of a file play in place of the simulation. Leave them (Shift+R) to change the hair."
                     } else {
                         "A take plays: body and hair move as recorded. Leave the take (Shift+R) to change them."
@@ -31,12 +34,13 @@ impl Window {
                     }
                     ui.disable();
                 }
-                section(ui, "Hairstyle", true, |ui| {
-                    self.problems(ui, &[Place::Hair]);
+                let problems = self.problems(&[Place::Hair]);
+                let (_, clicked) = section_with(ui, "Hairstyle", true, &problems, |ui| {
                     super::styles::ui(ui, project, &mut self.styles, &mut self.layout.styles);
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
+                self.tell_again(problems, clicked);
                 section(ui, "Layers", self.layers.is_revealed(), |ui| {
                     panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
                 });
@@ -94,13 +98,14 @@ impl Window {
     /// Body and motion; returns what shall be picked.
     fn body_section(&mut self, ui: &mut Ui, project: &mut Project, open: bool) -> Option<Purpose> {
         let mut asked = None;
-        section(ui, "Body and motion", open, |ui| {
-            self.problems(ui, &[Place::Body, Place::Motion]);
+        let problems = self.problems(&[Place::Body, Place::Motion]);
+        let (_, clicked) = section_with(ui, "Body and motion", open, &problems, |ui| {
             asked = panels::body::ui(ui, project, &self.session.body).map(|ask| match ask {
                 panels::body::BodyRequest::PickBody => Purpose::Body,
                 panels::body::BodyRequest::PickMotion => Purpose::Motion,
             });
         });
+        self.tell_again(problems, clicked);
         asked
     }
 
@@ -114,12 +119,13 @@ impl Window {
                     let default = project.hair.groom.look;
                     panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), bytes);
                 });
-                section(ui, "Light", true, |ui| {
+                let problems = self.problems(&[Place::Surroundings]);
+                let (_, clicked) = section_with(ui, "Light", true, &problems, |ui| {
                     panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);
                     ui.separator();
-                    self.problems(ui, &[Place::Surroundings]);
                     picks_light = panels::surroundings::ui(ui, project, &self.session.surroundings).is_some();
                 });
+                self.tell_again(problems, clicked);
                 section(ui, "Look", false, |ui| {
                     let default = project.hair.groom.look;
                     panels::look::hair(ui, &mut project.look, &default, &mut project.picture);
@@ -132,13 +138,14 @@ impl Window {
                         });
                     }
                 });
-                section(ui, "Sound", project.sound.file.is_some(), |ui| {
+                let problems: Vec<String> = self.soundtrack.problem().into_iter().collect();
+                let open = project.sound.file.is_some();
+                let (_, clicked) = section_with(ui, "Sound", open, &problems, |ui| {
                     let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
                     let loaded = self.soundtrack.loaded().map(|loaded| &**loaded);
-                    let problem = self.soundtrack.problem();
-                    let ask = panels::sound::ui(ui, project, loaded, problem.as_deref(), duration);
-                    picks_sound = ask.is_some();
+                    picks_sound = panels::sound::ui(ui, project, loaded, duration).is_some();
                 });
+                self.tell_again(problems, clicked);
                 section(ui, "Recording", false, |ui| {
                     let frames = self.session.frames(project.recording.fps);
                     recording =

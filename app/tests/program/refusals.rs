@@ -107,3 +107,29 @@ fn a_window_without_a_display_is_an_error() {
         );
     }
 }
+
+#[test]
+fn files_that_hold_work_or_are_not_ours_are_kept_without_force() {
+    let dir = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(dir.path().join("frames")).expect("a folder");
+    let mine = ["x.take", "film.mp4", "hair.tfx", "sheet.png", "frames/frame_000001.png", "c.usda"];
+    for name in mine {
+        std::fs::write(dir.path().join(name), b"mine").expect("a file");
+    }
+    std::fs::write(dir.path().join("in.hair"), b"x").expect("a file");
+    for args in [
+        &["record", "-o", "x.take"][..],
+        &["record", "-o", "film.mp4"],
+        &["record", "-o", "frames"],
+        &["record", "-o", "c.usda"],
+        &["convert", "in.hair", "hair.tfx"],
+        &["presets", "--preset", "bob", "--sheet", "sheet.png"],
+    ] {
+        let line = run(dir.path(), args.iter().copied()).refused(2).to_owned();
+        let out = args.last().expect("an output");
+        assert!(line.contains(out) && line.contains("--force"), "{args:?}: {line}");
+    }
+    for name in mine {
+        assert_eq!(std::fs::read(dir.path().join(name)).expect("a file"), b"mine", "{name}");
+    }
+}

@@ -45,6 +45,11 @@ fn strokes_are_written_into_a_project() {
         style("hair.lovelock", "missing.lovelockstrokes", "none.lovelock").refused(2).contains("missing")
     );
     assert!(!dir.path().join("none.lovelock").exists());
+    // A project that is there is kept, whatever it is.
+    let kept = std::fs::read(dir.path().join("hair.lovelock")).expect("a project");
+    let line = style("combed.lovelock", "a.lovelockstrokes", "hair.lovelock").refused(2).to_owned();
+    assert!(line.contains("hair.lovelock") && line.contains("--force"), "{line}");
+    assert_eq!(std::fs::read(dir.path().join("hair.lovelock")).expect("a project"), kept);
 }
 
 #[test]
@@ -55,8 +60,16 @@ fn strokes_are_filmed_while_they_are_played_on_the_dance() {
     saved(dir.path(), "hair.lovelock", &project);
     std::fs::write(dir.path().join("a.lovelockstrokes"), strokes("1.0")).expect("a file");
     let film = |more: &[&str]| {
-        let given =
-            ["style", "hair.lovelock", "--strokes", "a.lovelockstrokes", "-o", "combed.lovelock", "--json"];
+        let given = [
+            "style",
+            "hair.lovelock",
+            "--strokes",
+            "a.lovelockstrokes",
+            "-o",
+            "combed.lovelock",
+            "--force",
+            "--json",
+        ];
         run(dir.path(), given.iter().chain(more).copied())
     };
     let report = film(&["--on-dance", "0.2", "--film", "combing.mp4"]).done().json();

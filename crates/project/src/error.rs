@@ -143,6 +143,19 @@ pub enum Place {
 }
 
 impl Place {
+    /// The option of the command line that names a file for this part.
+    pub fn option(self) -> Option<&'static str> {
+        match self {
+            Self::Body => Some("--body"),
+            Self::Motion => Some("--motion"),
+            Self::Hair => Some("--hair"),
+            Self::Surroundings => Some("--surroundings"),
+            Self::Sound => Some("--sound"),
+            Self::Compare => Some("--beside"),
+            _ => None,
+        }
+    }
+
     /// The name in sentences.
     pub fn label(self) -> &'static str {
         match self {

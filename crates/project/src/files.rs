@@ -55,12 +55,19 @@ pub struct Access {
     /// The folder of the take that is played.
     take_folder: Option<PathBuf>,
     picked: BTreeSet<PathBuf>,
+    /// Whether files are picked by options of the command line.
+    by_options: bool,
 }
 
 impl Access {
     /// Access for a project that has not been saved: only files that the user picks.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// As [`Access::new`], for a command: a file that it may not read is one that an option can name.
+    pub fn of_command() -> Self {
+        Self { by_options: true, ..Self::default() }
     }
 
     /// Access for the project at `path`.
@@ -102,12 +109,15 @@ impl Access {
     pub fn read(&self, place: Place, file: &FileRef) -> Result<PathBuf, Problem> {
         let name = file.path.display();
         if !self.allows(&file.path) {
+            let option = self.by_options.then(|| place.option()).flatten();
+            let how = option.map_or_else(
+                || "pick the file yourself to allow it".to_owned(),
+                |option| format!("name it by {option} to allow it"),
+            );
             return Err(Problem::new(
                 place,
                 ProblemKind::NeedsPermission(file.path.clone()),
-                format!(
-                    "{name} is outside the project's folder and was not loaded; pick the file yourself to allow it"
-                ),
+                format!("{name} is outside the project's folder and was not loaded; {how}"),
             ));
         }
         match std::fs::metadata(&file.path) {
@@ -205,6 +215,8 @@ mod tests {
         let problem = access.read(Place::Hair, &FileRef::new(&outside)).expect_err("refused");
         assert!(matches!(problem.kind, ProblemKind::NeedsPermission(_)));
         assert!(problem.message.contains("secret.hair"));
+        let problem = Access::of_command().read(Place::Motion, &FileRef::new(&outside)).expect_err("refused");
+        assert!(problem.message.ends_with("name it by --motion to allow it"), "{}", problem.message);
         access.pick(&outside);
         assert!(access.read(Place::Hair, &FileRef::new(&outside)).is_ok());
     }

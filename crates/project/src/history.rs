@@ -108,6 +108,16 @@ impl History {
         Some(&self.present)
     }
 
+    /// Takes back the newest step if it was made on `before`, as if it had never been: it cannot be redone. Returns whether it was.
+    pub fn take_back(&mut self, before: &Arc<Project>) -> bool {
+        let Some(step) = self.past.pop_back_if(|step| Arc::ptr_eq(&step.project, before)) else {
+            return false;
+        };
+        self.present = step.project;
+        self.gesture = None;
+        true
+    }
+
     /// Redoes the step that was undone last.
     pub fn redo(&mut self) -> Option<&Arc<Project>> {
         let step = self.future.pop()?;

@@ -43,6 +43,8 @@ pub enum Event {
         scene: Arc<Scene>,
         /// What could not be loaded.
         problems: Vec<Problem>,
+        /// The project that it was loaded from.
+        project: Arc<Project>,
     },
     /// A load was cancelled; the scene is unchanged.
     LoadCancelled,

@@ -21,7 +21,7 @@ pub(super) struct Resize {
 impl Brushes {
     /// While B is held, the pointer changes the radius, and with Shift the strength. Returns where the circle stays meanwhile.
     pub(super) fn resize(&mut self, ui: &Ui, kept: &mut Kept) -> Option<Pos2> {
-        let typing = ui.ctx().egui_wants_keyboard_input();
+        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
         let (held, shift, pointer) = ui.input(|input| {
             let others = input.modifiers.command || input.modifiers.ctrl || input.modifiers.alt;
             (input.key_down(Key::B) && !others, input.modifiers.shift, input.pointer.latest_pos())

@@ -101,15 +101,11 @@ impl Window {
     }
 
     /// Saves the strokes of this run.
-    pub(in crate::window) fn save_strokes(&mut self, path: &Path) {
-        let file = StrokeFile::new(self.brushes.strokes.recorded.clone());
-        let saved = file
-            .to_text()
-            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|error| error.to_string()));
-        match saved {
-            Ok(()) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
-            Err(error) => self.warn([error]),
-        }
+    pub(in crate::window) fn save_strokes(&mut self, path: &Path) -> Result<(), String> {
+        let text = StrokeFile::new(self.brushes.strokes.recorded.clone()).to_text()?;
+        write_whole(path, text.as_bytes()).map_err(|error| error.to_string())?;
+        self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
+        Ok(())
     }
 
     /// Writes what the simulation has made of strokes into the project.

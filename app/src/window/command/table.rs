@@ -266,7 +266,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::PresetSmooth,
             "preset-smooth",
-            "Hairstyle: smooth bob",
+            "Hairstyle: Smooth bob",
             "Grows the shipped smooth hairstyle, with its colour.",
             &["Alt+1"],
             G::Hair,
@@ -274,7 +274,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::PresetCurly,
             "preset-curly",
-            "Hairstyle: red curls",
+            "Hairstyle: Red curls",
             "Grows the shipped curls, with their colour.",
             &["Alt+2"],
             G::Hair,
@@ -282,7 +282,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::PresetLong,
             "preset-long",
-            "Hairstyle: long waves",
+            "Hairstyle: Golden waves",
             "Grows the shipped long hairstyle, with its colour.",
             &["Alt+3"],
             G::Hair,
@@ -290,7 +290,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::PresetPonytail,
             "preset-ponytail",
-            "Hairstyle: ponytail",
+            "Hairstyle: Ponytail",
             "Grows the shipped ponytail, with its tie and colour.",
             &["Alt+4"],
             G::Hair,
@@ -298,7 +298,7 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::PresetBun,
             "preset-bun",
-            "Hairstyle: bun",
+            "Hairstyle: Bun",
             "Grows the shipped bun, with its tie and colour.",
             &["Alt+5"],
             G::Hair,

@@ -255,7 +255,7 @@ impl Window {
     fn panes(&mut self, ui: &mut Ui, page: Rect, project: &mut Project) {
         let count = project.compare.panes.len();
         self.compare.textures.keep(count);
-        let typing = ui.ctx().egui_wants_keyboard_input();
+        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
         let flicked = !typing && ui.input(|input| input.key_down(Key::V) && input.modifiers.is_none());
         let asked = if self.layout.compare.wipe {
             self.wipe(ui, page, project, flicked)

@@ -80,7 +80,7 @@ impl Window {
         while let Some(saved) = self.compare.saved() {
             match saved {
                 Ok(path) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
-                Err(why) => self.warn([why]),
+                Err(why) => self.fail(why),
             }
         }
     }

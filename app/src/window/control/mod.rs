@@ -180,6 +180,31 @@ pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(
     shown
 }
 
+/// As [`section`], with a mark in the heading while there are `problems`. It takes no place from the controls: its tooltip says what is
+/// wrong. Returns also whether it was clicked.
+pub(crate) fn section_with<R>(
+    ui: &mut Ui,
+    title: &str,
+    open: bool,
+    problems: &[String],
+    add: impl FnOnce(&mut Ui) -> R,
+) -> (Option<R>, bool) {
+    let (top, right, side) = (ui.cursor().top(), ui.max_rect().right(), ui.spacing().interact_size.y);
+    let id = ui.make_persistent_id((title, "problems"));
+    let shown = section(ui, title, open, add);
+    if problems.is_empty() {
+        return (shown, false);
+    }
+    let rect = egui::Rect::from_min_size(egui::pos2(right - side, top), Vec2::splat(side));
+    let said = problems.join("\n");
+    let mark = ui.interact(rect, id, Sense::click());
+    mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Problem: {said}")));
+    let icon: &str = egui_material_icons::icons::ICON_ERROR.into();
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, icon, font, theme::WRONG);
+    (shown, mark.on_hover_text(said).clicked())
+}
+
 /// A line of quiet text.
 pub(crate) fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text.into()).small().color(theme::QUIET));

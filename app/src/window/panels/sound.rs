@@ -15,12 +15,11 @@ pub(crate) enum SoundRequest {
     PickFile,
 }
 
-/// The controls of the project's sound. `problem` is why it is not heard.
+/// The controls of the project's sound.
 pub(crate) fn ui(
     ui: &mut Ui,
     project: &mut Project,
     loaded: Option<&Loaded>,
-    problem: Option<&str>,
     duration_secs: f64,
 ) -> Option<SoundRequest> {
     let mut request = None;
@@ -47,9 +46,6 @@ pub(crate) fn ui(
     if let Some(loaded) = loaded {
         facts(ui, loaded);
         markers(ui, project, loaded, duration_secs);
-    }
-    if let Some(problem) = problem {
-        ui.label(RichText::new(problem).color(theme::WRONG));
     }
     request
 }

@@ -85,6 +85,10 @@ pub(crate) struct Browser {
     broken: Vec<String>,
     pictures: BTreeMap<String, TextureHandle>,
     dialog: Option<Dialog>,
+    /// Why the dialog could not do what it is for.
+    dialog_error: Option<String>,
+    /// The style that the grid scrolls to as soon as it is listed.
+    reveal: Option<String>,
     requests: Vec<Request>,
 }
 
@@ -106,6 +110,8 @@ impl Default for Browser {
             broken: Vec::new(),
             pictures: BTreeMap::new(),
             dialog: None,
+            dialog_error: None,
+            reveal: None,
             requests: Vec::new(),
         };
         browser.list(&[]);
@@ -209,15 +215,26 @@ impl Browser {
         found.into_iter().cloned().collect()
     }
 
-    /// The tags of all entries, those of most entries first.
+    /// The tags of all entries: those of most shipped styles first, then those of the user's alone. The order stays when a style is saved.
     fn all_tags(&self) -> Vec<String> {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-        for tag in self.entries.iter().flat_map(tags_of) {
-            *counts.entry(tag).or_default() += 1;
+        for entry in &self.entries {
+            for tag in &entry.style.tags {
+                *counts.entry(tag).or_default() += usize::from(entry.file.is_none());
+            }
         }
         let mut tags: Vec<_> = counts.into_iter().collect();
         tags.sort_by_key(|(tag, count)| (std::cmp::Reverse(*count), *tag));
-        tags.into_iter().map(|(tag, _)| tag.to_owned()).collect()
+        let own = self.own.as_ref().map(|_| OWN);
+        tags.into_iter().map(|(tag, _)| tag).filter(|tag| *tag != OWN).chain(own).map(str::to_owned).collect()
+    }
+
+    /// Shows a style that was just saved: selected by the project, in sight, whatever the filters were.
+    fn reveal(&mut self, id: String) {
+        self.search.clear();
+        self.tags.clear();
+        self.only_favourites = false;
+        self.reveal = Some(id);
     }
 
     /// The picture of a style: that of a shipped one is in the program.
@@ -234,9 +251,12 @@ impl Browser {
     }
 }
 
+/// The tag of the user's own styles.
+const OWN: &str = "own";
+
 /// The tags of a style; one of the user's own has one more.
 fn tags_of(entry: &Entry) -> impl Iterator<Item = &str> {
-    let own = entry.file.as_ref().map(|_| "own");
+    let own = entry.file.as_ref().map(|_| OWN);
     entry.style.tags.iter().map(String::as_str).chain(own)
 }
 

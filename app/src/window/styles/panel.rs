@@ -25,6 +25,7 @@ enum Action {
     Morph,
     Favourite,
     Export,
+    Update,
     Rename,
     Delete,
 }
@@ -47,21 +48,23 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
         {
             let style = Style::of_project(project);
             browser.dialog = Some(Dialog::Save { style: Box::new(style), name: String::new() });
+            browser.dialog_error = None;
         }
         picked
     });
     super::morph::ui(ui, project);
-    parts(ui, &mut browser.parts);
+    parts(ui, project, browser);
     chips(ui, browser);
     grid(ui, project, browser, kept, picked.inner);
-    for why in &browser.broken {
-        ui.label(egui::RichText::new(why).small().color(theme::WRONG));
-    }
-    dialogs::show(ui.ctx(), browser);
+    dialogs::show(ui.ctx(), project, browser);
 }
 
-/// The three parts that a click applies.
-fn parts(ui: &mut Ui, parts: &mut StyleParts) {
+/// The three parts that a click applies, and the button that keeps changes of a style of the user's own.
+fn parts(ui: &mut Ui, project: &Project, browser: &mut Browser) {
+    let own = current(project).and_then(|id| browser.entries.iter().find(|entry| entry.id == id));
+    let own = own.filter(|entry| entry.file.is_some()).cloned();
+    let parts = &mut browser.parts;
+    let mut updates = false;
     ui.horizontal(|ui| {
         ui.label("Apply");
         let toggles = [
@@ -74,7 +77,28 @@ fn parts(ui: &mut Ui, parts: &mut StyleParts) {
                 *on = !*on;
             }
         }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let differs = own.as_ref().is_some_and(|entry| differs(&entry.style, project));
+            let button = ui.add_enabled(differs, Button::new("Update…"));
+            let why_not = match &own {
+                Some(_) => "The hair is as your style has it.",
+                None => "The hair does not have a style of your own.",
+            };
+            let tip = "Puts the hair as it is now into your style, in place of what is in it.";
+            updates = button.on_hover_text(tip).on_disabled_hover_text(why_not).clicked();
+        });
     });
+    if let Some(entry) = own.filter(|_| updates) {
+        browser.dialog = Some(Dialog::update(&entry, project));
+    }
+}
+
+/// Whether the hair differs from a style.
+fn differs(style: &Style, project: &Project) -> bool {
+    let now = Style::of_project(project);
+    let mut hair = style.hair.clone();
+    (hair.style, hair.groom.look) = (String::new(), now.hair.groom.look);
+    (&now.hair, now.look, now.simulation) != (&hair, style.look, style.simulation)
 }
 
 /// Filters: favourites, and tags.
@@ -129,6 +153,10 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
                     }
                 }
             });
+        }
+        // Within the grid, because they are found later than it is shown and must not move what is below.
+        for why in &browser.broken {
+            ui.add(egui::Label::new(egui::RichText::new(why).small().color(theme::WRONG)).wrap());
         }
     });
     preview(ui, browser, hovered);
@@ -199,6 +227,9 @@ fn one(
     }
     // Resting on it with the keyboard shows it too.
     let over = response.hovered() || response.has_focus();
+    if browser.reveal.take_if(|id| *id == entry.id).is_some() {
+        response.scroll_to_me(Some(egui::Align::Center));
+    }
     let tip = format!("{}\n\nA click applies it. More by a right click.", look.text);
     response.on_hover_text(tip).context_menu(|ui| {
         let name = if favourite { "No favourite" } else { "Favourite" };
@@ -211,6 +242,7 @@ fn one(
             ("Export…", Action::Export),
         ];
         if entry.file.is_some() {
+            entries.push(("Update this style…", Action::Update));
             entries.push(("Rename…", Action::Rename));
             entries.push(("Delete…", Action::Delete));
         }
@@ -260,7 +292,13 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
     let file = || entry.file.clone().unwrap_or_default();
     match *action {
         Action::Apply(parts) => {
-            project.apply_style(&entry.style, parts);
+            let kept = project.apply_style_below_layers(&entry.style, parts);
+            if kept > 0 {
+                let layers = if kept == 1 { "One layer of yours stays" } else { "Layers of yours stay" };
+                let said =
+                    format!("{layers} over {}. Remove what you do not want in Layers.", entry.style.name);
+                browser.requests.push(Request::Done(said));
+            }
             browser.clicked = Some(entry.id.clone());
             browser.preview = None;
         }
@@ -275,6 +313,7 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
             }
         }
         Action::Export => browser.requests.push(Request::Export(Box::new((*entry.style).clone()))),
+        Action::Update => browser.dialog = Some(Dialog::update(entry, project)),
         Action::Rename => {
             browser.dialog = Some(Dialog::Rename { path: file(), name: entry.style.name.clone() });
         }

@@ -240,6 +240,7 @@ fn own_styles_are_saved_renamed_and_deleted() {
     let requests = harness.state_mut().state.browser.requests();
     assert!(matches!(&requests[..], [Request::Done(_)]), "{requests:?}");
     wait(&mut harness, "the style", |harness| names(harness).contains(&"Few hairs".to_owned()));
+    assert_eq!(self::project(&harness).hair.style, "own/Few hairs", "the hair has the style from now on");
     let path = own.folder().join("Few hairs.lovelockstyle");
     let style = Style::load(&path).expect("a style").0;
     assert_eq!(style, Style { name: "Few hairs".to_owned(), ..Style::of_project(&project) });
@@ -316,4 +317,108 @@ fn the_menu_starts_a_morph_whose_slider_mixes_and_whose_buttons_end_it() {
     wanted = before;
     wanted.apply_style(&shipped::by_id("curly").expect("shipped").style, StyleParts::ALL);
     assert_eq!(project(&harness), wanted);
+}
+
+/// A browser with a folder for own styles, and the name of a style that has just been saved in it.
+fn saved(dir: &std::path::Path, name: &str) -> (Shelf, OwnStyles) {
+    let own = OwnStyles::new(dir.join("styles"));
+    let mut harness = shelf(Some((own.clone(), dir.join("cache"))));
+    let mut project = Project::default();
+    (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (20, 3);
+    project.hair.groom.length *= 0.7;
+    harness.state_mut().state.history.edit("few", None, project);
+    harness.run_steps(2);
+    save_as(&mut harness, name);
+    wait(&mut harness, "the style", |harness| names(harness).iter().any(|listed| listed == name));
+    (harness, own)
+}
+
+fn save_as(harness: &mut Shelf, name: &str) {
+    control(harness, Role::Button, "Save as style…").click();
+    harness.run_steps(3);
+    harness.event(egui::Event::Text(name.to_owned()));
+    harness.run_steps(2);
+    control(harness, Role::Button, "Save style").click();
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_saved_style_is_selected_in_sight_and_nothing_of_it_is_marked() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let tags = shelf(None).state().state.browser.all_tags();
+    let (mut harness, _) = saved(dir.path(), "Zest");
+    harness.run_steps(30);
+    let tile = control(&harness, Role::RadioButton, "Zest");
+    assert!(crate::window::testing::is_on(&tile));
+    let place = tile.rect();
+    let search = control(&harness, Role::TextInput, "Search styles").rect();
+    assert!(place.top() > search.bottom() && place.bottom() < search.bottom() + 460.0, "{place:?}");
+    let project = project(&harness);
+    assert_eq!(project.hair.shipped_groom(), project.hair.groom);
+    assert_eq!(project.hair.simulation(), Style::of_project(&project).simulation);
+    // The control: with the preset alone, the length would be marked.
+    assert_ne!(lovelock_groom::GroomSettings::preset(project.hair.preset), project.hair.groom);
+    let now = harness.state().state.browser.all_tags();
+    assert_eq!(now[..tags.len()], tags[..], "no tag changes its place");
+    assert_eq!(now[tags.len()..], ["own"]);
+}
+
+#[test]
+fn a_style_is_updated_and_a_name_in_use_is_asked_for() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (mut harness, own) = saved(dir.path(), "Mine");
+    let path = own.folder().join("Mine.lovelockstyle");
+    let longer = |harness: &mut Shelf| {
+        let mut project = project(harness);
+        project.hair.groom.length *= 1.1;
+        harness.state_mut().state.history.edit("longer", None, project.clone());
+        harness.run_steps(2);
+        project.hair.groom.length
+    };
+    let stored = || Style::load(&path).expect("a style").0.hair.groom.length;
+    // Update, from the button.
+    let length = longer(&mut harness);
+    control(&harness, Role::Button, "Update…").click();
+    harness.run_steps(3);
+    assert!(stored() < length, "it asks first");
+    control(&harness, Role::Button, "Update style").click();
+    harness.run_steps(3);
+    assert!((stored() - length).abs() < 1e-6);
+    assert_eq!(Style::load(&path).expect("a style").0.name, "Mine");
+    // A name in use: Cancel returns to the name, Replace replaces.
+    let length = longer(&mut harness);
+    save_as(&mut harness, "Mine");
+    assert!(harness.query_by_label("You have a style Mine. Replace it?").is_some());
+    control(&harness, Role::Button, "Cancel").click();
+    harness.run_steps(3);
+    assert!(stored() < length);
+    control(&harness, Role::Button, "Save style").click();
+    harness.run_steps(3);
+    control(&harness, Role::Button, "Replace").click();
+    harness.run_steps(3);
+    assert!((stored() - length).abs() < 1e-6);
+    assert_eq!(own.list().len(), 1, "no second one of the same caption");
+}
+
+#[test]
+fn layers_of_the_user_stay_when_a_style_is_applied() {
+    use lovelock_style::{Layer, operations::Wave};
+    let mut harness = shelf(None);
+    let mut before = project(&harness);
+    before.hair.stack.push(Layer::of(Wave::default()));
+    let id = before.hair.stack.layers[0].id;
+    harness.state_mut().state.history.edit("layer", None, before.clone());
+    harness.run_steps(2);
+    let at = tile(&harness, "Red curls");
+    click(&mut harness, at);
+    harness.remove_cursor();
+    harness.run();
+    let after = project(&harness);
+    assert_eq!(after.hair.preset, lovelock_groom::Preset::Curly);
+    assert!(after.hair.stack.layer(id).is_some(), "it stays, under its number");
+    let requests = harness.state_mut().state.browser.requests();
+    assert!(matches!(&requests[..], [Request::Done(said)] if said.contains("Red curls")), "{requests:?}");
+    let history = &mut harness.state_mut().state.history;
+    history.undo();
+    assert_eq!(**history.project(), before, "one step brings all back");
 }

@@ -50,7 +50,7 @@ impl Window {
         let known = self.preview.take().filter(same);
         let mut preview = known.unwrap_or_else(|| {
             let mut project = (*of).clone();
-            project.apply_style(style, parts);
+            project.apply_style_below_layers(style, parts);
             let project = Arc::new(project);
             let seen = (f64::NAN, Arc::clone(&project));
             Preview { of, id: id.to_owned(), parts, project, seen }
@@ -72,26 +72,23 @@ impl Window {
                     self.open_path_dialog(Purpose::ExportStyle);
                 }
                 Request::Done(said) => self.notices.push(notices::Kind::Done, said),
-                Request::Failed(why) => self.warn([why]),
+                Request::Failed(why) => self.fail(why),
             }
         }
     }
 
     /// Saves the style that is exported.
-    pub(in crate::window) fn export_style(&mut self, path: &Path) {
-        let Some(style) = self.exported.take() else { return };
-        match style.save(path) {
-            Ok(()) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
-            Err(error) => self.warn([error.to_string()]),
-        }
+    pub(in crate::window) fn export_style(&mut self, path: &Path) -> Result<(), String> {
+        let Some(style) = &self.exported else { return Ok(()) };
+        style.save(path).map_err(|error| error.to_string())?;
+        self.exported = None;
+        self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
+        Ok(())
     }
 
     /// Copies a style file among the user's own and applies it.
-    pub(in crate::window) fn open_style(&mut self, path: &Path) {
-        let (mut style, problems) = match Style::load(path) {
-            Ok(read) => read,
-            Err(error) => return self.warn([error.to_string()]),
-        };
+    pub(in crate::window) fn open_style(&mut self, path: &Path) -> Result<(), String> {
+        let (mut style, problems) = Style::load(path).map_err(|error| error.to_string())?;
         self.warn(problems.into_iter().map(|problem| problem.message));
         style.hair.style = own_id(path);
         match self.styles.own().map(|own| own.import(path)) {
@@ -101,12 +98,15 @@ impl Window {
                 let text = format!("{} is among your own styles now", style.name);
                 self.notices.push(notices::Kind::Done, text);
             }
-            Some(Err(error)) => self.warn([error.to_string()]),
+            Some(Err(error)) => self.fail(error.to_string()),
             None => {}
         }
         if let Some(file) = &style.hair.file {
             self.session.pick(&file.path);
         }
-        self.change("style", |project| project.apply_style(&style, StyleParts::ALL));
+        self.change("style", |project| {
+            project.apply_style_below_layers(&style, StyleParts::ALL);
+        });
+        Ok(())
     }
 }

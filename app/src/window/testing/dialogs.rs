@@ -104,7 +104,8 @@ fn a_typed_path_is_confirmed_by_enter() {
     harness.key_press(Key::Enter);
     harness.run();
     let answer = harness.state().state.1.as_ref();
-    assert_eq!(answer, Some(&Answer::Path(Purpose::Film, PathBuf::from("a b/ü.mp4"))));
+    let wanted = std::path::absolute("out/a b/ü.mp4").expect("a path");
+    assert_eq!(answer, Some(&Answer::Path(Purpose::Film, wanted)));
 }
 
 #[test]
@@ -141,6 +142,105 @@ fn a_path_dialog_can_be_cancelled() {
         harness.run();
         assert_eq!(harness.state().state.1, Some(Answer::Closed), "escape: {escape}");
     }
+}
+
+#[test]
+fn typing_replaces_the_name_that_the_dialog_suggests() {
+    let mut harness = dialog(Purpose::Film, Path::new("/out/dance.mp4"));
+    harness.run();
+    harness.event(Event::Text("swing.mp4".to_owned()));
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::Film, PathBuf::from("/out/swing.mp4"))));
+}
+
+/// Runs passes until the folder is read, which takes a thread some of them.
+fn until_listed(harness: &mut Harness<'_, Shown<(PathDialog, Option<Answer>)>>, name: &str) {
+    for _ in 0..10_000 {
+        harness.step();
+        if harness.query_by_label(name).is_some() {
+            return;
+        }
+        std::thread::yield_now();
+    }
+    panic!("{name} is not listed");
+}
+
+#[test]
+fn the_list_is_used_by_the_keyboard() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("hair")).expect("a folder");
+    for name in ["hair/curly-1.take", "hair/curly-2.take", "hair/note.txt"] {
+        std::fs::write(folder.path().join(name), b"x").expect("a file");
+    }
+    let mut harness = dialog(Purpose::Beside, &folder.path().join(""));
+    until_listed(&mut harness, "hair/");
+    // Down to the folder, below the one above; Enter enters it.
+    harness.key_press(Key::ArrowDown);
+    harness.key_press(Key::ArrowDown);
+    harness.key_press(Key::Enter);
+    until_listed(&mut harness, "curly-1.take");
+    assert!(harness.query_by_label("note.txt").is_none(), "only what can be opened is listed");
+    assert_eq!(harness.state().state.1, None);
+    // Tab completes what the names share, then chooses; Enter opens.
+    harness.event(Event::Text("c".to_owned()));
+    harness.run();
+    harness.key_press(Key::Tab);
+    harness.run();
+    harness.event(Event::Text("2".to_owned()));
+    harness.run();
+    harness.key_press(Key::Tab);
+    harness.run();
+    harness.key_press(Key::Enter);
+    harness.run();
+    let wanted = folder.path().join("hair/curly-2.take");
+    assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::Beside, wanted)));
+}
+
+#[test]
+fn a_refused_path_stays_in_the_dialog_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = dialog(Purpose::Open, &folder.path().join(""));
+    harness.run();
+    harness.event(Event::Text("missing.take".to_owned()));
+    harness.run();
+    let before = harness.get_by_label("Open file").rect();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.1, None, "it is still open");
+    assert!(harness.query_by_label_contains("found no such file").is_some());
+    assert_eq!(harness.get_by_label("Open file").rect(), before, "the button stays where it was");
+    harness.event(Event::Text("2".to_owned()));
+    harness.run();
+    assert!(harness.query_by_label_contains("found no such file").is_none(), "the text is corrected");
+}
+
+#[test]
+fn another_project_is_replaced_only_after_a_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("other.lovelock");
+    std::fs::write(&path, b"x").expect("a file");
+    let mut harness = dialog(Purpose::SaveProject, &path);
+    harness.run();
+    assert!(harness.query_by_label_contains("will be replaced").is_some());
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!(harness.query_by_label_contains("is another project. Replace it?").is_some());
+    // Enter takes the safe answer, Escape the question alone.
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!(harness.query_by_label("Replace").is_none() && harness.state().state.1.is_none());
+    harness.get_by_label("Save file").click();
+    harness.run();
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label("Replace").is_none() && harness.state().state.1.is_none());
+    harness.get_by_label("Save file").click();
+    harness.run();
+    harness.get_by_label("Replace").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::SaveProject, path)));
 }
 
 #[test]

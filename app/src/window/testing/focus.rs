@@ -25,7 +25,7 @@ fn show(ui: &mut Ui, page: &mut Page) {
     let ctx = ui.ctx().clone();
     page.focus.begin_pass(&ctx);
     page.menus.begin_pass(&ctx);
-    page.asked.extend(keys::pressed(&ctx));
+    page.asked.extend(keys::pressed(&ctx, |_| true));
     let mut area = |ui: &mut Ui, of: Area, add: &mut dyn FnMut(&mut Ui)| {
         let begin = Focus::begin_area(ui);
         add(ui);

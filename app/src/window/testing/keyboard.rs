@@ -15,7 +15,7 @@ fn screen() -> Harness<'static, Shown<(String, Vec<Command>)>> {
         vec2(400.0, 300.0),
         (String::new(), Vec::new()),
         |ui, (typed, asked): &mut (String, Vec<Command>)| {
-            asked.extend(keys::pressed(ui.ctx()));
+            asked.extend(keys::pressed(ui.ctx(), |_| true));
             let _ = ui.button("A button");
             let label = ui.label("Name");
             ui.text_edit_singleline(typed).labelled_by(label.id);

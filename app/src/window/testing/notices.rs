@@ -13,7 +13,10 @@ fn corner(sentences: &[&str]) -> Harness<'static, Shown<Notices>> {
     for sentence in sentences {
         notices.push(Kind::Warning, *sentence);
     }
-    let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices| notices.show(ui.ctx()));
+    let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices: &mut Notices| {
+        let image = ui.max_rect();
+        notices.show(ui.ctx(), image);
+    });
     harness.run_steps(2);
     harness
 }
@@ -49,4 +52,27 @@ fn messages_do_not_fill_the_window() {
     assert!(harness.query_by_label("sentence 19").is_some(), "the newest is there");
     harness.check_accessibility();
     assert!(harness.query_all_by_role_and_label(Role::Button, "Close message").count() > 0);
+}
+
+#[test]
+fn an_error_stays_until_it_is_closed_and_others_wait_for_it() {
+    let mut notices = Notices::default();
+    for number in 0..8 {
+        notices.push(Kind::Failed, format!("broken {number}"));
+    }
+    notices.push(Kind::Warning, "passing");
+    let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices: &mut Notices| {
+        let image = ui.max_rect();
+        notices.show(ui.ctx(), image);
+    });
+    // Twenty seconds: the warning is gone, the errors are not.
+    harness.run_steps(30 * 20);
+    assert!(harness.query_by_label("passing").is_none());
+    assert!(harness.query_by_label("broken 0").is_some() && harness.query_by_label("3 more").is_some());
+    harness.query_all_by_role_and_label(Role::Button, "Close message").next().expect("a button").click();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("broken 0").is_none() && harness.query_by_label("broken 5").is_some());
+    harness.get_by_role_and_label(Role::Button, "Close all").click();
+    harness.run_steps(2);
+    assert!(harness.state().state.errors().is_empty());
 }

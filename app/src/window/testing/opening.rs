@@ -193,3 +193,47 @@ fn the_camera_follows_the_size_of_an_opened_body_in_the_same_undo_step() {
     go(&mut harness);
     assert_eq!(project(&harness).camera, moved);
 }
+
+#[test]
+fn a_broken_file_leaves_the_project_and_its_error_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bad = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    };
+    // Right at the start, so that the kind is known, and wrong behind it.
+    let hair = bad("broken.hair", b"HAIR\x01\0\0\0");
+    let body = bad("broken.glb", b"glTF\x02\0\0\0\x0c\0\0\0");
+    let mut harness = window();
+    let before = project(&harness);
+    for path in [&hair, &body] {
+        harness.state_mut().state.as_mut().expect("a window").open_any(path);
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        wait(&mut harness, "the error", |window| {
+            window.notices.errors().iter().any(|error| error.contains(&name)) && window.trials.is_empty()
+        });
+        assert_eq!(project(&harness), before, "{name}");
+        assert_eq!(of(&harness).history.undo_len(), 0, "{name}");
+        assert_eq!(of(&harness).history.redo_len(), 0, "it cannot be redone");
+    }
+    assert_eq!(of(&harness).notices.errors().len(), 2);
+    assert!(of(&harness).session.problems.iter().all(|problem| !problem.is_failure()));
+}
+
+#[test]
+fn a_broken_file_that_was_changed_after_it_was_opened_leaves_the_change() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("broken.hair");
+    std::fs::write(&path, b"HAIR\x01\0\0\0").expect("a file");
+    let mut harness = window();
+    let before = project(&harness);
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.open_part(lovelock_project::error::Place::Hair, &path, |project| project.set_hair_file(&path));
+    window.change("camera", |project| project.camera.distance *= 0.5);
+    let distance = project(&harness).camera.distance;
+    wait(&mut harness, "the error", |window| window.trials.is_empty());
+    let after = project(&harness);
+    assert_eq!((after.hair.source, &after.hair.file), (HairSource::Grown, &before.hair.file));
+    assert!((after.camera.distance - distance).abs() < 1e-6);
+}

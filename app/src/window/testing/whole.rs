@@ -140,7 +140,7 @@ fn changes_by_menu_and_key_can_be_undone() {
 
     // The palette runs the same command as the menu.
     key(&mut harness, CTRL, Key::K);
-    harness.event(Event::Text("long waves".to_owned()));
+    harness.event(Event::Text("golden waves".to_owned()));
     harness.key_press(Key::Enter);
     go(&mut harness);
     assert_eq!(project(&harness).hair.preset, Preset::Long);
@@ -226,7 +226,7 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     key(&mut harness, Modifiers::ALT, Key::Num3);
     let changed = project(&harness);
     key(&mut harness, CTRL, Key::N);
-    press_button(&mut harness, "Stay");
+    press_button(&mut harness, "Cancel");
     assert_eq!(project(&harness), changed);
     // Closing the window asks as well.
     let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
@@ -236,7 +236,7 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     assert!(commands.contains(&ViewportCommand::CancelClose), "{commands:?}");
     harness.input_mut().viewports.entry(ViewportId::ROOT).or_default().events.clear();
     go(&mut harness);
-    press_button(&mut harness, "Stay");
+    press_button(&mut harness, "Cancel");
     key(&mut harness, CTRL, Key::N);
     press_button(&mut harness, "Discard changes");
     assert_eq!(*project(&harness), Project::default());
@@ -259,12 +259,25 @@ fn a_broken_hair_file_is_reported_and_the_scene_stays() {
     let before = project(&harness);
     harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
     go(&mut harness);
-    wait(&mut harness, "the error", |window| !window.session.problems.is_empty());
+    wait(&mut harness, "the error", |window| !window.notices.errors().is_empty());
+    let error = of(&harness).notices.errors()[0].to_owned();
+    assert!(error.contains("cut.hair"), "{error}");
+    go(&mut harness);
+    assert!(harness.query_by_label(&error).is_some(), "it is seen whatever is open");
+    assert_eq!(project(&harness), before, "the file is not in the project");
+    wait(&mut harness, "the project before", |window| window.session.problems.is_empty());
+    assert_eq!(of(&harness).session.scene.as_ref().map(|scene| scene.style.strands.count()), strands);
+
+    // A project keeps the file that it names; the section marks it.
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.session.pick(&path);
+    window.change("hair", |project| project.set_hair_file(&path));
+    wait(&mut harness, "the problem", |window| !window.session.problems.is_empty());
     let problem = of(&harness).session.problems[0].clone();
     assert_eq!(problem.place, Place::Hair);
-    assert!(problem.message.contains("cut.hair"), "{}", problem.message);
-    assert!(harness.query_by_label(&problem.message).is_some(), "shown in the panel");
-    assert_eq!(of(&harness).session.scene.as_ref().map(|scene| scene.style.strands.count()), strands);
+    go(&mut harness);
+    assert!(harness.query_by_label(&format!("Problem: {}", problem.message)).is_some());
+    assert!(project(&harness).hair.file.is_some());
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
     wait(&mut harness, "the end of the error", |window| window.session.problems.is_empty());
@@ -303,9 +316,70 @@ fn a_dropped_sound_plays_beside_the_dance_and_one_that_is_none_says_so() {
     let bad = folder.path().join("bad.wav");
     std::fs::write(&bad, b"RIFF\0\0\0\0WAVE and nothing more").expect("a file");
     open(&mut harness, &bad);
-    let told =
-        |window: &Window| window.soundtrack.problem().is_some_and(|problem| problem.contains("bad.wav"));
+    let told = |window: &Window| window.notices.errors().iter().any(|error| error.contains("bad.wav"));
     wait(&mut harness, "the problem", told);
-    let problem = of(&harness).soundtrack.problem().expect("a problem");
-    assert!(problem.contains("the dance is silent") && problem.lines().count() == 1, "{problem}");
+    let errors = of(&harness).notices.errors();
+    assert!(errors[0].contains("the dance is silent") && errors[0].lines().count() == 1, "{errors:?}");
+    assert!(project(&harness).sound.file.is_none(), "it leaves the project");
+}
+
+#[test]
+fn a_dialog_holds_the_keyboard_until_it_is_answered() {
+    let mut harness = window();
+    let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
+        let window = of(harness);
+        (
+            window.layout.wall.shown,
+            window.layout.compare.shown,
+            window.scissors.held,
+            window.overdub.is_armed(),
+        )
+    };
+    let before = state(&harness);
+    // The keys come in the same pass as the one that opens the dialog, and after its text is refused.
+    harness.key_press_modifiers(CTRL, Key::O);
+    let letters = [Key::N, Key::C, Key::X, Key::W, Key::R, Key::H, Key::Space, Key::Tab];
+    letters.iter().for_each(|letter| harness.key_press(*letter));
+    go(&mut harness);
+    harness.event(Event::Text("/no such folder/nxwr.take".to_owned()));
+    harness.key_press(Key::Enter);
+    go(&mut harness);
+    assert!(harness.query_by_label_contains("found no such file").is_some());
+    letters.iter().for_each(|letter| harness.key_press(*letter));
+    go(&mut harness);
+    assert!(of(&harness).dialog.is_some() && of(&harness).session.playing);
+    assert_eq!(state(&harness), before);
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(of(&harness).dialog.is_none());
+    // The control: without a dialog the same key works.
+    key(&mut harness, Modifiers::NONE, Key::X);
+    assert!(of(&harness).scissors.held);
+
+    // The list of keys and the palette hold it too, and close by the key that opened them.
+    for (modifiers, opens) in [(Modifiers::SHIFT, Key::Questionmark), (CTRL, Key::K)] {
+        let is_open = |harness: &Harness<'_, Shown<Option<Window>>>| {
+            of(harness).keys_shown || of(harness).palette.is_open()
+        };
+        key(&mut harness, modifiers, opens);
+        assert!(is_open(&harness));
+        key(&mut harness, CTRL, Key::N);
+        key(&mut harness, Modifiers::NONE, Key::N);
+        assert!(is_open(&harness) && of(&harness).pending.is_none() && !of(&harness).layout.wall.shown);
+        key(&mut harness, modifiers, opens);
+        assert!(!is_open(&harness));
+    }
+}
+
+#[test]
+fn enter_answers_the_question_on_unsaved_changes_and_what_waited_goes_on() {
+    let mut harness = window();
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("hair").with_extension(PROJECT_EXTENSION);
+    key(&mut harness, Modifiers::ALT, Key::Num2);
+    key(&mut harness, CTRL, Key::N);
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(of(&harness).pending.is_none() && of(&harness).dialog.is_some(), "it saves");
+    answer(&mut harness, &path);
+    assert!(path.is_file());
+    assert_eq!(*project(&harness), Project::default(), "the new project follows");
 }

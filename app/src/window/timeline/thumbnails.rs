@@ -95,16 +95,19 @@ impl Thumbnails {
         painted: Option<&Arc<RenderedImage>>,
         (zoom, duration_secs, width): (Zoom, f64, f32),
     ) {
-        let moves = |a: &Project, b: &Project| {
-            (&a.hair, &a.body, &a.motion, &a.take) != (&b.hair, &b.body, &b.motion, &b.take)
-        };
-        if self.of.as_ref().is_none_or(|of| moves(of, project)) {
+        let is_other = self.of.as_ref().is_none_or(|of| {
+            !Arc::ptr_eq(of, project)
+                && (moves(of, project) || (looks(of, project) && !is_drawn_anew(project)))
+        });
+        if is_other {
             self.thumbs.clear();
             self.filled = None;
-            self.of = Some(Arc::clone(project));
-            // The current image still shows the previous project.
-            self.seen = painted.cloned();
         }
+        self.of = Some(Arc::clone(project));
+        // An image of the window may still show the project before, or a mask in false colours.
+        let painted = painted.filter(|painted| {
+            !painted.has_mask && (has_looks_of_its_own(project) || !looks(project, &painted.project))
+        });
         let duration = if duration_secs.is_finite() { duration_secs.max(1e-3) } else { 1e-3 };
         let slots = slots(zoom, duration, width);
         let slot_secs = slot_secs(zoom, duration, width);
@@ -182,6 +185,28 @@ impl Thumbnails {
     pub(crate) fn shown(&self) -> Vec<(f64, TextureId)> {
         self.thumbs.iter().filter_map(|thumb| Some((thumb.secs, thumb.image.texture()?))).collect()
     }
+}
+
+/// Whether other hair, another body or another motion is seen.
+fn moves(a: &Project, b: &Project) -> bool {
+    (&a.hair, &a.body, &a.motion, &a.take) != (&b.hair, &b.body, &b.motion, &b.take)
+}
+
+/// Whether the same scene looks different, wherever the camera is.
+fn looks(a: &Project, b: &Project) -> bool {
+    (&a.look, &a.lights, &a.surroundings, &a.shadow, &a.picture)
+        != (&b.look, &b.lights, &b.surroundings, &b.shadow, &b.picture)
+        || a.hair != b.hair
+}
+
+/// Whether all thumbnails are drawn again after a change, as those of a take are.
+fn is_drawn_anew(project: &Project) -> bool {
+    project.take.file.is_some()
+}
+
+/// Whether what is drawn differs from the project by itself: tracks and a morph change it with the time.
+fn has_looks_of_its_own(project: &Project) -> bool {
+    project.is_animated() || project.hair.morph.to.is_some()
 }
 
 /// Duration of a slot, seconds.

@@ -131,7 +131,7 @@ impl Window {
             Ok(wall) => self.wall.wall = Some(wall),
             Err(error) => {
                 self.layout.wall.shown = false;
-                self.warn([format!("the thread of the wall could not be started: {error}")]);
+                self.fail(format!("the thread of the wall could not be started: {error}"));
             }
         }
     }

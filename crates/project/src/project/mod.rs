@@ -24,8 +24,8 @@ pub use file::{
 pub(crate) use file::{parse_text, read_text, text_options};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairMorph, HairSection, HairSource,
-    KeptScalp, Marker, MorphStyle, MotionSection, MotionSource, RecordingSection, SurroundingsSection,
-    TakeSection, TimelineSection,
+    KeptScalp, Marker, MorphStyle, MotionSection, MotionSource, RecordingSection, StyleGrowth,
+    SurroundingsSection, TakeSection, TimelineSection,
 };
 
 pub use sound::SoundSection;
@@ -147,6 +147,29 @@ impl Project {
     /// Plays a take that the user picked.
     pub fn set_take(&mut self, path: impl Into<std::path::PathBuf>) {
         self.take.file = Some(FileRef::new(path));
+    }
+
+    /// Makes the file at `place` the one that it is in `other`.
+    pub fn restore_part(&mut self, place: crate::error::Place, other: &Self) {
+        use crate::error::Place;
+        match place {
+            Place::Hair => {
+                self.set_hair_source(other.hair.source);
+                self.hair.file.clone_from(&other.hair.file);
+            }
+            Place::Body => {
+                self.body.clone_from(&other.body);
+                self.motion.clip.clone_from(&other.motion.clip);
+            }
+            Place::Motion => {
+                self.motion.source = other.motion.source;
+                self.motion.file.clone_from(&other.motion.file);
+            }
+            Place::Surroundings => self.surroundings.file.clone_from(&other.surroundings.file),
+            Place::Sound => self.sound.file.clone_from(&other.sound.file),
+            Place::Take => self.take.file.clone_from(&other.take.file),
+            _ => {}
+        }
     }
 
     /// Every file that the project refers to and uses, with the part that uses it.

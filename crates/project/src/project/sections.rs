@@ -159,6 +159,12 @@ pub struct HairSection {
     pub style: String,
     /// How the style that was applied moves, where it is none of the shipped ones: where the controls of the simulation return to.
     pub moves: Option<SimulationSettings>,
+    /// How the style that was applied grows and is tied, where it is none of the shipped ones: where those controls return to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grows: Option<Box<StyleGrowth>>,
+    /// The layers that came with the style that was applied last, by their ids. All others are the user's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub style_layers: Vec<u32>,
     /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
     pub groom: GroomSettings,
     /// A hair file, in one of [`lovelock_groom::HAIR_FORMATS`].
@@ -175,6 +181,16 @@ pub struct HairSection {
     pub morph: HairMorph,
 }
 
+/// How a style grows and is tied.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct StyleGrowth {
+    /// How hair grows.
+    pub groom: GroomSettings,
+    /// What gathers it.
+    pub ties: Vec<HairTie>,
+}
+
 impl Default for HairSection {
     fn default() -> Self {
         Self {
@@ -182,6 +198,8 @@ impl Default for HairSection {
             preset: Preset::Smooth,
             style: String::new(),
             moves: None,
+            grows: None,
+            style_layers: Vec::new(),
             groom: GroomSettings::preset(Preset::Smooth),
             file: None,
             import: ImportSettings::default(),

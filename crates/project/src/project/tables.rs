@@ -240,6 +240,13 @@ impl Settings for HairSection {
         self.cut = self.cut.clamped();
         self.style = self.style.chars().filter(|c| !c.is_control()).take(Self::LONGEST_STYLE).collect();
         self.moves = self.moves.map(|moves| moves.clamped());
+        if let Some(grows) = &mut self.grows {
+            grows.groom = grows.groom.clamped();
+            grows.ties.truncate(HairTie::MOST);
+            grows.ties.iter_mut().for_each(|tie| *tie = tie.clamped());
+        }
+        let layers = &self.stack.layers;
+        self.style_layers.retain(|id| layers.iter().any(|layer| layer.id == *id));
     }
 }
 

@@ -2,20 +2,41 @@
 
 use lovelock_groom::{GroomSettings, HairLook, HairTie, Preset};
 use lovelock_simulation::SimulationSettings;
+use lovelock_style::Layer;
 
 use super::document::Style;
 use super::mix::{StyleParts, mixed};
 use super::motion;
 use super::shipped::{self, Shipped};
 use crate::Project;
-use crate::project::{HairSection, HairSource};
+use crate::project::{HairSection, HairSource, StyleGrowth};
 
 impl Project {
     /// Takes the parts `parts` of a style. How much light hair blocks stays, whatever its colour. Where the shape is taken, settings of
     /// the simulation that somebody has chosen stay; motion alone is taken as it is. Gravity, wind and the method always stay.
     pub fn apply_style(&mut self, style: &Style, parts: StyleParts) {
+        self.take_style(style, parts, &|_| false);
+    }
+
+    /// As [`Project::apply_style`], but the layers that the user has added stay, with their tracks, and act after those of the style.
+    /// Returns how many stay that the style would have replaced.
+    pub fn apply_style_below_layers(&mut self, style: &Style, parts: StyleParts) -> usize {
+        let shipped = self.hair.shipped().map(|shipped| shipped.style.hair.stack.layers.clone());
+        let listed = self.hair.style_layers.clone();
+        let kind = |layer: &Layer| layer.operation.known().map(|operation| operation.kind().id);
+        // Files of older versions do not list the layers of their style.
+        let is_users = move |layer: &Layer| {
+            let of_shipped =
+                |known: &Layer| listed.is_empty() && known.id == layer.id && kind(known) == kind(layer);
+            !listed.contains(&layer.id) && !shipped.iter().flatten().any(of_shipped)
+        };
+        self.take_style(style, parts, &is_users)
+    }
+
+    fn take_style(&mut self, style: &Style, parts: StyleParts, stays: &dyn Fn(&Layer) -> bool) -> usize {
         let before = self.hair.simulation();
-        let stack = mixed(&self.hair.stack, &style.hair.stack, parts);
+        let (stack, from_style, kept) =
+            mixed(&self.hair.stack, &style.hair.stack, parts, &self.hair.style_layers, stays);
         if parts.shape {
             let old = std::mem::take(&mut self.hair);
             self.hair = style.hair.clone();
@@ -23,11 +44,16 @@ impl Project {
                 // The hair file that was picked before can be returned to.
                 (self.hair.file, self.hair.import) = (old.file, old.import);
             }
-            self.hair.moves = None;
-            if shipped::by_id(&self.hair.style).is_none() && style.simulation != self.hair.simulation() {
+            (self.hair.moves, self.hair.grows) = (None, None);
+            let is_own = shipped::by_id(&self.hair.style).is_none();
+            if is_own && style.simulation != self.hair.simulation() {
                 self.hair.moves = Some(style.simulation);
             }
+            if is_own && self.hair.source == HairSource::Grown {
+                self.remember_growth();
+            }
         }
+        self.hair.style_layers = from_style;
         self.hair.stack = stack;
         if parts.colour {
             self.look = HairLook { extinction_scale: self.look.extinction_scale, ..style.look };
@@ -39,6 +65,22 @@ impl Project {
                 motion::of_style(&self.simulation, &style.simulation)
             };
         }
+        kept
+    }
+
+    /// Makes the hair as it is now that of a style of this id, to which the controls return from now on.
+    pub fn become_style(&mut self, id: &str) {
+        id.clone_into(&mut self.hair.style);
+        self.hair.moves = Some(motion::own(&self.simulation));
+        self.hair.groom.look = self.look;
+        self.hair.style_layers = self.hair.stack.layers.iter().map(|layer| layer.id).collect();
+        self.remember_growth();
+    }
+
+    /// Lets the controls of growing and of ties return to what they are now.
+    fn remember_growth(&mut self) {
+        let grows = StyleGrowth { groom: self.hair.groom, ties: self.hair.ties.clone() };
+        self.hair.grows = Some(Box::new(grows));
     }
 
     /// Switches to a shipped hairstyle with its colours and ties, and with its stiffness unless the user has changed that.
@@ -76,12 +118,20 @@ impl HairSection {
 
     /// Where the controls of growing return to.
     pub fn shipped_groom(&self) -> GroomSettings {
-        self.shipped().map_or_else(|| GroomSettings::preset(self.preset), |shipped| shipped.style.hair.groom)
+        match (self.shipped(), &self.grows) {
+            (Some(shipped), _) => shipped.style.hair.groom,
+            (None, Some(grows)) => grows.groom,
+            (None, None) => GroomSettings::preset(self.preset),
+        }
     }
 
     /// Where the controls of ties return to.
     pub fn shipped_ties(&self) -> Vec<HairTie> {
-        self.shipped().map_or_else(|| self.preset.ties().to_vec(), |shipped| shipped.style.hair.ties.clone())
+        match (self.shipped(), &self.grows) {
+            (Some(shipped), _) => shipped.style.hair.ties.clone(),
+            (None, Some(grows)) => grows.ties.clone(),
+            (None, None) => self.preset.ties().to_vec(),
+        }
     }
 }
 

@@ -72,7 +72,13 @@ impl Style {
 
     /// The style of a project, without a name.
     pub fn of_project(project: &Project) -> Self {
-        let mut hair = HairSection { style: String::new(), moves: None, ..project.hair.clone() };
+        let mut hair = HairSection {
+            style: String::new(),
+            moves: None,
+            grows: None,
+            style_layers: Vec::new(),
+            ..project.hair.clone()
+        };
         // Where the controls of colours return to.
         hair.groom.look = project.look;
         Self { hair, look: project.look, simulation: motion::own(&project.simulation), ..Self::default() }

@@ -40,13 +40,23 @@ impl StyleParts {
     }
 }
 
-/// The stack `now` with the layers that belong to `parts` replaced by those of `style`. Layers that stay keep their numbers, so that
-/// tracks still find them, and act after those of the style.
-pub(super) fn mixed(now: &StyleStack, style: &StyleStack, parts: StyleParts) -> StyleStack {
-    if parts == StyleParts::ALL {
-        return style.clone();
+/// The stack `now` with the layers that belong to `parts` replaced by those of `style`, but for those that `stays` names. Layers that stay
+/// keep their numbers, so that tracks still find them, and act after those of the style. Also the numbers of the layers that are a style's,
+/// where `styled` were so before, and how many layers stay that belong to `parts`.
+pub(super) fn mixed(
+    now: &StyleStack,
+    style: &StyleStack,
+    parts: StyleParts,
+    styled: &[u32],
+    stays: &dyn Fn(&Layer) -> bool,
+) -> (StyleStack, Vec<u32>, usize) {
+    let of_user = |layer: &&Layer| parts.has(&layer.operation) && stays(layer);
+    let users = now.layers.iter().filter(of_user).count();
+    if parts == StyleParts::ALL && users == 0 {
+        return (style.clone(), style.layers.iter().map(|layer| layer.id).collect(), 0);
     }
-    let kept: Vec<&Layer> = now.layers.iter().filter(|layer| !parts.has(&layer.operation)).collect();
+    let kept: Vec<&Layer> =
+        now.layers.iter().filter(|layer| !parts.has(&layer.operation) || stays(layer)).collect();
     let taken = || style.layers.iter().filter(|layer| parts.has(&layer.operation));
     let kept_groups = || now.groups.iter().filter(|g| kept.iter().any(|layer| layer.group == Some(g.id)));
     // Groups of the style get numbers above those that stay.
@@ -66,7 +76,9 @@ pub(super) fn mixed(now: &StyleStack, style: &StyleStack, parts: StyleParts) -> 
     let groups = style.groups.iter().map(|group| Group { id: moved(group.id), ..group.clone() });
     out.groups = groups.filter(|g| out.layers.iter().any(|layer| layer.group == Some(g.id))).collect();
     out.groups.extend(kept_groups().cloned());
+    let before = styled.iter().filter(|id| kept.iter().any(|layer| layer.id == **id));
+    let from_style = out.layers.iter().map(|layer| layer.id).chain(before.copied()).collect();
     out.layers.extend(kept.iter().map(|layer| (*layer).clone()));
     out.solo = now.solo.filter(|id| kept.iter().any(|layer| layer.id == *id));
-    out.clamped()
+    (out.clamped(), from_style, users)
 }

@@ -65,31 +65,65 @@ impl OwnStyles {
         paths.into_iter().map(|path| OwnStyle { style: read(&path), path }).collect()
     }
 
-    /// Saves a style under its name, or under the next free one; returns the file.
+    /// The file of the style of that name, if there is one.
+    pub fn named(&self, name: &str) -> Option<PathBuf> {
+        let path = self.path(&file_name(name).ok()?);
+        path.exists().then_some(path)
+    }
+
+    /// Saves a style under its name; returns the file.
     ///
     /// # Errors
-    /// A name that no file can have, or a folder that cannot be written.
+    /// A name that no file can have or that is in use, or a folder that cannot be written.
     pub fn save(&self, style: &Style) -> Result<PathBuf, ProjectError> {
-        let path = self.free(&style.name)?;
+        let path = self.path(&file_name(&style.name)?);
+        if path.exists() {
+            return Err(ProjectError::input(
+                &path,
+                format!(
+                    "{}: found another style of this name; must be a name that is not in use",
+                    style.name.trim()
+                ),
+            ));
+        }
+        self.write(style, &path)?;
+        Ok(path)
+    }
+
+    /// Replaces the style in the file at `path` by another one.
+    ///
+    /// # Errors
+    /// A file that is not in the folder, or a folder that cannot be written.
+    pub fn replace(&self, path: &Path, style: &Style) -> Result<(), ProjectError> {
+        self.check(path)?;
+        self.write(style, path)
+    }
+
+    fn write(&self, style: &Style, path: &Path) -> Result<(), ProjectError> {
         std::fs::create_dir_all(&self.folder).map_err(|error| {
             let folder = self.folder.display();
             ProjectError::output(&self.folder, format!("{folder}: could not be made: {error}"))
         })?;
-        style.save(&path)?;
-        Ok(path)
+        style.save(path)
     }
 
-    /// Copies a style file into the folder; returns the copy. A file that lies there already stays as it is.
+    /// Copies a style file into the folder; returns the copy. Where its name is in use, the copy gets a number after it, in its caption
+    /// too. A file that lies in the folder already stays as it is.
     ///
     /// # Errors
     /// A file that is no style, or a folder that cannot be written.
     pub fn import(&self, path: &Path) -> Result<PathBuf, ProjectError> {
-        let (style, _) = Style::load(path)?;
+        let (mut style, _) = Style::load(path)?;
         let lies_here = |folder: &Path| folder.canonicalize().ok() == self.folder.canonicalize().ok();
         if self.folder.is_dir() && path.parent().is_some_and(lies_here) {
             return Ok(path.to_owned());
         }
-        self.save(&style)
+        let (number, copy) = self.free(&style.name)?;
+        if number > 1 {
+            style.name = format!("{} {number}", style.name);
+        }
+        self.write(&style, &copy)?;
+        Ok(copy)
     }
 
     /// Gives a style another name, and its file too; returns the new file.
@@ -113,26 +147,34 @@ impl OwnStyles {
     /// # Errors
     /// A file that is not in the folder or cannot be removed.
     pub fn delete(&self, path: &Path) -> Result<(), ProjectError> {
-        let name = path.display();
-        if path.parent() != Some(&self.folder) {
-            let folder = self.folder.display();
-            return Err(ProjectError::output(
-                path,
-                format!("{name}: is not one of your styles, which lie in {folder}"),
-            ));
-        }
-        std::fs::remove_file(path)
-            .map_err(|error| ProjectError::output(path, format!("{name}: could not be deleted: {error}")))
+        self.check(path)?;
+        std::fs::remove_file(path).map_err(|error| {
+            ProjectError::output(path, format!("{}: could not be deleted: {error}", path.display()))
+        })
     }
 
-    /// A file for a style of that name that is not there yet.
-    fn free(&self, name: &str) -> Result<PathBuf, ProjectError> {
+    /// Checks that a file is one of the user's styles.
+    fn check(&self, path: &Path) -> Result<(), ProjectError> {
+        if path.parent() == Some(&self.folder) {
+            return Ok(());
+        }
+        let (name, folder) = (path.display(), self.folder.display());
+        Err(ProjectError::output(path, format!("{name}: is not one of your styles, which lie in {folder}")))
+    }
+
+    /// The file of the style with that file name.
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.{STYLE_EXTENSION}"))
+    }
+
+    /// A file for a style of that name that is not there yet, and its number among those of the name.
+    fn free(&self, name: &str) -> Result<(u32, PathBuf), ProjectError> {
         let name = file_name(name)?;
         let path = |number: u32| {
-            let name = if number < 2 { name.clone() } else { format!("{name} {number}") };
-            self.folder.join(format!("{name}.{STYLE_EXTENSION}"))
+            let path = if number < 2 { self.path(&name) } else { self.path(&format!("{name} {number}")) };
+            (number, path)
         };
-        (1..100_000).map(path).find(|path| !path.exists()).ok_or_else(|| {
+        (1..100_000).map(path).find(|(_, path)| !path.exists()).ok_or_else(|| {
             ProjectError::option(format!("{}: has 100,000 styles of this name", self.folder.display()))
         })
     }
@@ -170,11 +212,18 @@ mod tests {
         assert!(own.list().is_empty());
         let first = own.save(&named("Mine: 1/2")).expect("saved");
         assert_eq!(first.file_name().expect("a name"), "Mine- 1-2.lovelockstyle");
-        let second = own.save(&named("Mine: 1/2")).expect("saved");
-        assert_ne!(first, second, "nothing is replaced");
+        let error = own.save(&named("Mine: 1/2")).expect_err("in use");
+        assert!(error.to_string().contains("Mine: 1/2: found another style"), "{error}");
+        assert_eq!(own.named("Mine: 1/2"), Some(first.clone()));
+        own.replace(&first, &Style { text: "new".to_owned(), ..named("Mine: 1/2") }).expect("replaced");
+        let again = dir.path().join("Mine- 1-2.lovelockstyle");
+        named("Mine: 1/2").save(&again).expect("saved");
+        own.import(&again).expect("imported");
         let listed = own.list();
         let style = listed[0].style.as_ref().expect("a style");
-        assert_eq!((listed.len(), style.name.as_str()), (2, "Mine: 1/2"));
+        assert_eq!((listed.len(), style.name.as_str(), style.text.as_str()), (2, "Mine: 1/2", "new"));
+        assert_eq!(listed[1].style.as_ref().expect("a style").name, "Mine: 1/2 2", "its caption differs");
+        assert!(own.rename(&listed[1].path, "Mine: 1/2").is_err() && listed[1].path.exists());
         assert_eq!(style.hair.style, "own/Mine- 1-2");
         let renamed = own.rename(&first, "Ü").expect("renamed");
         assert!(renamed.exists() && !first.exists());
@@ -185,6 +234,7 @@ mod tests {
         let copy = own.import(&outside).expect("imported");
         assert!(copy.ends_with("styles/friend.lovelockstyle") && outside.exists());
         assert!(own.delete(&outside).is_err() && outside.exists(), "only its own");
+        assert!(own.replace(&outside, &named("x")).is_err());
         own.delete(&copy).expect("deleted");
         assert_eq!(own.list().len(), 2);
     }

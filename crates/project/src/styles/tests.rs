@@ -7,7 +7,7 @@ use lovelock_style::{Layer, StyleStack};
 
 use super::*;
 use crate::Project;
-use crate::project::{HairSource, parse_project, text_of_project};
+use crate::project::{HairSection, HairSource, parse_project, text_of_project};
 
 fn parse(text: &str) -> Style {
     Style::parse(Path::new("s"), text).expect("a style").0
@@ -177,4 +177,35 @@ fn the_examples_of_the_documents_are_whole() {
         assert!(problems.is_empty(), "{}: {problems:?}", path.display());
         assert!(!style.hair.stack.layers.is_empty() && style.hair.stack.unknown().is_empty());
     }
+}
+
+#[test]
+fn layers_of_a_style_go_with_it_and_those_of_the_user_stay() {
+    let style = |operation: lovelock_style::Operation| {
+        let mut stack = StyleStack::default();
+        stack.push(Layer::of(operation));
+        Style {
+            hair: HairSection { stack, style: "own/a".to_owned(), ..HairSection::default() },
+            ..Style::default()
+        }
+    };
+    let kinds = |project: &Project| -> Vec<&str> {
+        let known = |layer: &Layer| layer.operation.known().map(|operation| operation.kind().id);
+        project.hair.stack.layers.iter().filter_map(known).collect()
+    };
+    let mut project = Project::default();
+    assert_eq!(project.apply_style_below_layers(&style(Curl::default().into()), StyleParts::ALL), 0);
+    project.hair.stack.push(Layer::of(Wave::default()));
+    let users = project.hair.stack.layers[1].id;
+    assert_eq!(project.apply_style_below_layers(&style(Curl::default().into()), StyleParts::ALL), 1);
+    assert_eq!(kinds(&project), ["curl", "wave"], "the curls of the style are not there twice");
+    assert!(project.hair.stack.layer(users).is_some());
+    // The next style takes the curls away, and the file keeps what belongs to whom.
+    let (saved, problems) = project.sanitised();
+    assert!(problems.is_empty() && saved == project, "{problems:?}");
+    assert_eq!(project.apply_style_below_layers(&Style::of_preset(Preset::Bun), StyleParts::ALL), 1);
+    assert_eq!(kinds(&project), ["wave"]);
+    // The control: a command replaces all.
+    project.apply_style(&Style::of_preset(Preset::Bun), StyleParts::ALL);
+    assert!(kinds(&project).is_empty());
 }

@@ -64,6 +64,10 @@ pub struct RenderedImage {
     pub position_secs: f64,
     /// The number of samples of each pixel.
     pub samples: u32,
+    /// The project that it shows.
+    pub project: Arc<Project>,
+    /// Whether it shows a mask in false colours.
+    pub has_mask: bool,
 }
 
 /// The device that renders.
@@ -471,7 +475,20 @@ impl Worker {
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
         let cost = self.cost;
-        Ok(RenderedImage { image, camera, stats, times, cost, snapshot, step, position_secs, samples })
+        let (project, has_mask) = (Arc::clone(project), request.mask.is_some());
+        Ok(RenderedImage {
+            image,
+            camera,
+            stats,
+            times,
+            cost,
+            snapshot,
+            step,
+            position_secs,
+            samples,
+            project,
+            has_mask,
+        })
     }
 }
 

@@ -182,7 +182,7 @@ impl LoadState {
                 Ok(Ok((loaded, problems))) => {
                     let scene = Arc::clone(loaded.scene());
                     deliver(loaded);
-                    self.outbox.send(Event::Loaded { scene, problems });
+                    self.outbox.send(Event::Loaded { scene, problems, project });
                 }
                 Ok(Err(ProjectError::Cancelled)) => {
                     // Otherwise a later request replaced it.

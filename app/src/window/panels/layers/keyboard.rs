@@ -10,7 +10,8 @@ use crate::window::keys;
 
 /// Carries out the keys that were pressed while the list has them.
 pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
-    if !view.has_keys || !ui.is_enabled() || ui.ctx().text_edit_focused() || view.renamed.is_some() {
+    let taken = ui.ctx().text_edit_focused() || crate::window::keys::are_held(ui.ctx());
+    if !view.has_keys || !ui.is_enabled() || taken || view.renamed.is_some() {
         return;
     }
     let pressed = |modifiers: Modifiers, key: Key| keys::consume(ui.ctx(), modifiers, key);

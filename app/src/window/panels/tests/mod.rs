@@ -163,7 +163,7 @@ pub(super) const PANELS: [(&str, Show); 14] = [
     }),
     ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture)),
     ("Sound", |ui, b| {
-        super::sound::ui(ui, &mut b.project, Some(&b.sound), Some("The sound is silent."), 8.0);
+        super::sound::ui(ui, &mut b.project, Some(&b.sound), 8.0);
     }),
     ("Recording", |ui, b| {
         super::recording::ui(ui, &mut b.project.recording, &State::Idle, b.clip_frames);

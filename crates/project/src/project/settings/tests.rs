@@ -25,11 +25,13 @@ fn leaves(path: &str, tree: &Json, out: &mut BTreeMap<String, Json>) {
 }
 
 /// Parts of a file that are not settings: names, files, what was drawn and cut, and the look inside a groom, which is not used.
-const NO_SETTINGS: [&str; 16] = [
+const NO_SETTINGS: [&str; 18] = [
     "version",
     "hair.groom.look.",
     "hair.cut.",
     "hair.moves",
+    "hair.grows",
+    "hair.style_layers",
     // A whole style.
     "hair.morph.to",
     "hair.style",

@@ -1,0 +1,157 @@
+//! What happens to a file that is there already. Files that hold work are replaced only with `--force`; what this program has made and can
+//! make again is replaced, and standard error says so.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use lovelock_project::error::ProjectError;
+use lovelock_record::MANIFEST_NAME;
+
+/// The bytes at both ends of a file in which the mark of this program is looked for.
+const SEARCHED: u64 = 4 << 20;
+
+/// What a file of an output's name holds if it is there.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Holds {
+    /// Work that cannot be made again by the same command: a project, strokes, a take, hair.
+    Work(&'static str),
+    /// An output of this program, which has one of these marks in it.
+    Made(&'static [&'static [u8]]),
+    /// A folder of images.
+    Images,
+}
+
+impl Holds {
+    /// A film, a preview or curves.
+    pub(super) const RECORDING: Self = Self::Made(&[b"Lovelock", b"acTL"]);
+    /// A single image.
+    pub(super) const IMAGE: Self = Self::Made(&[b"\x89PNG\r\n\x1a\n"]);
+}
+
+/// What is said when the work is done: that something was replaced.
+#[derive(Debug)]
+#[must_use]
+pub(super) struct Replaced(Option<String>);
+
+impl Replaced {
+    /// Says it on standard error.
+    pub(super) fn tell(&self) {
+        if let Some(said) = &self.0 {
+            eprintln!("lovelock: {said}");
+        }
+    }
+}
+
+/// Checks that `path` may be written before any work is done.
+///
+/// # Errors
+/// A file that holds work, or that this program has not made, without `force`.
+pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, ProjectError> {
+    let name = path.display();
+    let is_made = match holds {
+        Holds::Images if !path.is_dir() => return Ok(Replaced(None)),
+        Holds::Images => {
+            if !has_frames(path) {
+                return Ok(Replaced(None));
+            }
+            path.join(MANIFEST_NAME).exists() || path.join("manifest.partial").exists()
+        }
+        _ if !path.is_file() => return Ok(Replaced(None)),
+        Holds::Work(kind) if !force => {
+            return Err(ProjectError::input(
+                path,
+                format!(
+                    "{name}: found a file of that name, which may hold {kind}; must be another name, or add --force to replace it"
+                ),
+            ));
+        }
+        Holds::Work(_) => true,
+        Holds::Made(marks) => has_mark(path, marks).unwrap_or(false),
+    };
+    if !is_made && !force {
+        return Err(ProjectError::input(
+            path,
+            format!(
+                "{name}: found something that this program did not make; must be another name, or add --force to replace it"
+            ),
+        ));
+    }
+    let what = if matches!(holds, Holds::Images) { "replaced the images" } else { "replaced the file" };
+    Ok(Replaced(Some(format!("{name}: {what} of before"))))
+}
+
+/// Whether a folder holds images that are named as frames, or a sequence.
+fn has_frames(folder: &Path) -> bool {
+    let Ok(entries) = std::fs::read_dir(folder) else { return false };
+    entries.flatten().any(|entry| {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let number =
+            name.strip_prefix("frame_").and_then(|name| name.split_once('.')).map(|(number, _)| number);
+        name == MANIFEST_NAME || number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()))
+    })
+}
+
+/// Whether a file has one of `marks` near its beginning or its end.
+fn has_mark(path: &Path, marks: &[&[u8]]) -> std::io::Result<bool> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    file.by_ref().take(SEARCHED).read_to_end(&mut bytes)?;
+    if length > SEARCHED {
+        file.seek(SeekFrom::Start(length.saturating_sub(SEARCHED).max(SEARCHED)))?;
+        file.take(SEARCHED).read_to_end(&mut bytes)?;
+    }
+    Ok(marks.iter().any(|mark| bytes.windows(mark.len()).any(|window| window == *mark)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_kept_and_outputs_of_this_program_are_replaced() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("a");
+        let every = [Holds::Work("a take"), Holds::RECORDING, Holds::IMAGE, Holds::Images];
+        for holds in every {
+            assert!(check(&path, holds, false).is_ok(), "nothing is there: {holds:?}");
+        }
+        std::fs::write(&path, b"somebody's").expect("a file");
+        for holds in [Holds::Work("a take"), Holds::RECORDING, Holds::IMAGE] {
+            let error = check(&path, holds, false).expect_err("refused");
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.to_string().contains("--force"), "{error}");
+            assert!(check(&path, holds, true).is_ok());
+        }
+        std::fs::write(&path, b"....hdlr....Lovelock\0").expect("a file");
+        assert!(check(&path, Holds::RECORDING, false).is_ok());
+        assert!(check(&path, Holds::Work("a take"), false).is_err(), "whoever made it");
+    }
+
+    #[test]
+    fn the_mark_is_found_at_the_end_of_a_long_file() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("a.mp4");
+        let file = File::create(&path).expect("a file");
+        file.set_len(3 * SEARCHED).expect("a long file");
+        assert!(check(&path, Holds::RECORDING, false).is_err());
+        let mut bytes = vec![0; 100];
+        bytes.extend(b"Lovelock");
+        let mut file = std::fs::OpenOptions::new().append(true).open(&path).expect("the file");
+        std::io::Write::write_all(&mut file, &bytes).expect("written");
+        assert!(check(&path, Holds::RECORDING, false).is_ok());
+    }
+
+    #[test]
+    fn images_of_others_in_a_folder_are_kept() {
+        let dir = tempfile::tempdir().expect("a folder");
+        std::fs::write(dir.path().join("notes.txt"), b"x").expect("a file");
+        assert!(check(dir.path(), Holds::Images, false).is_ok());
+        std::fs::write(dir.path().join("frame_0001.png"), b"x").expect("a file");
+        assert!(check(dir.path(), Holds::Images, false).is_err());
+        std::fs::write(dir.path().join(MANIFEST_NAME), b"{}").expect("a file");
+        assert!(check(dir.path(), Holds::Images, false).is_ok());
+    }
+}

@@ -1,0 +1,140 @@
+//! The dialogs of the window, which are above everything else and take all keys until they are answered.
+
+use egui::ScrollArea;
+use lovelock_base::words::counted;
+use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_project::styles::STYLE_EXTENSION;
+
+use super::actions::Used;
+use super::command::Command;
+use super::path_dialog::{Answer, PathDialog, Purpose};
+use super::{Window, keys};
+
+impl Window {
+    /// Whether a dialog is open, which takes all keys until it is answered.
+    pub(super) fn holds_keys(&self, ctx: &egui::Context) -> bool {
+        self.dialog.is_some()
+            || self.pending.is_some()
+            || self.keys_shown
+            || self.palette.is_open()
+            || keys::are_held(ctx)
+    }
+
+    /// Whether a command closes the dialog that is open.
+    pub(super) fn closes(&self, command: Command) -> bool {
+        match command {
+            Command::Palette => self.palette.is_open(),
+            Command::ShowKeys => self.keys_shown,
+            _ => false,
+        }
+    }
+
+    /// Shows the dialogs above everything else.
+    pub(super) fn windows(&mut self, ctx: &egui::Context) {
+        let shown = self.dialog.as_mut().map(|dialog| dialog.show(ctx));
+        match shown {
+            None | Some(Answer::Pending) => {}
+            Some(Answer::Closed) => {
+                if let Some(path) = self.dialog.as_ref().and_then(PathDialog::waiting) {
+                    self.openings.cancel_asked(path);
+                }
+                (self.dialog, self.after_saving) = (None, None);
+            }
+            // It stays open until the path is known to be good.
+            Some(Answer::Path(purpose, path)) => match self.answer(purpose, &path, ctx) {
+                Ok(Used::Done) => self.dialog = None,
+                Ok(Used::Waits) => {
+                    if let Some(dialog) = &mut self.dialog {
+                        dialog.wait(&path);
+                    }
+                }
+                Err(error) => {
+                    if let Some(dialog) = &mut self.dialog {
+                        dialog.refuse(error);
+                    }
+                }
+            },
+        }
+        if self.keys_shown {
+            let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
+                ui.heading("Keys");
+                let most = ctx.content_rect().height() * 0.85;
+                ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
+            });
+            self.keys_shown = !modal.should_close();
+        }
+        self.about(ctx);
+        self.confirm_loss(ctx);
+    }
+
+    /// Opens the dialog for a path.
+    pub(super) fn open_path_dialog(&mut self, purpose: Purpose) {
+        let folder = self
+            .project_path
+            .as_deref()
+            .and_then(std::path::Path::parent)
+            .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
+        let suggestion = match purpose {
+            Purpose::Open
+            | Purpose::Beside
+            | Purpose::Body
+            | Purpose::Motion
+            | Purpose::Surroundings
+            | Purpose::Sound => folder.join(""),
+            Purpose::SaveProject => self
+                .project_path
+                .clone()
+                .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
+            Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
+            Purpose::Film => folder.join("out").join("dance.mp4"),
+            Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
+            Purpose::Preview => folder.join("out").join("dance.apng"),
+            Purpose::Curves => folder.join("out").join("dance.usdc"),
+            Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
+            Purpose::ExportStyle => {
+                let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
+                folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
+            }
+            Purpose::SaveStrokes => folder.join("hair").with_extension(lovelock_brush::StrokeFile::EXTENSION),
+            Purpose::Picture => folder.join("hair.png"),
+        };
+        let recent = self.layout.files.iter().chain(&self.layout.recent).cloned();
+        let dialog = PathDialog::new(purpose, &suggestion).own(self.project_path.clone()).recent(recent);
+        self.dialog = Some(match purpose {
+            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
+                dialog.about(self.recording_in_words())
+            }
+            Purpose::Curves => dialog.about(
+                "USD and Alembic hold all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
+                    .to_owned(),
+            ),
+            Purpose::Open
+            | Purpose::Beside
+            | Purpose::Body
+            | Purpose::Motion
+            | Purpose::Surroundings
+            | Purpose::Sound
+            | Purpose::SaveProject
+            | Purpose::ExportStyle
+            | Purpose::SaveStrokes
+            | Purpose::Picture => dialog,
+        });
+    }
+
+    /// Describes the recording that would start now.
+    fn recording_in_words(&self) -> String {
+        let recording = &self.history.project().recording;
+        let clip = self.session.frames(recording.fps);
+        let first = recording.first_frame;
+        let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
+        let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
+        let counted = counted(frames, "frame", "frames");
+        format!(
+            "{what}{counted} of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",
+            recording.width,
+            recording.height,
+            recording.fps,
+            frames as f64 / recording.fps,
+        )
+    }
+}
