@@ -51,7 +51,8 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     // with its manifest, which contains the checksum of the take.
     let take = folder.join("single.take");
     let mut record = lovelock(program, "record");
-    run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", FRAMES, "--fps", "24"]))?;
+    record.arg(&project).arg("-o").arg(&take).arg("--force");
+    run_json(record.args(["--frames", FRAMES, "--fps", "24"]))?;
     let draw = |take: &Path, out: &str| {
         let out = folder.join(out);
         let mut record = lovelock(program, "record");

@@ -90,6 +90,8 @@ impl Template {
             "script": run(&[
                 "record", "{{Param.Folder}}/project.lovelock", "-o", &take,
                 "--frames", &format!("{}..{end}", self.simulated_from), "--fps", &fps,
+                // A task that a farm runs again replaces what it left.
+                "--force",
             ]),
         });
         let frames = "{{Param.Folder}}/parts/{{Task.Param.Frames}}/";
