@@ -221,6 +221,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn hairstyles_have_the_names_of_the_browser() {
+        let commands = [
+            (Command::PresetSmooth, "smooth"),
+            (Command::PresetCurly, "curly"),
+            (Command::PresetLong, "long"),
+            (Command::PresetPonytail, "ponytail"),
+            (Command::PresetBun, "bun"),
+        ];
+        for (command, id) in commands {
+            let name = &lovelock_project::styles::shipped::by_id(id).expect("shipped").style.name;
+            assert_eq!(command.info().label, format!("Hairstyle: {name}"));
+        }
+    }
+
+    #[test]
     fn the_table_is_in_the_order_of_the_enum() {
         for (i, info) in COMMANDS.iter().enumerate() {
             assert_eq!(info.command as usize, i, "{}", info.id);
