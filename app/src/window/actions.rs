@@ -378,6 +378,7 @@ impl Window {
                 self.framing = None;
                 self.trials.clear();
                 self.history = lovelock_project::history::History::new(Project::default());
+                self.rest_all();
                 self.project_path = None;
                 self.session.set_project_path(None);
             }

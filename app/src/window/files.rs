@@ -232,6 +232,7 @@ impl Window {
         self.framing = None;
         self.trials.clear();
         self.history = lovelock_project::history::History::new(project);
+        self.rest_all();
         self.project_path = Some(path.to_owned());
         self.session.set_project_path(self.project_path.as_ref());
         remember(&mut self.layout.recent, path);

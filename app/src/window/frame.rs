@@ -135,6 +135,7 @@ impl Window {
         // The single image is not visible while panes are shown.
         let walls = self.layout.wall.shown;
         let compares = self.layout.compare.shown && !walls;
+        self.rest_hidden_pages();
         let (shown, seen) = self.shown();
         let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
         self.brushes.send(self.session.worker());

@@ -31,17 +31,9 @@ impl Textures {
         *self.0.borrow_mut() = Known { painter, entries: Vec::new() };
     }
 
-    /// The texture of an image; `None` if it is on another device. `sharp` shows pixels without interpolation.
-    fn of(&self, image: &Arc<DeviceImage>, sharp: bool) -> Option<TextureId> {
-        let Known { painter, entries } = &mut *self.0.borrow_mut();
-        let painter = painter.as_ref()?;
-        if image.gpu().device != painter.device {
-            return None;
-        }
-        let is_it = |entry: &&Entry| entry.sharp == sharp && entry.image.as_ptr() == Arc::as_ptr(image);
-        if let Some(entry) = entries.iter().find(is_it) {
-            return Some(entry.id);
-        }
+    /// Frees the textures of images that nobody holds any longer.
+    pub(crate) fn sweep(&self) {
+        let Known { painter: Some(painter), entries } = &mut *self.0.borrow_mut() else { return };
         let mut renderer = painter.renderer.write();
         entries.retain(|entry| {
             let lives = entry.image.strong_count() > 0;
@@ -50,6 +42,25 @@ impl Textures {
             }
             lives
         });
+    }
+
+    /// The texture of an image; `None` if it is on another device. `sharp` shows pixels without interpolation.
+    fn of(&self, image: &Arc<DeviceImage>, sharp: bool) -> Option<TextureId> {
+        let is_it = |entry: &&Entry| entry.sharp == sharp && entry.image.as_ptr() == Arc::as_ptr(image);
+        let known = {
+            let Known { painter, entries } = &*self.0.borrow();
+            if image.gpu().device != painter.as_ref()?.device {
+                return None;
+            }
+            entries.iter().find(is_it).map(|entry| entry.id)
+        };
+        if known.is_some() {
+            return known;
+        }
+        self.sweep();
+        let Known { painter, entries } = &mut *self.0.borrow_mut();
+        let painter = painter.as_ref()?;
+        let mut renderer = painter.renderer.write();
         let filter = if sharp { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
         let id = renderer.register_native_texture(&painter.device, image.view(), filter);
         entries.push(Entry { image: Arc::downgrade(image), sharp, id });

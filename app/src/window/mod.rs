@@ -19,6 +19,7 @@ mod images;
 mod keys;
 mod light_sphere;
 mod manual;
+mod memory;
 mod notices;
 mod opening;
 mod overlay;

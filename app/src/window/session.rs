@@ -268,7 +268,9 @@ impl Session {
         if let Some(frame) = self.worker.frame() {
             self.frame = Some(frame);
         }
-        if let Some(painted) = self.painter.images().newer_than(&mut self.seen_painted) {
+        let newer = self.painter.images().newer_than(&mut self.seen_painted);
+        // An image that was still being drawn when the page was left is not seen.
+        if let Some(painted) = newer.filter(|_| self.drawn.is_some()) {
             self.stages.push(painted.times);
             // Times of another size, as those of the images before a change, say nothing about this one.
             if let (Some((size, ms)), Some(drawn)) = (painted.cost, &self.drawn)
@@ -283,6 +285,19 @@ impl Session {
         self.draw_error = self.painter.error();
         said.extend(self.painter.notices().newer_than(&mut self.seen_notices).map(|said| (*said).clone()));
         said
+    }
+
+    /// Closes the renderer of the single image, which is not shown. The last image stays.
+    pub(crate) fn leave_image(&mut self) {
+        if self.drawn.take().is_some() {
+            self.painter.rest();
+        }
+    }
+
+    /// Closes the renderer of the single image and forgets the image, because it shows a project that is closed.
+    pub(crate) fn forget_images(&mut self) {
+        self.painter.rest();
+        self.draw_again();
     }
 
     /// Draws the current frame again, because its image was on a device that is lost.

@@ -160,7 +160,7 @@ impl Window {
                     }
                     let session = &self.session;
                     self.session.view.measured =
-                        panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
+                        panels::statistics::ui(ui, &session.stages, &session.passes, [&self.facts(), &self.kept_in_memory()]);
                 });
             });
         });

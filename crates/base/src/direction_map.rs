@@ -25,6 +25,11 @@ impl DirectionMap {
     pub const SIDE: usize = 128;
     const TEXELS: usize = Self::SIDE * Self::SIDE;
 
+    /// Bytes of memory that this has and `other` does not share with it.
+    pub fn bytes_beside(&self, other: Option<&Self>) -> u64 {
+        if other.is_some_and(|other| Arc::ptr_eq(&self.0, &other.0)) { 0 } else { self.0.len() as u64 }
+    }
+
     /// Whether nothing was painted.
     pub fn is_empty(&self) -> bool {
         self.0.iter().all(|&value| value == 0)

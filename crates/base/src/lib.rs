@@ -3,6 +3,7 @@
 pub mod clock;
 pub mod direction_map;
 pub mod glb;
+pub mod memory;
 pub mod numbers;
 pub mod random;
 pub mod settings;

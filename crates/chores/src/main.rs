@@ -1,4 +1,4 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, reference, count and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, soak, reference, count and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
@@ -10,6 +10,7 @@ mod latency;
 mod layers;
 mod python;
 mod reference;
+mod soak;
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -37,6 +38,8 @@ enum Chore {
         #[arg(long, value_name = "PROGRAM")]
         beside: Option<std::path::PathBuf>,
     },
+    /// Drives the window with random input and prints how much memory it takes
+    Soak(soak::Arguments),
     /// Renders hair beside a path tracer, and compares
     Reference(reference::Arguments),
     /// Counts instructions by valgrind and compares them with the counts in the tree
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Chore::Interchange { every_blender } => interchange::run(every_blender),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
+        Chore::Soak(arguments) => soak::run(&arguments),
         Chore::Reference(arguments) => reference::run(&arguments),
         Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),

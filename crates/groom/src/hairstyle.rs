@@ -1,5 +1,6 @@
 //! A hairstyle: grown from settings, or imported from a file.
 
+use lovelock_base::memory::list_bytes;
 use thiserror::Error;
 
 use crate::{Guides, HairLook, MotionFactors, Scalp, StrandColours};
@@ -65,6 +66,23 @@ pub struct StrandSet {
 }
 
 impl StrandSet {
+    /// The memory of the strands, bytes.
+    pub fn bytes(&self) -> u64 {
+        let of_points = [
+            &self.guide_param,
+            &self.offset_normal,
+            &self.offset_binormal,
+            &self.offset_tangent,
+            &self.taper,
+            &self.shade,
+        ];
+        of_points.into_iter().map(list_bytes).sum::<u64>()
+            + list_bytes(&self.wisp)
+            + list_bytes(&self.weights)
+            + list_bytes(&self.first_point)
+            + size_of_val(self.colours.strands()) as u64
+    }
+
     /// Number of strands.
     pub fn count(&self) -> usize {
         self.wisp.len()
@@ -167,6 +185,25 @@ pub enum HairstyleError {
 }
 
 impl Hairstyle {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        let Self { scalp, guides, motion, .. } = self;
+        let rope = |rope: &Rope| list_bytes(&rope.guides) + list_bytes(&rope.ahead);
+        self.strands.bytes()
+            + [&guides.x, &guides.y, &guides.z, &self.held, &self.widest].map(list_bytes).into_iter().sum::<u64>()
+            + [&motion.stiffness, &motion.hold, &motion.damping, &motion.friction]
+                .map(list_bytes)
+                .into_iter()
+                .sum::<u64>()
+            + list_bytes(&self.wisps)
+            + list_bytes(&self.ropes)
+            + self.ropes.iter().map(rope).sum::<u64>()
+            + list_bytes(&scalp.positions)
+            + list_bytes(&scalp.normals)
+            + list_bytes(&scalp.triangles)
+            + list_bytes(&scalp.mask)
+    }
+
     /// The hairstyle with at most about `most` of its strands, evenly from all wisps, without the look: to find where hair is.
     #[must_use]
     pub fn thinned(&self, most: usize) -> Self {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_base::memory::list_bytes;
 
 /// Every rendered strand at one instant, in world space: the input of shadowing and drawing.
 ///
@@ -20,6 +21,11 @@ pub struct Strands {
 }
 
 impl Strands {
+    /// The memory of the points, bytes.
+    pub fn bytes(&self) -> u64 {
+        [&self.x, &self.y, &self.z].into_iter().map(list_bytes).sum::<u64>() + 4 * self.first_point.len() as u64
+    }
+
     /// Number of strands.
     pub fn count(&self) -> usize {
         self.first_point.len().saturating_sub(1)

@@ -19,6 +19,7 @@ pub struct History {
     /// The project on disk, for the mark of unsaved changes.
     saved: Arc<Project>,
     limit: usize,
+    most_bytes: u64,
 }
 
 /// A change: its label, and the project on the other side of it.
@@ -26,11 +27,15 @@ pub struct History {
 struct Step {
     label: String,
     project: Arc<Project>,
+    /// The memory that it does not share with the project on this side of the change, bytes.
+    bytes: u64,
 }
 
 impl History {
     /// Number of steps kept by default. A project is a few kilobytes, and shares what brushes did with the step before.
     pub const LIMIT: usize = 1200;
+    /// The most memory of all steps, bytes: a project with long tracks has megabytes. The newest step is always kept.
+    pub const MOST_BYTES: u64 = 256 << 20;
 
     /// A project without undo steps.
     pub fn new(project: Project) -> Self {
@@ -47,7 +52,13 @@ impl History {
             future: Vec::new(),
             gesture: None,
             limit: limit.max(1),
+            most_bytes: Self::MOST_BYTES,
         }
+    }
+
+    /// The memory of all steps, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.past.iter().chain(&self.future).map(|step| step.bytes).sum()
     }
 
     /// The current project.
@@ -72,8 +83,10 @@ impl History {
             }
         } else {
             let before = std::mem::replace(&mut self.present, project);
-            self.past.push_back(Step { label: label.to_owned(), project: before });
-            if self.past.len() > self.limit {
+            let bytes = before.bytes_beside(&self.present);
+            self.past.push_back(Step { label: label.to_owned(), project: before, bytes });
+            self.future.clear();
+            while self.past.len() > self.limit || (self.bytes() > self.most_bytes && self.past.len() > 1) {
                 self.past.pop_front();
             }
             self.gesture = gesture;
@@ -103,7 +116,8 @@ impl History {
     pub fn undo(&mut self) -> Option<&Arc<Project>> {
         let step = self.past.pop_back()?;
         let after = std::mem::replace(&mut self.present, step.project);
-        self.future.push(Step { label: step.label, project: after });
+        let bytes = after.bytes_beside(&self.present);
+        self.future.push(Step { label: step.label, project: after, bytes });
         self.gesture = None;
         Some(&self.present)
     }
@@ -122,7 +136,8 @@ impl History {
     pub fn redo(&mut self) -> Option<&Arc<Project>> {
         let step = self.future.pop()?;
         let before = std::mem::replace(&mut self.present, step.project);
-        self.past.push_back(Step { label: step.label, project: before });
+        let bytes = before.bytes_beside(&self.present);
+        self.past.push_back(Step { label: step.label, project: before, bytes });
         self.gesture = None;
         Some(&self.present)
     }
@@ -208,6 +223,38 @@ mod tests {
         }
         println!("{bytes} bytes of edits in a thousand steps");
         assert!(bytes < 16 << 20);
+    }
+
+    #[test]
+    fn steps_with_long_tracks_stay_within_their_memory() {
+        use crate::tracks::{Key, Track};
+
+        let keys: Vec<Key> =
+            (0..2000_i32).map(|k| Key { secs: f64::from(k), value: vec![0.0; 3] }).collect();
+        let long = Track { target: "look/eumelanin".to_owned(), muted: false, keys };
+        let with = |distance: f32, tracks: usize| {
+            let mut project = at(distance);
+            project.timeline.tracks = vec![long.clone(); tracks];
+            project
+        };
+        let mut history = History { most_bytes: 1 << 20, ..History::new(with(0.5, 2)) };
+        for i in 1..100 {
+            assert!(history.edit("Distance", None, with(1.0 + i as f32 * 0.01, 2)));
+            assert!(history.bytes() <= 1 << 20, "{} bytes after {i} steps", history.bytes());
+        }
+        assert!((3..99).contains(&history.undo_len()), "{}", history.undo_len());
+        // Undone steps count as well, and the newest step is kept whatever it takes.
+        while history.undo().is_some() {}
+        assert!(history.bytes() <= 1 << 20 && history.redo_len() > 2);
+        history.edit("Distance", None, with(3.0, 64));
+        history.edit("Distance", None, with(4.0, 64));
+        assert_eq!(history.undo_len(), 1, "one step of {} bytes", history.bytes());
+        // Control: small projects keep all of theirs.
+        let mut small = History { most_bytes: 1 << 20, ..History::new(at(0.5)) };
+        (1..100).for_each(|i| {
+            small.edit("Distance", None, at(1.0 + i as f32 * 0.01));
+        });
+        assert_eq!(small.undo_len(), 99);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use std::ops::Range;
 use glam::{Vec3, Vec3A};
 use lovelock_appearance::environment::{Environment, Surround};
 use lovelock_appearance::fibre::{CosineStep, FibreTables, arithmetic};
+use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 use crate::{FrameInput, HairPose};
@@ -103,6 +104,14 @@ impl Default for AmbientGrid {
 }
 
 impl AmbientGrid {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.cells)
+            + [&self.fibres, &self.solid, &self.blurred].into_iter().map(list_bytes).sum::<u64>()
+            + list_bytes(&self.by_line)
+            + list_bytes(&self.hair)
+    }
+
     /// Builds the grid.
     pub fn build(&mut self, input: &FrameInput, around: &Around, tables: &FibreTables) {
         let points = HairPoints::new(input, std::mem::take(&mut self.hair));

@@ -39,6 +39,12 @@ impl Image {
         }
     }
 
+    /// The memory of its pixels, bytes, where they are.
+    pub fn bytes(&self) -> u64 {
+        let [width, height] = self.size();
+        4 * u64::from(width) * u64::from(height)
+    }
+
     /// The pixels in memory. Those of a device are read back, which waits for the device.
     ///
     /// # Errors
@@ -136,6 +142,11 @@ impl DeviceImages {
     /// The device of the textures.
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
+    }
+
+    /// The memory of the textures, also of those that are shown, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.made.iter().map(|image| image.size().map(u64::from)).map(|[width, height]| 4 * width * height).sum()
     }
 
     /// A texture of this size that nobody holds. Its pixels are those of an earlier image.

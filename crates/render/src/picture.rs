@@ -199,3 +199,10 @@ pub struct Picture {
     /// Rows from the top, four bytes per pixel: red, green, blue (sRGB-encoded) and alpha.
     pub rgba: Vec<u8>,
 }
+
+impl Picture {
+    /// The memory of its pixels, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.rgba.capacity() as u64
+    }
+}

@@ -117,6 +117,11 @@ impl Renderer {
         if self.gpu.is_some() { Backend::Gpu } else { Backend::Cpu }
     }
 
+    /// The memory that it keeps from picture to picture, bytes; that of a graphics card is the device's.
+    pub fn bytes(&self) -> u64 {
+        self.cpu.as_ref().map_or(0, |cpu| cpu.bytes()) + self.spare.bytes()
+    }
+
     /// The name of the device: that of the adapter, or the vector width of the CPU.
     pub fn adapter(&self) -> &str {
         &self.adapter

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::memory::list_bytes;
 use lovelock_gpu::PassTime;
 use lovelock_groom::Strands;
 use lovelock_groom::fine::moved_apart;
@@ -94,6 +95,15 @@ impl std::fmt::Debug for ShadowStage {
 }
 
 impl ShadowStage {
+    /// The memory of the maps and of what was looked up in them, bytes.
+    pub fn kept_bytes(&self) -> u64 {
+        let of_light = |light: &LightShadow| list_bytes(&light.at_points) + list_bytes(&light.at_vertices);
+        self.bytes
+            + self.lights.iter().map(of_light).sum::<u64>()
+            + [&self.at_points, &self.at_vertices, &self.softer].into_iter().map(list_bytes).sum::<u64>()
+            + self.vertices.iter().chain(&self.asked).map(list_bytes).sum::<u64>()
+    }
+
     /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices. Fine strands, each of so
     /// many points, are looked up at places that are apart: see [`moved_apart`].
     ///

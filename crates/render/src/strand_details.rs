@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::fine::{FineStrand, FineStrands, lock_numbers};
 use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, colour_along};
 
@@ -20,6 +21,11 @@ pub(crate) struct StrandDetails {
 }
 
 impl StrandDetails {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        [&self.words, &self.colour_of, &*self.segments].into_iter().map(list_bytes).sum()
+    }
+
     /// Rebuilds if the hairstyle has changed. Returns whether it has.
     pub fn follow(&mut self, style: &Arc<Hairstyle>) -> bool {
         if self.fine == 0 && self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {

@@ -28,6 +28,11 @@ impl std::fmt::Debug for Database {
 }
 
 impl Database {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        (self.opacities.capacity() + self.reflectances.capacity()) as u64
+    }
+
     /// Makes the database: sectors of random strands, traced for every view and light. Uses rayon's threads and has the
     /// same bytes for any number of them. `progress` receives rising fractions up to 1, from those threads.
     pub fn build(progress: &(dyn Fn(f32) + Sync)) -> Self {

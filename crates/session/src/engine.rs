@@ -84,6 +84,13 @@ pub struct Engine {
 }
 
 impl Engine {
+    /// The memory of its hair, bytes: the hairstyle, that below the layers, and the guides that move.
+    pub fn bytes(&self) -> u64 {
+        let (style, base) = (&self.scene.style, &self.scene.source.base);
+        let below = if Arc::ptr_eq(style, base) { 0 } else { base.bytes() };
+        style.bytes() + below + self.simulation.bytes()
+    }
+
     /// A scene at its first frame with settled hair, in steps of 1/60 s.
     pub fn new(scene: Arc<Scene>, settings: SimulationSettings) -> Self {
         Self::with_step(scene, settings, STEP_SECS)

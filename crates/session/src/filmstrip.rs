@@ -10,7 +10,7 @@ use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_render::{CpuRenderer, DeviceImages, Image, Picture};
 
-use crate::latest::LatestJob;
+use crate::latest::{Job, LatestJob};
 use crate::scene::SurroundingsLoader;
 use crate::take::{CurveInputs, TakePlayer};
 use crate::threads::lower_priority;
@@ -74,6 +74,11 @@ impl Filmstrip {
         self.jobs.put(request);
     }
 
+    /// Closes the take, and gives back what is kept for further requests.
+    pub fn rest(&self) {
+        self.jobs.rest();
+    }
+
     /// The thumbnails rendered since the last call.
     pub fn pictures(&self) -> Vec<FilmstripPicture> {
         std::mem::take(&mut self.left.lock().unwrap_or_else(PoisonError::into_inner))
@@ -119,7 +124,14 @@ impl Worker {
             .start_handler(|_| lower_priority())
             .build();
         let mut renderer = CpuRenderer::default();
-        while let Some(request) = self.jobs.next() {
+        while let Some(job) = self.jobs.next() {
+            let Job::Do(request) = job else {
+                (self.open, self.textures, renderer) = (None, None, CpuRenderer::default());
+                self.surroundings = SurroundingsLoader::default();
+                self.left.lock().unwrap_or_else(PoisonError::into_inner).clear();
+                self.jobs.done(None);
+                continue;
+            };
             let mut draw = || {
                 // After a panic these thumbnails are missing, which is acceptable.
                 catch_unwind(AssertUnwindSafe(|| self.draw(&request, &mut renderer)))

@@ -8,7 +8,7 @@
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
 //! - [`strokes`]: brushes on the hair of an engine, and recorded strokes played on a project.
 //! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
-//! - [`clock`], [`stats`], [`latest`], [`threads`], [`machine`] and [`new_folders`]: parts that the others need.
+//! - [`clock`], [`stats`], [`latest`], [`threads`], [`memory`], [`machine`] and [`new_folders`]: parts that the others need.
 //!
 //! Nothing here depends on a window or a command line.
 
@@ -20,6 +20,7 @@ pub mod filmstrip;
 pub mod health;
 pub mod latest;
 pub mod machine;
+pub mod memory;
 pub mod new_folders;
 pub mod prepare;
 pub mod progress;

@@ -94,12 +94,15 @@ impl SnapshotPool {
     /// Number of snapshots in use at a time: one that is published, and one or two that are being rendered.
     const MOST: usize = 6;
 
-    /// Fills an unused snapshot, or a new one, and returns it.
+    /// Fills an unused snapshot, or a new one, with an instant of `scene`, and returns it.
     pub(crate) fn make(
         &mut self,
+        scene: &Arc<Scene>,
         new: impl FnOnce() -> FrameSnapshot,
         fill: impl FnOnce(&mut FrameSnapshot),
     ) -> Arc<FrameSnapshot> {
+        // Of another scene, which it would keep until it is used again.
+        self.given_out.retain(|held| Arc::strong_count(held) > 1 || Arc::ptr_eq(&held.scene, scene));
         let free = self.given_out.iter_mut().position(|held| Arc::get_mut(held).is_some());
         let mut snapshot = match free {
             Some(i) => self.given_out.swap_remove(i),

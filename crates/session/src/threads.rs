@@ -12,6 +12,16 @@ pub fn lower_priority() {
     }
 }
 
+/// Workers of low priority for a page of the window, named by their `work`; `None` if the system has no threads for them, and the global
+/// workers must do.
+pub fn background_workers(work: &'static str) -> Option<rayon::ThreadPool> {
+    let workers = rayon::ThreadPoolBuilder::new()
+        .thread_name(move |i| format!("{work} worker {i}"))
+        .start_handler(|_| lower_priority())
+        .build();
+    workers.inspect_err(|error| tracing::warn!(%error, work, "the global workers are shared")).ok()
+}
+
 /// Names the threads of the global rayon pool, which would otherwise inherit the name of the thread that uses the pool first.
 ///
 /// There is one thread per hardware thread, or as many as `RAYON_NUM_THREADS` says.

@@ -23,6 +23,7 @@ use simulation_thread::SimulationThread;
 
 use crate::engine::PrerollProgress;
 use crate::latest::Latest;
+use crate::memory::Held;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::strokes::{StrokeReport, StrokeStart};
@@ -129,6 +130,7 @@ pub struct Worker {
     loader: Arc<LoadThread>,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
     settling: Arc<Mutex<Option<PrerollProgress>>>,
+    take_frames: Held,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -146,7 +148,7 @@ impl Worker {
             to_simulation.post(|requests| requests.loaded = Some(loaded));
         })?);
         mailbox.post(|requests| requests.project = Some((project, access)));
-        let (recorded, settling) = (Arc::default(), Arc::default());
+        let (recorded, settling, take_frames) = (Arc::default(), Arc::default(), Held::default());
         let inside = SimulationThread::new(
             mailbox.clone(),
             frames.clone(),
@@ -154,6 +156,7 @@ impl Worker {
             outbox,
             Arc::clone(&recorded),
             Arc::clone(&settling),
+            take_frames.clone(),
         );
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
@@ -166,6 +169,7 @@ impl Worker {
             loader,
             recorded,
             settling,
+            take_frames,
             thread: Some(thread),
         })
     }
@@ -266,6 +270,17 @@ impl Worker {
     pub(crate) fn put_scene(&self, scene: Arc<Scene>) {
         let project = Arc::new(Project::default());
         self.mailbox.post(|requests| requests.loaded = Some(load_thread::Loaded::Scene(scene, project)));
+    }
+
+    /// The memory of the hairstyles that are kept between layers, bytes; at most
+    /// [`SceneLoader::MOST_LAYER_BYTES`](crate::scene::SceneLoader::MOST_LAYER_BYTES).
+    pub fn layer_bytes(&self) -> u64 {
+        self.loader.layer_bytes()
+    }
+
+    /// The memory of the decoded frames of the take that plays, bytes; at most [`CACHE_BYTES`](lovelock_record::CACHE_BYTES).
+    pub fn take_bytes(&self) -> u64 {
+        self.take_frames.bytes()
     }
 
     /// Progress of the current load, if any.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, DVec3, Vec3};
+use lovelock_base::memory::list_bytes;
 use lovelock_base::settings::Settings;
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::PlacedCollider;
@@ -72,6 +73,22 @@ pub struct Simulation {
 }
 
 impl Simulation {
+    /// The memory of the guides that it moves, bytes, without the hairstyle.
+    pub fn bytes(&self) -> u64 {
+        let of_block = |block: &Block| {
+            let rows = [
+                &block.skin,
+                &block.position,
+                &block.velocity,
+                &block.bend,
+                &block.contact_push,
+            ];
+            let lanes = [&block.rest_distance, &block.field_distance, &block.tie_hold];
+            rows.map(list_bytes).into_iter().sum::<u64>() + lanes.map(list_bytes).into_iter().sum::<u64>()
+        };
+        self.blocks.iter().map(of_block).sum::<u64>() + list_bytes(&self.slots)
+    }
+
     /// Creates the hair of `style` at rest, with the head at the world's origin. Call [`Simulation::reset`]
     /// before the first step, or that step counts as a jump.
     pub fn new(style: Arc<Hairstyle>) -> Self {

@@ -15,6 +15,11 @@ pub struct Sound {
 }
 
 impl Sound {
+    /// The memory of the samples, bytes.
+    pub fn bytes(&self) -> u64 {
+        2 * self.samples.capacity() as u64
+    }
+
     /// A sound of interleaved samples. Anything but two channels is taken as one.
     pub fn new(mut samples: Vec<i16>, channels: usize) -> Self {
         let channels = if channels == 2 { 2 } else { 1 };

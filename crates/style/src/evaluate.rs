@@ -7,10 +7,19 @@ use lovelock_groom::{Hairstyle, Obstacle};
 use crate::{HeadBox, Layer, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
-#[derive(Clone, Default)]
+///
+/// Hairstyles that together take more than [`StyleCache::MOST_BYTES`] are not all kept: first those after the first layers go.
+#[derive(Clone)]
 pub struct StyleCache {
     start: Option<(Arc<Hairstyle>, Arc<dyn Obstacle + Send>)>,
     steps: Vec<Step>,
+    most_bytes: u64,
+}
+
+impl Default for StyleCache {
+    fn default() -> Self {
+        Self { start: None, steps: Vec::new(), most_bytes: Self::MOST_BYTES }
+    }
 }
 
 /// A layer and the hairstyle after it.
@@ -18,7 +27,10 @@ pub struct StyleCache {
 struct Step {
     layer: Layer,
     factor: f32,
-    style: Arc<Hairstyle>,
+    /// `None` if it is not kept.
+    style: Option<Arc<Hairstyle>>,
+    /// The memory of the hairstyle; 0 for the base.
+    bytes: u64,
     fits: bool,
 }
 
@@ -63,6 +75,29 @@ pub fn apply_layer(
 }
 
 impl StyleCache {
+    /// The most memory of the hairstyles after layers, bytes: those of seven layers of 100,000 strands of 30 points.
+    pub const MOST_BYTES: u64 = 512 << 20;
+
+    /// The memory of the hairstyles that are kept after layers, bytes. A layer that changes nothing has that of the layer before.
+    pub fn bytes(&self) -> u64 {
+        let mut last = None;
+        let own = |(style, bytes): (&Arc<Hairstyle>, u64)| {
+            let is_other = last.replace(Arc::as_ptr(style)) != Some(Arc::as_ptr(style));
+            if is_other { bytes } else { 0 }
+        };
+        self.steps.iter().filter_map(|step| Some((step.style.as_ref()?, step.bytes))).map(own).sum()
+    }
+
+    /// Forgets hairstyles until the rest takes no more than it may. The last one is the result, which is kept.
+    fn trim(&mut self) {
+        for k in 0..self.steps.len().saturating_sub(1) {
+            if self.bytes() <= self.most_bytes {
+                return;
+            }
+            self.steps[k].style = None;
+        }
+    }
+
     /// Applies the layers of `stack` to `base` in their order. Results are reused for the first layers that act as in the last call, if
     /// that one had the same `base` and `obstacle` (the same allocations).
     pub fn apply(
@@ -88,20 +123,24 @@ impl StyleCache {
         let same = |(step, layer): &(&Step, &Layer)| {
             step.layer.acts_like(layer) && step.factor.to_bits() == stack.factor(layer).to_bits()
         };
-        let kept = if same_start { self.steps.iter().zip(&stack.layers).take_while(same).count() } else { 0 };
+        let same = if same_start { self.steps.iter().zip(&stack.layers).take_while(same).count() } else { 0 };
+        let kept = self.steps[..same].iter().rposition(|step| step.style.is_some()).map_or(0, |last| last + 1);
         self.start = Some((Arc::clone(base), obstacle));
         self.steps.truncate(kept);
         for layer in &stack.layers[kept..] {
-            let before = self.steps.last().map_or(base, |step| &step.style);
+            let before = self.steps.last().and_then(|step| step.style.as_ref()).unwrap_or(base);
             let factor = stack.factor(layer);
             let fits = layer.operation.known().is_none_or(|operation| operation.fits(before));
             let after = if fits { compute(layer, factor, before) } else { None };
-            let style = after.map_or_else(|| Arc::clone(before), Arc::new);
-            self.steps.push(Step { layer: layer.clone(), factor, style, fits });
+            let unchanged = self.steps.last().map_or(0, |step| step.bytes);
+            let bytes = after.as_ref().map_or(unchanged, Hairstyle::bytes);
+            let style = Some(after.map_or_else(|| Arc::clone(before), Arc::new));
+            self.steps.push(Step { layer: layer.clone(), factor, style, bytes, fits });
+            self.trim();
         }
         let skipped = self.steps.iter().filter(|step| !step.fits && step.layer.on);
         Styled {
-            style: Arc::clone(self.steps.last().map_or(base, |step| &step.style)),
+            style: Arc::clone(self.steps.last().and_then(|step| step.style.as_ref()).unwrap_or(base)),
             skipped: skipped.map(|step| step.layer.label().to_owned()).collect(),
         }
     }

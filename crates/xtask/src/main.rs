@@ -1,4 +1,4 @@
-//! Chores of the workspace: run, test, fuzz, ci, layers, latency, reference, count and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, count and assets. `cargo xtask` lists them.
 //!
 //! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
@@ -78,6 +78,14 @@ enum Chore {
         #[arg(long, value_name = "PROGRAM")]
         beside: Option<std::path::PathBuf>,
     },
+    /// Drives the window with random input on a screen of its own and prints how much memory it takes (Linux, Xvfb); `cargo xtask soak
+    /// --help` says how
+    #[command(disable_help_flag = true)]
+    Soak {
+        /// Arguments of the chore
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Renders hair beside a path tracer in Python, installed below target, and compares; `cargo xtask reference --help` says how
     #[command(disable_help_flag = true)]
     Reference {
@@ -120,6 +128,7 @@ fn main() -> ExitCode {
             let beside = beside.into_iter().flat_map(|program| ["--beside".into(), program.into_os_string()]);
             chore("latency", ["--inputs".into(), inputs.to_string().into()].into_iter().chain(beside))
         }
+        Chore::Soak { arguments } => chore("soak", arguments),
         Chore::Reference { arguments } => chore("reference", arguments),
         Chore::Count { write } => chore("count", write.then(|| "--write".into())),
         Chore::Assets { preview } => chore(

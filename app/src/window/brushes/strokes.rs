@@ -16,6 +16,9 @@ use lovelock_style::{Layer, Operation};
 
 use crate::window::{Window, notices};
 
+/// The most samples of all strokes that can be saved: 100 MB, hours of painting.
+const MOST_SAMPLES: usize = 1 << 21;
+
 /// Strokes whose results have not all arrived.
 #[derive(Debug, Default)]
 pub(super) struct Strokes {
@@ -25,6 +28,8 @@ pub(super) struct Strokes {
     pub(super) frozen: Arc<[bool]>,
     /// The strokes of this run, as they can be saved.
     pub(super) recorded: Vec<RecordedStroke>,
+    /// The samples of all of them.
+    samples: usize,
 }
 
 #[derive(Debug)]
@@ -72,7 +77,7 @@ impl Window {
         let id = strokes.last;
         let edits = left.clone();
         let label = tool.names().1.to_lowercase();
-        if strokes.recorded.len() < StrokeFile::MOST_STROKES {
+        if strokes.recorded.len() < StrokeFile::MOST_STROKES && strokes.samples < MOST_SAMPLES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
         }
@@ -88,8 +93,11 @@ impl Window {
         samples: Vec<StrokeSample>,
         world_from_head: &Affine3A,
     ) {
-        if let Some(stroke) = self.brushes.strokes.recorded.last_mut() {
+        let strokes = &mut self.brushes.strokes;
+        if let Some(stroke) = strokes.recorded.last_mut() {
             let room = StrokeFile::MOST_SAMPLES.saturating_sub(stroke.samples.len());
+            let room = room.min(MOST_SAMPLES.saturating_sub(strokes.samples)).min(samples.len());
+            strokes.samples += room;
             for sample in samples.iter().take(room) {
                 // The time goes back where the dance starts again, and must not in a file.
                 let before = stroke.samples.last().map_or(0.0, |last| last.time_secs);

@@ -130,6 +130,22 @@ impl Compare {
         self.sent = None;
     }
 
+    /// Forgets the costs and the probe of a project that is closed.
+    pub(crate) fn forget_project(&mut self) {
+        (self.costs, self.place, self.probed) = (Costs::default(), None, None);
+    }
+
+    /// Gives back images, and what the thread keeps, because the panes are not shown. Returns whether there was anything.
+    pub(crate) fn leave(&mut self, live: &Live) -> bool {
+        if self.sent.is_none() && self.probed.is_none() && self.panes.iter().all(Option::is_none) {
+            return false;
+        }
+        self.forget_images();
+        self.probed = None;
+        live.rest();
+        true
+    }
+
     /// Requested size of panes, pixels.
     pub(crate) fn wanted(&self) -> [u32; 2] {
         self.wanted

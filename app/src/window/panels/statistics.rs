@@ -26,9 +26,9 @@ const GROUPS: [(&str, &str, &str); 2] = [
     ("draw/", "Draw", "Shades the strands and composites them with the body and the background."),
 ];
 
-/// Shows the plot of stage times, the passes and the facts.
+/// Shows the plot of stage times, the passes, the facts, and what is kept in memory.
 /// Returns whether the passes are unfolded; only then they need to be measured.
-pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, facts: &[Fact]) -> bool {
+pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, [facts, kept]: [&[Fact]; 2]) -> bool {
     Plot::new("stage times")
         .height(112.0)
         .allow_zoom(false)
@@ -72,14 +72,19 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
     });
     let measured = unfolded.body_response.is_some();
     ui.separator();
-    egui::Grid::new("facts").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+    list(ui, "facts", facts);
+    egui::CollapsingHeader::new(RichText::new("Memory").small()).show(ui, |ui| list(ui, "kept", kept));
+    measured
+}
+
+fn list(ui: &mut Ui, id: &str, facts: &[Fact]) {
+    egui::Grid::new(id).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for Fact { name, tip, value } in facts {
             ui.label(RichText::new(*name).small().color(theme::QUIET)).on_hover_text(*tip);
             ui.label(RichText::new(value).small());
             ui.end_row();
         }
     });
-    measured
 }
 
 /// Medians of the passes, grouped, with a sum per group.

@@ -7,6 +7,7 @@ mod focus;
 mod health;
 mod help;
 mod keyboard;
+mod memory;
 mod notices;
 mod opening;
 mod painting;

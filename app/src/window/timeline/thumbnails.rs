@@ -80,6 +80,22 @@ impl Thumbnails {
         })
     }
 
+    /// The most memory of thumbnails, bytes.
+    pub(crate) const MOST_BYTES: u64 = MOST as u64 * Self::BYTES;
+    const BYTES: u64 = 4 * SIZE[0] as u64 * SIZE[1] as u64;
+
+    /// The memory of the thumbnails, bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.thumbs.len() as u64 * Self::BYTES
+    }
+
+    /// Forgets all thumbnails, and closes the take that they show.
+    pub(crate) fn rest(&mut self) {
+        self.forget();
+        (self.of, self.seen) = (None, None);
+        self.strip.rest();
+    }
+
     /// Forgets all thumbnails, whose device is lost, and asks for those of a take again.
     pub(crate) fn forget(&mut self) {
         self.thumbs.clear();
@@ -134,7 +150,10 @@ impl Thumbnails {
     /// Requests the thumbnails of a take in the visible slots when nothing changes any more.
     fn request(&mut self, ctx: &Context, project: &Arc<Project>, access: &Access, slots: &[f64]) {
         if project.take.file.is_none() {
-            (self.wanted, self.asked) = (None, None);
+            if self.asked.take().is_some() {
+                self.strip.rest();
+            }
+            self.wanted = None;
             return;
         }
         let key: Asked = (Arc::clone(project), slots.iter().map(|secs| secs.to_bits()).collect());

@@ -83,6 +83,29 @@ impl WallPage {
         self.sent = None;
     }
 
+    /// Gives back images, and what the thread keeps, because the wall is not shown. Returns whether there was anything.
+    pub(crate) fn leave(&mut self) -> bool {
+        if self.sent.is_none() && self.cells.iter().all(Option::is_none) {
+            return false;
+        }
+        self.forget_images();
+        self.marked = None;
+        if let Some(wall) = &self.wall {
+            wall.rest();
+        }
+        true
+    }
+
+    /// Forgets the variants of a project that is closed.
+    pub(crate) fn forget_rounds(&mut self) {
+        self.rounds = Rounds::default();
+    }
+
+    /// The memory that the thread keeps, bytes.
+    pub(crate) fn held_bytes(&self) -> u64 {
+        self.wall.as_ref().map_or(0, Wall::held_bytes)
+    }
+
     /// Whether every cell has an image.
     pub(crate) fn has_pictures(&self) -> bool {
         self.cells.iter().all(Option::is_some)

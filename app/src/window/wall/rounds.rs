@@ -85,12 +85,15 @@ impl Rounds {
     }
 
     fn make(&mut self, of: Arc<Project>, layout: &WallLayout) {
+        // Only hair and colours are used, and tracks may be large: earlier rounds would keep a copy for each variant.
+        let mut bare = Project::clone(&of);
+        (bare.timeline.tracks, bare.timeline.markers) = (Vec::new(), Vec::new());
         let variant = |index: usize| {
             if index == PRESENT {
                 return Arc::clone(&of);
             }
             let seed = self.seed.wrapping_mul(Wall::CELLS as u32).wrapping_add(index as u32);
-            Arc::new(vary(&of, seed, layout.amount, &layout.locks))
+            Arc::new(vary(&bare, seed, layout.amount, &layout.locks))
         };
         self.variants = (0..Wall::CELLS).map(variant).collect();
         self.of = Some((of, layout.amount, layout.locks.clone()));

@@ -1,6 +1,6 @@
 //! `cargo xtask latency`: measures the time from an input to the screen, on a virtual screen, and from a change of a layer to its image.
 
-mod screen;
+pub(crate) mod screen;
 
 use anyhow::{Context as _, ensure};
 use lovelock_metrics::Spread;
@@ -120,7 +120,7 @@ fn window(program: &Path, case: &Case, inputs: usize, folder: &Path) -> anyhow::
 }
 
 /// A process that is ended when the measurement ends.
-struct Closed(Child);
+pub(crate) struct Closed(pub(crate) Child);
 
 impl Drop for Closed {
     fn drop(&mut self) {

@@ -9,34 +9,43 @@ use std::thread::sleep;
 use std::time::Duration;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
-    ConfigureWindowAux, ConnectionExt as _, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
-    MOTION_NOTIFY_EVENT, MapState, Window,
+    BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ConfigureWindowAux, ConnectionExt as _, ImageFormat, InputFocus,
+    KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, MapState, Window,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
 /// Key codes of the screen.
-pub(super) const KEY_C: u8 = 54;
-pub(super) const KEY_SPACE: u8 = 65;
+pub(crate) const KEY_C: u8 = 54;
+pub(crate) const KEY_SPACE: u8 = 65;
+
+/// What is pressed.
+#[derive(Clone, Copy)]
+pub(crate) enum Input {
+    /// A key, by its code.
+    Key(u8),
+    /// A button of the pointer: 1 is the left one, 4 and 5 turn the wheel.
+    Button(u8),
+}
 
 /// A rectangle of the screen, in pixels.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
-    pub(super) x: i16,
-    pub(super) y: i16,
-    pub(super) width: u16,
-    pub(super) height: u16,
+pub(crate) struct Place {
+    pub(crate) x: i16,
+    pub(crate) y: i16,
+    pub(crate) width: u16,
+    pub(crate) height: u16,
 }
 
 impl Place {
     /// The centre.
-    pub(super) fn middle(self) -> (i16, i16) {
+    pub(crate) fn middle(self) -> (i16, i16) {
         (self.x + self.width as i16 / 2, self.y + self.height as i16 / 2)
     }
 }
 
 /// A virtual screen (Xvfb).
-pub(super) struct Screen {
+pub(crate) struct Screen {
     connection: RustConnection,
     root: Window,
     name: String,
@@ -45,7 +54,7 @@ pub(super) struct Screen {
 
 impl Screen {
     /// Starts a screen of this size with a free display number.
-    pub(super) fn start(width: u16, height: u16) -> anyhow::Result<Self> {
+    pub(crate) fn start(width: u16, height: u16) -> anyhow::Result<Self> {
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")])
             .stdout(Stdio::piped())
@@ -64,12 +73,12 @@ impl Screen {
     }
 
     /// The name of the display, such as `:1`.
-    pub(super) fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Waits for the first window that is shown.
-    pub(super) fn wait_for_window(&self, limit: Duration) -> anyhow::Result<Window> {
+    pub(crate) fn wait_for_window(&self, limit: Duration) -> anyhow::Result<Window> {
         let rounds = limit.as_millis() / 100;
         for _ in 0..rounds {
             for window in self.connection.query_tree(self.root)?.reply()?.children {
@@ -86,14 +95,14 @@ impl Screen {
     }
 
     /// Resizes a window.
-    pub(super) fn size(&self, window: Window, (width, height): (u16, u16)) -> anyhow::Result<()> {
+    pub(crate) fn size(&self, window: Window, (width, height): (u16, u16)) -> anyhow::Result<()> {
         let size = ConfigureWindowAux::new().x(0).y(0).width(u32::from(width)).height(u32::from(height));
         self.connection.configure_window(window, &size)?.check()?;
         Ok(())
     }
 
     /// Presses and releases a key with a window focused.
-    pub(super) fn key(&self, window: Window, code: u8) -> anyhow::Result<()> {
+    pub(crate) fn key(&self, window: Window, code: u8) -> anyhow::Result<()> {
         self.connection.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME)?.check()?;
         sleep(Duration::from_millis(300));
         for kind in [KEY_PRESS_EVENT, KEY_RELEASE_EVENT] {
@@ -103,8 +112,20 @@ impl Screen {
         Ok(())
     }
 
+    /// Presses or releases a key or a button of the pointer.
+    pub(crate) fn press(&self, what: Input, pressed: bool) -> anyhow::Result<()> {
+        let (kind, code) = match (what, pressed) {
+            (Input::Key(code), true) => (KEY_PRESS_EVENT, code),
+            (Input::Key(code), false) => (KEY_RELEASE_EVENT, code),
+            (Input::Button(code), true) => (BUTTON_PRESS_EVENT, code),
+            (Input::Button(code), false) => (BUTTON_RELEASE_EVENT, code),
+        };
+        self.connection.xtest_fake_input(kind, code, x11rb::CURRENT_TIME, self.root, 0, 0, 0)?.check()?;
+        Ok(())
+    }
+
     /// Moves the pointer.
-    pub(super) fn point(&self, (x, y): (i16, i16)) -> anyhow::Result<()> {
+    pub(crate) fn point(&self, (x, y): (i16, i16)) -> anyhow::Result<()> {
         let root = self.root;
         let motion = MOTION_NOTIFY_EVENT;
         self.connection.xtest_fake_input(motion, 0, x11rb::CURRENT_TIME, root, x, y, 0)?.check()?;
@@ -112,7 +133,7 @@ impl Screen {
     }
 
     /// Moves the pointer, and waits until the image in `place` changes.
-    pub(super) fn time_to_change(&self, to: (i16, i16), place: Place) -> anyhow::Result<Duration> {
+    pub(crate) fn time_to_change(&self, to: (i16, i16), place: Place) -> anyhow::Result<Duration> {
         let before = self.pixels(place)?;
         let watch = Stopwatch::start();
         self.point(to)?;

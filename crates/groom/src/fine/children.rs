@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_base::memory::list_bytes;
 use lovelock_base::random::SplitMix64;
 use rayon::prelude::*;
 
@@ -63,6 +64,23 @@ struct Source {
     ends: Vec<[Vec3; 2]>,
     /// Whether the neighbours of each strand may be of other wisps; empty if those of none may.
     few: Vec<bool>,
+}
+
+impl FineStrands {
+    /// The memory of the list and of what it is made from, bytes.
+    pub fn bytes(&self) -> u64 {
+        let of = &self.of;
+        list_bytes(&self.strands)
+            + list_bytes(&self.order)
+            + list_bytes(&self.neighbours)
+            + list_bytes(&self.edges)
+            + list_bytes(&self.lengths)
+            + [&of.wisp, &of.first_point].into_iter().map(list_bytes).sum::<u64>()
+            + list_bytes(&of.shade)
+            + list_bytes(&of.roots)
+            + list_bytes(&of.ends)
+            + list_bytes(&of.few)
+    }
 }
 
 impl Source {

@@ -2,6 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
+use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 use super::children::{FineStrands, MOST_POINTS};
@@ -27,6 +28,11 @@ pub struct ParentPoints {
 }
 
 impl ParentPoints {
+    /// The memory of the points, bytes.
+    pub fn bytes(&self) -> u64 {
+        [&self.x, &self.y, &self.z].into_iter().map(list_bytes).sum()
+    }
+
     /// Takes the strands of a frame.
     pub fn follow(&mut self, strands: &Strands, points: usize) {
         self.points = points;

@@ -20,6 +20,7 @@ use std::thread::JoinHandle;
 
 use lovelock_render::Renderer;
 use lovelock_session::latest::{Latest, LatestJob};
+use lovelock_session::memory::Held;
 use lovelock_session::window_device::WindowDevice;
 use renderers::{Open, Renderers};
 use thread::Outputs;
@@ -32,6 +33,7 @@ use crate::request::{LivePane, LiveRequest};
 pub struct Live {
     jobs: LatestJob<LiveRequest>,
     outputs: Outputs,
+    held: Held,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -53,14 +55,27 @@ impl Live {
         let jobs = LatestJob::default();
         let outputs = Outputs::default();
         let renderers = Renderers::new(open, window);
-        let worker = thread::Worker::new(jobs.clone(), outputs.clone(), Box::new(on_drawn), renderers);
+        let held = Held::default();
+        let parts = (jobs.clone(), outputs.clone(), held.clone());
+        let worker = thread::Worker::new(parts, Box::new(on_drawn), renderers);
         let thread = std::thread::Builder::new().name("compare".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { jobs, outputs, thread: Some(thread) })
+        Ok(Self { jobs, outputs, held, thread: Some(thread) })
     }
 
     /// Requests a round and replaces a request that still waits.
     pub fn request(&self, request: LiveRequest) {
         self.jobs.put(request);
+    }
+
+    /// Gives back everything that is kept for further requests, and drops the images, because nobody sees the panes. They are drawn again
+    /// from the next request on.
+    pub fn rest(&self) {
+        self.jobs.rest();
+    }
+
+    /// The memory that is kept for further requests, bytes: renderers, strands and images.
+    pub fn held_bytes(&self) -> u64 {
+        self.held.bytes()
     }
 
     /// The latest image of pane `index`; `None` past [`MOST_PANES`](lovelock_project::project::CompareSection::MOST_PANES).

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::{HairLook, Strands};
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
@@ -58,6 +59,16 @@ impl PartialEq for Instant {
 }
 
 impl ExactReference {
+    /// The memory that is kept for the next instant, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        let found = self.transmittance.as_ref().and_then(|(_, found)| found.as_ref().ok());
+        let picture = self.picture.as_ref().and_then(|(_, found)| found.as_ref().ok());
+        self.unseen.bytes()
+            + self.seen.bytes()
+            + found.map_or(0, |found| list_bytes(found))
+            + picture.map_or(0, |picture| picture.bytes())
+    }
+
     /// Whether a contender is the reference itself, because it reads the same map in the same way.
     ///
     /// Settings cannot decide this: texels are never narrower than strands, so several resolutions give the same map, and a memory

@@ -94,6 +94,16 @@ impl Renderers {
         }
     }
 
+    /// Closes all renderers, and forgets their device and its failures.
+    pub(super) fn close(&mut self) {
+        (self.panes, self.failed, self.gpu) = (Vec::new(), Vec::new(), None);
+    }
+
+    /// The memory that the renderers keep, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.panes.iter().flatten().map(Renderer::bytes).sum()
+    }
+
     /// Closes the renderers whose device is lost.
     fn close_lost(&mut self) {
         self.gpu.take_if(|gpu| gpu.is_lost());

@@ -64,6 +64,25 @@ impl Rounds {
         }
     }
 
+    /// Gives back everything that is kept for further rounds.
+    pub(super) fn rest(&mut self) {
+        self.renderers.close();
+        (self.strands, self.strands_of, self.shown) = (Strands::default(), None, None);
+        (self.values, self.reference) = (ValueRenderer::default(), ExactReference::default());
+        (self.probes, self.takes) = (Probes::default(), PaneTakes::default());
+        self.textures = Vec::new();
+    }
+
+    /// The memory that is kept for further rounds, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.renderers.bytes()
+            + self.strands.bytes()
+            + self.values.bytes()
+            + self.reference.bytes()
+            + self.takes.bytes()
+            + self.textures.iter().flatten().map(DeviceImages::bytes).sum::<u64>()
+    }
+
     /// Starts a round: interpolates the strands of its instant once for all panes.
     pub(super) fn begin(&mut self, request: &LiveRequest) {
         if let (Some(place), Some(shown)) = (request.probe, &self.shown) {

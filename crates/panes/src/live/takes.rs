@@ -39,6 +39,11 @@ struct Held {
 }
 
 impl PaneTakes {
+    /// The memory of the strands of the takes, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.held.iter().map(|held| held.strands.bytes()).sum()
+    }
+
     /// Opens the takes of a request's panes and seeks to its time.
     pub(super) fn begin(&mut self, request: &LiveRequest) {
         let panes = &request.project.compare.panes;

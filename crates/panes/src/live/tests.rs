@@ -369,3 +369,28 @@ fn niceness() -> (Option<i32>, i32) {
     let mine = of(std::path::Path::new("/proc/thread-self")).1;
     (own.filter_map(|(_, nice)| nice).min(), mine.expect("this thread"))
 }
+
+#[test]
+fn panes_that_rest_keep_nothing_and_are_drawn_again() {
+    let rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::Exact]);
+    let request = LiveRequest {
+        view: LiveView { measures: true, shows: LiveShows::PictureError, ..LiveView::default() },
+        ..rig.request(&[0, 1])
+    };
+    rig.draw(request.clone());
+    let before = rig.pane(0);
+    let held = rig.live.held_bytes();
+    assert!(held > 100_000, "{held} bytes");
+    let snapshots = Arc::strong_count(&rig.snapshot);
+    let pane = Arc::downgrade(&rig.pane(1));
+    rig.live.rest();
+    while rig.live.busy().load(Ordering::Relaxed) {
+        rig.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+    }
+    assert_eq!(rig.live.held_bytes(), 0);
+    assert!(rig.live.pane(0).is_some_and(|slot| slot.latest().is_none()) && pane.strong_count() == 0);
+    assert!(Arc::strong_count(&rig.snapshot) < snapshots, "the instant of the panes is not kept");
+    rig.draw(request);
+    assert!(pixels(&rig.pane(0)) == pixels(&before), "the same panes again");
+    assert!(rig.live.held_bytes() > 0);
+}

@@ -4,8 +4,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use lovelock_project::project::CompareSection;
-use lovelock_session::latest::{Latest, LatestJob};
-use lovelock_session::threads::lower_priority;
+use lovelock_session::latest::{Job, Latest, LatestJob};
+use lovelock_session::memory::Held;
+use lovelock_session::threads::{background_workers, lower_priority};
 
 use super::renderers::{Broken, Renderers};
 use super::round::Rounds;
@@ -20,51 +21,65 @@ pub(super) struct Outputs {
     pub(super) notices: Latest<String>,
 }
 
+impl Outputs {
+    /// Drops the images and what was probed.
+    fn clear(&self) {
+        self.panes.iter().for_each(Latest::clear);
+        self.probe.clear();
+    }
+}
+
 pub(super) struct Worker {
     jobs: LatestJob<LiveRequest>,
     outputs: Outputs,
     on_drawn: Box<dyn Fn() + Send>,
     rounds: Rounds,
+    held: Held,
 }
 
 impl Worker {
     pub(super) fn new(
-        jobs: LatestJob<LiveRequest>,
-        outputs: Outputs,
+        (jobs, outputs, held): (LatestJob<LiveRequest>, Outputs, Held),
         on_drawn: Box<dyn Fn() + Send>,
         renderers: Renderers,
     ) -> Self {
-        Self { jobs, outputs, on_drawn, rounds: Rounds::new(renderers) }
+        Self { jobs, outputs, on_drawn, rounds: Rounds::new(renderers), held }
     }
 
     /// Renders until the window is closed, on background workers of low priority, so that the window and its simulation keep
-    /// running while six panes are rendered.
-    pub(super) fn run(self) {
+    /// running while six panes are rendered. The workers end with what is kept, when the page is left: their memory as well.
+    pub(super) fn run(mut self) {
         lower_priority();
-        let workers = rayon::ThreadPoolBuilder::new()
-            .thread_name(|i| format!("pane worker {i}"))
-            .start_handler(|_| lower_priority())
-            .build();
-        match workers {
-            Ok(workers) => workers.install(|| self.draw()),
-            Err(error) => {
-                tracing::warn!(%error, "panes share the global workers");
-                self.draw();
-            }
-        }
-    }
-
-    fn draw(mut self) {
-        while let Some(request) = self.jobs.next() {
-            // Panics while rendering a pane are caught there; any other panic costs a round, but not the window.
-            let again = catch_unwind(AssertUnwindSafe(|| self.round(&request))).unwrap_or_else(|_| {
-                let message = "The comparison failed and was restarted; save your project.";
-                self.outputs.notices.put(Arc::new(message.to_owned()));
-                false
-            });
+        let mut workers = None;
+        while let Some(job) = self.jobs.next() {
+            let Job::Do(request) = job else {
+                workers = None;
+                self.rounds.rest();
+                self.outputs.clear();
+                self.held.set(0);
+                self.jobs.done(None);
+                (self.on_drawn)();
+                continue;
+            };
+            let workers = workers.get_or_insert_with(|| background_workers("pane"));
+            let again = match workers {
+                Some(workers) => workers.install(|| self.draw(&request)),
+                None => self.draw(&request),
+            };
+            self.held.set(self.rounds.bytes());
             self.jobs.done(again.then_some(request));
             (self.on_drawn)();
         }
+    }
+
+    /// Renders a request. Returns whether to render it again.
+    fn draw(&mut self, request: &LiveRequest) -> bool {
+        // Panics while rendering a pane are caught there; any other panic costs a round, but not the window.
+        catch_unwind(AssertUnwindSafe(|| self.round(request))).unwrap_or_else(|_| {
+            let message = "The comparison failed and was restarted; save your project.";
+            self.outputs.notices.put(Arc::new(message.to_owned()));
+            false
+        })
     }
 
     /// Renders the panes. Returns whether to render the request again because a device was lost.
@@ -78,8 +93,8 @@ impl Worker {
             else {
                 continue;
             };
-            // Closing the window does not wait for the other panes.
-            if self.jobs.is_closed() {
+            // Closing the window or the page does not wait for the other panes.
+            if self.jobs.is_dropped() {
                 return false;
             }
             let (pane, broken) = self.rounds.pane(request, index);

@@ -64,6 +64,13 @@ impl Cell {
         &self.variant
     }
 
+    /// The memory of its hair, its renderer and its images, bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.engine.bytes()
+            + self.renderer.as_ref().map_or(0, |(_, renderer)| renderer.bytes())
+            + self.textures.as_ref().map_or(0, DeviceImages::bytes)
+    }
+
     /// Shows another variant. Hair of the same layout goes on moving.
     pub(super) fn set(&mut self, variant: Arc<Project>, scene: Arc<Scene>) {
         self.is_new |= self.engine.set_scene(scene);

@@ -13,6 +13,7 @@ use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Image;
 use lovelock_session::latest::{Latest, LatestJob};
+use lovelock_session::memory::Held;
 use lovelock_session::window_device::WindowDevice;
 
 /// What the wall shows.
@@ -51,6 +52,7 @@ pub struct Wall {
     jobs: LatestJob<WallRequest>,
     cells: [Latest<WallCell>; Self::CELLS],
     rounds: Latest<f64>,
+    held: Held,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -65,15 +67,26 @@ impl Wall {
     pub fn start(window: WindowDevice, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let (jobs, cells, rounds) =
             (LatestJob::default(), std::array::from_fn(|_| Latest::default()), Latest::default());
-        let worker =
-            thread::Worker::new(jobs.clone(), (cells.clone(), rounds.clone()), Box::new(on_drawn), window);
+        let held = Held::default();
+        let parts = (jobs.clone(), (cells.clone(), rounds.clone()), held.clone());
+        let worker = thread::Worker::new(parts, Box::new(on_drawn), window);
         let thread = std::thread::Builder::new().name("wall".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { jobs, cells, rounds, thread: Some(thread) })
+        Ok(Self { jobs, cells, rounds, held, thread: Some(thread) })
     }
 
     /// Requests a round and replaces a request that still waits.
     pub fn request(&self, request: WallRequest) {
         self.jobs.put(request);
+    }
+
+    /// Gives back the simulations, renderers and images of all variants, because nobody sees them. They begin anew with the next request.
+    pub fn rest(&self) {
+        self.jobs.rest();
+    }
+
+    /// The memory that is kept for further requests, bytes: renderers, images, and the hair of simulations.
+    pub fn held_bytes(&self) -> u64 {
+        self.held.bytes()
     }
 
     /// The latest image of variant `index`; `None` past [`Wall::CELLS`].

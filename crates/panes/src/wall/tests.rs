@@ -115,3 +115,23 @@ fn slow_rounds_dance_slowly_and_jumps_are_followed() {
     let still = WallRequest { playing: false, ..at(30.4) };
     assert_eq!(instant.next(&still), 30.4, "a paused wall shows the instant itself");
 }
+
+#[test]
+fn a_wall_that_rests_keeps_nothing_and_is_drawn_again() {
+    let project = Arc::new(small());
+    let variants = [Arc::clone(&project), Arc::new(vary(&project, 1, 1.0, &Locks::default()))];
+    let wall = Wall::start(WindowDevice::default(), || {}).expect("a thread");
+    let before = drawn(&wall, request(&project, &variants, 0.0));
+    let held = wall.held_bytes();
+    assert!(held > 1_000_000, "{held} bytes of two simulations and renderers");
+    wall.rest();
+    let watch = Stopwatch::start();
+    while wall.busy().load(std::sync::atomic::Ordering::Relaxed) {
+        assert!(watch.secs() < 60.0, "the wall does not rest");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert_eq!(wall.held_bytes(), 0);
+    assert!(wall.cells.iter().all(|cell| cell.latest().is_none()), "no images");
+    assert_eq!(Arc::strong_count(&variants[1]), 1, "nobody has the variant any more");
+    assert!(drawn(&wall, request(&project, &variants, 0.0)) == before, "the same images again");
+}

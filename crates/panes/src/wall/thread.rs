@@ -7,9 +7,10 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::variants::adopt;
 use lovelock_render::Image;
-use lovelock_session::latest::{Latest, LatestJob};
+use lovelock_session::latest::{Job, Latest, LatestJob};
+use lovelock_session::memory::Held;
 use lovelock_session::scene::{Scene, SceneLoader};
-use lovelock_session::threads::lower_priority;
+use lovelock_session::threads::{background_workers, lower_priority};
 use lovelock_session::window_device::WindowDevice;
 use rayon::prelude::*;
 
@@ -29,6 +30,7 @@ pub(super) struct Worker {
     /// The project without hair whose scene the cells have.
     loaded: Option<Arc<Project>>,
     instant: Instant,
+    held: Held,
 }
 
 /// The instant that the cells show. While time passes, it follows that of the requests by at most [`Instant::MOST_SECS`] a round, so that where
@@ -63,8 +65,7 @@ impl Instant {
 
 impl Worker {
     pub(super) fn new(
-        jobs: LatestJob<WallRequest>,
-        outputs: Outputs,
+        (jobs, outputs, held): (LatestJob<WallRequest>, Outputs, Held),
         on_drawn: Box<dyn Fn() + Send>,
         window: WindowDevice,
     ) -> Self {
@@ -77,37 +78,45 @@ impl Worker {
             cells: Vec::new(),
             loaded: None,
             instant: Instant::default(),
+            held,
         }
     }
 
-    /// Runs until the window is closed, on background workers of low priority, so that the window keeps running.
-    pub(super) fn run(self) {
+    /// Runs until the window is closed, on background workers of low priority, so that the window keeps running. The workers end with
+    /// what is kept, when the page is left: their memory as well.
+    pub(super) fn run(mut self) {
         lower_priority();
-        let workers = rayon::ThreadPoolBuilder::new()
-            .thread_name(|i| format!("wall worker {i}"))
-            .start_handler(|_| lower_priority())
-            .build();
-        match workers {
-            Ok(workers) => workers.install(|| self.serve()),
-            Err(error) => {
-                tracing::warn!(%error, "the wall shares the global workers");
-                self.serve();
-            }
-        }
-    }
-
-    fn serve(mut self) {
-        while let Some(request) = self.jobs.next() {
+        let mut workers = None;
+        while let Some(job) = self.jobs.next() {
+            let Job::Do(request) = job else {
+                workers = None;
+                self.forget();
+                self.outputs.0.iter().for_each(Latest::clear);
+                self.held.set(0);
+                self.jobs.done(None);
+                (self.on_drawn)();
+                continue;
+            };
+            let workers = workers.get_or_insert_with(|| background_workers("wall"));
             // A panic costs the simulations and one round, but not the window.
-            let drawn = catch_unwind(AssertUnwindSafe(|| self.round(&request)));
+            let drawn = catch_unwind(AssertUnwindSafe(|| match workers {
+                Some(workers) => workers.install(|| self.round(&request)),
+                None => self.round(&request),
+            }));
             if drawn.is_err() {
                 tracing::error!("the wall failed and was restarted");
-                (self.cells, self.loaded) = (Vec::new(), None);
-                self.loader = SceneLoader::new();
+                self.forget();
             }
+            self.held.set(self.cells.iter().map(Cell::bytes).sum());
             self.jobs.done(None);
             (self.on_drawn)();
         }
+    }
+
+    /// Drops simulations, renderers and scenes.
+    fn forget(&mut self) {
+        (self.cells, self.loaded) = (Vec::new(), None);
+        (self.loader, self.instant) = (SceneLoader::new(), Instant::default());
     }
 
     fn round(&mut self, request: &WallRequest) {
@@ -119,7 +128,7 @@ impl Worker {
         let (jobs, window) = (&self.jobs, &self.window);
         // A small image or simulation divides its own work only coarsely, so several run beside each other.
         self.cells.par_iter_mut().zip(&self.outputs.0).for_each(|(cell, slot)| {
-            if !jobs.is_closed() {
+            if !jobs.is_dropped() {
                 cell.advance(request, time_secs);
                 slot.put(Arc::new(cell.draw(request, window)));
             }
@@ -159,7 +168,7 @@ impl Worker {
                     return;
                 }
             }
-            if self.jobs.is_closed() {
+            if self.jobs.is_dropped() {
                 return;
             }
         }

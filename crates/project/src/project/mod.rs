@@ -7,6 +7,7 @@
 mod contender;
 mod file;
 mod generic;
+mod memory;
 mod sanitise;
 mod sections;
 mod settings;

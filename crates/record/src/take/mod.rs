@@ -41,7 +41,7 @@ pub use frame::TakeFrame;
 pub use header::{AssetState, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint};
 pub use interpolate::mix_guides;
 pub use layout::{MOST_GUIDE_POINTS, TakeLayout};
-pub use reader::TakeReader;
+pub use reader::{CACHE_BYTES, TakeReader};
 pub use writer::{TakeReport, TakeWriter};
 
 /// The file extension of takes, without the dot.

@@ -23,7 +23,7 @@ use super::source::Source;
 use super::{TakeCondition, TakeError, TakeFrame, TakeHeader};
 
 /// Default bound of decoded chunks in memory, in bytes: seven seconds of a shipped hairstyle.
-const CACHE_BYTES: usize = 64 << 20;
+pub const CACHE_BYTES: usize = 64 << 20;
 
 /// A take that is open for playback. It may be finished, cut or damaged.
 pub struct TakeReader {
@@ -119,8 +119,7 @@ impl TakeReader {
     }
 
     /// Bytes of decoded frames in memory.
-    #[cfg(test)]
-    pub(super) fn cached_bytes(&self) -> usize {
+    pub fn cached_bytes(&self) -> usize {
         self.cache.bytes()
     }
 

@@ -1,5 +1,6 @@
 //! Lists of the items that touch each tile of the picture.
 
+use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 /// The most pieces that items are divided into: more would make the counts larger than the lists.
@@ -27,6 +28,12 @@ pub(super) struct Bins {
 }
 
 impl Bins {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        [&self.next, &self.starts, &self.items].into_iter().map(list_bytes).sum::<u64>()
+            + self.shares.iter().map(list_bytes).sum::<u64>()
+    }
+
     /// Sorts `count` items into a grid of `columns` by `rows` tiles.
     pub fn fill(
         &mut self,

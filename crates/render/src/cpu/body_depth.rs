@@ -3,6 +3,7 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use glam::{Mat4, Vec3};
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::simd::Width;
 use lovelock_groom::simd_versions;
 use rayon::prelude::*;
@@ -58,6 +59,15 @@ pub(super) struct Band<'a> {
 }
 
 impl DepthMap {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        size_of_val(&*self.depth) as u64
+            + list_bytes(&self.blocks)
+            + list_bytes(&self.placed)
+            + list_bytes(&self.starts)
+            + list_bytes(&self.sorted)
+    }
+
     /// Rasterises the triangles of `vertices`. `closed` states that triangles facing away from the light are behind others.
     pub fn draw(
         &mut self,

@@ -62,6 +62,11 @@ pub(super) struct DrawnStrands {
 }
 
 impl DrawnStrands {
+    /// The memory of the strands and their list, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.fine.bytes() + self.parents.bytes() + self.strands.bytes() + self.details.bytes()
+    }
+
     /// Makes the strands of `input` for a picture `height` pixels high from the `stored` ones of the frame, which may be the same as
     /// those of the last one. Returns whether the points are the same.
     pub fn follow(

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::{GuideFrame, Hairstyle, Strands};
 use lovelock_motion::Body;
 
@@ -55,6 +56,14 @@ pub(super) struct Unchanged {
 }
 
 impl KeptInputs {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        let guides = self.guides.as_ref().map(|frame| &frame.guides);
+        guides.map_or(0, |guides| [&guides.x, &guides.y, &guides.z].map(list_bytes).into_iter().sum())
+            + self.strands.bytes()
+            + list_bytes(&self.body.positions)
+    }
+
     /// Compares `input` with that of the last frame and takes its place.
     pub fn follow(&mut self, input: &FrameInput) -> Unchanged {
         let body = self.body.follow(input);

@@ -3,6 +3,7 @@
 //! The hair is drawn a second time with transmittance in place of colour, so that every transparency mode weights it like light; and
 //! a third time for the nearest depth.
 
+use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 use super::finish::{PixelsIn, compose_row, noise_at};
@@ -41,7 +42,10 @@ impl LayerTiles {
 
     /// Memory in use, bytes.
     pub fn bytes(&self) -> u64 {
-        16 * self.light.capacity() as u64 + 4 * (self.depth.capacity() + self.transmittance.capacity()) as u64
+        list_bytes(&self.light)
+            + list_bytes(&self.depth)
+            + list_bytes(&self.transmittance)
+            + self.scratch.bytes(TileScratch::bytes)
     }
 
     /// Draws depth and transmittance. Overwrites the colours of points. `at_points` has four packed transmittances per point.

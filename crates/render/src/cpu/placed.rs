@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use lovelock_motion::{Body, Skin};
@@ -55,6 +56,13 @@ pub(super) struct TileScratch {
     fragments: Fragments,
 }
 
+impl TileScratch {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        size_of_val(self) as u64 + list_bytes(&self.order) + list_bytes(&self.segments) + self.fragments.bytes()
+    }
+}
+
 /// The body of a picture.
 pub(super) type PosedBody<'a> = Option<(&'a Body, &'a Skin)>;
 
@@ -71,6 +79,15 @@ impl PlacedScene {
             closed: Closedness::default(),
             clusters: PlacedClusters::default(),
         }
+    }
+
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.points)
+            + self.surface.bytes()
+            + self.segment_bins.bytes()
+            + self.keys.bytes()
+            + self.clusters.bytes()
     }
 
     /// Whether the surface of the body is closed.

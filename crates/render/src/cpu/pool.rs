@@ -13,6 +13,11 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
+    /// The memory of what is not in use, by that of an item, bytes.
+    pub fn bytes(&self, of_item: impl Fn(&T) -> u64) -> u64 {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|item| of_item(item)).sum()
+    }
+
     /// Takes an item, if there is any.
     pub fn take(&self) -> Lease<'_, T> {
         let scratch = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();

@@ -4,6 +4,7 @@ mod inspect;
 
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::memory::list_bytes;
 use lovelock_gpu::PassTime;
 use lovelock_groom::simd::Width;
 use lovelock_groom::{HairShading, Strands};
@@ -123,6 +124,22 @@ impl CpuRenderer {
     #[must_use]
     pub fn keeping_nothing(self) -> Self {
         Self { keeps: false, ..self }
+    }
+
+    /// The memory that it keeps from picture to picture, bytes: what it has drawn, and the scratch memory of threads.
+    pub fn bytes(&self) -> u64 {
+        let scratch = |scratch: &Scratch| size_of_val(scratch) as u64 + scratch.tile.bytes();
+        self.strands.bytes()
+            + self.drawn.bytes()
+            + self.light.as_ref().map_or(0, |light| light.grid.bytes())
+            + self.kept.bytes()
+            + self.shadow.kept_bytes()
+            + self.placed.bytes()
+            + self.depth.iter().map(DepthMap::bytes).sum::<u64>()
+            + list_bytes(&self.tiles)
+            + list_bytes(&self.plain.bytes)
+            + self.layers.bytes()
+            + self.scratch.bytes(scratch)
     }
 
     /// The name of the device: the vector width in use.

@@ -90,7 +90,7 @@ impl Engine {
             totals,
             times: StageTimes::default(),
         };
-        self.pool.make(new, |frame| {
+        self.pool.make(scene, new, |frame| {
             if !Arc::ptr_eq(&frame.scene, scene) {
                 frame.scene = Arc::clone(scene);
             }

@@ -4,10 +4,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+/// What the worker does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Job<T> {
+    /// It processes the newest request.
+    Do(T),
+    /// It gives back everything that it keeps for further requests.
+    Rest,
+}
+
 /// The request that waits.
 #[derive(Debug)]
 struct Pending<T> {
     request: Option<T>,
+    rest: bool,
     closed: bool,
 }
 
@@ -27,7 +37,7 @@ impl<T> Clone for LatestJob<T> {
 
 impl<T> Default for LatestJob<T> {
     fn default() -> Self {
-        let pending = Pending { request: None, closed: false };
+        let pending = Pending { request: None, rest: false, closed: false };
         Self { pending: Arc::new((Mutex::new(pending), Condvar::new())), busy: Arc::default() }
     }
 }
@@ -42,15 +52,30 @@ impl<T> LatestJob<T> {
         self.pending.1.notify_one();
     }
 
+    /// Drops a request that waits, and makes the worker give back what it keeps ([`Job::Rest`]) before it takes a later request.
+    pub fn rest(&self) {
+        let mut pending = self.lock();
+        (pending.request, pending.rest) = (None, true);
+        self.busy.store(true, Ordering::Relaxed);
+        self.pending.1.notify_one();
+    }
+
     /// Makes the worker end when it finishes the current request.
     pub fn close(&self) {
         self.lock().closed = true;
         self.pending.1.notify_one();
     }
 
-    /// Whether a request waits that is newer than the current one.
+    /// Whether a request waits that is newer than the current one, or the current one is of no use any more.
     pub fn has_newer(&self) -> bool {
-        self.lock().request.is_some()
+        let pending = self.lock();
+        pending.request.is_some() || pending.rest
+    }
+
+    /// Whether the current request is of no use any more: the worker must end, or give back what it keeps.
+    pub fn is_dropped(&self) -> bool {
+        let pending = self.lock();
+        pending.closed || pending.rest
     }
 
     /// Whether the worker must end.
@@ -63,34 +88,42 @@ impl<T> LatestJob<T> {
         &self.busy
     }
 
-    /// Waits for a request; `None` once the queue is closed.
-    pub fn next(&self) -> Option<T> {
+    /// Waits for work; `None` once the queue is closed.
+    pub fn next(&self) -> Option<Job<T>> {
         let mut pending = self.lock();
         loop {
             if pending.closed {
                 return None;
             }
+            if std::mem::take(&mut pending.rest) {
+                return Some(Job::Rest);
+            }
             if let Some(request) = pending.request.take() {
-                return Some(request);
+                return Some(Job::Do(request));
             }
             pending = self.pending.1.wait(pending).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
-    /// A request that waits, or that arrives within `most`.
-    pub fn next_within(&self, most: Duration) -> Option<T> {
+    /// Work that waits, or that arrives within `most`.
+    pub fn next_within(&self, most: Duration) -> Option<Job<T>> {
         let mut pending = self.lock();
-        if pending.request.is_none() && !pending.closed && !most.is_zero() {
+        if pending.request.is_none() && !pending.rest && !pending.closed && !most.is_zero() {
             pending = self.pending.1.wait_timeout(pending, most).unwrap_or_else(PoisonError::into_inner).0;
         }
-        pending.request.take()
+        if std::mem::take(&mut pending.rest) {
+            return Some(Job::Rest);
+        }
+        pending.request.take().map(Job::Do)
     }
 
-    /// Ends the current request. `again` is queued again unless a newer request waits.
+    /// Ends the current work. The request `again` is queued again unless a newer one waits or it is of no use any more.
     pub fn done(&self, again: Option<T>) {
         let mut pending = self.lock();
-        pending.request = pending.request.take().or(again);
-        self.busy.store(pending.request.is_some(), Ordering::Relaxed);
+        if !pending.rest {
+            pending.request = pending.request.take().or(again);
+        }
+        self.busy.store(pending.request.is_some() || pending.rest, Ordering::Relaxed);
     }
 
     fn lock(&self) -> MutexGuard<'_, Pending<T>> {
@@ -108,19 +141,43 @@ mod tests {
         let busy = |jobs: &LatestJob<u32>| jobs.busy().load(Ordering::Relaxed);
         assert!(!busy(&jobs));
         (1..=3).for_each(|request| jobs.put(request));
-        assert_eq!(jobs.next(), Some(3));
+        assert_eq!(jobs.next(), Some(Job::Do(3)));
         assert!(busy(&jobs), "it is being processed");
         jobs.done(Some(3));
         assert!(busy(&jobs), "it waits again");
-        assert_eq!(jobs.next(), Some(3));
+        assert_eq!(jobs.next(), Some(Job::Do(3)));
         jobs.put(4);
         jobs.done(Some(3));
-        assert_eq!(jobs.next(), Some(4));
+        assert_eq!(jobs.next(), Some(Job::Do(4)));
         jobs.done(None);
         assert!(!busy(&jobs));
         assert_eq!(jobs.next_within(Duration::from_millis(1)), None);
         jobs.put(5);
-        assert_eq!(jobs.next_within(Duration::ZERO), Some(5));
+        assert_eq!(jobs.next_within(Duration::ZERO), Some(Job::Do(5)));
+    }
+
+    #[test]
+    fn a_rest_drops_what_waits_and_comes_before_later_requests() {
+        let jobs = LatestJob::default();
+        let busy = |jobs: &LatestJob<u32>| jobs.busy().load(Ordering::Relaxed);
+        jobs.put(1);
+        assert_eq!(jobs.next(), Some(Job::Do(1)));
+        jobs.put(2);
+        jobs.rest();
+        assert!(jobs.is_dropped() && jobs.has_newer());
+        jobs.done(Some(1));
+        assert!(busy(&jobs), "the rest waits");
+        jobs.put(3);
+        assert_eq!(jobs.next(), Some(Job::Rest), "2 is dropped and 1 is not repeated");
+        jobs.done(None);
+        assert!(!jobs.is_dropped());
+        assert_eq!(jobs.next(), Some(Job::Do(3)));
+        jobs.done(None);
+        assert!(!busy(&jobs));
+        jobs.rest();
+        assert_eq!(jobs.next_within(Duration::ZERO), Some(Job::Rest));
+        jobs.done(None);
+        assert!(!busy(&jobs));
     }
 
     #[test]

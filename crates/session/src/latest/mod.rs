@@ -3,5 +3,5 @@
 mod job;
 mod value;
 
-pub use job::LatestJob;
+pub use job::{Job, LatestJob};
 pub use value::Latest;

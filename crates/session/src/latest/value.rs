@@ -40,6 +40,12 @@ impl<T> Latest<T> {
         drop(replaced);
     }
 
+    /// Drops the value. The number stays.
+    pub fn clear(&self) {
+        let dropped = self.shared.lock().unwrap_or_else(PoisonError::into_inner).value.take();
+        drop(dropped);
+    }
+
     /// The latest value, which stays in the cell.
     pub fn latest(&self) -> Option<Arc<T>> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).value.clone()
@@ -114,5 +120,9 @@ mod tests {
         latest.put(Arc::clone(&first));
         latest.put(Arc::new(2));
         assert_eq!(Arc::strong_count(&first), 1);
+        let second = latest.latest().expect("a value");
+        latest.clear();
+        assert_eq!((latest.latest(), latest.number(), Arc::strong_count(&second)), (None, 2, 1));
+        assert_eq!(latest.newer_than(&mut 0), None, "a number without a value");
     }
 }

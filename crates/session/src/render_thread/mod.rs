@@ -16,7 +16,8 @@ use lovelock_render::{
     PictureSettings, RenderError, Renderer, Transparency,
 };
 
-use crate::latest::{Latest, LatestJob};
+use crate::latest::{Job, Latest, LatestJob};
+use crate::memory::Held;
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
 use crate::window_device::WindowDevice;
@@ -113,6 +114,7 @@ pub struct RenderThread {
     failures: Latest<Failure>,
     notices: Latest<String>,
     adapter: Latest<Adapter>,
+    held: Held,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -133,13 +135,14 @@ impl RenderThread {
     ) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
         let (images, failures, notices) = (Latest::default(), Latest::default(), Latest::default());
-        let adapter = Latest::default();
+        let (adapter, held) = (Latest::default(), Held::default());
         let worker = Worker {
             jobs: jobs.clone(),
             images: images.clone(),
             failures: failures.clone(),
             notices: notices.clone(),
             adapter: adapter.clone(),
+            held: held.clone(),
             on_rendered: Box::new(on_rendered),
             open,
             window,
@@ -157,12 +160,22 @@ impl RenderThread {
             card_given_up: false,
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { jobs, images, failures, notices, adapter, thread: Some(thread) })
+        Ok(Self { jobs, images, failures, notices, adapter, held, thread: Some(thread) })
     }
 
     /// Requests an image; a request that still waits is replaced.
     pub fn request(&self, request: RenderRequest) {
         self.jobs.put(request);
+    }
+
+    /// Closes the renderer, and gives back what is kept for further requests with the latest image. The next request opens it again.
+    pub fn rest(&self) {
+        self.jobs.rest();
+    }
+
+    /// The memory that is kept for further requests, bytes: the renderer, its images, and the samples of the one at rest.
+    pub fn held_bytes(&self) -> u64 {
+        self.held.bytes()
     }
 
     /// The latest finished image.
@@ -215,6 +228,7 @@ struct Worker {
     failures: Latest<Failure>,
     notices: Latest<String>,
     adapter: Latest<Adapter>,
+    held: Held,
     on_rendered: Box<dyn Fn() + Send>,
     open: Open,
     window: WindowDevice,
@@ -245,6 +259,17 @@ enum Work {
     Image(RenderRequest),
     /// Another sample of the last image, which stands still.
     Sample(RenderRequest),
+    /// To give back what is kept.
+    Rest,
+}
+
+impl Work {
+    fn of(job: Job<RenderRequest>) -> Self {
+        match job {
+            Job::Do(request) => Self::Image(request),
+            Job::Rest => Self::Rest,
+        }
+    }
 }
 
 impl Worker {
@@ -253,6 +278,10 @@ impl Worker {
             let (request, is_sample) = match work {
                 Work::Image(request) => (request, false),
                 Work::Sample(request) => (request, true),
+                Work::Rest => {
+                    self.rest();
+                    continue;
+                }
             };
             // A panic while rendering costs the device and one image, but not the window.
             let result = catch_unwind(AssertUnwindSafe(|| self.render(&request, is_sample)));
@@ -276,11 +305,29 @@ impl Worker {
                     again
                 }
             };
+            self.held.set(self.bytes());
             if again || !is_sample {
                 self.jobs.done(again.then_some(request));
             }
             (self.on_rendered)();
         }
+    }
+
+    /// Gives back what is kept for further requests.
+    fn rest(&mut self) {
+        (self.opened, self.textures, self.last) = (None, None, None);
+        (self.samples, self.mask, self.picture) = (Samples::default(), MaskView::default(), Picture::default());
+        self.images.clear();
+        self.held.set(0);
+        self.jobs.done(None);
+    }
+
+    /// The memory that is kept for further requests.
+    fn bytes(&self) -> u64 {
+        self.opened.as_ref().map_or(0, |opened| opened.renderer.bytes())
+            + self.textures.as_ref().map_or(0, DeviceImages::bytes)
+            + self.samples.bytes()
+            + self.picture.bytes()
     }
 
     /// Waits for the next work, and meanwhile takes what the device reports of finished images.
@@ -298,11 +345,11 @@ impl Worker {
             let in_flight = opened.map_or(0, Renderer::in_flight);
             let sample = self.last.as_ref().filter(|last| self.samples.wants_more(last));
             if in_flight == 0 && sample.is_none() {
-                return self.jobs.next().map(Work::Image);
+                return self.jobs.next().map(Work::of);
             }
             let most = if in_flight > 0 { PATIENCE } else { Duration::ZERO };
-            if let Some(request) = self.jobs.next_within(most) {
-                return Some(Work::Image(request));
+            if let Some(job) = self.jobs.next_within(most) {
+                return Some(Work::of(job));
             }
             if in_flight == 0 {
                 return sample.cloned().map(Work::Sample);

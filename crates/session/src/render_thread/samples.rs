@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec2;
+use lovelock_base::memory::list_bytes;
 use lovelock_project::Project;
 use lovelock_render::Picture;
 use rayon::prelude::*;
@@ -38,6 +39,11 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// The memory of the sums, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.sums)
+    }
+
     /// The number of samples so far.
     pub fn taken(&self) -> u32 {
         self.taken
@@ -58,7 +64,7 @@ impl Samples {
 
     /// Forgets all samples.
     pub fn forget(&mut self) {
-        (self.of, self.taken) = (None, 0);
+        *self = Self::default();
     }
 
     /// Adds sample `index` of an image, and replaces `picture` by the mean of all.

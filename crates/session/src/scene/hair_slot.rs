@@ -32,6 +32,11 @@ pub(super) struct LoadedHair {
 }
 
 impl HairSlot {
+    /// The memory of the hairstyles that are kept after layers, bytes.
+    pub(super) fn layer_bytes(&self) -> u64 {
+        self.cut_and_ties.bytes() + self.layers.bytes()
+    }
+
     /// Loads the hair of a section. Hair that cannot be loaded is replaced by that of the last call, or by a grown one, with a problem.
     ///
     /// # Errors
@@ -44,6 +49,9 @@ impl HairSlot {
         problems: &mut Vec<Problem>,
         control: &mut LoadControl<'_>,
     ) -> Result<LoadedHair, ProjectError> {
+        if section.file.is_none() {
+            self.file = None;
+        }
         let hair = self.part(section, access, scalp, problems, control)?;
         let tied = self.cut_and_ties.apply(&hair.style, &section.cut_and_ties(), scalp.obstacle.clone());
         let styled = self.layers.apply(&tied.style, &section.stack, scalp.obstacle.clone());

@@ -8,6 +8,7 @@ use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
+use lovelock_style::StyleCache;
 
 use super::control::LoadControl;
 use super::hair_slot::HairSlot;
@@ -51,6 +52,15 @@ impl SceneLoader {
         Self::default()
     }
 
+    /// The most memory of the hairstyles that are kept between two layers, bytes: those of the hair and those of its morph, each of the
+    /// cut and the ties, and of the layers.
+    pub const MOST_LAYER_BYTES: u64 = 4 * StyleCache::MOST_BYTES;
+
+    /// The memory of the hairstyles that are kept between two layers, bytes.
+    pub fn layer_bytes(&self) -> u64 {
+        self.hair.layer_bytes() + self.other_hair.layer_bytes()
+    }
+
     /// As [`SceneLoader::load`], without progress and cancellation.
     ///
     /// # Errors
@@ -91,7 +101,10 @@ impl SceneLoader {
                 let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control)?.style;
                 Some(MorphSource { to, amount: project.hair.morph.amount })
             }
-            None => None,
+            None => {
+                self.other_hair = HairSlot::default();
+                None
+            }
         };
         let styled = self.morph.of(&hair.style, morph.as_ref(), None, &*obstacle);
         let stack = project.hair.stack.clone();

@@ -270,7 +270,7 @@ impl CachePlayer {
             times: StageTimes::default(),
         };
         let position_secs = secs + self.origin_secs;
-        Ok(self.pool.make(new, |snapshot| {
+        Ok(self.pool.make(scene, new, |snapshot| {
             if !Arc::ptr_eq(&snapshot.scene, scene) {
                 snapshot.scene = Arc::clone(scene);
             }

@@ -60,6 +60,14 @@ impl TakePlayer {
         Self::open_for(path, access, &Project::default())
     }
 
+    /// The memory of decoded frames, bytes; curves keep none.
+    pub fn cached_bytes(&self) -> u64 {
+        match &self.0 {
+            Kind::Recorded(player) => player.cached_bytes(),
+            Kind::Cache(_) => 0,
+        }
+    }
+
     /// The file.
     pub fn path(&self) -> &Path {
         either!(&self.0, player => player.path())

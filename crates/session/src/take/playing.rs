@@ -52,6 +52,11 @@ pub(super) struct RecordedPlayer {
 }
 
 impl RecordedPlayer {
+    /// The memory of decoded frames, bytes.
+    pub(super) fn cached_bytes(&self) -> u64 {
+        self.reader.cached_bytes() as u64
+    }
+
     /// Opens a take and loads its scene. Problems say what has changed, is missing or is damaged.
     ///
     /// # Errors
@@ -219,7 +224,7 @@ impl RecordedPlayer {
             totals: Totals::default(),
             times: StageTimes::default(),
         };
-        Ok(self.pool.make(new, |snapshot| {
+        Ok(self.pool.make(scene, new, |snapshot| {
             if !Arc::ptr_eq(&snapshot.scene, scene) {
                 snapshot.scene = Arc::clone(scene);
             }

@@ -16,6 +16,11 @@ pub(crate) struct TakeTransport {
 }
 
 impl TakeTransport {
+    /// The memory of decoded frames, bytes.
+    pub(crate) fn cached_bytes(&self) -> u64 {
+        self.player.cached_bytes()
+    }
+
     /// Starts at the first frame.
     pub(crate) fn new(player: TakePlayer) -> Self {
         let looping = player.project().motion.looping;

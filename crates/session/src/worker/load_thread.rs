@@ -13,6 +13,7 @@ use lovelock_project::files::Access;
 
 use super::{Event, Outbox};
 use crate::aside::aside;
+use crate::memory::Held;
 use crate::scene::{LoadControl, Scene, SceneLoader, SurroundingsLoader};
 use crate::take::TakePlayer;
 
@@ -61,6 +62,7 @@ pub(super) struct LoadThread {
     requests: Arc<(Mutex<Requests>, Condvar)>,
     cancelled: Arc<AtomicBool>,
     progress: Arc<Progress>,
+    layers: Held,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -77,6 +79,7 @@ struct LoadState {
     requests: Arc<(Mutex<Requests>, Condvar)>,
     cancelled: Arc<AtomicBool>,
     progress: Arc<Progress>,
+    layers: Held,
     outbox: Outbox,
 }
 
@@ -88,18 +91,19 @@ impl LoadThread {
     ) -> Result<Self, ProjectError> {
         let requests = Arc::<(Mutex<Requests>, Condvar)>::default();
         let cancelled = Arc::new(AtomicBool::new(false));
-        let progress = Arc::new(Mutex::new(None));
+        let (progress, layers) = (Arc::new(Mutex::new(None)), Held::default());
         let inside = LoadState {
             requests: Arc::clone(&requests),
             cancelled: Arc::clone(&cancelled),
             progress: Arc::clone(&progress),
+            layers: layers.clone(),
             outbox,
         };
         let thread = std::thread::Builder::new()
             .name("lovelock loader".to_owned())
             .spawn(move || inside.run(&deliver))
             .map_err(|error| ProjectError::work(format!("the loader thread could not start: {error}")))?;
-        Ok(Self { requests, cancelled, progress, thread: Some(thread) })
+        Ok(Self { requests, cancelled, progress, layers, thread: Some(thread) })
     }
 
     /// Requests the scene of a project. A request that has not started is replaced. A running one is cancelled if it reads other
@@ -129,6 +133,11 @@ impl LoadThread {
     pub(super) fn is_busy(&self) -> bool {
         let requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
         requests.request.is_some() || requests.begun.is_some()
+    }
+
+    /// The memory of the hairstyles that are kept between layers, bytes.
+    pub(super) fn layer_bytes(&self) -> u64 {
+        self.layers.bytes()
     }
 
     /// Progress of the current load, if any.
@@ -169,6 +178,7 @@ impl LoadState {
         let mut loaders = Loaders::default();
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loaders, &project, &access)));
+            self.layers.set(loaders.scene.layer_bytes());
             let replaced = {
                 let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
                 requests.begun = None;

@@ -27,6 +27,7 @@ use super::mailbox::{Mailbox, Requests, TakeRequest};
 use crate::clock::{Playback, STEP_SECS};
 use crate::engine::{Engine, LastSteps, PrerollProgress};
 use crate::latest::Latest;
+use crate::memory::Held;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::take::{TakeProgress, TakeRecording, TakeTransport};
@@ -45,6 +46,7 @@ pub(super) struct SimulationThread {
     outbox: Outbox,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
     settling: Arc<Mutex<Option<PrerollProgress>>>,
+    take_frames: Held,
     engine: Option<Engine>,
     /// The pre-roll that leads to the engine's instant. Playback waits for it.
     preroll: Option<PendingPreroll>,
@@ -78,6 +80,7 @@ impl SimulationThread {
         outbox: Outbox,
         recorded: Arc<Mutex<Option<TakeProgress>>>,
         settling: Arc<Mutex<Option<PrerollProgress>>>,
+        take_frames: Held,
     ) -> Self {
         Self {
             mailbox,
@@ -86,6 +89,7 @@ impl SimulationThread {
             outbox,
             recorded,
             settling,
+            take_frames,
             engine: None,
             preroll: None,
             settling_pending: false,
@@ -157,6 +161,7 @@ impl SimulationThread {
         } else {
             self.simulate(changed, elapsed_secs);
         }
+        self.take_frames.set(self.take.as_ref().map_or(0, TakeTransport::cached_bytes));
         self.publish_settling();
     }
 

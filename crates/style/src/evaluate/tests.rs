@@ -72,6 +72,34 @@ fn a_stack_gives_what_its_layers_give_one_after_another() {
 }
 
 #[test]
+fn hairstyles_between_layers_stay_within_their_memory() {
+    let base = base();
+    let head: Arc<dyn Obstacle + Send> = Arc::new(PlainHead);
+    let mut stack = stack((0..8).map(|k| cut(&base, 0.95 - 0.05 * k as f32)));
+    // A layer without effect has the hairstyle of the one before.
+    stack.layers[5].weight = 0.0;
+    let mut all = StyleCache::default();
+    let (expected, _) = counted(&mut all, &base, &stack, &head);
+    let most_bytes = all.bytes() / 3;
+    let mut cache = StyleCache { most_bytes, ..StyleCache::default() };
+    let (made, count) = counted(&mut cache, &base, &stack, &head);
+    assert_eq!((count, shape(&made.style)), (8, shape(&expected.style)));
+    assert!(cache.bytes() <= most_bytes && cache.bytes() > 0, "{} of {most_bytes}", cache.bytes());
+    // What is kept is used: late layers again, early ones from the start.
+    stack.layers[7] = Layer { id: stack.layers[7].id, ..cut(&base, 0.3) };
+    assert_eq!(counted(&mut cache, &base, &stack, &head).1, 1);
+    stack.layers[1] = Layer { id: stack.layers[1].id, ..cut(&base, 0.85) };
+    let (made, count) = counted(&mut cache, &base, &stack, &head);
+    assert_eq!(count, 8);
+    assert_eq!(shape(&made.style), shape(&counted(&mut StyleCache::default(), &base, &stack, &head).0.style));
+    assert!(cache.bytes() <= most_bytes);
+    // The result is kept whatever it takes.
+    let mut none = StyleCache { most_bytes: 0, ..StyleCache::default() };
+    counted(&mut none, &base, &stack, &head);
+    assert_eq!(counted(&mut none, &base, &stack, &head).1, 0);
+}
+
+#[test]
 fn only_changed_layers_and_later_ones_are_computed() {
     let base = base();
     let head: Arc<dyn Obstacle + Send> = Arc::new(PlainHead);

@@ -170,7 +170,13 @@ pub(super) const PANELS: [(&str, Show); 14] = [
     }),
     ("Statistics", |ui, b| {
         let (name, tip, value) = ("Picture", "Size of the picture.", "1280 × 720".to_owned());
-        super::statistics::ui(ui, &b.stages, &b.passes, &[super::statistics::Fact { name, tip, value }]);
+        let kept = super::statistics::Fact {
+            name: "Undo steps",
+            tip: "Projects that undo returns to.",
+            value: "1.5 of 256 MiB".to_owned(),
+        };
+        let facts = [super::statistics::Fact { name, tip, value }];
+        super::statistics::ui(ui, &b.stages, &b.passes, [&facts, &[kept]]);
     }),
 ];
 

@@ -376,6 +376,7 @@ fn statistics_show_every_stage_and_fact() {
     }
     assert!(harness.query_by_label("3.25 ms").is_some());
     assert!(harness.query_by_label("1280 × 720").is_some());
+    assert!(harness.query_by_label("1.5 of 256 MiB").is_some(), "what is kept in memory, and the most of it");
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod vertices;
 
 use std::sync::Arc;
 
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::simd::Width;
 use lovelock_groom::{Hairstyle, Strands, interpolate};
 use lovelock_satf::cache::shared;
@@ -55,6 +56,18 @@ pub(super) struct PlacedClusters {
 }
 
 impl PlacedClusters {
+    /// Its memory without the list of clusters, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.ribs.bytes()
+            + self.entries.bytes()
+            + self.details.bytes()
+            + list_bytes(&self.transmittance)
+            + self.answers.iter().map(list_bytes).sum::<u64>()
+            + list_bytes(&self.shaded)
+            + list_bytes(&self.vertices)
+            + self.bins.bytes()
+    }
+
     /// Follows the hair of `input`. Returns the part of its optical depth that clusters have.
     pub fn follow(&mut self, input: &FrameInput, height: u32) -> f32 {
         self.is_hidden = false;

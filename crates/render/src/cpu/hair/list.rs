@@ -2,6 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::simd_versions;
 
 use super::segment::{Span, SpanSink, each_span};
@@ -128,6 +129,11 @@ impl SpanSink for List<'_> {
 }
 
 impl Fragments {
+    /// Their memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.found) + list_bytes(&self.starts) + list_bytes(&self.by_pixel)
+    }
+
     /// Begins an empty list.
     pub fn clear(&mut self) {
         self.found.clear();

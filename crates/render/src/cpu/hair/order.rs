@@ -1,5 +1,6 @@
 //! The order of segments by depth.
 
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
 use rayon::prelude::*;
 
@@ -15,6 +16,11 @@ pub(crate) struct SegmentKeys {
 const PIECE: usize = 8192;
 
 impl SegmentKeys {
+    /// Their memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.keys)
+    }
+
     /// Computes the depths of segments along `forward`. `first_points` are their first points.
     pub fn measure(&mut self, strands: &Strands, first_points: &[u32], forward: glam::Vec3) {
         let depth_of =

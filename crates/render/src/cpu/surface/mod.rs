@@ -9,6 +9,7 @@ pub(super) mod shade;
 use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
+use lovelock_base::memory::list_bytes;
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 
@@ -34,6 +35,14 @@ pub(super) struct PlacedSurface {
 }
 
 impl PlacedSurface {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.attributes)
+            + list_bytes(&self.vertices)
+            + self.bins.bytes()
+            + list_bytes(&self.paint.values)
+    }
+
     /// Projects the vertices and sorts the triangles into tiles. `hair` holds one word of packed transmittances per vertex; `closed`
     /// states that back faces need not be drawn.
     pub fn place(

@@ -3,6 +3,7 @@
 mod pick;
 
 use glam::Vec3;
+use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
@@ -75,6 +76,17 @@ impl Default for ValueRenderer {
 }
 
 impl ValueRenderer {
+    /// The memory that it keeps from picture to picture, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.strands.bytes()
+            + self.placed.bytes()
+            + self.details.bytes()
+            + list_bytes(&self.lit)
+            + list_bytes(&self.tiles)
+            + list_bytes(&self.pixels)
+            + self.scratch.bytes(TileScratch::bytes)
+    }
+
     /// Renders `values`, one per strand point, as an image of `input` renders hair: with the same widths, transparency and occlusion
     /// by the body. A value that is not finite is missing: it hides what is behind it but is not part of the mean.
     ///

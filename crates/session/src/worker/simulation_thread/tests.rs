@@ -38,6 +38,7 @@ impl Driven {
             outbox,
             Arc::default(),
             Arc::default(),
+            crate::memory::Held::default(),
         );
         let mut driven = Self { inside, frames, seen: 0 };
         driven.put(project, scene);

@@ -1,0 +1,110 @@
+//! What the window and its threads keep in memory: given back when nobody sees it any more, and listed in *Statistics*.
+
+use lovelock_project::history::History;
+use lovelock_record::CACHE_BYTES;
+use lovelock_session::scene::SceneLoader;
+
+use super::Window;
+use super::panels::statistics::Fact;
+use super::timeline::Thumbnails;
+
+impl Window {
+    /// Lets the pages that are not shown give back what they hold.
+    pub(super) fn rest_hidden_pages(&mut self) {
+        let walls = self.layout.wall.shown;
+        let compares = self.layout.compare.shown && !walls;
+        let mut left = false;
+        if !compares {
+            left |= self.compare.leave(self.session.live());
+        }
+        if !walls {
+            left |= self.wall.leave();
+        }
+        if compares || walls {
+            self.session.leave_image();
+        }
+        if left {
+            self.display.textures.sweep();
+        }
+    }
+
+    /// Gives back everything that was kept for the project before, because another one takes its place.
+    pub(super) fn rest_all(&mut self) {
+        self.compare.leave(self.session.live());
+        self.compare.forget_project();
+        self.wall.leave();
+        self.wall.forget_rounds();
+        self.session.forget_images();
+        self.thumbnails.rest();
+        self.viewport.forget_image();
+        (self.seen, self.preview, self.morphed, self.shown_mask) = (None, None, None, None);
+        self.display.textures.sweep();
+    }
+
+    /// What is kept in memory, with the most that it may take.
+    pub(super) fn kept_in_memory(&self) -> Vec<Fact> {
+        let mib = |bytes: u64| format!("{:.1}", bytes as f64 / f64::from(1 << 20));
+        let at_most = |bytes: u64, most: u64| format!("{} of {} MiB", mib(bytes), most >> 20);
+        let (session, worker) = (&self.session, self.session.worker());
+        let mut facts = Vec::new();
+        let mut fact = |name, tip, value| facts.push(Fact { name, tip, value });
+        let pages = [
+            (
+                "Single image",
+                "Renderer and images of the viewport. Given back while panes or the wall are shown, and with the project.",
+                session.painter().held_bytes(),
+            ),
+            (
+                "Panes",
+                "Renderers, strands and images of the comparison. Given back when it is left.",
+                session.live().held_bytes(),
+            ),
+            (
+                "Wall",
+                "Simulations, renderers and images of the variants. Given back when the wall is left.",
+                self.wall.held_bytes(),
+            ),
+        ];
+        for (name, tip, bytes) in pages {
+            fact(name, tip, format!("{} MiB", mib(bytes)));
+        }
+        let caches = [
+            (
+                "Layers",
+                "Hairstyles between two layers, so that a change evaluates only the layers after it. Beyond the limit the first ones go.",
+                worker.layer_bytes(),
+                SceneLoader::MOST_LAYER_BYTES,
+            ),
+            (
+                "Undo steps",
+                "Projects that undo and redo return to. Beyond the limit the oldest steps go.",
+                self.history.bytes(),
+                History::MOST_BYTES,
+            ),
+            (
+                "Take",
+                "Decoded frames of the take that plays. Beyond the limit those go that were shown longest ago.",
+                worker.take_bytes(),
+                CACHE_BYTES as u64,
+            ),
+            (
+                "Thumbnails",
+                "Images along the timeline. Beyond the limit the oldest go.",
+                self.thumbnails.bytes(),
+                Thumbnails::MOST_BYTES,
+            ),
+        ];
+        for (name, tip, bytes, most) in caches {
+            fact(name, tip, at_most(bytes, most));
+        }
+        if let Some(sound) = self.soundtrack.loaded() {
+            let tip = "Samples of the sound beside the dance.";
+            fact("Sound", tip, format!("{} MiB", mib(sound.sound.bytes())));
+        }
+        if let Some((database, _)) = lovelock_satf::cache::ready() {
+            let tip = "The database of hair that is drawn as clusters. It stays until the program ends.";
+            fact("Database of clusters", tip, format!("{} MiB", mib(database.bytes())));
+        }
+        facts
+    }
+}
