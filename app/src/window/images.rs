@@ -33,7 +33,8 @@ impl Textures {
 
     /// Frees the textures of images that nobody holds any longer.
     pub(crate) fn sweep(&self) {
-        let Known { painter: Some(painter), entries } = &mut *self.0.borrow_mut() else { return };
+        let mut known = self.0.borrow_mut();
+        let Known { painter: Some(painter), entries } = &mut *known else { return };
         let mut renderer = painter.renderer.write();
         entries.retain(|entry| {
             let lives = entry.image.strong_count() > 0;

@@ -159,8 +159,12 @@ impl Window {
                         super::control::note(ui, "Of the single image, before the comparison was opened.");
                     }
                     let session = &self.session;
-                    self.session.view.measured =
-                        panels::statistics::ui(ui, &session.stages, &session.passes, [&self.facts(), &self.kept_in_memory()]);
+                    self.session.view.measured = panels::statistics::ui(
+                        ui,
+                        &session.stages,
+                        &session.passes,
+                        [&self.facts(), &self.kept_in_memory()],
+                    );
                 });
             });
         });

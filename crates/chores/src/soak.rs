@@ -25,9 +25,7 @@ const KEY_Z: u8 = 52;
 /// The keys 1 to 5, with which shipped styles are applied.
 const DIGITS: std::ops::Range<u8> = 10..15;
 /// Keys that are pressed at random: those that open pages, tools and panels. Nothing is saved or recorded.
-const KEYS: [u8; 14] = [
-    KEY_SPACE, KEY_C, KEY_N, TAB, ESCAPE, ESCAPE, 43, 53, 41, 25, 46, 45, 42, 58,
-];
+const KEYS: [u8; 14] = [KEY_SPACE, KEY_C, KEY_N, TAB, ESCAPE, ESCAPE, 43, 53, 41, 25, 46, 45, 42, 58];
 
 /// Options of the chore.
 #[derive(Args)]

@@ -190,7 +190,10 @@ impl Hairstyle {
         let Self { scalp, guides, motion, .. } = self;
         let rope = |rope: &Rope| list_bytes(&rope.guides) + list_bytes(&rope.ahead);
         self.strands.bytes()
-            + [&guides.x, &guides.y, &guides.z, &self.held, &self.widest].map(list_bytes).into_iter().sum::<u64>()
+            + [&guides.x, &guides.y, &guides.z, &self.held, &self.widest]
+                .map(list_bytes)
+                .into_iter()
+                .sum::<u64>()
             + [&motion.stiffness, &motion.hold, &motion.damping, &motion.friction]
                 .map(list_bytes)
                 .into_iter()

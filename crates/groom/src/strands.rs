@@ -23,7 +23,8 @@ pub struct Strands {
 impl Strands {
     /// The memory of the points, bytes.
     pub fn bytes(&self) -> u64 {
-        [&self.x, &self.y, &self.z].into_iter().map(list_bytes).sum::<u64>() + 4 * self.first_point.len() as u64
+        [&self.x, &self.y, &self.z].into_iter().map(list_bytes).sum::<u64>()
+            + 4 * self.first_point.len() as u64
     }
 
     /// Number of strands.

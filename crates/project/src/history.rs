@@ -229,8 +229,7 @@ mod tests {
     fn steps_with_long_tracks_stay_within_their_memory() {
         use crate::tracks::{Key, Track};
 
-        let keys: Vec<Key> =
-            (0..2000_i32).map(|k| Key { secs: f64::from(k), value: vec![0.0; 3] }).collect();
+        let keys: Vec<Key> = (0..2000_i32).map(|k| Key { secs: f64::from(k), value: vec![0.0; 3] }).collect();
         let long = Track { target: "look/eumelanin".to_owned(), muted: false, keys };
         let with = |distance: f32, tracks: usize| {
             let mut project = at(distance);

@@ -56,7 +56,7 @@ pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use sound::{SOUND_RATE, SoundSource};
 pub use still::{jpeg_within, read_jpeg, write_png};
 pub use take::{
-    AssetState, CACHE_BYTES, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,
-    TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport, TakeWriter,
-    hairstyle_fingerprint, mix_guides,
+    AssetState, CACHE_BYTES, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION,
+    TAKE_VERSION, TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader,
+    TakeReport, TakeWriter, hairstyle_fingerprint, mix_guides,
 };

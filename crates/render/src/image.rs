@@ -146,7 +146,11 @@ impl DeviceImages {
 
     /// The memory of the textures, also of those that are shown, bytes.
     pub fn bytes(&self) -> u64 {
-        self.made.iter().map(|image| image.size().map(u64::from)).map(|[width, height]| 4 * width * height).sum()
+        self.made
+            .iter()
+            .map(|image| image.size().map(u64::from))
+            .map(|[width, height]| 4 * width * height)
+            .sum()
     }
 
     /// A texture of this size that nobody holds. Its pixels are those of an earlier image.

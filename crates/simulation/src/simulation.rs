@@ -76,13 +76,7 @@ impl Simulation {
     /// The memory of the guides that it moves, bytes, without the hairstyle.
     pub fn bytes(&self) -> u64 {
         let of_block = |block: &Block| {
-            let rows = [
-                &block.skin,
-                &block.position,
-                &block.velocity,
-                &block.bend,
-                &block.contact_push,
-            ];
+            let rows = [&block.skin, &block.position, &block.velocity, &block.bend, &block.contact_push];
             let lanes = [&block.rest_distance, &block.field_distance, &block.tie_hold];
             rows.map(list_bytes).into_iter().sum::<u64>() + lanes.map(list_bytes).into_iter().sum::<u64>()
         };

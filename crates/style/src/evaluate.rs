@@ -124,7 +124,8 @@ impl StyleCache {
             step.layer.acts_like(layer) && step.factor.to_bits() == stack.factor(layer).to_bits()
         };
         let same = if same_start { self.steps.iter().zip(&stack.layers).take_while(same).count() } else { 0 };
-        let kept = self.steps[..same].iter().rposition(|step| step.style.is_some()).map_or(0, |last| last + 1);
+        let kept =
+            self.steps[..same].iter().rposition(|step| step.style.is_some()).map_or(0, |last| last + 1);
         self.start = Some((Arc::clone(base), obstacle));
         self.steps.truncate(kept);
         for layer in &stack.layers[kept..] {

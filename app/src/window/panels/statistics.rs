@@ -28,7 +28,12 @@ const GROUPS: [(&str, &str, &str); 2] = [
 
 /// Shows the plot of stage times, the passes, the facts, and what is kept in memory.
 /// Returns whether the passes are unfolded; only then they need to be measured.
-pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, [facts, kept]: [&[Fact]; 2]) -> bool {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    history: &StageHistory,
+    passes: &PassHistory,
+    [facts, kept]: [&[Fact]; 2],
+) -> bool {
     Plot::new("stage times")
         .height(112.0)
         .allow_zoom(false)

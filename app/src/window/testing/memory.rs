@@ -15,7 +15,8 @@ fn pages_give_back_what_they_held_when_they_are_left() {
         key(&mut harness, Modifiers::NONE, page);
         wait(&mut harness, what, |window| {
             let (panes, cells) = (window.session.live().held_bytes(), window.wall.held_bytes());
-            let is_shown = if page == Key::C { window.compare.has_pictures() } else { window.wall.has_pictures() };
+            let is_shown =
+                if page == Key::C { window.compare.has_pictures() } else { window.wall.has_pictures() };
             is_shown && (if page == Key::C { panes } else { cells }) > 0
         });
         wait(&mut harness, "the single image to rest", |window| window.session.painter().held_bytes() == 0);

@@ -59,7 +59,10 @@ pub(super) struct TileScratch {
 impl TileScratch {
     /// Its memory, bytes.
     pub fn bytes(&self) -> u64 {
-        size_of_val(self) as u64 + list_bytes(&self.order) + list_bytes(&self.segments) + self.fragments.bytes()
+        size_of_val(self) as u64
+            + list_bytes(&self.order)
+            + list_bytes(&self.segments)
+            + self.fragments.bytes()
     }
 }
 

@@ -316,7 +316,8 @@ impl Worker {
     /// Gives back what is kept for further requests.
     fn rest(&mut self) {
         (self.opened, self.textures, self.last) = (None, None, None);
-        (self.samples, self.mask, self.picture) = (Samples::default(), MaskView::default(), Picture::default());
+        (self.samples, self.mask, self.picture) =
+            (Samples::default(), MaskView::default(), Picture::default());
         self.images.clear();
         self.held.set(0);
         self.jobs.done(None);
