@@ -118,9 +118,11 @@ impl Thumbnails {
         if is_other {
             self.thumbs.clear();
             self.filled = None;
+            // The current image still shows the project before.
+            self.seen = painted.cloned();
         }
         self.of = Some(Arc::clone(project));
-        // An image of the window may still show the project before, or a mask in false colours.
+        // The next images may show it too, or a mask in false colours.
         let painted = painted.filter(|painted| {
             !painted.has_mask && (has_looks_of_its_own(project) || !looks(project, &painted.project))
         });
