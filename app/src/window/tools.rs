@@ -1,15 +1,16 @@
 //! Tools of the pointer in the image: moving ties, cutting hair, selecting and editing colliders.
 
-use egui::{PointerButton, Response, Ui};
+use egui::{PointerButton, Response, Shape, Ui};
 use glam::{Affine3A, Vec3};
 use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
 use lovelock_project::Project;
-use lovelock_session::render_thread::RenderedImage;
+use lovelock_session::render_thread::{RenderedImage, ShownMask};
 use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_style::BrushMode;
 
 use super::overlay::colliders::Wires;
 use super::overlay::{self, View};
-use super::{Window, notices};
+use super::{Window, notices, theme};
 
 impl Window {
     /// Runs the tools and paints their overlays. Returns whether the pointer is free to move the camera.
@@ -33,7 +34,20 @@ impl Window {
         {
             return false;
         }
+        // Below the circle of the brush.
+        let painter = ui.painter_at(view.place);
+        let colors = painter.add(Shape::Noop);
         let painted_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
+        if let Some(mask) = self.layers.shown_mask(&project.hair.stack).filter(|_| self.layers.painting) {
+            let shown = ShownMask { mask: mask.clone(), scale: theme::mask_colors() };
+            let snapshot = &painted.snapshot;
+            let head = overlay::head::Head {
+                world_from_head: &snapshot.guides.world_from_head,
+                scalp: &snapshot.scene.style.scalp,
+            };
+            let new = overlay::mask::changed(view, head, &mut self.brushes.seen, painted, &shown);
+            painter.set(colors, Shape::Vec(new));
+        }
         let held = self.scissors.held;
         if let Some(line) = self.scissors.drag(ui, view, response) {
             self.cut(view, painted, line, project);
@@ -86,6 +100,14 @@ impl Window {
             // Each stroke is an undo step of its own, however soon it follows the last one.
             self.gestures.next();
         }
+        if let Some(mode) = done.in_vain {
+            let why = match mode {
+                BrushMode::Add => "The mask is full here, or no hair grows: the stroke paints nothing.",
+                BrushMode::Erase => "The mask is empty here: the stroke erases nothing.",
+                BrushMode::Smooth => "The mask is even here: the stroke smooths nothing.",
+            };
+            self.notices.push(notices::Kind::Warning, why.to_owned());
+        }
         done.holds
     }
 
@@ -96,8 +118,10 @@ impl Window {
                 "Hair between two styles cannot be cut. End the morph first, or become the second style.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         }
-        match overlay::scissors::cut(view, &painted.snapshot, line) {
-            Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
+        let before = &project.hair.cut;
+        let cut = overlay::scissors::cut(view, &painted.snapshot, line).map(|cut| before.and(&cut));
+        match cut.filter(|cut| cut != before) {
+            Some(cut) => project.hair.cut = cut,
             None => self.notices.push(notices::Kind::Warning, "The line crosses no hair.".to_owned()),
         }
     }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::carry::CarriedGuide;
 use crate::chain::{evened, lay, lengths};
+use crate::fall::{clearances, fallen};
 use crate::settings::{BrushMirror, BrushSettings};
 use crate::stroke::{Dab, Resampler, StrokeSample, mirror};
 use crate::tool::Tool;
@@ -48,6 +49,8 @@ pub struct Brush {
     way: Vec<Vec3>,
     grab: Vec<Grab>,
     neighbours: Vec<Vec<u32>>,
+    /// How far the points of each guide were from the body when a comb touched it first, metres; empty for the others.
+    before: Vec<Vec<f32>>,
 }
 
 impl Brush {
@@ -82,6 +85,7 @@ impl Brush {
             locks: Wisps::of(rest),
             edits: edits.of_roots(&roots),
             touched: vec![false; count],
+            before: vec![Vec::new(); count],
             frozen,
             resampler: Resampler::default(),
             way: Vec::new(),
@@ -125,8 +129,19 @@ impl Brush {
             self.mirror(&mut seen, &mut changed);
         }
         let changed: Vec<usize> = (0..changed.len()).filter(|guide| changed[*guide]).collect();
+        self.put_back(frame, &seen, changed.iter());
+        changed
+    }
+
+    /// Brings guides of a frame to where they are seen, head space.
+    fn put_back<'a>(
+        &mut self,
+        frame: &mut GuideFrame,
+        seen: &Guides,
+        guides: impl Iterator<Item = &'a usize>,
+    ) {
         let count = frame.guides.points_per_guide;
-        for &guide in &changed {
+        for &guide in guides {
             self.touched[guide] = true;
             for i in 1..count {
                 put(
@@ -136,6 +151,45 @@ impl Brush {
                 );
             }
         }
+    }
+
+    /// Ends the stroke: what a comb has left in the air falls at rest, and so does the hair of `frame` if `at_once`. Otherwise that stays where
+    /// it is, for its simulation to let it fall. `falls` is 1 for hair that nothing holds, and 0 for hair that stays in the air. Returns the
+    /// guides that were changed.
+    pub fn let_go(
+        &mut self,
+        frame: &mut GuideFrame,
+        around: &BrushSurroundings<'_>,
+        (falls, at_once): (f32, bool),
+    ) -> Vec<usize> {
+        let alike = frame.guides.count() == self.touched.len()
+            && frame.guides.points_per_guide == self.rest.points_per_guide;
+        let head_from_world = frame.world_from_head.inverse();
+        let down = head_from_world.transform_vector3(Vec3::NEG_Y).try_normalize();
+        let Some(down) = down.filter(|_| alike && head_from_world.is_finite() && falls > 0.0) else {
+            return Vec::new();
+        };
+        let mut seen = GuideFrame::at_rest(&frame.guides, head_from_world, 0.0).guides;
+        let combed: Vec<usize> =
+            (0..self.before.len()).filter(|guide| !self.before[*guide].is_empty()).collect();
+        let fall = |guide: &usize| {
+            let points = hand_input(&seen, *guide, 1.0)?;
+            let fallen = fallen(&points, &self.before[*guide], down, falls, around.obstacle)?;
+            let mut carried = self.carried(*guide, points)?;
+            carried.move_to(&fallen, 1.0)?;
+            changed_guide(carried)
+        };
+        let fallen: Vec<ChangedGuide> = combed.par_iter().filter_map(fall).collect();
+        let mut changed = vec![false; self.touched.len()];
+        for guide in fallen {
+            self.keep(&mut seen, guide, &mut changed);
+        }
+        if self.settings.mirror == BrushMirror::Same {
+            self.mirror(&mut seen, &mut changed);
+        }
+        self.before.iter_mut().for_each(Vec::clear);
+        let changed: Vec<usize> = (0..changed.len()).filter(|guide| changed[*guide]).collect();
+        self.put_back(frame, &seen, changed.iter().filter(|_| at_once));
         changed
     }
 
@@ -196,6 +250,14 @@ impl Brush {
                 Some((touched.guide, self.outcome(touched, change, around.obstacle)?))
             })
             .collect();
+        if self.tool == Tool::Comb {
+            for touched in &touched {
+                let before = &mut self.before[touched.guide];
+                if before.is_empty() {
+                    *before = clearances(&touched.points, around.obstacle);
+                }
+            }
+        }
         for (guide, outcome) in changes {
             match outcome {
                 Outcome::Guide(carried) => self.keep(seen, *carried, changed),
@@ -265,9 +327,7 @@ impl Brush {
             Change::Removed(removed) => return Some(Outcome::Removed(removed)),
             Change::Frozen(frozen) => return Some(Outcome::Frozen(frozen)),
         }
-        let CarriedGuide { guide, rest, seen, edit, .. } = carried;
-        let finite = seen.iter().chain(&rest).all(|p| p.is_finite());
-        finite.then(|| Outcome::Guide(Box::new(ChangedGuide { guide, rest, seen, edit })))
+        Some(Outcome::Guide(Box::new(changed_guide(carried)?)))
     }
 
     fn keep(&mut self, seen: &mut Guides, guide: ChangedGuide, changed: &mut [bool]) {
@@ -328,6 +388,13 @@ struct ChangedGuide {
     rest: Vec<Vec3>,
     seen: Vec<Vec3>,
     edit: HandEdit,
+}
+
+/// What was changed of a guide; `None` if that is not finite.
+fn changed_guide(carried: CarriedGuide<'_>) -> Option<ChangedGuide> {
+    let CarriedGuide { guide, rest, seen, edit, .. } = carried;
+    let finite = seen.iter().chain(&rest).all(|p| p.is_finite());
+    finite.then_some(ChangedGuide { guide, rest, seen, edit })
 }
 
 /// The lengths of links that are stretched, and the factor on the whole length.

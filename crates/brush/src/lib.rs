@@ -9,6 +9,7 @@
 mod brush;
 mod carry;
 mod chain;
+mod fall;
 mod file;
 mod settings;
 mod stroke;

@@ -16,6 +16,8 @@ pub struct History {
     future: Vec<Step>,
     /// The gesture that made the newest step, as long as it may continue.
     gesture: Option<GestureId>,
+    /// The redo steps that the gesture has discarded: it brings them back if it ends at its start value.
+    discarded: Vec<Step>,
     /// The project on disk, for the mark of unsaved changes.
     saved: Arc<Project>,
     limit: usize,
@@ -51,6 +53,7 @@ impl History {
             present,
             future: Vec::new(),
             gesture: None,
+            discarded: Vec::new(),
             limit: limit.max(1),
             most_bytes: Self::MOST_BYTES,
         }
@@ -80,12 +83,14 @@ impl History {
                     self.present = step.project;
                 }
                 self.gesture = None;
+                self.future = std::mem::take(&mut self.discarded);
+                return true;
             }
         } else {
             let before = std::mem::replace(&mut self.present, project);
             let bytes = before.bytes_beside(&self.present);
             self.past.push_back(Step { label: label.to_owned(), project: before, bytes });
-            self.future.clear();
+            self.discarded = std::mem::take(&mut self.future);
             while self.past.len() > self.limit || (self.bytes() > self.most_bytes && self.past.len() > 1) {
                 self.past.pop_front();
             }
@@ -105,6 +110,14 @@ impl History {
         let mut project = (*self.present).clone();
         change(&mut project);
         self.edit(label, gesture, project)
+    }
+
+    /// Takes the newest step back as if it had never been made, if it is that of `gesture` and the gesture may continue. Returns whether it
+    /// was.
+    pub fn take_back(&mut self, gesture: GestureId) -> bool {
+        let before =
+            self.past.back().filter(|_| self.gesture == Some(gesture)).map(|step| (*step.project).clone());
+        before.is_some_and(|before| self.edit("", Some(gesture), before))
     }
 
     /// Ends the gesture: the next change starts a new step.
@@ -280,6 +293,28 @@ mod tests {
         history.edit("Distance", Some(1), at(3.0));
         assert_eq!(history.undo_len(), 1, "the gesture may continue");
         assert_eq!(history.undo().map(|p| p.camera.distance), Some(1.0));
+    }
+
+    #[test]
+    fn a_gesture_that_is_taken_back_leaves_undo_and_redo_as_they_were() {
+        let mut history = History::new(at(1.0));
+        history.edit("Distance", None, at(2.0));
+        history.edit("Distance", None, at(3.0));
+        history.undo();
+        history.edit("stroke", Some(7), at(9.0));
+        assert_eq!(history.redo_len(), 0);
+        assert!(!history.take_back(8), "another gesture");
+        assert!(history.take_back(7) && !history.take_back(7));
+        assert_eq!((history.undo_len(), history.redo_len()), (1, 1));
+        assert_eq!(history.project().camera.distance, 2.0);
+        assert_eq!(history.redo().map(|p| p.camera.distance), Some(3.0));
+        // A drag that returns does the same; one that does not discards the redo steps.
+        history.undo();
+        history.edit("Distance", Some(9), at(5.0));
+        history.edit("Distance", Some(9), at(2.0));
+        assert_eq!(history.redo_label(), Some("Distance"));
+        history.edit("Distance", Some(10), at(5.0));
+        assert!(history.redo().is_none());
     }
 
     #[test]

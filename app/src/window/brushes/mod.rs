@@ -16,6 +16,7 @@ use lovelock_brush::{BrushMirror, BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use panel::{BrushRequest, ui};
+pub(crate) use pick::SeenHair;
 use pointer::PointerStroke;
 use strokes::Strokes;
 
@@ -66,7 +67,8 @@ pub(crate) struct Brushes {
     /// Whether the stroke of the button that is down was taken back, so that the pointer does nothing more.
     spent: bool,
     resize: Option<keys::Resize>,
-    seen: pick::SeenHair,
+    /// The hair of the image.
+    pub(crate) seen: SeenHair,
     strokes: Strokes,
 }
 

@@ -6,6 +6,7 @@ use egui::{Pos2, Vec2};
 use glam::Vec3;
 use lovelock_groom::{Hairstyle, Strands, interpolate};
 use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_style::strand_roots;
 
 use crate::window::overlay::View;
 use crate::window::overlay::head::Head;
@@ -29,7 +30,7 @@ const BEFORE: f32 = 0.01;
 ///
 /// It is found again for each image, from every few strands, so that it has the same instant on every device.
 #[derive(Default)]
-pub(super) struct SeenHair {
+pub(crate) struct SeenHair {
     /// The style of the strands and what is left of it.
     thinned: Option<(Arc<Hairstyle>, Hairstyle)>,
     strands: Strands,
@@ -72,6 +73,46 @@ impl SeenHair {
         };
         let body = self.body.in_cell(self.grid, at);
         Some(view.at_depth(at, if body < hair - BEFORE { body } else { hair }))
+    }
+
+    /// Distance of what is in front at a point of the screen, hair or body, along the view: metres, infinite beside both.
+    pub(crate) fn depth_at(&mut self, view: View, snapshot: &FrameSnapshot, at: Pos2) -> f32 {
+        self.look(view, snapshot);
+        self.hair.in_cell(self.grid, at).min(self.body.in_cell(self.grid, at))
+    }
+
+    /// Passes on the parts of strands that are in front in an image, on the screen, each with the root of its strand, head space. Only those
+    /// whose root is `wanted`, and none of hair that comes as strands.
+    pub(crate) fn strands_in_front(
+        &mut self,
+        view: View,
+        snapshot: &FrameSnapshot,
+        wanted: impl Fn(Vec3) -> bool,
+        part: &mut dyn FnMut(Vec3, Vec<Pos2>),
+    ) {
+        self.look(view, snapshot);
+        let Some((_, thinned)) = self.thinned.as_ref().filter(|_| snapshot.strands.is_none()) else { return };
+        let first = &self.strands.first_point;
+        for (root, ends) in strand_roots(thinned).into_iter().zip(first.windows(2)) {
+            if !wanted(root) {
+                continue;
+            }
+            let mut line = Vec::new();
+            for i in ends[0] as usize..ends[1] as usize {
+                let here = view.to_screen_and_depth(self.strands.point(i)).filter(|(at, depth)| {
+                    let front = self.hair.in_cell(self.grid, *at).min(self.body.in_cell(self.grid, *at));
+                    *depth < front + BEFORE
+                });
+                match here {
+                    Some((at, _)) => line.push(at),
+                    None if line.len() > 1 => part(root, std::mem::take(&mut line)),
+                    None => line.clear(),
+                }
+            }
+            if line.len() > 1 {
+                part(root, line);
+            }
+        }
     }
 
     /// Finds the depths of an image, unless they are known.

@@ -26,6 +26,8 @@ pub(super) struct Strokes {
     open: Vec<OpenStroke>,
     /// Which guides are protected.
     pub(super) frozen: Arc<[bool]>,
+    /// The stroke that changed that last.
+    freezes: Option<u64>,
     /// The strokes of this run, as they can be saved.
     pub(super) recorded: Vec<RecordedStroke>,
     /// The samples of all of them.
@@ -38,9 +40,12 @@ struct OpenStroke {
     layer: u32,
     /// The undo step of the stroke.
     gesture: GestureId,
-    label: String,
-    /// The layer as the stroke left it: it ends when something else changes that, such as an undo.
+    tool: Tool,
+    /// The layer as it was before the stroke, and as the stroke left it: the stroke ends when something else changes that, such as an undo.
+    before: HandEdits,
     left: HandEdits,
+    /// The undo step that added the layer, as long as nothing was written into it.
+    added: Option<GestureId>,
 }
 
 #[cfg(test)]
@@ -51,11 +56,12 @@ impl Strokes {
     }
 }
 
-/// The layer that brushes write to: the selected one if it is one of theirs, otherwise the last of them, otherwise a new one at the end of
-/// the list. `None` if there are too many layers.
-pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<u32> {
+/// The layer that brushes write to, and whether it is new: the selected one if it is one of theirs, otherwise the last of them, otherwise a
+/// new one at the end of the list. `None` if there are too many layers.
+pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<(u32, bool)> {
     let stack = &mut project.hair.stack;
-    stack.hand_layer(selected).or_else(|| stack.push(Layer::of(Hand::default())))
+    let known = stack.hand_layer(selected).map(|layer| (layer, false));
+    known.or_else(|| Some((stack.push(Layer::of(Hand::default()))?, true)))
 }
 
 impl Window {
@@ -63,7 +69,7 @@ impl Window {
     pub(super) fn begin_stroke(
         &mut self,
         project: &Project,
-        layer: u32,
+        (layer, is_new): (u32, bool),
         (tool, inverted): (Tool, bool),
         settings: BrushSettings,
     ) -> u64 {
@@ -72,16 +78,18 @@ impl Window {
         let strokes = &mut self.brushes.strokes;
         let left = project.hair.stack.hand(layer).cloned().unwrap_or_default();
         // What an earlier stroke did may still be on its way: the simulation has it already.
-        let after = strokes.open.iter().rev().find(|open| open.layer == layer).map(|open| open.id);
+        let last = strokes.open.iter().rev().find(|open| open.layer == layer);
+        let (after, added) = (last.map(|open| open.id), last.and_then(|open| open.added));
         strokes.last += 1;
         let id = strokes.last;
-        let edits = left.clone();
-        let label = tool.names().1.to_lowercase();
+        let (edits, before) = (left.clone(), left.clone());
+        let gesture = self.gestures.id();
+        let added = if is_new { Some(gesture) } else { added };
         if strokes.recorded.len() < StrokeFile::MOST_STROKES && strokes.samples < MOST_SAMPLES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
         }
-        strokes.open.push(OpenStroke { id, layer, gesture: self.gestures.id(), label, left });
+        strokes.open.push(OpenStroke { id, layer, gesture, tool, before, left, added });
         self.session.worker().begin_stroke(StrokeStart { id, layer, tool, inverted, settings, edits, after });
         id
     }
@@ -134,6 +142,7 @@ impl Window {
         let strokes = &mut self.brushes.strokes;
         if let Some(frozen) = brushed.frozen {
             strokes.frozen = frozen;
+            strokes.freezes = Some(brushed.stroke);
         }
         let Some(at) = strokes.open.iter().position(|open| open.id == brushed.stroke) else { return };
         let now = self.history.project().hair.stack.hand(brushed.layer);
@@ -142,9 +151,19 @@ impl Window {
             self.cancel_strokes();
             return;
         }
-        let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].label.clone());
+        let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].tool.names().1.to_lowercase());
+        let acts = strokes.open[at].before != brushed.edits;
+        if brushed.ended && !acts && strokes.open[at].left == brushed.edits {
+            let open = strokes.open.remove(at);
+            return self.end_without_change(&open);
+        }
         for open in strokes.open.iter_mut().filter(|open| open.layer == brushed.layer) {
             open.left = brushed.edits.clone();
+            open.added = open.added.filter(|_| !acts);
+            if open.id != brushed.stroke {
+                // A later stroke begins with it.
+                open.before = brushed.edits.clone();
+            }
         }
         if brushed.ended {
             strokes.open.remove(at);
@@ -154,5 +173,24 @@ impl Window {
             layer.operation = Operation::Hand(Hand { edits: brushed.edits });
         }
         self.history.edit(&label, Some(gesture), project);
+    }
+
+    /// Ends a stroke that has written nothing: it is no undo step, and a layer that was added for it goes.
+    fn end_without_change(&mut self, stroke: &OpenStroke) {
+        let strokes = &self.brushes.strokes;
+        let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);
+        if let Some(added) = stroke.added.filter(|_| is_last) {
+            self.history.take_back(added);
+        }
+        if stroke.tool == Tool::Freeze && self.brushes.strokes.freezes == Some(stroke.id) {
+            return;
+        }
+        let held = if self.brushes.strokes.frozen.contains(&true) && stroke.tool != Tool::Freeze {
+            " Frozen locks stay as they are."
+        } else {
+            ""
+        };
+        let what = if stroke.tool == Tool::Freeze { "freezes or frees no lock" } else { "changes no hair" };
+        self.notices.push(notices::Kind::Warning, format!("The stroke {what}.{held}"));
     }
 }

@@ -2,8 +2,9 @@
 
 use egui::{Color32, CursorIcon, PointerButton, Pos2, Response, Stroke as Line, Ui};
 use glam::Vec3;
+use lovelock_groom::Hairstyle;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_style::{BrushMode, HeadBox, Layer, MaskBrush, MaskMap};
+use lovelock_style::{BrushMode, HeadBox, Layer, Mask, MaskBrush};
 
 use super::View;
 use super::head::Head;
@@ -25,8 +26,12 @@ struct Active {
     layer: u32,
     /// Where the brush was put down last, head space; `None` while the pointer is beside the head.
     last: Option<Vec3>,
-    /// The painted mask as the stroke left it: it ends when something else changes that, such as an undo.
-    left: MaskMap,
+    /// The mask of the layer as the stroke left it: the stroke ends when something else changes that, such as an undo.
+    left: Mask,
+    /// What the stroke has painted. The layer gets it once it differs from before anywhere in the hair.
+    mask: Mask,
+    acts: bool,
+    mode: BrushMode,
 }
 
 /// What the brush did in a pass.
@@ -36,6 +41,8 @@ pub(crate) struct Painted {
     pub(crate) begins: bool,
     /// The pointer paints, so it does not move the camera.
     pub(crate) holds: bool,
+    /// A stroke has ended that changed nothing: what it was to do.
+    pub(crate) in_vain: Option<BrushMode>,
 }
 
 /// A place on the head under the pointer.
@@ -103,15 +110,13 @@ impl Stroke {
         }
         let mut painted = Painted::default();
         if pressed && response.contains_pointer() && under.is_some() {
-            let left = layer.mask.painted().map(|(part, _)| part.map.clone()).unwrap_or_default();
-            self.active = Some(Active { layer: layer.id, last: None, left });
+            let [left, mask] = [layer.mask.clone(), layer.mask.clone()];
+            self.active = Some(Active { layer: layer.id, last: None, left, mask, acts: false, mode });
             painted.begins = true;
         }
         if let Some(active) = &mut self.active {
             painted.holds = true;
-            let now = layer.mask.painted().map(|(part, _)| &part.map);
-            let same =
-                active.layer == layer.id && now.map_or(active.left.is_empty(), |now| *now == active.left);
+            let same = active.layer == layer.id && layer.mask == active.left;
             if same && (down || pressed) {
                 active.put_down(snapshot, brush, layer, (under.map(|(_, spot)| spot), mode));
             } else if !same {
@@ -120,7 +125,8 @@ impl Stroke {
             }
         }
         if !down {
-            self.active = None;
+            let ended = self.active.take();
+            painted.in_vain = ended.filter(|of| !of.acts && of.layer == layer.id).map(|of| of.mode);
         }
         painted
     }
@@ -143,21 +149,21 @@ impl Active {
             self.last = None;
             return;
         };
-        let box_of_head = HeadBox::of(&snapshot.scene.style.scalp);
-        let was_everywhere = layer.mask.is_everywhere();
-        let Some(part) = layer.mask.painted_mut() else { return };
+        let style = &snapshot.scene.style;
+        let box_of_head = HeadBox::of(&style.scalp);
+        let was_everywhere = self.mask.is_everywhere();
+        // What is painted raises the mask, also where its part is turned round.
+        let lowers = self.mask.painted().is_some_and(|(_, lowers)| lowers);
+        let Some(part) = self.mask.painted_mut() else { return };
         if was_everywhere && mode == BrushMode::Erase {
             // Without a mask the layer acts everywhere: what is erased is taken from that.
             part.map.paint(|_, _| 1.0);
         }
-        // What is painted raises the mask, also where its part is turned round.
-        let lowers = layer.mask.painted().is_some_and(|(_, lowers)| lowers);
         let mode = match (mode, lowers) {
             (BrushMode::Add, true) => BrushMode::Erase,
             (BrushMode::Erase, true) => BrushMode::Add,
             (mode, _) => mode,
         };
-        let Some(part) = layer.mask.painted_mut() else { return };
         // Roots of hair jump from strand to strand: each is a dab of its own.
         self.last = Some(match self.last.filter(|_| !spot.of_hair) {
             Some(last) => brush.stroke(&mut part.map, &box_of_head, [last, spot.place], mode),
@@ -169,8 +175,31 @@ impl Active {
                 spot.place
             }
         });
-        self.left = part.map.clone();
+        self.acts = self.acts || differ(style, [&self.left, &self.mask], spot.place);
+        if self.acts {
+            layer.mask = self.mask.clone();
+            self.left = self.mask.clone();
+        }
     }
+}
+
+/// Two values of a mask that differ by less than this look and act the same.
+const SAME: f32 = 1e-3;
+
+/// Whether two masks differ anywhere in the hair: at its roots, where the scalp is hairy, or at a place on it.
+fn differ(style: &Hairstyle, masks: [&Mask; 2], place: Vec3) -> bool {
+    if masks[0] == masks[1] {
+        return false;
+    }
+    let head = HeadBox::of(&style.scalp);
+    let at = |p: Vec3| (masks[0].at(&head, p) - masks[1].at(&head, p)).abs() > SAME;
+    let hairy = |i: usize| style.scalp.mask.get(i).is_some_and(|mask| *mask > 0.0);
+    let scalp = &style.scalp.positions;
+    let near = |i: &usize| scalp[*i].distance_squared(place);
+    let nearest = (0..scalp.len()).min_by(|a, b| near(a).total_cmp(&near(b)));
+    (nearest.is_some_and(hairy) && at(place))
+        || (0..scalp.len()).any(|i| hairy(i) && at(scalp[i]))
+        || (0..style.guides.count()).any(|guide| at(style.guides.point(guide, 0)))
 }
 
 /// Paints the circle of the brush, and that of the other side.

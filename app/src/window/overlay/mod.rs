@@ -4,6 +4,7 @@ pub(crate) mod brush;
 pub(crate) mod colliders;
 pub(crate) mod head;
 pub(crate) mod mark;
+pub(crate) mod mask;
 pub(crate) mod scalp;
 pub(crate) mod scissors;
 pub(crate) mod ties;

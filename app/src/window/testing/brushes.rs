@@ -80,13 +80,25 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         drag_over(&mut harness, way[0], way[1]);
         done(&mut harness);
         assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
-        let made = edits(&harness).expect("a layer");
         if *tool == Tool::Freeze {
             assert!(of(&harness).brushes.has_frozen(), "{name}");
+            // A stroke on frozen hair is no undo step, and says so.
+            control(&harness, egui::accesskit::Role::RadioButton, Tool::Comb.names().1).click();
+            go(&mut harness);
+            drag_over(&mut harness, way[0], way[1]);
+            done(&mut harness);
+            assert!(harness.query_by_label_contains("changes no hair").is_some());
+            assert_eq!(project(&harness), before, "what is frozen is no part of the project");
+            assert_eq!(of(&harness).history.undo_len(), steps);
+            assert_eq!(
+                of(&harness).history.redo_label(),
+                Some("remove"),
+                "the tool before can be done again"
+            );
             harness.state_mut().state.as_mut().expect("a window").session.worker().thaw();
-        } else {
-            assert!(!made.is_empty(), "{name} did nothing");
+            continue;
         }
+        assert!(!edits(&harness).expect("a layer").is_empty(), "{name} did nothing");
         assert_eq!(of(&harness).history.undo_len(), steps + 1, "{name}: one step");
         key(&mut harness, CTRL, Key::Z);
         assert_eq!(project(&harness), before, "{name}");

@@ -2,14 +2,18 @@
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use glam::Vec3;
+use lovelock_session::render_thread::ShownMask;
 use lovelock_style::operations::Lift;
 use lovelock_style::{HeadBox, Layer};
 
 use super::Shown;
 use super::tools::{drag_over, unfold, view, with_picture};
 use super::whole::{CTRL, go, key, of, project, wait};
-use crate::window::Window;
+use crate::window::brushes::SeenHair;
+use crate::window::overlay::head::Head;
+use crate::window::{Window, overlay};
 
 type Whole = Harness<'static, Shown<Option<Window>>>;
 
@@ -173,4 +177,68 @@ fn strange_strokes_are_safe() {
     drag_over(&mut harness, corner + egui::vec2(30.0, -40.0), corner + egui::vec2(60.0, -60.0));
     assert_ne!(project(&harness).camera, before.camera);
     assert_eq!(of(&harness).history.undo_len(), steps + 1);
+}
+
+/// Presses and releases the pointer at a place with modifiers held, as a stroke of one dab.
+fn dab(harness: &mut Whole, at: Pos2, modifiers: Modifiers) {
+    harness.event_modifiers(Event::PointerMoved(at), modifiers);
+    harness.run_steps(1);
+    for pressed in [true, false] {
+        let button = PointerButton::Primary;
+        harness.event_modifiers(Event::PointerButton { pos: at, button, pressed, modifiers }, modifiers);
+        harness.run_steps(2);
+    }
+    go(harness);
+}
+
+#[test]
+fn a_stroke_that_changes_nothing_says_so_and_is_no_undo_step() {
+    let Some(mut harness) = painting() else { return };
+    set_brush(&mut harness, |brush| (brush.radius, brush.strength, brush.falloff) = (0.02, 1.0, 0.0));
+    let [left, right] = [1.0, -1.0].map(|side| on_screen(&harness, Vec3::new(0.35 * side, 0.5, 0.78)));
+    dab(&mut harness, left, Modifiers::NONE);
+    dab(&mut harness, right, Modifiers::NONE);
+    key(&mut harness, CTRL, Key::Z);
+    let before = project(&harness);
+    let steps = [of(&harness).history.undo_len(), of(&harness).history.redo_len()];
+    // Erasing what is not painted, and painting what is.
+    for (at, modifiers, says) in
+        [(right, CTRL, "The mask is empty here"), (left, Modifiers::NONE, "The mask is full here")]
+    {
+        dab(&mut harness, at, modifiers);
+        assert_eq!(project(&harness), before, "{says}");
+        let now = [of(&harness).history.undo_len(), of(&harness).history.redo_len()];
+        assert_eq!(now, steps, "{says}: no step, and the stroke that was undone can be done again");
+        assert!(harness.query_by_label_contains(says).is_some(), "{says}");
+    }
+    // Control: erasing what is painted is a step.
+    dab(&mut harness, left, CTRL);
+    assert_eq!(of(&harness).history.undo_len(), steps[0] + 1);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+}
+
+#[test]
+fn paint_is_seen_on_the_image_of_before() {
+    let Some(mut harness) = painting() else { return };
+    set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.03, 1.0));
+    wait(&mut harness, "the image of the mask", |window| {
+        window.session.painted.as_ref().is_some_and(|painted| painted.mask == window.shown_mask)
+    });
+    let image = of(&harness).session.painted.clone().expect("an image");
+    let at = on_screen(&harness, FOREHEAD);
+    let shapes = |harness: &Whole| {
+        let view = view(harness);
+        let snapshot = &image.snapshot;
+        let head =
+            Head { world_from_head: &snapshot.guides.world_from_head, scalp: &snapshot.scene.style.scalp };
+        let mask = project(harness).hair.stack.layers[0].mask.clone();
+        let shown = ShownMask { mask, scale: crate::window::theme::mask_colors() };
+        overlay::mask::changed(view, head, &mut SeenHair::default(), &image, &shown)
+    };
+    assert!(shapes(&harness).is_empty(), "the image shows the mask already");
+    dab(&mut harness, at, Modifiers::NONE);
+    let new = shapes(&harness);
+    let near = new.iter().filter(|shape| shape.visual_bounding_rect().expand(4.0).contains(at)).count();
+    assert!(new.len() > 4 && near > 0, "{} shapes, {near} of them under the brush", new.len());
 }

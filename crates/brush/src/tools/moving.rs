@@ -1,6 +1,7 @@
 //! Tools that move hair.
 
 use glam::Vec3;
+use lovelock_base::numbers::smoothstep;
 use lovelock_groom::{Blade, Bounded, GuideFrame, Haircut, Hairstyle, Obstacle};
 use lovelock_style::hand::smallest_turn;
 
@@ -21,6 +22,13 @@ const LIES: f32 = 0.03;
 const PARTS_FROM: f32 = 0.2;
 /// Clearance of flattened hair from the body, metres.
 const FLAT: f32 = 0.004;
+/// Hair up to the first distance from the body lies on it, or on other hair that does, and slides along it under a comb. From the second
+/// distance on it hangs free and goes wherever the comb goes. Metres.
+const SLIDES: [f32; 2] = [0.06, 0.12];
+/// The same for a comb that presses hair toward the body.
+const PRESSED: [f32; 2] = [0.01, 0.04];
+/// Combed hair that was nearer to the body than this may come up to here, metres.
+const LOOSE: f32 = 0.012;
 
 /// A guide that was grabbed when a stroke began.
 #[derive(Clone, Copy, Debug)]
@@ -52,11 +60,29 @@ impl Stamp<'_> {
         touched.points.iter().enumerate().map(new).collect()
     }
 
-    /// Hair goes with the brush, and the part of it that is under the brush turns into the direction in which the brush moves. Along a
-    /// stroke that begins at the roots, the brush so reaches one link after the other, and the hair follows its way.
+    /// What is left of a movement of hair at `p` that slides along the surface of the head and of the hair on it.
+    fn along_surface(&self, p: Vec3, step: Vec3) -> Vec3 {
+        let (distance, normal) = Bounded(self.obstacle).distance(p);
+        let lift = step.dot(normal);
+        let [from, to] = if lift > 0.0 { SLIDES } else { PRESSED };
+        step - normal * (lift * (1.0 - smoothstep(from, to, distance)))
+    }
+
+    /// Hair goes with the brush along the surface, and the part of it that is under the brush turns into the direction in which the brush
+    /// moves there. Along a stroke that begins at the roots, the brush so reaches one link after the other, and the hair follows its way.
+    /// Hair that lies on the head does not come off it.
     pub(super) fn combed(&self, touched: &TouchedGuide) -> Vec<Vec3> {
-        let moved = Self::moved(touched, &touched.trailing(), |_, _| self.dab.step);
-        let Some(wanted) = self.dab.step.try_normalize() else { return moved };
+        let (points, trailing) = (&touched.points, touched.trailing());
+        let mut step = Vec3::ZERO;
+        let mut steps = Vec::with_capacity(points.len());
+        for (p, weight) in points.iter().zip(&touched.weights) {
+            // Hair beyond the brush follows what it hangs on.
+            if *weight > 0.0 {
+                step = self.along_surface(*p, self.dab.step);
+            }
+            steps.push(step);
+        }
+        let moved = Self::moved(touched, &trailing, |i, _| steps[i]);
         let rate = self.dab.step.length() / (COMBS_WITHIN * self.dab.radius);
         let mut out = Vec::with_capacity(moved.len());
         out.push(moved[0]);
@@ -64,11 +90,23 @@ impl Stamp<'_> {
             let link = pair[1] - pair[0];
             let weight = touched.weights[i].max(touched.weights[i + 1]);
             let direction = link.normalize_or_zero();
-            // Hair is pushed aside by a brush that crosses it more than it turns.
+            let Some(wanted) = steps[i + 1].try_normalize().filter(|_| weight > 0.0) else {
+                out.push(out[i] + link);
+                continue;
+            };
+            // Hair is pushed aside by a brush that crosses it more than it turns, and hardly turns where the surface holds it.
             let along = 0.5 + 0.5 * direction.dot(wanted);
-            let part = (1.0 - (-weight * rate).exp()) * along;
+            let free = steps[i + 1].length() / self.dab.step.length();
+            let part = (1.0 - (-weight * rate * free).exp()) * along;
             let turned = direction.lerp(wanted, part).normalize_or(direction);
             out.push(out[i] + turned * link.length());
+        }
+        let body = Bounded(self.obstacle);
+        for (i, p) in out.iter_mut().enumerate().skip(1).filter(|(i, _)| touched.weights[*i] > 0.0) {
+            let before = body.distance(points[i]).0;
+            let (distance, normal) = body.distance(*p);
+            let lift = (distance - before.max(LOOSE)).max(0.0);
+            *p -= normal * (touched.weights[i] * lift * (1.0 - smoothstep(SLIDES[0], SLIDES[1], before)));
         }
         out
     }

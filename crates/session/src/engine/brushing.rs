@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::numbers::smoothstep;
 use lovelock_base::settings::Settings as _;
 use lovelock_brush::{Brush, BrushSettings, BrushSurroundings, StrokeSample, Tool};
 use lovelock_groom::{GuideFrame, Guides, Hairstyle, Obstacle};
@@ -12,6 +13,9 @@ use lovelock_style::{Operation, StyleCache, StyleStack};
 
 use super::Engine;
 use crate::scene::{Enlarged, Scene, StyleSource};
+
+/// Combed hair stays in the air the more, the more the style is held above the first value of *Hold*; from the second on, all of it does, 1/s.
+const HOLDS: [f32; 2] = [10.0, 30.0];
 
 /// What strokes need of the layers of a scene. It keeps evaluated hairstyles from stroke to stroke.
 #[derive(Clone, Debug, Default)]
@@ -87,11 +91,28 @@ impl Engine {
         frame
     }
 
-    fn comb_frame(&mut self, brush: &mut Brush, sample: &StrokeSample, mut frame: GuideFrame) -> Vec<usize> {
+    fn comb_frame(&mut self, brush: &mut Brush, sample: &StrokeSample, frame: GuideFrame) -> Vec<usize> {
+        self.brush_frame(brush, frame, |brush, frame, around| brush.stroke_to(frame, around, sample))
+    }
+
+    /// Ends a stroke of a comb: hair that it has left in the air falls, unless the style is held firmly. It falls at once if `at_once`, and
+    /// otherwise as it is simulated. Returns the guides that fall.
+    pub fn let_go(&mut self, brush: &mut Brush, at_once: bool) -> Vec<usize> {
+        let frame = self.frame_of_guides();
+        let falls = 1.0 - smoothstep(HOLDS[0], HOLDS[1], self.settings.hold);
+        self.brush_frame(brush, frame, |brush, frame, around| brush.let_go(frame, around, (falls, at_once)))
+    }
+
+    fn brush_frame(
+        &mut self,
+        brush: &mut Brush,
+        mut frame: GuideFrame,
+        act: impl FnOnce(&mut Brush, &mut GuideFrame, &BrushSurroundings<'_>) -> Vec<usize>,
+    ) -> Vec<usize> {
         let source = &self.loaded.source;
         let body = self.simulation.body_now();
         let obstacle = BodyAround { rest: &*source.obstacle, scale: source.scale, now: &body };
-        let changed = brush.stroke_to(&mut frame, &BrushSurroundings { obstacle: &obstacle }, sample);
+        let changed = act(brush, &mut frame, &BrushSurroundings { obstacle: &obstacle });
         if !changed.is_empty() {
             self.simulation.move_guides(&frame, brush.rest(), &changed);
         }
@@ -216,5 +237,86 @@ mod tests {
             engine.begin_stroke(&mut BrushLayers::default(), tool, &settings, layer, &[])
         };
         assert!(begin(layer).is_some() && begin(layer + 1).is_none());
+    }
+
+    /// A stroke seen from the front: from the parting over the hair on the wearer's left and on beside the head.
+    fn from_the_front(engine: &Engine) -> Vec<StrokeSample> {
+        let pose = engine.pose.world_from_head;
+        let at = |i: usize| {
+            let x = 0.02 + 0.008 * i as f32;
+            // On the head, and at the depth of its side beyond.
+            Vec3::new(x, 0.1, 0.02 + (0.0075 - x * x).max(0.0).sqrt())
+        };
+        let sample = |i: usize| StrokeSample {
+            position: pose.transform_point3(at(i)),
+            view: pose.transform_vector3(Vec3::NEG_Z),
+            drag: pose.transform_vector3(Vec3::X * if i > 0 { 0.008 } else { 0.0 }),
+            pressure: 1.0,
+            time_secs: engine.time_secs(),
+        };
+        (0..28).map(sample).collect()
+    }
+
+    /// How far combed hair is from the body after a stroke from the front and two seconds: nine of ten points of touched guides are nearer,
+    /// metres. Also how far it was so before, and how many guides were touched.
+    fn off_the_body(follows_surface: bool, hold: f32) -> ([f32; 2], usize) {
+        let mut project = small_project();
+        let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+        project.motion.source = lovelock_project::project::MotionSource::Rest;
+        let settings = SimulationSettings { hold, ..SimulationSettings::default() };
+        let mut engine = Engine::new(load(&project).0, settings);
+        let settings = BrushSettings { radius: 0.06, strength: 1.0, ..BrushSettings::default() };
+        let (mut layers, comb) = (BrushLayers::default(), (Tool::Comb, false));
+        let mut brush = engine.begin_stroke(&mut layers, comb, &settings, layer, &[]).expect("a stroke");
+        let distance = |engine: &mut Engine, touched: &[bool]| {
+            let frame = engine.frame_of_guides();
+            let head = GuideFrame::at_rest(&frame.guides, frame.world_from_head.inverse(), 0.0).guides;
+            let source = Arc::clone(&engine.loaded.source);
+            let body = engine.simulation.body_now();
+            let around = BodyAround { rest: &*source.obstacle, scale: source.scale, now: &body };
+            let guides = (0..head.count()).filter(|guide| touched[*guide]);
+            let far = |guide| (1..head.points_per_guide).map(move |i| (guide, i));
+            let mut far: Vec<f32> =
+                guides.flat_map(far).map(|(guide, i)| around.distance(head.point(guide, i)).0).collect();
+            far.sort_by(f32::total_cmp);
+            far[far.len() * 9 / 10]
+        };
+        let mut untouched = engine.copy();
+        for sample in from_the_front(&engine) {
+            if follows_surface {
+                engine.comb(&mut brush, &sample);
+            } else {
+                let mut frame = engine.frame_of_guides();
+                let around = BrushSurroundings { obstacle: &lovelock_groom::NoObstacle };
+                let changed = brush.stroke_to(&mut frame, &around, &sample);
+                engine.simulation.move_guides(&frame, brush.rest(), &changed);
+            }
+        }
+        if follows_surface {
+            engine.let_go(&mut brush, false);
+        }
+        let touched = brush.touched().to_vec();
+        engine.end_stroke(&mut layers, &brush, layer);
+        let before = distance(&mut untouched, &touched);
+        for _ in 0..120 {
+            engine.step();
+        }
+        ([before, distance(&mut engine, &touched)], touched.iter().filter(|touched| **touched).count())
+    }
+
+    #[test]
+    fn hair_combed_from_the_front_lies_on_the_head_and_does_not_stay_in_the_air() {
+        let ([before, after], touched) = off_the_body(true, 5.0);
+        let ([_, old], _) = off_the_body(false, 5.0);
+        let ([_, held], _) = off_the_body(true, 60.0);
+        println!(
+            "{touched} guides: off the body {:.0} mm before, {:.0} mm combed, {:.0} mm by a comb that knows no surface, {:.0} mm held",
+            before * 1e3,
+            after * 1e3,
+            old * 1e3,
+            held * 1e3
+        );
+        assert!(touched > 10);
+        assert!(after < before + 0.015 && old > before + 0.04, "{before} {after} {old}");
     }
 }

@@ -67,8 +67,8 @@ pub struct RenderedImage {
     pub samples: u32,
     /// The project that it shows.
     pub project: Arc<Project>,
-    /// Whether it shows a mask in false colours.
-    pub has_mask: bool,
+    /// The mask that it shows in place of the colours of hair.
+    pub mask: Option<Arc<ShownMask>>,
 }
 
 /// The device that renders.
@@ -522,8 +522,8 @@ impl Worker {
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
-        let cost = self.cost;
-        let (project, has_mask) = (Arc::clone(project), request.mask.is_some());
+        let (cost, mask) = (self.cost, request.mask.clone());
+        let project = Arc::clone(project);
         Ok(RenderedImage {
             image,
             camera,
@@ -535,7 +535,7 @@ impl Worker {
             position_secs,
             samples,
             project,
-            has_mask,
+            mask,
         })
     }
 }

@@ -69,6 +69,11 @@ impl Stroke {
         !engine.comb_in_head(&mut self.brush, sample).is_empty()
     }
 
+    /// Ends the stroke: hair that a comb has left in the air falls, at once or as it is simulated. Returns whether any falls.
+    pub fn let_go(&mut self, engine: &mut Engine, at_once: bool) -> bool {
+        !engine.let_go(&mut self.brush, at_once).is_empty()
+    }
+
     /// Puts the hair that the stroke has moved back to where it is in `frame`, with the rest shape of the stroke: after a scene that does
     /// not have the whole stroke yet.
     pub fn hold(&self, engine: &mut Engine, frame: &GuideFrame) {

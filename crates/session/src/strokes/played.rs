@@ -205,6 +205,7 @@ fn play(
         let sample = sample_at(engine);
         touched += engine.comb(&mut brush, &sample).len();
     }
+    engine.let_go(&mut brush, head_from_rest.is_none());
     *frozen = brush.frozen().to_vec();
     Ok((touched, Some(engine.end_stroke(layers, &brush, layer))))
 }

@@ -32,6 +32,8 @@ pub(super) struct Brushing {
     frozen: Vec<bool>,
     /// The last stroke of each layer, and what it left there.
     left: BTreeMap<u32, (u64, HandEdits)>,
+    /// Whether hair fell when the last stroke ended.
+    fell: bool,
     /// The last stroke that has ended, until the scene that has all of it is loaded.
     ended: Option<EndedStroke>,
 }
@@ -139,6 +141,7 @@ impl SimulationThread {
                     if self.brushing.open.as_ref().is_some_and(|open| open.start.id == id) {
                         self.end_open_stroke();
                     }
+                    moved |= std::mem::take(&mut self.brushing.fell);
                 }
                 BrushRequest::Cancel => {
                     moved |= self.take_back_strokes();
@@ -217,7 +220,13 @@ impl SimulationThread {
     }
 
     fn end_open_stroke(&mut self) {
-        if self.brushing.open.is_some() {
+        if let Some(open) = &mut self.brushing.open {
+            let at_once = self.still || !self.playback.is_playing();
+            if let (Some(stroke), Some(engine)) = (&mut open.stroke, &mut self.engine)
+                && stroke.let_go(engine, at_once)
+            {
+                self.brushing.fell = true;
+            }
             self.report_stroke(true);
             if let Some(OpenStroke { start, stroke: Some(stroke) }) = self.brushing.open.take() {
                 let layer = start.layer;
