@@ -114,7 +114,7 @@ impl History {
 
     /// Takes the newest step back as if it had never been made, if it is that of `gesture` and the gesture may continue. Returns whether it
     /// was.
-    pub fn take_back(&mut self, gesture: GestureId) -> bool {
+    pub fn take_back_gesture(&mut self, gesture: GestureId) -> bool {
         let before =
             self.past.back().filter(|_| self.gesture == Some(gesture)).map(|step| (*step.project).clone());
         before.is_some_and(|before| self.edit("", Some(gesture), before))
@@ -303,8 +303,8 @@ mod tests {
         history.undo();
         history.edit("stroke", Some(7), at(9.0));
         assert_eq!(history.redo_len(), 0);
-        assert!(!history.take_back(8), "another gesture");
-        assert!(history.take_back(7) && !history.take_back(7));
+        assert!(!history.take_back_gesture(8), "another gesture");
+        assert!(history.take_back_gesture(7) && !history.take_back_gesture(7));
         assert_eq!((history.undo_len(), history.redo_len()), (1, 1));
         assert_eq!(history.project().camera.distance, 2.0);
         assert_eq!(history.redo().map(|p| p.camera.distance), Some(3.0));

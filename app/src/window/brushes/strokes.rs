@@ -180,7 +180,7 @@ impl Window {
         let strokes = &self.brushes.strokes;
         let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);
         if let Some(added) = stroke.added.filter(|_| is_last) {
-            self.history.take_back(added);
+            self.history.take_back_gesture(added);
         }
         if stroke.tool == Tool::Freeze && self.brushes.strokes.freezes == Some(stroke.id) {
             return;
