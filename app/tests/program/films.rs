@@ -1,7 +1,9 @@
 //! `lovelock record`: EXR files, motion blur, and recordings that were interrupted.
 
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Child, Command, Stdio};
+
+use lovelock_testkit::wait::{wait_for, wait_until};
 
 use crate::tool::{lovelock, names, run, run_command, saved, small_project};
 
@@ -61,26 +63,21 @@ fn format_blur_and_transparency_are_in_the_json() {
 fn a_killed_recording_resumes_to_the_same_bytes() {
     let dir = folder();
     let more =
-        |out: &'static str| [out, "--frames", "0..40", "--size", "200x150", "--motion-blur", "2", "--resume"];
+        |out: &'static str| [out, "--frames", "0..16", "--size", "96x64", "--motion-blur", "2", "--resume"];
     run(dir.path(), RECORD.iter().chain(&more("whole"))).done();
-    let mut child = lovelock()
-        .current_dir(dir.path())
-        .args(RECORD.iter().chain(&more("parts")))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts");
     let parts = dir.path().join("parts");
     let pictures = |folder: &Path| {
         let all = std::fs::read_dir(folder).into_iter().flatten().flatten();
         all.filter(|entry| entry.path().extension().is_some_and(|ending| ending == "png")).count()
     };
-    while pictures(&parts) < 5 {
-        assert!(child.try_wait().expect("its state").is_none(), "it ended before it was killed");
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    child.kill().expect("killed");
-    child.wait().expect("gone");
+    // Where this test gets no time while the program does, the program may end first; then it starts again.
+    wait_until("a recording that is killed before its end", || {
+        let _ = std::fs::remove_dir_all(&parts);
+        let mut child = begun(dir.path(), &more("parts"));
+        wait_until("some images", || pictures(&parts) > 2 || child.try_wait().expect("its state").is_some());
+        let _ = child.kill();
+        !child.wait().expect("gone").success()
+    });
     assert!(!parts.join("manifest.json").exists(), "the manifest of an unfinished sequence exists");
     let there = pictures(&parts);
     let json = run(dir.path(), RECORD.iter().chain(&more("parts"))).done().json();
@@ -95,28 +92,43 @@ fn a_killed_recording_resumes_to_the_same_bytes() {
     assert!(refused.refused(2).contains("look changed"), "{refused:?}");
 }
 
+/// A recording that has been started.
+fn begun(folder: &Path, more: &[&str]) -> Child {
+    let mut command = lovelock();
+    command.current_dir(folder).args(RECORD.iter().chain(more)).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().expect("the program starts")
+}
+
+/// Sends a signal to a program.
+#[cfg(unix)]
+fn signal(to: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &to.id().to_string()]).status();
+    assert!(sent.expect("`kill` starts").success(), "{name}");
+}
+
+#[cfg(unix)]
 #[test]
 fn a_second_recording_to_the_same_output_is_rejected() {
     let dir = folder();
     for (out, finished) in [("one", "one/manifest.json"), ("one.mp4", "one.mp4")] {
-        let more = [out, "--frames", "0..60", "--size", "200x150"];
-        let mut first = lovelock()
-            .current_dir(dir.path())
-            .args(RECORD.iter().chain(&more))
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program starts");
-        let begun = ["one/frame_000000.png", "one.mp4.partial"].map(|name| dir.path().join(name));
-        while !begun[usize::from(out == "one.mp4")].exists() {
-            std::thread::sleep(std::time::Duration::from_millis(2));
-        }
+        let more = [out, "--frames", "0..24", "--size", "96x64"];
+        let part = ["one/frame_000000.png", "one.mp4.partial"].map(|name| dir.path().join(name));
+        // The first stands still until the second has answered. If it ends before it is stopped, it starts again.
+        let mut first = wait_for("a recording that is stopped before its end", || {
+            let mut first = begun(dir.path(), &more);
+            wait_until("its output", || {
+                part[usize::from(out == "one.mp4")].exists() || first.try_wait().expect("its state").is_some()
+            });
+            signal(&first, "-STOP");
+            (!dir.path().join(finished).exists()).then_some(first)
+        });
         let second = run(dir.path(), RECORD.iter().chain(&more));
+        signal(&first, "-CONT");
         assert!(second.refused(1).contains("another recording is writing"), "{second:?}");
         assert!(first.wait().expect("its end").success());
         assert!(dir.path().join(finished).exists());
     }
-    assert_eq!(names(&dir.path().join("one")).len(), 61);
+    assert_eq!(names(&dir.path().join("one")).len(), 25);
 }
 
 /// A shell's limit on file sizes stands for a full disk: the system rejects a write in the same way.

@@ -173,8 +173,6 @@ fn broken_files_are_repaired_or_rejected() {
     }
     for (file, wanted) in files {
         let ran = run(&data, ["info", "--json", file]);
-        // Detects a hang. A run takes about a second, and much longer on a busy machine.
-        assert!(ran.took_secs < 20.0, "{file} took {} s", ran.took_secs);
         match wanted {
             Ok(dropped) => assert_eq!(ran.done().json()["dropped"], dropped, "{file}"),
             Err(word) => {

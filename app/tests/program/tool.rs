@@ -4,16 +4,13 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::project::save_project;
+use lovelock_testkit::wait::{HANG, wait_for};
 use serde_json::Value;
-
-/// Time after which a run counts as hanging; every run of these tests takes less than a tenth of it.
-const TIMEOUT_SECS: f64 = 120.0;
 
 /// The result of one run of the program.
 #[derive(Debug)]
@@ -21,7 +18,6 @@ pub struct Outcome {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
-    pub took_secs: f64,
 }
 
 impl Outcome {
@@ -72,26 +68,23 @@ pub fn run_command(command: &mut Command) -> Outcome {
     // Files instead of pipes, so that the program never blocks on a full pipe.
     let dir = tempfile::tempdir().expect("a folder");
     let (out, err) = (dir.path().join("out"), dir.path().join("err"));
-    let watch = Stopwatch::start();
     let mut child = command
         .stdin(Stdio::null())
         .stdout(File::create(&out).expect("a file"))
         .stderr(File::create(&err).expect("a file"))
         .spawn()
         .expect("the program starts");
-    let status = loop {
-        if let Some(status) = child.try_wait().expect("the state of the process") {
-            break status;
-        }
-        if watch.secs() > TIMEOUT_SECS {
+    let watch = Stopwatch::start();
+    let status = wait_for("the program", || {
+        if watch.elapsed() > HANG / 2 {
             let _ = child.kill();
             let _ = child.wait();
             panic!("hangs: {command:?}");
         }
-        std::thread::sleep(Duration::from_millis(5));
-    };
+        child.try_wait().expect("the state of the process")
+    });
     let read = |path| String::from_utf8(std::fs::read(path).expect("a file")).expect("UTF-8");
-    Outcome { code: status.code(), stdout: read(out), stderr: read(err), took_secs: watch.secs() }
+    Outcome { code: status.code(), stdout: read(out), stderr: read(err) }
 }
 
 /// A project with few strands and small maps, of which a frame is drawn quickly.

@@ -23,9 +23,9 @@ enum Chore {
     Layers,
     /// Compares FLIP, USD, EXR and farm jobs with other people's programs
     Interchange {
-        /// Open files in every version of Blender that is known to read and write them
+        /// The versions of Blender that open files
         #[arg(long)]
-        every_blender: bool,
+        blender: interchange::Blender,
     },
     /// Opens the page of a comparison in Chromium
     Browser,
@@ -59,7 +59,7 @@ enum Chore {
 fn main() -> ExitCode {
     let done = match Chore::parse() {
         Chore::Layers => layers::run(),
-        Chore::Interchange { every_blender } => interchange::run(every_blender),
+        Chore::Interchange { blender } => interchange::run(blender),
         Chore::Browser => browser::run(),
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Soak(arguments) => soak::run(&arguments),

@@ -11,11 +11,18 @@ pub(crate) fn environment(folder: &Path, packages: &[&str]) -> anyhow::Result<Pa
     environment_of("python3", folder, packages)
 }
 
+/// Written last, so that an incomplete environment is created again.
+const MADE: &str = "made";
+
+/// Whether there is an environment in `folder`.
+pub(crate) fn is_made(folder: &Path) -> bool {
+    folder.join(MADE).is_file()
+}
+
 /// As [`environment`], with a Python that may be of another version.
 pub(crate) fn environment_of(python3: &str, folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so that an incomplete environment is created again.
-    let made = folder.join("made");
+    let made = folder.join(MADE);
     let wanted = packages.join(" ");
     if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted) {
         return Ok(python);

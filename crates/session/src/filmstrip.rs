@@ -199,7 +199,7 @@ impl Worker {
 mod tests {
     use super::*;
     use crate::testing::{recorded, small_project};
-    use lovelock_base::clock::Stopwatch;
+    use lovelock_testkit::wait::{wait_for, wait_until};
 
     /// Asks for one thumbnail and waits for it.
     fn thumbnail(strip: &Filmstrip, project: &Project, access: &Access) -> Picture {
@@ -209,14 +209,8 @@ mod tests {
             secs: vec![0.1],
             size: [64, 36],
         });
-        let watch = Stopwatch::start();
-        loop {
-            assert!(watch.secs() < 60.0, "no thumbnail");
-            if let Some(drawn) = strip.pictures().pop() {
-                return Picture::clone(&drawn.image.picture().expect("pixels"));
-            }
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
+        let drawn = wait_for("a thumbnail", || strip.pictures().pop());
+        Picture::clone(&drawn.image.picture().expect("pixels"))
     }
 
     #[test]
@@ -258,13 +252,11 @@ mod tests {
         gone.set_take(folder.path().join("gone.take"));
         strip.request(FilmstripRequest { project: Arc::new(gone), ..request.clone() });
         strip.request(request);
-        let (mut pictures, watch) = (Vec::new(), Stopwatch::start());
-        while pictures.len() < wanted.len() {
-            // Do not wait forever.
-            assert!(watch.secs() < 60.0, "{} pictures", pictures.len());
+        let mut pictures = Vec::new();
+        wait_until("the pictures", || {
             pictures.extend(strip.pictures());
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
+            pictures.len() >= wanted.len()
+        });
         let (mut player, _) = TakePlayer::open(&path, &access).expect("a take");
         for (drawn, secs) in pictures.iter().zip(wanted) {
             let snapshot = player.snapshot(secs).expect("a frame");

@@ -14,10 +14,11 @@ use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::Preset;
 use lovelock_motion::{BodyField, FieldPose, PlacedCollider};
 use lovelock_simulation::{Integrator, PlacedField, Simulation, SimulationSettings, StepInput, Wind};
+use lovelock_testkit::clock::process_time;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage, clock::process_time, straight, style};
+use common::{STEP_SECS, Stage, straight, style};
 
 /// A body at one instant.
 struct Moment {

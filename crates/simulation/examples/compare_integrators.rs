@@ -12,12 +12,11 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_simulation::{Integrator, Simulation, SimulationSettings, Wind};
+use lovelock_testkit::clock::thread_time;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{
-    STEP_SECS, bare, clock::thread_time, frame, head, reference::Chain, straight, stretches, style,
-};
+use common::{STEP_SECS, bare, frame, head, reference::Chain, straight, stretches, style};
 
 const LINKS: usize = 30;
 const LENGTH: f32 = 0.3;

@@ -8,10 +8,11 @@ use std::time::Duration;
 
 use lovelock_groom::Preset;
 use lovelock_simulation::SimulationSettings;
+use lovelock_testkit::clock::process_time;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage, clock::process_time};
+use common::{STEP_SECS, Stage};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);

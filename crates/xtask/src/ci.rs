@@ -1,29 +1,46 @@
 //! `cargo xtask ci`: every check, in the order in which they find faults.
 
-use crate::testing::{self, Suite};
-use anyhow::{bail, ensure};
-use lovelock_xtask::tool::{cargo, run as run_tool, timed};
+use crate::testing::{self, Ran, Suite};
+use crate::times::Times;
+use anyhow::ensure;
+use lovelock_xtask::system;
+use lovelock_xtask::tool::{self, cargo, run as run_tool, timed};
+use std::process::Command;
 use std::time::Duration;
 
-/// Runs the tests, then interchange, browser, format, clippy, layers and documentation, all of them even after a fault. The totals of the
-/// tests are the last line on standard output.
+/// Builds everything once, runs the tests, then interchange, browser, layers, format, clippy and documentation, all of them even after a fault.
+/// What each step took and the slowest tests come before the totals of the tests, which are the last line on standard output.
 pub(crate) fn run() -> anyhow::Result<()> {
+    system::prepare()?;
     let mut steps = Vec::new();
-    let (tests, time) = timed(|| testing::totals(&Suite::default()));
-    let (totals, outcome) = match tests {
-        Ok((totals, outcome)) => (Some(totals), outcome),
-        Err(error) => (None, Err(error)),
+    // The programs of one package alone would have other features of the same libraries, and nearly everything would be built twice.
+    let build = ["build", "--workspace", "--bins", "--tests"];
+    let (outcome, time) = timed(|| run_tool(&mut cargo(&build)));
+    steps.push(("build", outcome, time));
+    let (tests, time) = timed(|| testing::tests(&Suite::default()));
+    let ran = match tests {
+        Ok(Ran { totals, times, outcome }) => {
+            steps.push(("test", outcome, time));
+            steps.push(("slow tests", quick(&times), Duration::ZERO));
+            Some((totals, times))
+        }
+        Err(error) => {
+            steps.push(("test", Err(error), time));
+            None
+        }
     };
-    steps.push(("test", outcome, time));
     // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
-        ("interchange", (|| crate::chore("interchange", [])) as fn() -> anyhow::Result<()>),
-        ("browser", || crate::chore("browser", [])),
+        (
+            "interchange",
+            (|| built_chore(&["interchange", "--blender", "if-installed"])) as fn() -> anyhow::Result<()>,
+        ),
+        ("browser", || built_chore(&["browser"])),
+        ("layers", || built_chore(&["layers"])),
         ("format", || run_tool(&mut cargo(&["fmt", "--all", "--check"]))),
         ("clippy", || {
             run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
         }),
-        ("layers", || crate::chore("layers", [])),
         ("documentation", || {
             run_tool(cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
         }),
@@ -33,17 +50,28 @@ pub(crate) fn run() -> anyhow::Result<()> {
         steps.push((name, outcome, time));
     }
     println!();
-    let report = report(&steps);
-    print!("{report}");
-    if let Some(totals) = totals {
+    print!("{}", report(&steps));
+    if let Some((totals, times)) = &ran {
+        print!("{}", times.report());
         println!("{totals}");
     }
     let failed: Vec<_> =
         steps.iter().filter(|(_, outcome, _)| outcome.is_err()).map(|(name, ..)| *name).collect();
     ensure!(failed.is_empty(), "failed: {}", failed.join(", "));
-    if totals.is_none() {
-        bail!("the tests did not run");
-    }
+    Ok(())
+}
+
+/// Runs one of the chores that the first step has built, with Lovelock as that step has built it.
+fn built_chore(arguments: &[&str]) -> anyhow::Result<()> {
+    let built = tool::target().join("debug");
+    let mut chore = Command::new(built.join("lovelock-chores"));
+    run_tool(chore.args(arguments).env(tool::PROGRAM, built.join("lovelock")).current_dir(tool::root()))
+}
+
+/// Fails if a test took too long.
+fn quick(times: &Times) -> anyhow::Result<()> {
+    let slow = times.too_slow();
+    ensure!(slow.is_empty(), "{}", slow.join("; "));
     Ok(())
 }
 

@@ -8,6 +8,7 @@ mod docs;
 mod fuzz;
 mod launch;
 mod testing;
+mod times;
 mod totals;
 
 use clap::{Parser, Subcommand};
@@ -63,7 +64,7 @@ enum Chore {
         #[arg(long)]
         reader: Option<String>,
     },
-    /// Runs every check: tests, interchange, browser, format, clippy, layers, documentation
+    /// Runs every check: tests, interchange (with Blender where it is installed), browser, layers, format, clippy, documentation
     Ci,
     /// Writes the tables of settings in the documents, as the program prints them
     Docs,
@@ -111,8 +112,12 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().chore {
         Chore::Run { arguments } => launch::run(&arguments),
         Chore::Test { interchange, browser, long, .. } if interchange || browser => {
-            let every = long.then(|| "--every-blender".into());
-            let first = if interchange { chore("interchange", every) } else { Ok(()) };
+            let versions = if long { "every" } else { "one" };
+            let first = if interchange {
+                chore("interchange", ["--blender".into(), versions.into()])
+            } else {
+                Ok(())
+            };
             first.and_then(|()| if browser { chore("browser", []) } else { Ok(()) })
         }
         Chore::Test { filter, package, long, .. } => {

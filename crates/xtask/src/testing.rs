@@ -1,9 +1,10 @@
 //! `cargo xtask test`: every test, and the totals.
 
-use crate::totals::Totals;
+use crate::times::{Times, cpu_secs_of_children};
+use crate::totals::{Totals, without_colours};
 use anyhow::ensure;
 use lovelock_xtask::system;
-use lovelock_xtask::tool::{Stream, cargo, output_of, watch};
+use lovelock_xtask::tool::{Stream, cargo, output_of, run as run_tool, timed, watch};
 use std::io::IsTerminal as _;
 
 /// Tells tests which suite runs: `testkit::suite` reads it.
@@ -23,56 +24,92 @@ pub(crate) struct Suite<'a> {
     pub(crate) long: bool,
 }
 
+/// What the tests gave.
+pub(crate) struct Ran {
+    pub(crate) totals: Totals,
+    pub(crate) times: Times,
+    /// An error unless all passed.
+    pub(crate) outcome: anyhow::Result<()>,
+}
+
 /// Installs missing system packages and runs the tests. The totals are the last line on standard output.
 pub(crate) fn run(suite: &Suite) -> anyhow::Result<()> {
-    let (totals, outcome) = totals(suite)?;
-    println!("{totals}");
+    system::prepare()?;
+    build(suite)?;
+    let Ran { totals, times, outcome } = tests(suite)?;
+    println!("{}{totals}", times.report());
     outcome
 }
 
-/// Installs missing system packages and runs the tests; returns the totals, and an error unless all passed.
-pub(crate) fn totals(suite: &Suite) -> anyhow::Result<(Totals, anyhow::Result<()>)> {
-    system::prepare()?;
-    let Suite { filter, package, long } = *suite;
-    let suite = if long { "long" } else { "short" };
-    let scope = match package {
+/// Builds the tests.
+pub(crate) fn build(suite: &Suite) -> anyhow::Result<()> {
+    run_tool(cargo(&["test", "--tests", "--no-run"]).args(scope(suite)))
+}
+
+fn scope<'a>(suite: &Suite<'a>) -> Vec<&'a str> {
+    match suite.package {
         Some(package) => vec!["--package", package],
         None => vec!["--workspace"],
-    };
-    let mut totals = Totals::default();
+    }
+}
+
+/// Runs the tests and the examples in the documentation.
+pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
+    let Suite { filter, package, long } = *suite;
+    let scope = scope(suite);
+    let suite = if long { "long" } else { "short" };
+    let (mut totals, mut times) = (Totals::default(), Times::default());
     let mut good = true;
     let mut see = |line: &str| {
-        if let Some(found) = Totals::of_line(line) {
+        let line = without_colours(line);
+        if let Some(found) = Totals::of_line(&line) {
             totals += found;
         }
+        times.see(&line);
     };
-    if has_nextest() {
-        let colour = if std::io::stderr().is_terminal() { "always" } else { "never" };
-        let mut nextest = cargo(&["nextest", "run", "--no-fail-fast", "--color", colour]);
-        nextest.env(SUITE, suite).args(&scope).args(filter);
-        if !long {
-            nextest.args(["--filterset", &format!("not test(/{LONG_ONLY}/)")]);
+    let cpu_before = cpu_secs_of_children();
+    let (ran, wall) = timed(|| {
+        if has_nextest() {
+            let colour = if std::io::stderr().is_terminal() { "always" } else { "never" };
+            let mut nextest = cargo(&["nextest", "run", "--no-fail-fast", "--color", colour]);
+            nextest.env(SUITE, suite).args(&scope).args(filter);
+            if !long {
+                nextest.args(["--filterset", &format!("not test(/{LONG_ONLY}/)")]);
+            }
+            watch(&mut nextest, Stream::Err, &mut see)
+        } else {
+            // Programs of the examples are only checked, by clippy.
+            let mut tests = cargo(&["test", "--tests", "--no-fail-fast"]);
+            tests.env(SUITE, suite).args(&scope);
+            if cfg!(unix) {
+                // The harness of a stable toolchain tells times only to those who ask so.
+                tests.args(["--config", r#"target.'cfg(unix)'.runner=["env", "RUSTC_BOOTSTRAP=1"]"#]);
+            }
+            tests.args(filter).arg("--");
+            if cfg!(unix) {
+                tests.args(["-Zunstable-options", "--report-time"]);
+            }
+            if !long {
+                tests.args(["--skip", LONG_ONLY]);
+            }
+            watch(&mut tests, Stream::Out, &mut see)
         }
-        good &= watch(&mut nextest, Stream::Err, &mut see)?;
-        // nextest leaves the examples in the documentation out. Without a library there are none, and cargo objects.
-        if package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
-            let mut examples = cargo(&["test", "--doc", "--no-fail-fast"]);
-            good &= watch(examples.args(&scope).args(filter), Stream::Out, &mut see)?;
-        }
-    } else {
-        let mut tests = cargo(&["test", "--no-fail-fast"]);
-        tests.env(SUITE, suite).args(&scope).args(filter);
-        if !long {
-            tests.args(["--", "--skip", LONG_ONLY]);
-        }
-        good &= watch(&mut tests, Stream::Out, &mut see)?;
+    });
+    good &= ran?;
+    let cpu = cpu_before.zip(cpu_secs_of_children()).map(|(before, after)| after - before);
+    // Without a library there are no examples in the documentation, and cargo objects.
+    if package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
+        let mut examples = cargo(&["test", "--doc", "--no-fail-fast"]);
+        good &= watch(examples.args(&scope).args(filter), Stream::Out, &mut see)?;
     }
+    let cores = std::thread::available_parallelism().map_or(1.0, |cores| cores.get() as f64);
+    times.crowding = cpu.map_or(1.0, |cpu| (wall.as_secs_f64() * cores / cpu.max(1.0)).max(1.0));
     let outcome = (|| {
         ensure!(totals.failed == 0, "{} of the tests failed", totals.failed);
         ensure!(good, "the tests did not run to their end; the reason stands above");
         Ok(())
     })();
-    Ok((totals, outcome))
+    Ok(Ran { totals, times, outcome })
 }
 
 fn has_nextest() -> bool {

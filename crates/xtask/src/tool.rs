@@ -12,6 +12,9 @@ pub fn root() -> &'static Path {
     here.parent().and_then(Path::parent).unwrap_or(here)
 }
 
+/// Environment variable with the program of Lovelock that chores use instead of building one.
+pub const PROGRAM: &str = "LOVELOCK_PROGRAM";
+
 /// The folder with what cargo builds.
 pub fn target() -> PathBuf {
     root().join(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()))

@@ -12,9 +12,8 @@ pub(crate) struct Totals {
 }
 
 impl Totals {
-    /// Adds the numbers of a line of `cargo test` or `cargo nextest run`, if it is a summary.
+    /// The numbers of a line of `cargo test` or `cargo nextest run` without colours, if it is a summary.
     pub(crate) fn of_line(line: &str) -> Option<Self> {
-        let line = without_colours(line);
         // nextest repeats the output of failed tests with indentation; it has been counted already.
         if let Some(counts) = line.strip_prefix("test result: ") {
             // test result: ok. 39 passed; 0 failed; 2 ignored; 0 measured; 0 filtered out; finished in 0.69s
@@ -64,7 +63,7 @@ impl fmt::Display for Totals {
 }
 
 /// Removes the escape sequences for colours from a line.
-fn without_colours(line: &str) -> String {
+pub(crate) fn without_colours(line: &str) -> String {
     let mut plain = String::with_capacity(line.len());
     let mut letters = line.chars();
     while let Some(letter) = letters.next() {
@@ -79,7 +78,7 @@ fn without_colours(line: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Totals;
+    use super::{Totals, without_colours};
 
     #[expect(clippy::unnecessary_wraps, reason = "what it is compared with is an option")]
     fn totals(passed: u64, failed: u64, skipped: u64) -> Option<Totals> {
@@ -91,7 +90,7 @@ mod tests {
         let line = "test result: ok. 39 passed; 0 failed; 2 ignored; 0 measured; 5 filtered out; finished in 0.69s\n";
         assert_eq!(Totals::of_line(line), totals(39, 0, 2));
         let line = "test result: \u{1b}[31mFAILED\u{1b}[m. 1 passed; 3 failed; 0 ignored; 0 measured; 0 filtered out";
-        assert_eq!(Totals::of_line(line), totals(1, 3, 0));
+        assert_eq!(Totals::of_line(&without_colours(line)), totals(1, 3, 0));
     }
 
     #[test]
@@ -100,7 +99,7 @@ mod tests {
         assert_eq!(Totals::of_line(line), totals(2, 1, 4));
         let line = "\u{1b}[32;1m     Summary\u{1b}[0m [   1.2s] \u{1b}[1m5\u{1b}[0m tests run: \u{1b}[1m5\u{1b}[0m \
                     \u{1b}[32mpassed\u{1b}[0m, \u{1b}[1m0\u{1b}[0m skipped";
-        assert_eq!(Totals::of_line(line), totals(5, 0, 0));
+        assert_eq!(Totals::of_line(&without_colours(line)), totals(5, 0, 0));
         let line = "Summary [ 9s] 3/9 tests run: 1 passed, 1 timed out, 1 exec failed, 0 skipped";
         assert_eq!(Totals::of_line(line), totals(1, 2, 0));
     }

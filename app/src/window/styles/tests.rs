@@ -2,10 +2,10 @@ use egui::accesskit::Role;
 use egui::{Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::history::History;
 use lovelock_project::styles::{OwnStyles, Style, StyleParts, shipped};
+use lovelock_testkit::wait::wait_until;
 
 use super::{Browser, Kept, Request};
 use crate::window::gesture::Gestures;
@@ -209,12 +209,10 @@ fn favourites_are_kept_and_shown_alone() {
 
 /// Runs passes until a condition holds.
 fn wait(harness: &mut Shelf, what: &str, is_so: impl Fn(&Shelf) -> bool) {
-    let watch = Stopwatch::start();
-    while !is_so(harness) {
-        assert!(watch.secs() < 60.0, "waited too long for {what}");
+    wait_until(what, || {
         harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+        is_so(harness)
+    });
     harness.run_steps(2);
 }
 

@@ -148,8 +148,11 @@ fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
     harness.run_steps(8);
     press(&harness, at + vec2(40.0, 9.0), false);
     go(&mut harness);
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    go(&mut harness);
+    wait(&mut harness, "the hair of before", |window| {
+        window.session.frame.as_ref().is_some_and(|frame| frame.scene.source.stack.layers.is_empty())
+            && window.session.worker().settling().is_none()
+            && !window.session.worker().is_loading()
+    });
     assert_eq!(project(&harness), before, "nothing of the stroke is left");
     assert!(!of(&harness).brushes.has_open_strokes());
 }

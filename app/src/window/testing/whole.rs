@@ -9,11 +9,11 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::{PROJECT_EXTENSION, load_project};
+use lovelock_testkit::wait::wait_until;
 
 use super::super::command::Command;
 use super::keyboard::entry;
@@ -55,12 +55,11 @@ pub(super) fn wait(
     what: &str,
     is_so: impl Fn(&Window) -> bool,
 ) {
-    let watch = Stopwatch::start();
-    while !is_so(of(harness)) {
-        // Loading takes about a second.
-        assert!(watch.secs() < 60.0, "waited too long for {what}");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(5));
+    if !is_so(of(harness)) {
+        wait_until(what, || {
+            harness.step();
+            is_so(of(harness))
+        });
     }
     harness.run_steps(2);
 }

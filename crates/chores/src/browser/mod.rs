@@ -9,6 +9,7 @@ use facts::Facts;
 use lovelock_xtask::{system, tool};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 /// Compares methods on a small scene, opens the page and checks the result. A screenshot of the page is saved in `target`.
 pub(crate) fn run() -> anyhow::Result<()> {
@@ -39,8 +40,11 @@ pub(crate) fn run() -> anyhow::Result<()> {
 fn compare(folder: &Path, report: &Path) -> anyhow::Result<()> {
     let project = folder.join("small.lovelock");
     fs::write(&project, include_str!("small.lovelock"))?;
-    let mut lovelock = tool::cargo(&["run", "--quiet", "--package", "lovelock", "--", "compare"]);
-    lovelock.arg(&project).arg("-o").arg(report);
+    let mut lovelock = match std::env::var_os(tool::PROGRAM) {
+        Some(program) => Command::new(program),
+        None => tool::cargo(&["run", "--quiet", "--package", "lovelock", "--"]),
+    };
+    lovelock.arg("compare").arg(&project).arg("-o").arg(report);
     lovelock.args(["--frames", "4..7", "--methods", "all", "--backend", "cpu", "--size", "240x180"]);
     tool::run(&mut lovelock)
 }

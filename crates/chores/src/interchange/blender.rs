@@ -1,11 +1,12 @@
 //! Files of Blender, in both directions: it opens what Lovelock wrote, and Lovelock opens what Blender wrote.
 
+use super::Blender;
 use super::program::{lovelock, run_json};
-use crate::python::environment_of;
+use crate::python::{environment_of, is_made};
 use anyhow::{Context as _, ensure};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Versions of Blender as a Python package: the one with long support, and the newest. They want exactly this version of Python.
@@ -18,20 +19,29 @@ const FPS: f64 = 24.0;
 /// The most that a length of a file of Blender may be off, metres.
 const LIMIT: f64 = 0.01;
 
-/// Writes the small scene in the formats that Blender reads, and reads those that it writes: with the first version of Blender, or with `every`.
-/// Says why it does not, where this Python is missing.
-pub(super) fn check(folder: &Path, program: &Path, every: bool) -> anyhow::Result<()> {
+/// Writes the small scene in the formats that Blender reads, and reads those that it writes. Says why it does not, where this Python or a version
+/// that may not be installed is missing.
+pub(super) fn check(folder: &Path, program: &Path, versions: Blender) -> anyhow::Result<()> {
     if Command::new(PYTHON).arg("--version").output().is_err() {
         println!("interchange: left out Blender: {} wants {PYTHON}, which is not installed", PACKAGES[0]);
         return Ok(());
     }
-    let count = if every { PACKAGES.len() } else { 1 };
+    if versions == Blender::IfInstalled && !is_made(&place(folder, PACKAGES[0])) {
+        println!("interchange: left out Blender: `cargo xtask test --interchange` installs {}", PACKAGES[0]);
+        return Ok(());
+    }
+    let count = if versions == Blender::Every { PACKAGES.len() } else { 1 };
     PACKAGES[..count].iter().try_for_each(|package| check_version(folder, program, package))
+}
+
+/// The folder of a version's Python.
+fn place(folder: &Path, package: &str) -> PathBuf {
+    folder.join(format!("{}-python", package.replace("bpy==", "blender-")))
 }
 
 fn check_version(folder: &Path, program: &Path, package: &str) -> anyhow::Result<()> {
     let name = package.replace("bpy==", "blender-");
-    let python = environment_of(PYTHON, &folder.join(format!("{name}-python")), &[package])?;
+    let python = environment_of(PYTHON, &place(folder, package), &[package])?;
     let loads = Command::new(&python).args(["-c", "import bpy"]).output();
     if let Err(why) = loads.context("it does not start").and_then(|output| {
         ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());

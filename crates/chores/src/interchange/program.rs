@@ -6,8 +6,11 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Builds Lovelock and returns the path of its program.
+/// Builds Lovelock, unless the environment names its program, and returns the path.
 pub(super) fn build() -> anyhow::Result<PathBuf> {
+    if let Some(program) = std::env::var_os(tool::PROGRAM) {
+        return Ok(program.into());
+    }
     let mut cargo = tool::cargo(&["build", "--quiet", "--package", "lovelock", "--message-format", "json"]);
     let output = cargo.stderr(Stdio::inherit()).output().context("could not start cargo")?;
     ensure!(output.status.success(), "Lovelock could not be built");

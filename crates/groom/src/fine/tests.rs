@@ -201,13 +201,12 @@ fn the_list_of_a_wisp_of_many_strands_is_made_in_time() {
             })
             .collect();
         style.check().expect("a hairstyle");
-        let mut fine = FineStrands::default();
-        let watch = lovelock_base::clock::Stopwatch::start();
-        fine.follow(&Arc::new(style), 120_000);
-        let ms = watch.ms();
-        println!("roots spread {spread}: {ms:.0} ms");
+        let ms = lovelock_testkit::clock::alone_ms(|| {
+            FineStrands::default().follow(&Arc::new(style), 120_000);
+        });
+        println!("roots spread {spread}: {ms:.0} ms of CPU time");
         // Measured 47 ms on two cores.
-        assert!(ms < 1000.0, "{ms}");
+        assert!(ms < 2000.0, "{ms}");
     }
 }
 

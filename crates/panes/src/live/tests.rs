@@ -7,7 +7,6 @@ mod takes;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::time::Duration;
 
 use lovelock_project::Project;
 use lovelock_project::files::Access;
@@ -18,6 +17,7 @@ use lovelock_session::scene::SceneLoader;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::testing::small_project;
 use lovelock_session::window_device::WindowDevice;
+use lovelock_testkit::wait::{HANG, wait_until};
 
 use super::*;
 use crate::probe::{ProbePlace, ProbedHair};
@@ -70,7 +70,7 @@ impl Rig {
         self.live.request(request);
         while self.live.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
-            self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+            self.finished.recv_timeout(HANG).expect("an end");
         }
     }
 
@@ -155,7 +155,7 @@ fn panes_of_a_round_can_be_published_together() {
     let rig = on_processor(&[ShadowMethod::None; 6]);
     let seen = |rig: &Rig| (0..6).map(|i| rig.live.pane(i).expect("a slot").number()).collect::<Vec<_>>();
     // The thread may be idle before it has made its call, so wait for the calls.
-    let call = |rig: &Rig| rig.finished.recv_timeout(Duration::from_secs(100)).expect("a call");
+    let call = |rig: &Rig| rig.finished.recv_timeout(HANG).expect("a call");
     for round in 1..=3 {
         rig.live.request(LiveRequest { together: true, ..rig.request(&[0, 1, 2, 3, 4, 5]) });
         call(&rig);
@@ -341,16 +341,12 @@ fn a_probe_follows_a_strand_and_reads_each_pane_there() {
 fn threads_that_draw_panes_lower_priority() {
     let rig = on_processor(&[ShadowMethod::VoxelMap]);
     rig.draw(rig.request(&[0]));
-    // A thread gets its name before it lowers its priority, so wait for starting threads, but not forever.
-    for _ in 0..2000 {
+    // A thread gets its name before it lowers its priority, so wait for starting threads.
+    wait_until("threads that render panes at a lower priority", || {
         let (least, mine) = niceness();
         // If the tests run at the lowest priority, it cannot be lowered further.
-        if least.is_some_and(|least| least > mine || mine >= 9) {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    panic!("the threads that render panes and this one: {:?}", niceness());
+        least.is_some_and(|least| least > mine || mine >= 9)
+    });
 }
 
 /// The lowest niceness of the threads that render panes, and that of the requesting thread.

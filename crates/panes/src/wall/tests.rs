@@ -1,8 +1,6 @@
-use std::time::Duration;
-
-use lovelock_base::clock::Stopwatch;
 use lovelock_project::variants::{Locks, vary};
 use lovelock_render::{Backend, Picture};
+use lovelock_testkit::wait::wait_for;
 
 use super::thread::Instant;
 use super::*;
@@ -29,12 +27,8 @@ fn request(project: &Arc<Project>, variants: &[Arc<Project>], time_secs: f64) ->
 /// The images of all variants after the next round.
 fn drawn(wall: &Wall, request: WallRequest) -> Vec<Picture> {
     let (cells, mut seen) = (request.variants.len(), wall.rounds().number());
-    let watch = Stopwatch::start();
     wall.request(request);
-    while wall.rounds().newer_than(&mut seen).is_none() {
-        assert!(watch.secs() < 60.0, "the wall does not answer");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    wait_for("the wall", || wall.rounds().newer_than(&mut seen));
     let picture = |cell: &Latest<WallCell>| {
         let cell = cell.latest().expect("a cell");
         assert_eq!(cell.problem, None);

@@ -3,10 +3,10 @@
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::time::Duration;
 
 use lovelock_project::files::Access;
 use lovelock_render::Gpu;
+use lovelock_testkit::wait::HANG;
 
 use super::*;
 use crate::engine::Engine;
@@ -63,7 +63,7 @@ impl Rig {
         });
         while self.thread.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
-            self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+            self.finished.recv_timeout(HANG).expect("an end");
         }
     }
 
@@ -252,7 +252,7 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         mask: None,
     };
     let wait = |samples: u32| loop {
-        rig.finished.recv_timeout(Duration::from_secs(100)).expect("an image");
+        rig.finished.recv_timeout(HANG).expect("an image");
         let image = rig.thread.images().latest().expect("an image");
         if image.samples == samples {
             return image.image.picture().expect("pixels");

@@ -84,26 +84,20 @@ fn a_part_of_a_take_with_other_guides_than_its_project_is_refused() {
 
 #[test]
 fn the_thread_records_other_guides_and_stops_without_hair() {
+    use lovelock_testkit::wait::wait_until;
+
     use crate::worker::{Event, Worker};
     let (_folder, path) = folder();
     let mut project = small_project();
     let worker = Worker::start(Arc::new(project.clone()), Access::new(), Arc::new(|| {})).expect("threads");
-    let wait = |what: &str, ready: &mut dyn FnMut() -> bool| {
-        let watch = lovelock_base::clock::Stopwatch::start();
-        while !ready() {
-            // Do not wait forever.
-            assert!(watch.secs() < 60.0, "timed out waiting for {what}");
-            std::thread::sleep(std::time::Duration::from_millis(2));
-        }
-    };
     let frames = || worker.take_progress().map_or(0, |take| take.frames);
-    wait("a scene", &mut || worker.frame().is_some());
+    wait_until("a scene", || worker.frame().is_some());
     worker.record_take(&path);
-    wait("some frames", &mut || frames() > 5);
+    wait_until("some frames", || frames() > 5);
     project.hair.groom.wisps = 21;
     worker.set_project(Arc::new(project.clone()), Access::new());
     let mut style = None;
-    wait("the other hair", &mut || {
+    wait_until("the other hair", || {
         match worker.poll_event() {
             Some(Event::Loaded { scene, .. }) => style = Some(scene),
             Some(Event::TakeSaved { .. } | Event::TakeFailed { .. }) => panic!("the take ended"),
@@ -112,7 +106,7 @@ fn the_thread_records_other_guides_and_stops_without_hair() {
         style.as_ref().is_some_and(|scene| scene.style.guides.count() > 60)
     });
     let before = frames();
-    wait("frames of it", &mut || frames() > before + 5);
+    wait_until("frames of it", || frames() > before + 5);
     // A scene without hair.
     let scene = style.expect("a scene");
     let mut bald = (*scene.style).clone();
@@ -121,7 +115,7 @@ fn the_thread_records_other_guides_and_stops_without_hair() {
     bald.wisps.clear();
     worker.put_scene(Arc::new(crate::scene::Scene { style: Arc::new(bald), ..(*scene).clone() }));
     let mut because = None;
-    wait("the end of the take", &mut || {
+    wait_until("the end of the take", || {
         if let Some(Event::TakeSaved { because: why, .. }) = worker.poll_event() {
             because = why;
         }

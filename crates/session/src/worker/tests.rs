@@ -6,14 +6,12 @@ use std::time::Duration;
 
 use lovelock_project::files::Access;
 use lovelock_style::hand::HandEdits;
+use lovelock_testkit::wait::wait_for as wait;
 
 use super::*;
 use crate::engine::Engine;
 use crate::scene::SceneLoader;
 use crate::testing::small_project;
-
-/// Long enough for the slowest machine. A passing test waits for a fraction of it.
-const PATIENCE_MS: f64 = 60_000.0;
 
 fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
     let woken = Arc::new(AtomicU64::new(0));
@@ -22,17 +20,6 @@ fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
         count.fetch_add(1, Ordering::Relaxed);
     });
     (Worker::start(Arc::new(project), Access::new(), wake).expect("threads"), woken)
-}
-
-fn wait<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
-    let watch = lovelock_base::clock::Stopwatch::start();
-    while watch.ms() < PATIENCE_MS {
-        if let Some(value) = ready() {
-            return value;
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    panic!("timed out waiting for {what}");
 }
 
 #[test]
@@ -213,12 +200,13 @@ fn looking_back_shows_settled_hair_and_keeps_the_totals() {
     };
     measured(0.3);
     worker.set_playing(false);
-    worker.step(1);
-    std::thread::sleep(Duration::from_millis(60));
-    let frame = worker.frame().expect("a frame");
+    // The pause is certain once the thread has answered a request that came after it.
+    let paused = 7.0 * crate::clock::STEP_SECS;
+    worker.look_back(paused);
+    let frame = settled_at(&worker, paused);
     let found = frame.totals.worst_stretch_found.expect("found");
     let secs = found.at_secs.expect("the dance has a timeline");
-    assert!(secs <= frame.position_secs && found.place.is_finite(), "{found:?}");
+    assert!(found.place.is_finite(), "{found:?}");
     worker.look_back(secs);
     let back = settled_at(&worker, secs);
     assert_eq!(back.totals.worst_stretch_found, Some(found));
@@ -366,12 +354,13 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(second.edits != first.edits && second.edits.count() >= first.edits.count());
     // Paused hair that was brushed stays as it was left.
-    // The frame of its last dab may come after the report.
-    let mut last = worker.frame();
+    // The frame of its last dab comes a moment after the report.
+    let (mut last, mut looks) = (worker.frame(), 0);
     let left = wait("a frame that stays", || {
         std::thread::sleep(Duration::from_millis(50));
         let before = std::mem::replace(&mut last, worker.frame())?;
-        last.clone().filter(|now| Arc::ptr_eq(now, &before))
+        looks = if last.as_ref().is_some_and(|now| Arc::ptr_eq(now, &before)) { looks + 1 } else { 0 };
+        last.clone().filter(|_| looks == 8)
     });
     project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: second.edits.clone() });
     worker.set_project(Arc::new(project), Access::new());

@@ -2,7 +2,6 @@
 #![allow(dead_code, missing_docs, reason = "each user needs only a part")]
 
 pub mod catenary;
-pub mod clock;
 pub mod reference;
 
 use std::path::{Path, PathBuf};

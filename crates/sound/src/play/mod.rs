@@ -151,9 +151,9 @@ impl Player {
 mod tests {
     use super::*;
 
-    /// Plays silence through the sound server of this computer, if there is one, in step with real time.
+    /// Plays silence through the sound server of this computer, if there is one, in step with real time: for a machine without other work.
     #[test]
-    fn a_real_device_stays_in_step() {
+    fn long_suite_a_real_device_stays_in_step() {
         let mut player = Player::open(Arc::new(Sound::new(vec![0; 48_000 * 10], 1)));
         let since = Stopwatch::start();
         let mut drifts = Vec::new();

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::SystemTime;
 
-use lovelock_base::clock::Stopwatch;
+use lovelock_testkit::wait::{HANG, wait_until};
 use pulseaudio::protocol::{
     AuthReply, Command, CreatePlaybackStreamReply, MAX_VERSION, PlaybackLatency, ProtocolError,
     SetClientNameReply, read_descriptor, write_ack_message, write_reply_message,
@@ -81,16 +81,6 @@ fn converse(stream: &UnixStream, mut asked: u32, got: &AtomicU64) -> Result<(), 
     Ok(())
 }
 
-/// Waits up to five seconds.
-#[track_caller]
-fn wait_until(what: &str, is_so: impl Fn() -> bool) {
-    let since = Stopwatch::start();
-    while !is_so() {
-        assert!(since.secs() < 5.0, "{what}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
-
 #[test]
 fn a_server_that_closes_is_found_again_when_it_comes_back() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -113,12 +103,12 @@ fn a_server_that_closes_is_found_again_when_it_comes_back() {
         server.join().expect("a server");
         wait_until("its loss", || heard.failure().is_some() && heard.frame(0.0).is_none());
     }
-    // The control: while nothing plays, nobody looks for a server.
+    // The control: while nothing plays, nobody looks for a server. A slow machine sees less of it.
     heard.want(false);
     std::thread::sleep(Duration::from_millis(150));
     let got = Arc::new(AtomicU64::new(0));
     let server = serve(socket.clone(), 3, Arc::clone(&got));
-    std::thread::sleep(Duration::from_secs(1));
+    std::thread::sleep(Duration::from_millis(500));
     assert!(heard.failure().is_some() && got.load(Ordering::Relaxed) == 0);
     heard.want(true);
     wait_until("a server", || heard.failure().is_none());
@@ -140,16 +130,15 @@ fn a_server_that_stops_to_answer_is_lost() {
         let _ = converse(&stream, 1, &got);
         let _ = stopped.recv();
         // The client has shut the connection down, so that its thread does not wait for ever.
-        stream.set_read_timeout(Some(Duration::from_secs(5))).expect("a time");
+        stream.set_read_timeout(Some(HANG)).expect("a time");
         let ended = std::io::copy(&mut stream, &mut std::io::sink());
         ended.err().is_none_or(|error| error.kind() == std::io::ErrorKind::ConnectionReset)
     });
     let server = server.expect("a thread");
-    let patience = Patience { reopened: Duration::from_millis(100), answered: Duration::from_millis(400) };
+    let patience = Patience { reopened: Duration::from_millis(100), answered: Duration::from_secs(2) };
     let output = Output::at(move || Some(socket.clone()), patience, &mixer, &heard);
-    wait_until("a server", || heard.frame(0.0).is_some());
-    assert_eq!(heard.failure(), None, "control: while it answers");
-    wait_until("its loss", || heard.failure().is_some_and(|why| why.contains("no answer within 0.4 s")));
+    wait_until("a server, the control", || heard.frame(0.0).is_some() && heard.failure().is_none());
+    wait_until("its loss", || heard.failure().is_some_and(|why| why.contains("no answer within 2 s")));
     assert!(heard.frame(0.0).is_none());
     drop((output, until_dropped));
     assert!(server.join().expect("a server"), "the connection is shut down");

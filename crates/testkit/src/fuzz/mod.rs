@@ -1,6 +1,6 @@
 //! Damaged input for readers of files: seeded mutations of sound files, a few every day and many in the long suite.
 //!
-//! A reader must answer any bytes with a value or an error, soon. A panic fails the test and leaves the bytes in the
+//! A reader must answer any bytes with a value or an error, within some seconds of CPU time. A panic fails the test and leaves the bytes in the
 //! folder for temporary files.
 
 mod mutate;
@@ -10,10 +10,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::random::SplitMix64;
 
+use crate::clock::thread_time;
 use crate::suite;
 pub use mutate::Mutator;
 
-/// The longest time for one input, seconds: a reader that needs more has stopped answering.
+/// The most CPU time for one input, seconds: a reader that needs more has stopped answering. Other work on the machine does not count.
 const SLOWEST_SECS: f64 = 10.0;
 /// Seconds for each reader in the long suite unless `LOVELOCK_FUZZ_SECS` says otherwise.
 const LONG_SECS: f64 = 30.0;
@@ -25,7 +26,7 @@ pub struct Counts {
     pub inputs: u64,
     /// Inputs that the reader accepted.
     pub accepted: u64,
-    /// Time of the slowest input, seconds.
+    /// CPU time of the slowest input, seconds.
     pub slowest_secs: f64,
     /// Time of all inputs, seconds.
     pub secs: f64,
@@ -53,7 +54,7 @@ fn named(variable: &str) -> Option<u64> {
 /// whether the reader accepted the bytes, and panics if it broke a promise. Prints the counts.
 ///
 /// # Panics
-/// If `reads` panics, takes more than 10 seconds, or refuses a sound file.
+/// If `reads` panics, takes more than 10 seconds of CPU time, or refuses a sound file.
 pub fn damaged(name: &str, sound: &[Vec<u8>], short: u64, reads: impl Fn(&[u8]) -> bool) -> Counts {
     for (index, file) in sound.iter().enumerate() {
         assert!(reads(file), "{name}: the sound file {index} was refused");
@@ -70,7 +71,7 @@ pub fn damaged(name: &str, sound: &[Vec<u8>], short: u64, reads: impl Fn(&[u8]) 
     };
     while goes_on(&counts) {
         let input = mutator.damaged(sound);
-        let start = watch.secs();
+        let start = thread_time();
         match catch_unwind(AssertUnwindSafe(|| reads(&input))) {
             Ok(accepted) => counts.accepted += u64::from(accepted),
             Err(panic) => {
@@ -78,7 +79,7 @@ pub fn damaged(name: &str, sound: &[Vec<u8>], short: u64, reads: impl Fn(&[u8]) 
                 resume_unwind(panic);
             }
         }
-        let secs = watch.secs() - start;
+        let secs = thread_time().saturating_sub(start).as_secs_f64();
         if secs > SLOWEST_SECS {
             keep(name, counts.inputs, &input);
             panic!("{name}: input {} took {secs:.1} s", counts.inputs);

@@ -26,6 +26,20 @@ pub fn thread_time() -> Duration {
     }
 }
 
+/// CPU time of `work` in milliseconds. It runs on one thread of its own, also what it hands to rayon, so that other tests do not count.
+///
+/// # Panics
+/// If the thread cannot be started.
+pub fn alone_ms(work: impl FnOnce() + Send) -> f64 {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let spent = one.install(|| {
+        let start = thread_time();
+        work();
+        thread_time().saturating_sub(start)
+    });
+    1e3 * spent.as_secs_f64()
+}
+
 #[cfg(unix)]
 fn of(clock: rustix::time::ClockId) -> Duration {
     let time = rustix::time::clock_gettime(clock);
@@ -34,6 +48,7 @@ fn of(clock: rustix::time::ClockId) -> Duration {
 
 #[cfg(not(unix))]
 fn wall() -> Duration {
-    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    use lovelock_base::clock::Stopwatch;
+    static START: std::sync::LazyLock<Stopwatch> = std::sync::LazyLock::new(Stopwatch::start);
     START.elapsed()
 }

@@ -1,0 +1,125 @@
+//! How long each test took, and which took too long.
+
+use std::fmt::Write as _;
+
+/// The most that a test of the short suite may take on two cores without other work, seconds.
+const MOST_SECS: f64 = 5.0;
+
+/// Tests that may take longer, with the reason.
+const ALLOWED: [(&str, &str); 0] = [];
+
+/// How many tests are printed.
+const PRINTED: usize = 10;
+
+/// The time of each test, seconds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Times {
+    tests: Vec<(String, f64)>,
+    /// How many times as long everything took because of other work on the machine, at least 1: what the tests could have had of all cores,
+    /// divided by what they had.
+    pub(crate) crowding: f64,
+}
+
+impl Times {
+    /// Adds the test of a line of `cargo test` with times or of `cargo nextest run`.
+    pub(crate) fn see(&mut self, line: &str) {
+        self.tests.extend(of_line(line));
+    }
+
+    /// The slowest tests, a line each.
+    pub(crate) fn report(&self) -> String {
+        let mut text = String::new();
+        if self.tests.is_empty() {
+            return text;
+        }
+        let _ = writeln!(
+            text,
+            "The slowest of {} tests, beside other work of {:.1}:",
+            self.tests.len(),
+            self.crowding
+        );
+        for (name, secs) in self.sorted().into_iter().take(PRINTED) {
+            let _ = writeln!(text, "{secs:>8.1} s  {name}");
+        }
+        text
+    }
+
+    /// The tests that took too long, without what other work on the machine took from them.
+    pub(crate) fn too_slow(&self) -> Vec<String> {
+        let slow = self.sorted().into_iter().map(|(name, secs)| (name, secs / self.crowding.max(1.0)));
+        slow.take_while(|(_, secs)| *secs > MOST_SECS)
+            .filter(|(name, _)| !ALLOWED.iter().any(|(allowed, _)| name.ends_with(allowed)))
+            .map(|(name, secs)| format!("{name} took {secs:.1} s; must be at most {MOST_SECS} s"))
+            .collect()
+    }
+
+    fn sorted(&self) -> Vec<(&str, f64)> {
+        let mut all: Vec<_> = self.tests.iter().map(|(name, secs)| (name.as_str(), *secs)).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all
+    }
+}
+
+/// The name and the seconds of the test in a line without colours.
+fn of_line(line: &str) -> Option<(String, f64)> {
+    if let Some(test) = line.strip_prefix("test ") {
+        // test scene::tests::a_name ... ok <0.123s>
+        let (name, rest) = test.split_once(" ... ")?;
+        let secs = rest.trim_end().strip_suffix("s>")?.rsplit_once('<')?.1;
+        return Some((name.split(' ').next()?.to_owned(), secs.parse().ok()?));
+    }
+    // PASS [   0.123s] (1/9) a-crate scene::tests::a_name
+    let (state, rest) = line.trim_start().split_once(" [")?;
+    let (secs, rest) = rest.split_once("s]")?;
+    let name = rest.split_whitespace().next_back()?;
+    (state == "PASS").then_some(())?;
+    Some((name.to_owned(), secs.trim().parse().ok()?))
+}
+
+/// CPU time of the programs that this one has started and that have ended, seconds; `None` where the system does not tell.
+pub(crate) fn cpu_secs_of_children() -> Option<f64> {
+    // A tick is a hundredth of a second on every Linux that is known. The name may contain anything, so count from its closing bracket.
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(13);
+    let mut next = || fields.next()?.parse::<f64>().ok();
+    Some((next()? + next()?) / 100.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Times, cpu_secs_of_children, of_line};
+
+    #[test]
+    fn times_are_found_in_both_kinds_of_lines() {
+        let found = |line| of_line(line).map(|(name, secs)| format!("{name} {secs}"));
+        assert_eq!(found("test a::b ... ok <0.123s>\n").as_deref(), Some("a::b 0.123"));
+        assert_eq!(found("test a - should panic ... ok <61.5s>").as_deref(), Some("a 61.5"));
+        assert_eq!(found("        PASS [   1.250s] (1/9) a-crate a::b").as_deref(), Some("a::b 1.25"));
+        for other in [
+            "test a::b ... ok",
+            "test a ... ignored",
+            "test result: ok. 3 passed",
+            "     Summary [   5.1s] 3 tests run",
+        ] {
+            assert_eq!(found(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn slow_tests_are_those_that_are_slow_without_other_work() {
+        let mut times = Times { crowding: 2.0, ..Times::default() };
+        for line in
+            ["test slow ... ok <12.0s>", "test kept_waiting ... ok <9.0s>", "test quick ... ok <0.1s>"]
+        {
+            times.see(line);
+        }
+        assert_eq!(times.too_slow(), ["slow took 6.0 s; must be at most 5 s"]);
+        assert!(times.report().lines().nth(1).is_some_and(|line| line.ends_with("12.0 s  slow")));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_time_of_children_is_known() {
+        assert!(cpu_secs_of_children().is_some_and(|secs| secs >= 0.0));
+    }
+}
