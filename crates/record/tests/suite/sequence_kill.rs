@@ -58,8 +58,10 @@ fn a_program_that_writes() {
         writeln!(out, "frame {frame}").unwrap();
         out.flush().unwrap();
         written += 1;
-        while written == MOST_OF_A_PROCESS {
-            std::thread::park();
+        if written == MOST_OF_A_PROCESS {
+            loop {
+                std::thread::park();
+            }
         }
     });
 }
