@@ -86,7 +86,8 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
 impl Window {
     /// Carries out a command.
     pub(super) fn run(&mut self, command: Command, ctx: &egui::Context) {
-        if !self.can(command) {
+        if let Some(why_not) = self.why_not(command) {
+            self.notices.push(notices::Kind::Warning, why_not);
             return;
         }
         match command {
@@ -135,7 +136,11 @@ impl Window {
             }
             Command::LeaveTake => {
                 self.session.set_backwards(false);
-                self.change("take", |project| project.take.file = None);
+                self.change("take", |project| {
+                    project.take.file = None;
+                    // They are frames of the take, and the dance has others.
+                    project.recording.record_all();
+                });
             }
             Command::PlayBackwards => {
                 let backwards = !self.session.backwards;

@@ -117,7 +117,10 @@ impl Window {
                 _ => project.set_motion_file(path),
             }),
             (aim, Found::Take(project, problems)) => {
-                self.play(path, |_| *project);
+                let mut project = *project;
+                // They are frames of the dance that was recorded, and those of a take begin where its recording did.
+                project.recording.record_all();
+                self.play(path, |_| project);
                 self.warn(problems.into_iter().map(|problem| problem.message));
                 if aim == Aim::Open {
                     // Saving must not write the take's project to the file of the previous project.

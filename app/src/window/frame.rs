@@ -9,10 +9,12 @@ use lovelock_project::error::Place;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
+use super::control::Keying;
 use super::focus::{Area, Focus};
 use super::path_dialog::Purpose;
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
+use crate::window::control::HoverTooltip;
 
 /// Shorter pre-rolls show no progress bar, seconds.
 const SHOW_SETTLING_SECS: f64 = 0.15;
@@ -50,14 +52,14 @@ impl Window {
         }
         if let Some(end) = self.recorder.update() {
             match end {
-                panels::recording::State::Done(what) => {
-                    self.notices.push(notices::Kind::Done, format!("Recorded: {what}"));
+                panels::recording::State::Done { what, out } => {
+                    self.notices.push_written(what.as_str(), out.clone());
                 }
                 panels::recording::State::Failed(why) => {
                     self.notices.push(notices::Kind::Failed, format!("Recording: {why}"));
                 }
-                panels::recording::State::Cancelled => {
-                    self.notices.push(notices::Kind::Done, panels::recording::CANCELLED);
+                panels::recording::State::Cancelled(what) => {
+                    self.notices.push(notices::Kind::Done, what.as_str());
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
@@ -82,9 +84,12 @@ impl Window {
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
+        let keying = Keying::of(&project, self.now_secs(), self.overdub.writes());
+        control::begin_keying(&ctx, keying);
         let begin = Focus::begin_area(ui);
         let playback = self.timeline(ui, &mut project);
         self.focus.end_area(ui, Area::Timeline, begin);
+        self.viewport.film = None;
         if !self.layout.panels_hidden {
             let begin = Focus::begin_area(ui);
             self.left_panel(ui, &mut project);
@@ -93,6 +98,7 @@ impl Window {
             self.right_panel(ui, &mut project, &ctx);
             self.focus.end_area(ui, Area::Right, begin);
         }
+        control::keep_free_area(ui);
         let image = ui.available_rect_before_wrap();
         self.focus.set_image(image);
         let begin = Focus::begin_area(ui);
@@ -104,6 +110,9 @@ impl Window {
             self.picture(ui, &mut project);
         }
         self.focus.end_area(ui, Area::Page, begin);
+        for request in control::end_keying(&ctx) {
+            self.key(request, &mut project);
+        }
         if !std::mem::take(&mut self.brushes.handled) {
             // Another page, another tool, or no image.
             self.end_stroke();
@@ -159,7 +168,11 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.display.title = title;
         }
-        self.notices.show(&ctx, image);
+        if let Some(path) = self.notices.show(&ctx, image)
+            && let Err(error) = open::that_detached(&path)
+        {
+            self.warn([format!("{}: no program could be started that opens it: {error}", path.display())]);
+        }
         if let Some(info) = control::end_reveal(&ctx) {
             self.explain_missing(info);
         }
@@ -211,7 +224,7 @@ impl Window {
                                 let [least, most] = resolution::RATES;
                                 let rate = &mut self.layout.view_rate;
                                 let slider = egui::Slider::new(rate, least..=most).integer();
-                                ui.add(slider.suffix(" images/s").text("while moving")).on_hover_text(
+                                ui.add(slider.suffix(" images/s").text("while moving")).hover_tooltip(
                                     "While something moves, fewer pixels are rendered if that is needed for this many \
                                      images per second. At rest every pixel is rendered.",
                                 );
@@ -272,19 +285,15 @@ impl Window {
             }),
             recording: session.worker().take_progress().map(|take| {
                 let kept = take.kept as f64 / take.frames.max(1) as f64;
-                [take.secs, take.secs * kept]
+                let (from_secs, secs) = (take.from_secs, take.secs);
+                timeline::Recorded { from_secs, secs, kept_secs: secs * kept }
             }),
         };
-        let zoom = &mut self.layout.timeline;
+        let kept = (&mut self.layout.timeline, &mut self.layout.tracks_height);
         let Project { recording, motion, timeline: section, hair, sound, .. } = project;
         let lovelock_project::project::TimelineSection { markers, tracks, .. } = section;
-        let height = timeline::height(tracks.len(), sound.file.is_some());
         let mut edited = timeline::Edited { recording, markers, tracks, motion, sound, stack: &hair.stack };
-        Panel::bottom("timeline")
-            .exact_size(height)
-            .resizable(false)
-            .show(ui, |ui| timeline::ui(ui, &view, zoom, &mut edited))
-            .inner
+        timeline::panel(ui, &view, kept, &mut edited)
     }
 
     /// Reads the sound of the project and plays it in step with the image.
@@ -317,13 +326,7 @@ impl Window {
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
             let size = self.size_label();
-            Viewport::caption(
-                ui,
-                rect,
-                Align2::RIGHT_TOP,
-                &format!("{ms:.0} ms{size} · {name}"),
-                theme::QUIET,
-            );
+            Viewport::caption(ui, rect, Align2::RIGHT_TOP, &caption(ms, &size, &name), theme::QUIET);
             self.running(ui, rect);
         });
     }
@@ -347,14 +350,17 @@ impl Window {
         {
             let mut row = 0;
             if let Some((fraction, text)) = self.recorder.state().progress() {
-                let tip = "Stops the recording. An unfinished film is removed.";
+                let tip = panels::recording::CANCEL;
                 if progress_overlay(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
                     self.recorder.cancel();
                 }
                 row += 1;
             }
             let loading = self.session.worker().load_progress();
-            let left = loading.as_ref().map_or(0.0, |loading| SHOW_LOADING_SECS - loading.taken_secs);
+            // The simulation waits for a take, so its progress is shown at once.
+            let opens_take = self.history.project().take.file.is_some();
+            let patience_secs = if opens_take { 0.0 } else { SHOW_LOADING_SECS };
+            let left = loading.as_ref().map_or(0.0, |loading| patience_secs - loading.taken_secs);
             // Once the bar is visible it stays, also through the loads that follow.
             self.session.load_is_seen = loading.is_some() && (self.session.load_is_seen || left <= 0.0);
             if !self.session.load_is_seen && left > 0.0 {
@@ -449,6 +455,13 @@ impl Window {
     }
 }
 
+/// The line over the image: how long it took, its size, and what drew it. What is not known yet is left out.
+fn caption(ms: f64, size: &str, adapter: &str) -> String {
+    let took = if ms > 0.0 { format!("{ms:.0} ms{size}") } else { String::new() };
+    let parts = [took.as_str(), adapter].into_iter().filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(" · ")
+}
+
 /// Shows a progress bar in the corner of the image, `row` from the top, and a button that stops the work. Returns whether the
 /// button was clicked.
 fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
@@ -461,7 +474,7 @@ fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &s
     let cancel = ui.put(button, egui::Button::new("Cancel"));
     // Several of them may be shown: a screen reader says which.
     cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Cancel: {text}")));
-    cancel.on_hover_text(tip).clicked()
+    cancel.hover_tooltip(tip).clicked()
 }
 
 /// The name of the part that differs, for the undo history.

@@ -27,7 +27,7 @@ impl Window {
     pub(super) fn health_panel(&mut self, ui: &mut Ui, project: &mut Project) {
         let gauges = self.gauges(project);
         let shown = self.marked_gauge.as_ref().map(|gauge| gauge.kind);
-        let Some(asked) = panels::health::ui(ui, &gauges, shown) else { return };
+        let Some(asked) = panels::health::ui(ui, &gauges, project.take.file.is_some(), shown) else { return };
         if shown == Some(asked) {
             self.marked_gauge = None;
             return;

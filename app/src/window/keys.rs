@@ -6,6 +6,8 @@ use egui::{
     Event, Id, Key, KeyboardShortcut, LayerId, Modifiers, Order, Popup, RichText, Stroke, TextStyle, Ui,
 };
 
+use crate::window::control::HoverTooltip;
+
 use super::{focus, theme};
 
 /// Whether a dialog is open. It holds the keyboard until it is answered: no key means a command or a tool meanwhile.
@@ -248,36 +250,67 @@ fn entry(ui: &mut Ui, info: &CommandInfo, enabled: bool) -> bool {
     if let Some(key) = info.shortcuts.first() {
         button = button.shortcut_text(*key);
     }
-    ui.add_enabled(enabled, button).on_hover_text(info.tooltip).clicked()
+    ui.add_enabled(enabled, button).hover_tooltip(info.tooltip).clicked()
 }
 
-/// The list of keys.
+/// Keys and what they do, with a sentence for its tooltip.
+type KeyRow = (String, &'static str, Option<&'static str>);
+
+/// What the pointer and keys do where no command is run.
+const IN_PLACE: [(&str, &str); 14] = [
+    ("F6, Shift+F6", "Next, previous area of the window"),
+    ("Tab, Shift+Tab", "Next, previous control of the area"),
+    ("Alt+letter", "Open the menu of that letter"),
+    ("Escape", "Return the keyboard to the image"),
+    ("Drag", "Turn the camera about the hair"),
+    ("Shift+drag, right drag", "Pan the camera"),
+    ("Wheel", "Move the camera closer or away"),
+    ("Ctrl+wheel", "Magnify the panes of a comparison"),
+    ("Hold V", "Show another pane in place of a pane"),
+    ("Click a pane", "Plot the light along its ray"),
+    ("Double-click, right-click", "Restore, key or copy a control"),
+    ("Ctrl+drag, Shift+drag", "Erase, smooth a mask"),
+    ("Up, Down", "Select a layer of the list"),
+    ("Delete, Ctrl+D, Ctrl+G, F2", "Remove, duplicate, group, rename"),
+];
+
+/// The list of keys, in two columns by menu.
 pub(crate) fn list(ui: &mut Ui) {
-    egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
-        for info in COMMANDS.iter().filter(|info| !info.shortcuts.is_empty()) {
-            ui.label(RichText::new(info.shortcuts.join("  ")).monospace().color(theme::ACCENT));
-            ui.label(info.tooltip);
-            ui.end_row();
-        }
-        for (keys, what) in [
-            ("F6, Shift+F6", "Move the keyboard to the next or the previous area of the window."),
-            ("Tab, Shift+Tab", "Move to the next or the previous control of the area."),
-            ("Alt+letter", "Opens a menu. Its letter is underlined while Alt is held."),
-            ("Escape", "Returns the keyboard to the image, whose keys are those of this list."),
-            ("Drag", "Turns the camera about the hair."),
-            ("Shift+drag, right drag", "Pans the camera."),
-            ("Wheel", "Moves the camera closer or farther away."),
-            ("Ctrl+wheel", "Magnifies the panes of a comparison."),
-            ("Hold V", "Shows another pane of a comparison in place of a pane."),
-            ("Click a pane", "Plots the transmittance along the light at that point."),
-            ("Double-click a control", "Restores its default."),
-            ("Ctrl+drag, Shift+drag", "While a mask is painted: erases it, smooths it."),
-            ("Up, Down", "In the list of layers: select the layer above or below."),
-            ("Delete, Ctrl+D, Ctrl+G, F2", "In the list of layers: remove, duplicate, group, rename."),
-        ] {
-            ui.label(RichText::new(keys).monospace().color(theme::ACCENT));
-            ui.label(what);
-            ui.end_row();
+    let mut groups: Vec<(&str, Vec<KeyRow>)> = Vec::new();
+    for group in CommandGroup::ALL {
+        let rows = in_order(group).into_iter().filter(|info| !info.shortcuts.is_empty());
+        groups.push((
+            group.label(),
+            rows.map(|info| (info.shortcuts.join("  "), info.label, Some(info.tooltip))).collect(),
+        ));
+    }
+    groups.push(("In place", IN_PLACE.map(|(keys, what)| (keys.to_owned(), what, None)).to_vec()));
+    let half = groups.iter().map(|(_, rows)| rows.len() + 1).sum::<usize>() / 2;
+    let mut columns: [Vec<_>; 2] = Default::default();
+    let mut above = 0;
+    for (title, rows) in groups {
+        let lines = rows.len() + 1;
+        columns[usize::from(above + lines / 2 > half)].push((title, rows));
+        above += lines;
+    }
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 28.0;
+        for groups in columns {
+            ui.vertical(|ui| {
+                for (title, rows) in groups {
+                    ui.label(RichText::new(title).strong());
+                    egui::Grid::new(("keys", title)).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+                        for (keys, what, tip) in rows {
+                            ui.label(RichText::new(keys).monospace().size(11.0).color(theme::ACCENT));
+                            let what = ui.label(what);
+                            if let Some(tip) = tip {
+                                what.hover_tooltip(tip);
+                            }
+                            ui.end_row();
+                        }
+                    });
+                }
+            });
         }
     });
 }

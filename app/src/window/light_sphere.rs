@@ -4,6 +4,7 @@ use egui::{Color32, Pos2, Response, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
 
 use super::theme;
+use crate::window::control::HoverTooltip;
 
 /// The labels of a sphere.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +56,7 @@ pub(crate) fn sphere(
         painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::ACCENT));
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, of.name));
-    response.on_hover_text(format!(
+    response.hover_tooltip(format!(
         "Drag to set where {} comes from, as seen by the camera. A hollow handle is behind the sphere.",
         of.what
     ))

@@ -16,6 +16,7 @@ mod frame;
 mod gesture;
 mod health_view;
 mod images;
+mod keying;
 mod keys;
 mod light_sphere;
 mod manual;
@@ -96,6 +97,8 @@ struct Layout {
     compare: CompareLayout,
     wall: WallLayout,
     timeline: timeline::Zoom,
+    /// The height of the tracks on the timeline that the user set, points.
+    tracks_height: Option<f32>,
     styles: styles::Kept,
     brushes: brushes::Kept,
 }
@@ -111,6 +114,7 @@ impl Default for Layout {
             compare: CompareLayout::default(),
             wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
+            tracks_height: None,
             styles: styles::Kept::default(),
             brushes: brushes::Kept::default(),
         }
@@ -387,30 +391,48 @@ impl Window {
 
     /// Whether a command is available now.
     fn can(&self, command: Command) -> bool {
+        self.why_not(command).is_none()
+    }
+
+    /// Why a command is not available now; `None` if it is.
+    fn why_not(&self, command: Command) -> Option<&'static str> {
+        let takes = self.history.project().take.file.is_some();
+        let loaded = self.session.frame.is_some();
+        let because = |holds: bool, why: &'static str| holds.then_some(why);
         match command {
-            Command::Undo => self.history.undo_len() > 0,
-            Command::Redo => self.history.redo_len() > 0,
-            Command::SavePicture if self.layout.wall.shown => false,
-            Command::SavePicture if self.layout.compare.shown => self.compare.has_pictures(),
-            Command::RecordTake => self.session.frame.is_some() && self.history.project().take.file.is_none(),
-            Command::PlayTake => {
-                self.session.saved_take.is_some() && self.history.project().take.file.is_none()
+            Command::Undo => because(self.history.undo_len() == 0, "There is nothing to undo."),
+            Command::Redo => because(self.history.redo_len() == 0, "There is nothing to redo."),
+            Command::SavePicture if self.layout.wall.shown => {
+                Some("The wall cannot be saved as an image. Close it to save the image of the viewport.")
             }
-            Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
-            Command::FrameHair => self.session.frame.is_some(),
-            Command::ShowMask => self.layers.selected.is_some(),
-            Command::PaintMask => {
-                self.layers.painting
-                    || (self.layers.selected.is_some() && self.history.project().take.file.is_none())
+            Command::SavePicture if self.layout.compare.shown => {
+                because(!self.compare.has_pictures(), "The panes are not rendered yet.")
             }
-            Command::BrushSmaller | Command::BrushLarger => self.layers.painting || self.brushes.on,
-            Command::Scissors => self.history.project().take.file.is_none(),
-            Command::SavePicture => self.session.painted.is_some(),
-            Command::ExportCurves => !self.recorder.is_running(),
-            _ => true,
+            Command::SavePicture => because(self.session.painted.is_none(), "There is no image yet."),
+            Command::RecordTake | Command::Scissors if takes => Some(TAKE_PLAYS),
+            Command::RecordTake => because(!loaded, "There is no hair to record yet."),
+            Command::PlayTake if takes => Some("A take plays already."),
+            Command::PlayTake => because(
+                self.session.saved_take.is_none(),
+                "No take has been recorded. R records one; File, Open… plays one from the disk.",
+            ),
+            Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take plays."),
+            Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
+            Command::ShowMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::PaintMask if self.layers.painting => None,
+            Command::PaintMask if takes => Some(TAKE_PLAYS),
+            Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::BrushSmaller | Command::BrushLarger => {
+                because(!(self.layers.painting || self.brushes.on), "No brush is in use.")
+            }
+            Command::ExportCurves => because(self.recorder.is_running(), "A recording runs already."),
+            _ => None,
         }
     }
 }
+
+const TAKE_PLAYS: &str = "A take plays: body and hair move as recorded. Leave the take (Shift+R) first.";
+const NO_LAYER: &str = "No layer is selected. Select one in the panel Layers: its mask is meant.";
 
 /// The layout of panes in a recording: side by side, in the colours of the window and without times, so that the same panes give
 /// the same pixels.

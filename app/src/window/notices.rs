@@ -1,10 +1,13 @@
 //! Messages in a corner of the image. They disappear after a while, but for errors, which stay until they are closed.
 
+use std::path::{Path, PathBuf};
+
 use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, RichText, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON_WARNING};
 
 use super::theme;
+use crate::window::control::HoverTooltip;
 
 /// Seconds for which a message stays, and the seconds added per letter.
 const STAYS_SECS: f64 = 6.0;
@@ -44,6 +47,8 @@ struct Notice {
     id: u64,
     kind: Kind,
     text: String,
+    /// The file or folder that was written.
+    written: Option<PathBuf>,
     /// When it disappears, in seconds of the window's time; `None` before it was first shown.
     until_secs: Option<f64>,
 }
@@ -58,6 +63,15 @@ pub(crate) struct Notices {
 impl Notices {
     /// Adds a message. One that is already visible stays longer instead of appearing twice.
     pub(crate) fn push(&mut self, kind: Kind, text: impl Into<String>) {
+        self.add(kind, text, None);
+    }
+
+    /// Adds the message that the file or folder at `path` was written, with buttons that open it.
+    pub(crate) fn push_written(&mut self, text: impl Into<String>, path: PathBuf) {
+        self.add(Kind::Done, text, Some(path));
+    }
+
+    fn add(&mut self, kind: Kind, text: impl Into<String>, written: Option<PathBuf>) {
         let text = text.into();
         self.list.retain(|notice| notice.text != text);
         let most = if kind == Kind::Failed { MOST_WAITING } else { MOST };
@@ -71,7 +85,7 @@ impl Notices {
             }
         }
         self.told += 1;
-        self.list.push(Notice { id: self.told, kind, text, until_secs: None });
+        self.list.push(Notice { id: self.told, kind, text, written, until_secs: None });
     }
 
     /// The errors that were not closed yet.
@@ -81,8 +95,9 @@ impl Notices {
         failed.map(|notice| notice.text.as_str()).collect()
     }
 
-    /// Shows the messages in the lower right corner of `image`, where they cover no control; the newest at the bottom.
-    pub(crate) fn show(&mut self, ctx: &egui::Context, image: Rect) {
+    /// Shows the messages in the lower right corner of `image`, where they cover no control; the newest at the bottom. Returns the
+    /// file or folder that shall be opened with the system's program for it.
+    pub(crate) fn show(&mut self, ctx: &egui::Context, image: Rect) -> Option<PathBuf> {
         let now = ctx.input(|input| input.time);
         let visible = self.visible();
         for notice in self.list.iter_mut().filter(|notice| visible.contains(&notice.id)) {
@@ -92,7 +107,7 @@ impl Notices {
         }
         self.list.retain(|notice| notice.until_secs.is_none_or(|until| until > now));
         if self.list.is_empty() {
-            return;
+            return None;
         }
         let next = self.list.iter().filter_map(|notice| notice.until_secs).fold(f64::INFINITY, f64::min);
         if next.is_finite() {
@@ -101,7 +116,7 @@ impl Notices {
         let visible = self.visible();
         let waiting = self.list.len().saturating_sub(visible.len());
         let width = WIDTH.min(image.width() - 2.0 * MARGIN).max(160.0);
-        let mut closed = Vec::new();
+        let (mut closed, mut opened) = (Vec::new(), None);
         Area::new(Id::unique("notices"))
             .pivot(Align2::RIGHT_BOTTOM)
             .fixed_pos(image.right_bottom() - vec2(MARGIN, MARGIN))
@@ -112,7 +127,7 @@ impl Notices {
                     Frame::popup(ui.style()).show(ui, |ui| {
                         ui.horizontal(|ui| {
                             ui.label(format!("{waiting} more"));
-                            let all = ui.button("Close all").on_hover_text("Closes every message.");
+                            let all = ui.button("Close all").hover_tooltip("Closes every message.");
                             if all.clicked() {
                                 closed.extend(self.list.iter().map(|notice| notice.id));
                             }
@@ -120,12 +135,15 @@ impl Notices {
                     });
                 }
                 for notice in self.list.iter().filter(|notice| visible.contains(&notice.id)) {
-                    if one(ui, notice, width) {
+                    let (closes, opens) = one(ui, notice, width);
+                    if closes {
                         closed.push(notice.id);
                     }
+                    opened = opens.or(opened.take());
                 }
             });
         self.list.retain(|notice| !closed.contains(&notice.id));
+        opened
     }
 
     /// The messages that are shown: all that disappear by themselves, and the oldest errors.
@@ -138,18 +156,37 @@ impl Notices {
     }
 }
 
-/// One message; returns whether it was closed.
-fn one(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
+/// One message; returns whether it was closed, and what of it shall be opened.
+fn one(ui: &mut Ui, notice: &Notice, width: f32) -> (bool, Option<PathBuf>) {
     let row = |ui: &mut Ui| {
+        let mut opened = None;
         let (icon, color) = notice.kind.icon();
         ui.label(RichText::from(icon).color(color));
         ui.vertical(|ui| {
             ui.set_width(width - 72.0);
             ui.add(egui::Label::new(&notice.text).wrap());
+            opened = notice.written.as_deref().and_then(|path| written(ui, path));
         });
-        let close = ui.small_button(ICON_CLOSE).on_hover_text("Closes this message.");
+        let close = ui.small_button(ICON_CLOSE).hover_tooltip("Closes this message.");
         close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message"));
-        close.clicked()
+        (close.clicked(), opened)
     };
     Frame::popup(ui.style()).show(ui, |ui| ui.horizontal_top(row).inner).inner
+}
+
+/// The buttons of a file or folder that was written. Returns what shall be opened.
+fn written(ui: &mut Ui, path: &Path) -> Option<PathBuf> {
+    let mut opened = None;
+    ui.horizontal(|ui| {
+        let tip = "Opens it with the program that the system has for it.";
+        if ui.button("Open").hover_tooltip(tip).clicked() {
+            opened = Some(path.to_owned());
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or_else(|| Path::new("."));
+        if ui.button("Show in folder").hover_tooltip(format!("Opens {}.", folder.display())).clicked() {
+            opened = Some(folder.to_owned());
+        }
+    });
+    opened
 }

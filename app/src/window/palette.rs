@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::command::{COMMANDS, Command, CommandInfo};
+use crate::window::control::HoverTooltip;
 use egui::{Layout, Modal, RichText, ScrollArea};
 use lovelock_base::settings::{Info, Settings as _};
 use lovelock_brush::BrushSettings;
@@ -128,7 +129,7 @@ impl Palette {
                             let aside = RichText::new(found.aside()).monospace().small().color(theme::QUIET);
                             ui.add(egui::Label::new(aside).truncate());
                         });
-                        label.on_hover_text(found.text())
+                        label.hover_tooltip(found.text())
                     });
                     self.picker.show(i, &row.response);
                     if row.inner.clicked() || (picked.entered && self.picker.is_chosen(i)) {

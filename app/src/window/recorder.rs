@@ -1,9 +1,9 @@
 //! A recording that runs in the background.
 
-use lovelock_base::words::counted;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use lovelock_base::words::counted;
 use lovelock_jobs::record::{RecordJob, RecordRequest};
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
@@ -11,19 +11,21 @@ use lovelock_project::files::Access;
 use lovelock_session::clock::Pace;
 use lovelock_session::progress::Progress;
 
-use super::panels::recording::State;
+use super::panels::recording::{State, bytes_in_words};
 
 /// The recording that runs, if any, and the result of the last one. Dropping it cancels the recording.
 pub(crate) struct Recorder {
     running: Option<(RecordJob, Pace)>,
     /// Whether the recording that runs was cancelled.
     cancelled: bool,
+    /// Where the recording that runs is written.
+    out: PathBuf,
     state: State,
 }
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { running: None, cancelled: false, state: State::Idle }
+        Self { running: None, cancelled: false, out: PathBuf::new(), state: State::Idle }
     }
 }
 
@@ -48,7 +50,7 @@ impl Recorder {
             Ok(job) => {
                 self.state =
                     State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
-                self.cancelled = false;
+                (self.cancelled, self.out) = (false, out.to_owned());
                 self.running = Some((job, Pace::default()));
             }
             Err(error) => self.state = State::Failed(error.to_string()),
@@ -74,7 +76,7 @@ impl Recorder {
         if let Some(progress) = job.progress() {
             let (what, done, total) = match progress {
                 Progress::Loading { what } => (what, 0, 1),
-                Progress::Loaded { .. } => ("Loaded".to_owned(), 0, 1),
+                Progress::Loaded { .. } => ("Preparing the first frame".to_owned(), 0, 1),
                 Progress::Simulating { done, total } => {
                     ("Simulating to the first frame".to_owned(), done, total)
                 }
@@ -92,17 +94,10 @@ impl Recorder {
         let (job, _) = self.running.take()?;
         self.state = match job.finish() {
             Ok(report) => {
-                let kept = match report.frames_kept {
-                    0 => String::new(),
-                    kept => format!(", {kept} of which were there"),
-                };
-                State::Done(format!(
-                    "{} in {}{kept}",
-                    counted(report.frames, "frame", "frames"),
-                    report.out.display()
-                ))
+                let what = recorded(&report.out, report.frames, report.frames_kept);
+                State::Done { what, out: report.out }
             }
-            Err(_) if self.cancelled => State::Cancelled,
+            Err(_) if self.cancelled => State::Cancelled(left_by_cancel(&self.out)),
             Err(error) => State::Failed(error.to_string()),
         };
         Some(&self.state)
@@ -111,5 +106,60 @@ impl Recorder {
     /// The state that the panel shows.
     pub(crate) fn state(&self) -> &State {
         &self.state
+    }
+}
+
+/// Says what was recorded: name, frames, size and folder. `kept` of the frames were there before.
+fn recorded(out: &Path, frames: u64, kept: u64) -> String {
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    let kept = if kept > 0 { format!(", {kept} of which were there") } else { String::new() };
+    let data = std::fs::metadata(out).ok();
+    let size = data
+        .filter(std::fs::Metadata::is_file)
+        .map(|data| format!(", {}", bytes_in_words(data.len() as f64)));
+    let folder = std::path::absolute(out).ok().and_then(|out| Some(out.parent()?.display().to_string()));
+    format!(
+        "Recorded {name}: {}{kept}{}, in {}",
+        counted(frames, "frame", "frames"),
+        size.unwrap_or_default(),
+        folder.unwrap_or_else(|| "the current folder".to_owned()),
+    )
+}
+
+/// Says what a cancelled recording to `out` leaves.
+fn left_by_cancel(out: &Path) -> String {
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    if out.is_dir() {
+        format!("Recording cancelled. Its complete images stay in {}.", out.display())
+    } else if out.exists() {
+        format!("Recording cancelled. Nothing was written: {name} is the file from before.")
+    } else {
+        "Recording cancelled. Nothing was written.".to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_recording_names_the_folder_and_what_is_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let film = folder.path().join("dance.mp4");
+        assert_eq!(left_by_cancel(&film), "Recording cancelled. Nothing was written.");
+        std::fs::write(&film, vec![0; 2_500_000]).expect("a file");
+        let said = recorded(&film, 48, 0);
+        let place = folder.path().display().to_string();
+        assert!(
+            said.starts_with("Recorded dance.mp4: 48 frames, 2.5 MB, in ") && said.ends_with(&place),
+            "{said}"
+        );
+        assert!(left_by_cancel(&film).contains("dance.mp4 is the file from before"));
+        let images = folder.path().join("images");
+        std::fs::create_dir(&images).expect("a folder");
+        assert!(
+            recorded(&images, 48, 12).starts_with("Recorded images: 48 frames, 12 of which were there, in ")
+        );
+        assert!(left_by_cancel(&images).contains("complete images stay in"));
     }
 }

@@ -395,6 +395,7 @@ impl Session {
         let joints = lovelock_motion::joint_paths(&scene.body.skeleton);
         self.body = body::LoadedBody {
             clips: scene.clips.iter().map(|clip| clip.name.clone()).collect(),
+            clip: scene.clip.as_ref().map_or_else(String::new, |clip| clip.name.clone()),
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
             joints,
             notes: notes(&[Place::Body, Place::Motion]),

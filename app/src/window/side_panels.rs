@@ -3,6 +3,7 @@
 use egui::{Panel, ScrollArea, Ui};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
+use lovelock_project::project::RecordingSection;
 use lovelock_render::HairDrawing;
 
 use super::control::{section, section_with};
@@ -146,11 +147,13 @@ impl Window {
                     picks_sound = panels::sound::ui(ui, project, loaded, duration).is_some();
                 });
                 self.tell_again(problems, clicked);
-                section(ui, "Recording", false, |ui| {
+                let unfolded = section(ui, "Recording", false, |ui| {
                     let frames = self.session.frames(project.recording.fps);
                     recording =
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
+                let RecordingSection { width, height, .. } = project.recording;
+                self.viewport.film = unfolded.map(|()| [width, height]);
                 section(ui, "Health", true, |ui| self.health_panel(ui, project));
                 // The panes have their own statistics; the single image is not rendered beside them.
                 let compares = self.layout.compare.shown;

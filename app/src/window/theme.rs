@@ -106,6 +106,8 @@ pub(crate) fn apply(ctx: &egui::Context) {
         style.spacing.button_padding = Vec2::new(8.0, 3.0);
         style.spacing.window_margin = Margin::same(10);
         style.spacing.interact_size.y = 20.0;
+        style.spacing.tooltip_width = 320.0;
+        style.interaction.tooltip_delay = 0.9;
         style.text_styles.insert(TextStyle::Body, FontId::proportional(12.5));
         style.text_styles.insert(TextStyle::Button, FontId::proportional(12.5));
         style.text_styles.insert(TextStyle::Small, FontId::proportional(10.5));

@@ -1,6 +1,6 @@
 //! The image in the window.
 
-use egui::{Align2, Color32, FontId, Rect, Response, Sense, Ui, Vec2, pos2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 use lovelock_render::Backend;
 use lovelock_session::render_thread::{Adapter, RenderedImage};
 
@@ -31,6 +31,8 @@ pub(crate) struct Viewport {
     shown: ShownImage,
     /// Requested size of images, pixels.
     pub(crate) wanted: [u32; 2],
+    /// The size of the film whose frame is shown, pixels; no frame is shown without it.
+    pub(crate) film: Option<[u32; 2]>,
 }
 
 impl Viewport {
@@ -46,7 +48,8 @@ impl Viewport {
         // No control: Tab passes it by, and keys are shortcuts while nothing else has the focus.
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::CLICK | Sense::DRAG);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
-        self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        self.wanted = size_for(image_size(rect.size(), self.film), pixels_per_point, most_pixels, scale);
         if let Some(painted) = painted {
             self.shown.set(ui.ctx(), textures, "picture", &painted.image, false);
         }
@@ -66,6 +69,9 @@ impl Viewport {
                 FontId::proportional(15.0),
                 theme::QUIET,
             );
+        }
+        if let (Some(film), Some(place)) = (self.film, place) {
+            frame(ui, rect, film_in(place, film), film);
         }
         response
     }
@@ -99,6 +105,35 @@ impl Viewport {
     }
 }
 
+/// The size of the image in a viewport of `size`: with the frame of a film that is wider than the viewport, that of the film, so that
+/// all of it is visible. Image and film show the same height of the scene.
+fn image_size(size: Vec2, film: Option<[u32; 2]>) -> Vec2 {
+    let of_film = film.map(|[width, height]| vec2(width.max(1) as f32, height.max(1) as f32));
+    let wider = of_film.filter(|film| film.x * size.y > size.x * film.y);
+    wider.map_or(size, |film| fit(film, Rect::from_min_size(Pos2::ZERO, size)).size())
+}
+
+/// The part of an image at `place` that a film shows.
+fn film_in(place: Rect, [width, height]: [u32; 2]) -> Rect {
+    fit(vec2(width.max(1) as f32, height.max(1) as f32), place)
+}
+
+/// The frame of a film: its border, and what is outside of it dimmed.
+fn frame(ui: &Ui, rect: Rect, film: Rect, [width, height]: [u32; 2]) {
+    let painter = ui.painter_at(rect);
+    let left_of = |x: f32| Rect::from_min_max(rect.min, pos2(x, rect.bottom()));
+    let right_of = |x: f32| Rect::from_min_max(pos2(x, rect.top()), rect.max);
+    let above = Rect::from_min_max(pos2(film.left(), rect.top()), film.right_top());
+    let below = Rect::from_min_max(film.left_bottom(), pos2(film.right(), rect.bottom()));
+    for outside in [left_of(film.left()), right_of(film.right()), above, below] {
+        painter.rect_filled(outside, 0.0, theme::PAGE.gamma_multiply(0.7));
+    }
+    painter.rect_stroke(film, 0.0, Stroke::new(1.0, theme::RECORDING), StrokeKind::Inside);
+    let text = format!("Film {width} × {height}");
+    let at = film.center_bottom() - vec2(0.0, 6.0);
+    painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(10.5), theme::RECORDING);
+}
+
 /// Pixels for a viewport of `size` points.
 pub(crate) fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> [u32; 2] {
     let pixels = size * pixels_per_point;
@@ -117,6 +152,24 @@ pub(crate) fn fit(size: Vec2, rect: Rect) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_frame_of_a_film_shows_the_same_height_as_the_image() {
+        let view = vec2(800.0, 600.0);
+        assert_eq!(image_size(view, None), view);
+        // Narrower than the viewport: the image stays, and the frame is inside it.
+        let square = Some([1080, 1080]);
+        assert_eq!(image_size(view, square), view);
+        let frame = film_in(Rect::from_min_size(Pos2::ZERO, view), [1080, 1080]);
+        assert_eq!((frame.left(), frame.right(), frame.height()), (100.0, 700.0, 600.0));
+        // Wider: the image is the film's, so that its sides are visible too.
+        let wide = Some([1920, 1080]);
+        let image = image_size(view, wide);
+        assert_eq!(image, vec2(800.0, 450.0));
+        let place = fit(image, Rect::from_min_size(Pos2::ZERO, view));
+        assert_eq!(film_in(place, [1920, 1080]), place);
+        assert_eq!(image_size(view, Some([0, 0])), view, "a size that a file may hold");
+    }
 
     #[test]
     fn the_processor_draws_fewer_pixels_of_the_same_shape() {

@@ -11,6 +11,7 @@ use lovelock_base::settings::Choices as _;
 use lovelock_brush::Tool;
 
 use super::Brushes;
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// Size of a button, points.
@@ -77,7 +78,7 @@ impl Brushes {
         let button = Button::selectable(on, icon(tool).rich_text().size(16.0)).min_size(vec2(BUTTON, BUTTON));
         let response = ui.add(button);
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, name));
-        if response.on_hover_text(tooltip(tool)).clicked() {
+        if response.hover_tooltip(tooltip(tool)).clicked() {
             self.tool = tool;
         }
     }

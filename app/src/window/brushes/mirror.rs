@@ -4,6 +4,7 @@ use egui::{Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo
 use lovelock_base::settings::Choices as _;
 use lovelock_brush::{BrushMirror, BrushSettings};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{entry, revealed, row};
 use crate::window::theme;
 
@@ -30,7 +31,7 @@ pub(super) fn choose(ui: &mut Ui, settings: &mut BrushSettings, default: &BrushS
     let differs = *mirror != default.mirror;
     let response = row(ui, info.label, info.text, differs, mirror, default.mirror, |ui, mirror| {
         let pictures = BrushMirror::ALL.iter().map(|choice| {
-            let response = picture(ui, *choice, *mirror == *choice).on_hover_text(text(*choice));
+            let response = picture(ui, *choice, *mirror == *choice).hover_tooltip(text(*choice));
             if response.clicked() {
                 *mirror = *choice;
             }

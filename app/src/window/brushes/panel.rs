@@ -6,6 +6,7 @@ use lovelock_base::settings::Choices as _;
 use lovelock_brush::{BrushSettings, Tool};
 
 use super::{Brushes, Kept};
+use crate::window::control::HoverTooltip;
 use crate::window::control::{curve, note, restore_all, section, settings};
 
 /// What the panel requests.
@@ -35,7 +36,7 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: &mut bool, tip: &str| {
             let response = ui.add(egui::Button::selectable(*on, (icon.rich_text(), name)));
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, *on, name));
-            if response.on_hover_text(tip).clicked() {
+            if response.hover_tooltip(tip).clicked() {
                 *on = !*on;
             }
         };
@@ -45,7 +46,7 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
         toggle(ICON_PAUSE, "No physics", &mut brushes.still, tip);
         if brushes.strokes.frozen.contains(&true) {
             let thaw = ui.button((ICON_AC_UNIT.rich_text(), "Unfreeze all"));
-            if thaw.on_hover_text("Lets brushes touch every lock again.").clicked() {
+            if thaw.hover_tooltip("Lets brushes touch every lock again.").clicked() {
                 request = Some(BrushRequest::Thaw);
             }
         }
@@ -63,7 +64,7 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
     let recorded = brushes.strokes.recorded.len();
     let save = ui.add_enabled(recorded > 0, egui::Button::new("Save strokes…"));
     let tip = "Saves the strokes since the program started, to be played again by `lovelock style`.";
-    if save.on_hover_text(tip).on_disabled_hover_text("There is no stroke yet.").clicked() {
+    if save.hover_tooltip(tip).disabled_hover_tooltip("There is no stroke yet.").clicked() {
         request = Some(BrushRequest::Save);
     }
     note(ui, "Strokes are written into the selected layer By hand, or into the last one.");
@@ -73,7 +74,7 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
             let tip = format!(
                 "{tip} The map is the painted mask of a layer, whose settings say how much. Ctrl erases."
             );
-            if ui.button(name).on_hover_text(tip).clicked() {
+            if ui.button(name).hover_tooltip(tip).clicked() {
                 request = Some(BrushRequest::Paint(id));
             }
         }

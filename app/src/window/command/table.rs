@@ -29,12 +29,19 @@ pub const COMMANDS: &[CommandInfo] = {
         entry(
             C::StepForward,
             "step-forward",
-            "Next frame",
-            "Moves one frame forward.",
+            "Next step",
+            "Moves forward by one step of the simulation, 1/60 s.",
             &["Right"],
             G::Playback,
         ),
-        entry(C::StepBack, "step-back", "Previous frame", "Moves one frame back.", &["Left"], G::Playback),
+        entry(
+            C::StepBack,
+            "step-back",
+            "Previous step",
+            "Moves back by one step of the simulation, 1/60 s.",
+            &["Left"],
+            G::Playback,
+        ),
         entry(
             C::JumpToStart,
             "jump-to-start",

@@ -8,6 +8,7 @@ use lovelock_project::project::CompareSection;
 
 use super::layout::CompareLayout;
 use super::legend::LARGEST;
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// An action that the toolbar requests.
@@ -48,7 +49,7 @@ pub(super) fn ui(
                 "Shows two panes on one page, divided by a line that can be dragged. Hold V to swap them.",
             ),
         ] {
-            if ui.selectable_label(layout.wipe == wipe, name).on_hover_text(tip).clicked() {
+            if ui.selectable_label(layout.wipe == wipe, name).hover_tooltip(tip).clicked() {
                 layout.wipe = wipe;
             }
         }
@@ -60,7 +61,7 @@ pub(super) fn ui(
         ui.separator();
         let mut stops = project.picture.exposure_stops;
         let drag = DragValue::new(&mut stops).range(-6.0..=6.0).speed(0.02).fixed_decimals(2).suffix(" EV");
-        let response = ui.add(drag).on_hover_text("Exposure of all panes, in stops.");
+        let response = ui.add(drag).hover_tooltip("Exposure of all panes, in stops.");
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Exposure of all panes"));
         if response.changed() {
@@ -68,7 +69,7 @@ pub(super) fn ui(
         }
         if magnified > 1.001 {
             let tip = "Shows the whole image again. Ctrl+wheel over a pane magnifies all panes.";
-            if ui.button(format!("{magnified:.1}×")).on_hover_text(tip).clicked() {
+            if ui.button(format!("{magnified:.1}×")).hover_tooltip(tip).clicked() {
                 action = Some(ToolbarAction::WholePicture);
             }
         }
@@ -93,7 +94,7 @@ pub(super) fn ui(
         ui.separator();
         let mut button =
             |ui: &mut Ui, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: ToolbarAction| {
-                let response = ui.add_enabled(enabled, egui::Button::new(icon)).on_hover_text(tip);
+                let response = ui.add_enabled(enabled, egui::Button::new(icon)).hover_tooltip(tip);
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
                 if response.clicked() {
                     action = Some(what);
@@ -165,7 +166,7 @@ fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
         .show_ui(ui, |ui| {
             for shows in LiveShows::ALL {
                 ui.selectable_value(&mut layout.shows, shows, shows.label())
-                    .on_hover_text(shows.description());
+                    .hover_tooltip(shows.description());
             }
         })
         .response;
@@ -186,7 +187,7 @@ fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
 
 /// A button that stays pressed.
 fn toggle(ui: &mut Ui, on: &mut bool, icon: MaterialIcon, name: &str, tip: &str) {
-    let response = ui.selectable_label(*on, icon).on_hover_text(tip);
+    let response = ui.selectable_label(*on, icon).hover_tooltip(tip);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *on, name));
     if response.clicked() {
         *on = !*on;

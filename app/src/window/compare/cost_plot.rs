@@ -10,6 +10,7 @@ use lovelock_project::Project;
 
 use super::costs::{Costs, PLOTTED_SECS, Way};
 use super::layout::CostPlot;
+use crate::window::control::HoverTooltip;
 use crate::window::control::note;
 use crate::window::panels::statistics::round_steps;
 use crate::window::theme;
@@ -25,7 +26,7 @@ pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Proj
         ui.spacing_mut().item_spacing.x = 2.0;
         for which in CostPlot::ALL {
             let text = RichText::new(which.label()).small();
-            if ui.selectable_label(*plot == which, text).on_hover_text(which.tip()).clicked() {
+            if ui.selectable_label(*plot == which, text).hover_tooltip(which.tip()).clicked() {
                 *plot = which;
             }
         }
@@ -238,7 +239,7 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
                 })
                 .inner
             };
-            cell(ui, NAME_WIDTH, Layout::left_to_right(Align::Center), name).on_hover_text(tip);
+            cell(ui, NAME_WIDTH, Layout::left_to_right(Align::Center), name).hover_tooltip(tip);
             for (width, text) in COLUMNS.into_iter().zip(cells) {
                 cell(ui, width, Layout::right_to_left(Align::Center), text);
             }

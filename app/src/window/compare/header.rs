@@ -8,6 +8,7 @@ use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::ShadowMethod;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{note, settings as setting_rows};
 use crate::window::{panels, theme};
 
@@ -56,7 +57,7 @@ pub(super) fn ui(
         let text = egui::Label::new(RichText::new(&said).small().color(theme::QUIET)).truncate();
         ui.scope_builder(
             UiBuilder::new().max_rect(room).layout(egui::Layout::left_to_right(egui::Align::Center)),
-            |ui| ui.add(text).on_hover_text(&tip),
+            |ui| ui.add(text).hover_tooltip(&tip),
         );
     }
     let place = |nth: u8| part(buttons + BUTTON * f32::from(nth), buttons + BUTTON * f32::from(nth + 1));
@@ -66,7 +67,7 @@ pub(super) fn ui(
         let response = ui
             .scope_builder(UiBuilder::new().max_rect(place(nth)), |ui| ui.add_enabled(enabled, button))
             .inner;
-        let response = response.on_hover_text(tip);
+        let response = response.hover_tooltip(tip);
         let name = format!("{name} {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
         if response.clicked() {
@@ -91,7 +92,7 @@ fn method(ui: &mut Ui, index: usize, pane: &mut Contender, width: f32) {
         .show_ui(ui, |ui| {
             for &method in ShadowMethod::ALL {
                 ui.selectable_value(&mut pane.shadow.method, method, method.label())
-                    .on_hover_text(method.description());
+                    .hover_tooltip(method.description());
             }
         })
         .response;
@@ -109,7 +110,7 @@ fn settings(ui: &mut Ui, index: usize, pane: &mut Contender) {
         ui.set_width(300.0);
         all_settings(ui, pane);
     });
-    let response = response.on_hover_text(
+    let response = response.hover_tooltip(
         "What hair is drawn as, transparency, backend, resolution and all settings of the method.",
     );
     let name = format!("Settings of pane {}", index + 1);
@@ -122,7 +123,7 @@ pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
         ui.horizontal(|ui| {
             ui.label(format!("Shows the {take}"));
             let tip = "Shows the scene of the other panes in place of the take.";
-            if ui.button("Remove take").on_hover_text(tip).clicked() {
+            if ui.button("Remove take").hover_tooltip(tip).clicked() {
                 pane.take = None;
             }
         });

@@ -5,7 +5,7 @@ use egui_plot::{GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, Plo
 use lovelock_panes::probe::{LiveProbe, ProbedHair};
 use lovelock_project::Project;
 
-use crate::window::control::note;
+use crate::window::control::{axis_number, note};
 use crate::window::theme;
 
 /// Height of a pane's row of marks, as a fraction of the range of transmittance.
@@ -56,12 +56,12 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         .include_y(-ROW * (rows as f64 + 0.4))
         .set_margin_fraction(egui::vec2(0.01, 0.03))
         .x_axis_label("depth along the light from the hair, mm")
+        .x_axis_formatter(axis_number)
         .y_grid_spacer(|_| (0..=2).map(|i| GridMark { value: 0.5 * f64::from(i), step_size: 0.5 }).collect())
-        .y_axis_formatter(
-            |mark, _| {
-                if mark.value < -1e-6 { String::new() } else { format!("{:.1}", mark.value) }
-            },
-        )
+        .y_axis_formatter(|mark, shown| {
+            // Below zero are the rows of marks.
+            if mark.value < -1e-6 { String::new() } else { axis_number(mark, shown) }
+        })
         .label_formatter(|at| match at {
             HoverPosition::NearDataPoint { plot_name, position, .. } if position.y >= 0.0 => {
                 Some(format!("{plot_name}\n{:.2} mm, {:.3}", position.x, position.y))

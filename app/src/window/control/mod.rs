@@ -1,16 +1,22 @@
 //! The rows of a panel: a label, a control with its unit, a tooltip, and a mark where the value differs from its default.
 
 mod curve;
+mod keying;
 mod number;
+mod plot_axis;
 mod reveal;
 mod setting;
+mod tooltip;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
+pub(crate) use keying::{KeyRequest, Keying, begin as begin_keying, end as end_keying, of_setting};
 pub(crate) use number::{Limits, Number, is_escaped, typed};
+pub(crate) use plot_axis::axis_number;
 pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
 pub(crate) use setting::{all_settings, entry, setting, settings};
+pub(crate) use tooltip::{HoverTooltip, keep_free_area};
 
 use super::theme;
 
@@ -135,15 +141,18 @@ pub(crate) fn row<T>(
         let why_not: Option<String> = ui.data(|data| data.get_temp(Id::unique("why not")));
         let tip = why_not.map_or(tip.clone(), |why_not| format!("{tip}\n\n{why_not}"));
         let mut response = add(ui, value).labelled_by(name.id);
-        let mut name = name;
         // An open tooltip stays while the pointer rests: a dialog that opens over it must close it.
         if ui.memory(|memory| memory.is_above_modal_layer(ui.layer_id())) {
-            response = response.on_hover_text(&tip).on_disabled_hover_text(&tip);
-            name = name.on_hover_text(&tip).on_disabled_hover_text(&tip);
+            let whole = name.rect | response.rect;
+            tooltip::beside(&response, whole, &tip);
+            tooltip::beside(&name, whole, &tip);
         }
         // A slider's rail senses drags but no clicks, so its own response does not report a double-click.
         let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
-        if differs && twice && ui.is_enabled() && (name.contains_pointer() || response.contains_pointer()) {
+        let twice = twice && ui.is_enabled() && (name.contains_pointer() || response.contains_pointer());
+        let whole = (name.rect | response.rect).with_max_x(ui.max_rect().right());
+        let reset = keying::row(ui, whole, &name, label, differs);
+        if differs && (twice || reset) {
             *value = default;
             response.mark_changed();
         }
@@ -202,7 +211,7 @@ pub(crate) fn section_with<R>(
     let icon: &str = egui_material_icons::icons::ICON_ERROR.into();
     let font = egui::TextStyle::Button.resolve(ui.style());
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, icon, font, theme::WRONG);
-    (shown, mark.on_hover_text(said).clicked())
+    (shown, mark.hover_tooltip(said).clicked())
 }
 
 /// A line of quiet text.

@@ -4,7 +4,7 @@ use egui::{Response, Ui};
 use lovelock_base::settings::{AnySettings, Counts, Info, Kind, Setting, Settings, Value};
 
 use super::number::{Number, count};
-use super::{choice, color, reveal, toggle};
+use super::{choice, color, of_setting, reveal, toggle};
 use crate::window::manual::what::note_row;
 
 /// The rows of several settings of one struct, in this order.
@@ -22,7 +22,8 @@ pub(crate) fn setting<S: Settings>(ui: &mut Ui, name: &str, settings: &mut S, de
     let setting = entry::<S>(name);
     let mut value = setting.get(settings);
     let before = value;
-    let response = show(ui, &setting.info, &mut value, setting.get(default));
+    let (info, default) = (&setting.info, setting.get(default));
+    let response = of_setting(ui, &*settings, info, before, |ui| show(ui, info, &mut value, default));
     if value != before {
         // A slider may offer values between those that are allowed.
         setting.set(settings, setting.info.clamp(value, before));
@@ -57,7 +58,7 @@ pub(crate) fn all_settings(ui: &mut Ui, settings: &mut dyn AnySettings, default:
             continue;
         };
         let mut value = before;
-        show(ui, info, &mut value, default);
+        of_setting(ui, &*settings, info, before, |ui| show(ui, info, &mut value, default));
         if value != before {
             settings.assign(info.name, info.clamp(value, before));
         }

@@ -7,6 +7,7 @@ use egui::{
 use super::page::{Block, Page, Span};
 use super::pages::{self, PAGES};
 use super::{Manual, Place};
+use crate::window::control::HoverTooltip;
 use crate::window::search::{best_first, fit};
 use crate::window::theme;
 
@@ -73,7 +74,7 @@ impl Manual {
         let mut goto = None;
         ui.horizontal(|ui| {
             let back = ui.add_enabled(!self.before.is_empty(), egui::Button::new("Back"));
-            if back.on_hover_text("Returns to the place before.").clicked() {
+            if back.hover_tooltip("Returns to the place before.").clicked() {
                 self.back();
             }
         });
@@ -112,7 +113,7 @@ impl Manual {
             for (i, section) in found.iter().enumerate() {
                 let chosen = self.search.is_chosen(i);
                 let row = ui.selectable_label(chosen, &section.name);
-                let row = row.on_hover_text(PAGES[section.place.page].page().title());
+                let row = row.hover_tooltip(PAGES[section.place.page].page().title());
                 self.search.show(i, &row);
                 if row.clicked() || (picked.entered && chosen) {
                     goto = Some(section.place);
@@ -306,7 +307,7 @@ fn line(ui: &mut Ui, spans: &[Span], size: Option<f32>) -> Option<String> {
                     let name = span.text.clone();
                     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Link, true, &name));
                     let response = response.on_hover_cursor(egui::CursorIcon::PointingHand);
-                    if response.on_hover_text(to).clicked() {
+                    if response.hover_tooltip(to).clicked() {
                         link = Some(to.clone());
                     }
                 }

@@ -15,6 +15,7 @@ use lovelock_render::Camera;
 use lovelock_session::render_thread::RenderedImage;
 
 use super::theme;
+use crate::window::control::HoverTooltip;
 
 /// The image on the screen and the camera with which it was rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,7 @@ fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
     let over = handle.hovered() || handle.dragged();
     painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
     painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
-    handle.on_hover_cursor(CursorIcon::Grab).on_hover_text(words);
+    handle.on_hover_cursor(CursorIcon::Grab).hover_tooltip(words);
 }
 
 impl View {

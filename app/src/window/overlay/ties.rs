@@ -7,6 +7,7 @@ use lovelock_groom::{HairTie, TieReach};
 
 use super::head::{Head, Hold};
 use super::{HANDLE, View, dot, dragged_to, handle};
+use crate::window::control::HoverTooltip;
 use crate::window::{aim, theme};
 
 /// Length of the arrow in the direction in which hair leaves a tie, metres.
@@ -42,7 +43,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
                     tie.axis = turned;
                 }
             }
-            arrow.on_hover_cursor(CursorIcon::Grab).on_hover_text("Drag to turn the tie.");
+            arrow.on_hover_cursor(CursorIcon::Grab).hover_tooltip("Drag to turn the tie.");
         }
         let id = ui.scope_id().with(("tie", i));
         let ring_handle = handle(ui, at, id, &format!("Tie {} in the image", i + 1));
@@ -65,7 +66,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
             painter.arrow(at, end - at, Stroke::new(2.0, color));
         }
         painter.circle_filled(at, if over { 6.0 } else { 4.5 }, color);
-        ring_handle.on_hover_cursor(CursorIcon::Grab).on_hover_text("Drag to move the tie over the head.");
+        ring_handle.on_hover_cursor(CursorIcon::Grab).hover_tooltip("Drag to move the tie over the head.");
     }
 }
 

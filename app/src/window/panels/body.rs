@@ -5,6 +5,7 @@ use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{note, row, section, setting, settings};
 
 /// What the panel shows of the body that is loaded.
@@ -12,6 +13,8 @@ use crate::window::control::{note, row, section, setting, settings};
 pub(crate) struct LoadedBody {
     /// Names of the clips.
     pub(crate) clips: Vec<String>,
+    /// The name of the clip that plays; empty where none does.
+    pub(crate) clip: String,
     /// Paths of the joints, such as `hips/spine/neck/head`.
     pub(crate) joints: Vec<String>,
     /// Path of the joint that carries the hair.
@@ -36,7 +39,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         let body = &mut project.body;
         if ui
             .selectable_label(body.source == BodySource::Dancer, "Dancer")
-            .on_hover_text("Loads the shipped dancer.")
+            .hover_tooltip("Loads the shipped dancer.")
             .clicked()
         {
             body.switch(None);
@@ -44,7 +47,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         let on = body.source == BodySource::File;
         if ui
             .selectable_label(on, "Character file…")
-            .on_hover_text("Loads a character: .glb, .gltf, .vrm, .fbx, .usd or .usdz.")
+            .hover_tooltip("Loads a character: .glb, .gltf, .vrm, .fbx, .usd or .usdz.")
             .clicked()
         {
             if body.file.is_some() && !on {
@@ -105,8 +108,9 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
     let motion = &mut project.motion;
     ui.horizontal_wrapped(|ui| {
         for clip in &loaded.clips {
-            let on = motion.source == MotionSource::Clip && motion.clip == *clip;
-            if ui.selectable_label(on, clip).on_hover_text("Plays this clip of the character.").clicked() {
+            let plays = if motion.clip.is_empty() { &loaded.clip } else { &motion.clip };
+            let on = motion.source == MotionSource::Clip && plays == clip;
+            if ui.selectable_label(on, clip).hover_tooltip("Plays this clip of the character.").clicked() {
                 motion.source = MotionSource::Clip;
                 motion.clip.clone_from(clip);
             }
@@ -114,7 +118,7 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
         let on = motion.source == MotionSource::File;
         if ui
             .selectable_label(on, "Motion file…")
-            .on_hover_text("Loads a motion and retargets it to this body: .bvh or .vrma, or a clip of another character.")
+            .hover_tooltip("Loads a motion and retargets it to this body: .bvh or .vrma, or a clip of another character.")
             .clicked()
         {
             if motion.file.is_some() && !on {
@@ -125,7 +129,7 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
         }
         if ui
             .selectable_label(motion.source == MotionSource::Rest, "Rest")
-            .on_hover_text("Keeps the body still in its rest pose.")
+            .hover_tooltip("Keeps the body still in its rest pose.")
             .clicked()
         {
             motion.source = MotionSource::Rest;

@@ -7,6 +7,7 @@ use lovelock_groom::{HAIR_FORMATS, ImportSettings, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{HairSection, HairSource};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{choice, entry, note, restore_all, section, setting, settings};
 
 /// What the panel shows of the hairstyle that is loaded.
@@ -33,7 +34,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Opt
     ui.horizontal_wrapped(|ui| {
         let on = project.hair.source == HairSource::File;
         let response = ui.selectable_label(on, "From file…");
-        if response.on_hover_text(file_tooltip()).clicked() {
+        if response.hover_tooltip(file_tooltip()).clicked() {
             if project.hair.file.is_some() && !on {
                 project.set_hair_source(HairSource::File);
             } else {

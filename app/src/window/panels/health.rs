@@ -4,6 +4,7 @@ use egui::{Align, Color32, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo};
 use egui_material_icons::icons;
 use lovelock_session::health::{Gauge, GaugeKind, HealthLevel};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::note;
 use crate::window::theme;
 
@@ -17,10 +18,20 @@ pub(crate) fn color(level: HealthLevel) -> Color32 {
 }
 
 /// Shows the gauges, each with a button that marks the place of its value. `shown` is the gauge that is marked in the image.
-/// Returns the gauge whose place should be shown.
-pub(crate) fn ui(ui: &mut Ui, gauges: &[Gauge], shown: Option<GaugeKind>) -> Option<GaugeKind> {
+/// Returns the gauge whose place should be shown. There are no gauges while a take plays, and before the first frame.
+pub(crate) fn ui(
+    ui: &mut Ui,
+    gauges: &[Gauge],
+    plays_take: bool,
+    shown: Option<GaugeKind>,
+) -> Option<GaugeKind> {
     if gauges.is_empty() {
-        note(ui, "Nothing is simulated while a take plays.");
+        let why = if plays_take {
+            "Nothing is simulated while a take plays."
+        } else {
+            "Nothing is measured before the first step of the simulation."
+        };
+        note(ui, why);
         return None;
     }
     let worst = gauges.iter().map(|gauge| gauge.level).max().unwrap_or(HealthLevel::Good);
@@ -45,7 +56,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     let color = color(gauge.level);
     let mut asked = false;
     ui.horizontal(|ui| {
-        ui.label(RichText::new(kind.label()).small()).on_hover_text(kind.tooltip());
+        ui.label(RichText::new(kind.label()).small()).hover_tooltip(kind.tooltip());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = format!("Show: {}", kind.label());
             let icon = RichText::new(icons::ICON_MY_LOCATION.codepoint).small();
@@ -61,11 +72,11 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
                 }
                 (false, None) => "Pauses, marks the place in the image, and moves the camera to it.",
             };
-            asked = button.on_hover_text(tip).on_disabled_hover_text("This value has no place.").clicked();
+            asked = button.hover_tooltip(tip).disabled_hover_tooltip("This value has no place.").clicked();
             ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
             if let Some(when) = gauge.when_in_words() {
                 ui.label(RichText::new(when.trim_start()).small().weak())
-                    .on_hover_text("Time of this value on the timeline.");
+                    .hover_tooltip("Time of this value on the timeline.");
             }
         });
     });
@@ -74,7 +85,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
     ui.painter().rect_filled(full, 1.5, color);
     if let Some(within) = &gauge.within {
-        ui.label(RichText::new(format!("in {within}")).small().weak()).on_hover_text("Part of the body.");
+        ui.label(RichText::new(format!("in {within}")).small().weak()).hover_tooltip("Part of the body.");
     }
     if !gauge.advice.is_empty() {
         ui.label(RichText::new(&gauge.advice).small().color(color));

@@ -4,19 +4,20 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_base::settings::Unit;
+use lovelock_base::settings::{Unit, Value};
 use lovelock_render::{Light, MAX_LIGHTS};
 
-use crate::window::control::{Number, note, setting, settings};
+use crate::window::control::HoverTooltip;
+use crate::window::control::{Number, entry, note, of_setting, setting, settings};
 use crate::window::light_sphere::light_sphere;
 
 /// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back.
 pub(crate) fn ui(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3; 3]) {
     ui.horizontal_wrapped(|ui| {
         for (i, light) in lights.iter().enumerate() {
-            ui.selectable_value(selected, i, &light.name).on_hover_text("Shows the controls of this light.");
+            ui.selectable_value(selected, i, &light.name).hover_tooltip("Shows the controls of this light.");
         }
-        if lights.len() < MAX_LIGHTS && ui.button("+").on_hover_text("Adds a light.").clicked() {
+        if lights.len() < MAX_LIGHTS && ui.button("+").hover_tooltip("Adds a light.").clicked() {
             *selected = lights.len();
             lights.push(Light { name: format!("Light {}", lights.len() + 1), ..Light::default() });
         }
@@ -32,12 +33,17 @@ pub(crate) fn ui(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axe
         light_sphere(ui, &mut light.direction, axes);
         ui.vertical(|ui| {
             ui.add(egui::TextEdit::singleline(&mut light.name).desired_width(100.0))
-                .on_hover_text("Name of this light.");
-            removed = ui.button("Remove").on_hover_text("Removes this light.").clicked();
+                .hover_tooltip("Name of this light.");
+            removed = ui.button("Remove").hover_tooltip("Removes this light.").clicked();
         });
     });
     setting(ui, "enabled", light, &default);
-    direction(ui, &mut light.direction, default.direction);
+    let info = &entry::<Light>("direction").info;
+    let mut way = light.direction;
+    of_setting(ui, &*light, info, Value::Vector(way.to_array()), |ui| {
+        direction(ui, &mut way, default.direction);
+    });
+    light.direction = way;
     settings(ui, &["intensity", "color", "specular", "softness"], light, &default);
     if removed {
         lights.remove(*selected);

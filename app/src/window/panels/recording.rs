@@ -1,9 +1,13 @@
 //! The settings of recordings, and the recording that runs.
 
+use std::path::PathBuf;
+
 use egui::{ProgressBar, RichText, Ui};
 use lovelock_project::project::RecordingSection;
+use lovelock_record::FilmQuality;
 use lovelock_session::clock::Pace;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{Limits, choice, entry, note, row, setting, settings};
 use crate::window::theme;
 
@@ -23,12 +27,17 @@ pub(crate) enum State {
         /// Estimated seconds left.
         left_secs: Option<f64>,
     },
-    /// The last one is finished; the text says what was written.
-    Done(String),
+    /// The last one is finished.
+    Done {
+        /// What was written and where.
+        what: String,
+        /// The file or the folder.
+        out: PathBuf,
+    },
     /// The last one failed; the text says why.
     Failed(String),
-    /// The user stopped the last one.
-    Cancelled,
+    /// The user stopped the last one; the text says what is left of it.
+    Cancelled(String),
 }
 
 impl State {
@@ -132,8 +141,44 @@ fn frame_range(ui: &mut Ui, section: &mut RecordingSection, default: &RecordingS
     }
 }
 
-/// What a cancelled recording leaves.
-pub(crate) const CANCELLED: &str = "Cancelled. A film is removed; complete images of a sequence are kept.";
+/// A number of bytes, with a unit.
+pub(crate) fn bytes_in_words(bytes: f64) -> String {
+    let (unit, name) = match bytes {
+        b if b >= 999.5e6 => (1e9, "GB"),
+        b if b >= 999.5e3 => (1e6, "MB"),
+        _ => (1e3, "kB"),
+    };
+    let number = bytes / unit;
+    if number < 9.95 { format!("{number:.1} {name}") } else { format!("{number:.0} {name}") }
+}
+
+/// Bits per pixel of a film of the default hair of 1280 × 720 pixels. Other films differ by up to a factor of two.
+fn bits_per_pixel(quality: FilmQuality) -> f64 {
+    match quality {
+        FilmQuality::Draft => 0.06,
+        FilmQuality::Good => 0.12,
+        FilmQuality::High => 0.25,
+        FilmQuality::Best => 0.5,
+    }
+}
+
+/// Describes the recording: its frames, its duration, and about how large a film of them is.
+fn summary(section: &RecordingSection, clip_frames: u64) -> String {
+    let frames = section.frame_range(clip_frames);
+    let count = frames.end.saturating_sub(frames.start);
+    let pixels = f64::from(section.width) * f64::from(section.height);
+    let bytes = count as f64 * pixels * bits_per_pixel(section.quality) / 8.0;
+    format!(
+        "{count} frames, {} to {}, {:.2} s. A film takes about {}.",
+        frames.start,
+        frames.end.saturating_sub(1),
+        count as f64 / section.fps.max(1e-3),
+        bytes_in_words(bytes),
+    )
+}
+
+/// What the button does that stops a recording.
+pub(crate) const CANCEL: &str = "Stops the recording. Complete images of a folder stay; of a film nothing is written, and an older file of its name stays.";
 
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
 pub(crate) fn ui(
@@ -148,6 +193,7 @@ pub(crate) fn ui(
     frame_rate(ui, section, &default);
     setting(ui, "quality", section, &default);
     frame_range(ui, section, &default, clip_frames);
+    note(ui, summary(section, clip_frames));
     settings(
         ui,
         &["format", "transparent", "subframes", "shutter_degrees", "label", "seamless"],
@@ -156,43 +202,41 @@ pub(crate) fn ui(
     );
     if let Some((fraction, text)) = state.progress() {
         ui.add(ProgressBar::new(fraction).text(text).corner_radius(4));
-        if ui.button("Cancel").on_hover_text("Stops the recording. An unfinished film is removed.").clicked()
-        {
+        if ui.button("Cancel").hover_tooltip(CANCEL).clicked() {
             request = Some(RecordingRequest::Cancel);
         }
     } else {
         ui.horizontal(|ui| {
             let dot = RichText::new("Record film…").color(theme::RECORDING);
-            if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
+            if ui.button(dot).hover_tooltip("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
                 request = Some(RecordingRequest::Film);
             }
             let tip = "Records the dance as a folder of PNG or EXR files.";
-            if ui.button("Images…").on_hover_text(tip).clicked() {
+            if ui.button("Images…").hover_tooltip(tip).clicked() {
                 request = Some(RecordingRequest::Sequence);
             }
             let curves =
                 "Writes the hair as animated curves, with the body, for other programs: USD or glTF.";
-            if ui.button("Curves…").on_hover_text(curves).clicked() {
+            if ui.button("Curves…").hover_tooltip(curves).clicked() {
                 request = Some(RecordingRequest::Curves);
             }
         });
         ui.horizontal(|ui| {
             let tip = "Records the dance as an animated PNG for a web page or a message.";
-            if ui.button("Preview…").on_hover_text(tip).clicked() {
+            if ui.button("Preview…").hover_tooltip(tip).clicked() {
                 request = Some(RecordingRequest::Preview);
             }
             let tip = "Continues a folder of images whose recording was stopped. Complete frames are kept.";
-            if ui.button("Resume…").on_hover_text(tip).clicked() {
+            if ui.button("Resume…").hover_tooltip(tip).clicked() {
                 request = Some(RecordingRequest::Resume);
             }
         });
     }
     match state {
-        State::Done(what) => note(ui, what.as_str()),
+        State::Done { what, .. } | State::Cancelled(what) => note(ui, what.as_str()),
         State::Failed(why) => {
             ui.label(RichText::new(why).color(theme::WRONG));
         }
-        State::Cancelled => note(ui, CANCELLED),
         State::Idle | State::Running { .. } => {}
     }
     request

@@ -10,6 +10,7 @@ use lovelock_satf::features::features_of;
 use lovelock_satf::layout::{ANGLES, SECTORS, TEXELS};
 use lovelock_satf::{Curl, Database, Features};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{Limits, is_escaped, note, row, typed};
 
 /// Height of a row of texels in the picture, points.
@@ -93,7 +94,7 @@ pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
         note(ui, name);
         let uv = Rect::from_min_max(pos2(0.0, from), pos2(1.0, from + 0.5));
         let image = Image::new((texture.id(), size)).uv(uv).fit_to_exact_size(size).alt_text(name);
-        ui.add(image).on_hover_text(tip);
+        ui.add(image).hover_tooltip(tip);
     }
     note(ui, sentence(&features_of(shown.sector)));
 }

@@ -4,6 +4,7 @@ use egui::Ui;
 use lovelock_base::settings::Unit;
 use lovelock_motion::ScalpFit;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, note, settings};
 use crate::window::overlay::scalp::ScalpTool;
 
@@ -13,12 +14,12 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
         note(ui, "This body has no surface on which hair can grow.");
     }
     ui.horizontal_wrapped(|ui| {
-        ui.checkbox(&mut tool.shown, "Show scalp").on_hover_text(
+        ui.checkbox(&mut tool.shown, "Show scalp").hover_tooltip(
             "Shows where hair grows. Drag the handles of its outline in the image; double-click one to restore it.",
         );
         let before = tool.painting;
         ui.checkbox(&mut tool.painting, "Paint scalp")
-            .on_hover_text("Dragging over the head adds hair. With Ctrl held it removes hair.");
+            .hover_tooltip("Dragging over the head adds hair. With Ctrl held it removes hair.");
         tool.shown |= tool.painting && !before;
         tool.painting &= tool.shown;
     });
@@ -30,7 +31,7 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
             "Size of the brush, seen from the middle of the head.",
         )
         .show(ui, &mut tool.brush, ScalpTool::default().brush);
-        ui.checkbox(&mut tool.mirrored, "Both sides").on_hover_text("Paints the other side alike.");
+        ui.checkbox(&mut tool.mirrored, "Both sides").hover_tooltip("Paints the other side alike.");
     }
     let default = ScalpFit::default();
     settings(ui, &["forward", "up", "nod", "width", "size"], fit, &default);
@@ -50,14 +51,14 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
     );
     ui.horizontal_wrapped(|ui| {
         let painted = ui.add_enabled(fit.is_painted(), egui::Button::new("Clear paint"));
-        let painted = painted.on_disabled_hover_text("Nothing is painted on the scalp.");
-        if painted.on_hover_text("Removes what was painted on the scalp.").clicked() {
+        let painted = painted.disabled_hover_tooltip("Nothing is painted on the scalp.");
+        if painted.hover_tooltip("Removes what was painted on the scalp.").clicked() {
             fit.added = default.added.clone();
             fit.removed = default.removed.clone();
         }
         let reset = ui.add_enabled(!fit.is_automatic(), egui::Button::new("Fit again"));
-        let reset = reset.on_disabled_hover_text("The scalp is as it was found.");
-        if reset.on_hover_text("Restores the scalp that was found.").clicked() {
+        let reset = reset.disabled_hover_tooltip("The scalp is as it was found.");
+        if reset.hover_tooltip("Restores the scalp that was found.").clicked() {
             *fit = default.clone();
         }
     });

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_base::settings::{Kind, Unit};
+use lovelock_base::settings::{Kind, Unit, Value};
 use lovelock_project::project::TimelineSection;
 use lovelock_simulation::{Integrator, RepulsionMode, SimulationSettings, Wind};
 
-use crate::window::control::{Number, entry, restore_all, section, setting, settings, unless};
+use crate::window::control::{Number, entry, of_setting, restore_all, section, setting, settings, unless};
 use crate::window::light_sphere::{Sphere, sphere};
 use crate::window::ramp::{Ramp, RampValue};
 
@@ -110,7 +110,10 @@ fn wind(ui: &mut Ui, wind: &mut Wind, default: &Wind, axes: [Vec3; 3]) {
     let mut angle = wind.direction[0].atan2(wind.direction[2]);
     let (before, default_angle) = (angle, default.direction[0].atan2(default.direction[2]));
     let tip = "Angle about the vertical toward which the wind blows: 0 is toward the front, 90 toward the dancer's left.";
-    Number::new("Wind heading", -PI..=PI, Unit::RADIANS, tip).show(ui, &mut angle, default_angle);
+    let info = &entry::<Wind>("direction").info;
+    of_setting(ui, &*wind, info, Value::Vector(wind.direction), |ui| {
+        Number::new("Wind heading", -PI..=PI, Unit::RADIANS, tip).show(ui, &mut angle, default_angle);
+    });
     if angle != before {
         let [x, y, z] = wind.direction;
         // The wind keeps its slope.

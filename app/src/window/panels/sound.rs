@@ -4,6 +4,7 @@ use egui::{Label, RichText, Sense, Ui};
 use lovelock_project::Project;
 use lovelock_project::project::{Marker, SoundSection, TimelineSection};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{note, row, settings, unless};
 use crate::window::soundtrack::Loaded;
 use crate::window::theme;
@@ -32,10 +33,10 @@ pub(crate) fn ui(
     });
     ui.horizontal_wrapped(|ui| {
         let tip = "Picks the sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC.";
-        if ui.button("Sound file…").on_hover_text(tip).clicked() {
+        if ui.button("Sound file…").hover_tooltip(tip).clicked() {
             request = Some(SoundRequest::PickFile);
         }
-        if file.is_some() && ui.button("Remove sound").on_hover_text("Returns to silence.").clicked() {
+        if file.is_some() && ui.button("Remove sound").hover_tooltip("Returns to silence.").clicked() {
             *file = None;
         }
     });
@@ -79,7 +80,7 @@ fn markers(ui: &mut Ui, project: &mut Project, loaded: &Loaded, duration_secs: f
     let why_not = times.is_empty().then_some("No beat was found in the time of the dance.");
     let clicked = unless(ui, why_not, |ui| {
         let tip = "Adds a marker at every beat of the dance, named by its number. Existing markers stay.";
-        ui.button("Markers at the beats").on_hover_text(tip).clicked()
+        ui.button("Markers at the beats").hover_tooltip(tip).clicked()
     });
     if !clicked {
         return;

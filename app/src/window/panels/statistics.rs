@@ -6,7 +6,8 @@ use lovelock_base::words::counted;
 use lovelock_render::PassTime;
 use lovelock_session::stats::{PassHistory, Stage, StageHistory};
 
-use crate::window::control::note;
+use crate::window::control::HoverTooltip;
+use crate::window::control::{axis_number, note};
 use crate::window::theme;
 
 /// One line of facts.
@@ -45,6 +46,7 @@ pub(crate) fn ui(
         .y_axis_label("ms")
         .show_axes([false, true])
         .y_grid_spacer(|input| round_steps(input.bounds))
+        .y_axis_formatter(axis_number)
         .show(ui, |plot| {
             for (stage, color) in Stage::ALL.into_iter().zip(theme::PLOT) {
                 if stage == Stage::Encode {
@@ -85,7 +87,7 @@ pub(crate) fn ui(
 fn list(ui: &mut Ui, id: &str, facts: &[Fact]) {
     egui::Grid::new(id).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for Fact { name, tip, value } in facts {
-            ui.label(RichText::new(*name).small().color(theme::QUIET)).on_hover_text(*tip);
+            ui.label(RichText::new(*name).small().color(theme::QUIET)).hover_tooltip(*tip);
             ui.label(RichText::new(value).small());
             ui.end_row();
         }
@@ -107,7 +109,7 @@ fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
                     .small()
                     .strong(),
             )
-            .on_hover_text(tip);
+            .hover_tooltip(tip);
             ui.label(RichText::new(format!("{sum:.2} ms")).small().strong());
             ui.end_row();
             for (name, ms) in of_group {

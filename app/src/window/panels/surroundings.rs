@@ -10,6 +10,7 @@ use lovelock_appearance::environment::{Panorama, Strongest};
 use lovelock_project::Project;
 use lovelock_render::PictureSettings;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{row, setting};
 use crate::window::theme;
 
@@ -45,12 +46,12 @@ pub(crate) fn ui(
     });
     ui.horizontal_wrapped(|ui| {
         let tip = "Takes the light from a picture of all directions: Radiance (.hdr) or OpenEXR (.exr).";
-        if ui.button("Picture file…").on_hover_text(tip).clicked() {
+        if ui.button("Picture file…").hover_tooltip(tip).clicked() {
             request = Some(SurroundingsRequest::PickFile);
         }
         if file.is_some() {
             let tip = "Returns to the light of a sky above a ground.";
-            if ui.button("Remove picture").on_hover_text(tip).clicked() {
+            if ui.button("Remove picture").hover_tooltip(tip).clicked() {
                 *file = None;
             }
         }
@@ -75,8 +76,8 @@ fn key_light(ui: &mut Ui, project: &mut Project, strongest: Option<Strongest>) {
     };
     let tip = "Gives the first light the direction and the colour of the strongest light in the picture.";
     let button = egui::Button::new("Key light from the surroundings");
-    let response = ui.add_enabled(why_not.is_none(), button).on_hover_text(tip);
-    let response = response.on_disabled_hover_text(format!("{tip}\n\n{}", why_not.unwrap_or_default()));
+    let response = ui.add_enabled(why_not.is_none(), button).hover_tooltip(tip);
+    let response = response.disabled_hover_tooltip(format!("{tip}\n\n{}", why_not.unwrap_or_default()));
     if let (true, Some(key), Some(strongest)) = (response.clicked(), key, strongest) {
         let strongest = strongest.turned(project.picture.surroundings_turn);
         key.direction = -strongest.direction;
@@ -109,7 +110,7 @@ fn thumbnail(ui: &mut Ui, picture: &Panorama, turn: &mut f32) -> Response {
     }
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Picture of the surroundings"));
-    response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_text(
+    response.on_hover_cursor(CursorIcon::ResizeHorizontal).hover_tooltip(
         "Drag to turn the surroundings; the width of the picture is a full turn. Double-click turns them back. The middle is in \
          front of the figure, and the ring marks the strongest light.",
     )

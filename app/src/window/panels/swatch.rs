@@ -6,6 +6,7 @@ use glam::Vec3;
 use lovelock_groom::HairLook;
 
 use super::surroundings::grid;
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// Size of a swatch, points.
@@ -31,7 +32,7 @@ pub(super) fn swatch(ui: &mut Ui, name: &str, look: &HairLook, selected: bool) -
         };
         painter.rect_stroke(rect, 3.0, edge, StrokeKind::Inside);
     }
-    response.on_hover_text(name)
+    response.hover_tooltip(name)
 }
 
 /// A lock of strands that hangs down.

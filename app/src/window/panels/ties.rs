@@ -10,6 +10,7 @@ use lovelock_groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
 use lovelock_project::project::HairSection;
 
 use crate::window::aim::Aim;
+use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, choice, entry, note, setting, settings};
 
 const FULL: &str = "There can be no more ties.";
@@ -27,7 +28,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
         for (i, tie) in ties.iter().enumerate() {
             let name = format!("{} {}", label(tie.kind), i + 1);
             ui.selectable_value(selected, i, name)
-                .on_hover_text("Shows the controls of this tie, and its handle.");
+                .hover_tooltip("Shows the controls of this tie, and its handle.");
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -37,7 +38,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
             (TieKind::Bun, "Gathers the hair on top of the head and winds it up."),
         ] {
             let button = ui.add_enabled(!full, egui::Button::new(format!("+ {}", label(kind))));
-            if button.on_hover_text(words).on_disabled_hover_text(FULL).clicked() {
+            if button.hover_tooltip(words).disabled_hover_tooltip(FULL).clicked() {
                 *selected = ties.len();
                 ties.push(new_tie(kind, scalp));
             }
@@ -47,10 +48,10 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
             let why_not = if full { FULL } else { "Move the tie to one side of the head first." };
             let button = ui.add_enabled(!full && is_aside, egui::Button::new("Mirror"));
             let words = "Adds the same tie on the other side of the head: two of them are pigtails.";
-            if button.on_hover_text(words).on_disabled_hover_text(why_not).clicked() {
+            if button.hover_tooltip(words).disabled_hover_tooltip(why_not).clicked() {
                 mirror(ties, selected);
             }
-            if ui.button("Remove").on_hover_text("Removes this tie; its hair falls.").clicked() {
+            if ui.button("Remove").hover_tooltip("Removes this tie; its hair falls.").clicked() {
                 ties.remove(*selected);
                 *selected = selected.saturating_sub(1);
             }
@@ -69,7 +70,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
 pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, held: &mut bool) {
     ui.separator();
     ui.horizontal_wrapped(|ui| {
-        let button = ui.selectable_label(*held, "Scissors").on_hover_text(
+        let button = ui.selectable_label(*held, "Scissors").hover_tooltip(
             "Drag a line across the hair in the image to cut off what is beyond it, seen from the head. Works while the hair moves. \
              Shortcut: X.",
         );
@@ -77,7 +78,7 @@ pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, held: &mut bool) {
             *held = !*held;
         }
         let grow = ui.add_enabled(!cut.is_empty(), egui::Button::new("Grow back"));
-        let grow = grow.on_hover_text("Undoes all cuts.").on_disabled_hover_text("Nothing is cut.");
+        let grow = grow.hover_tooltip("Undoes all cuts.").disabled_hover_tooltip("Nothing is cut.");
         if grow.clicked() {
             *cut = Haircut::default();
         }

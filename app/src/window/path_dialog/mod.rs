@@ -14,6 +14,7 @@ use egui::{Align, Id, Key, Layout, Modal, Modifiers, RichText, Ui, vec2};
 use lovelock_base::clock::Stopwatch;
 
 use super::theme;
+use crate::window::control::HoverTooltip;
 use folder::Folder;
 pub(crate) use purpose::Purpose;
 use purpose::Replaces;
@@ -244,7 +245,7 @@ impl PathDialog {
                 .desired_width(390.0);
             let field = ui.add(edit).labelled_by(label.id);
             let browse = ui.add_enabled(self.browsed.is_none(), egui::Button::new("Browse…"));
-            if browse.on_hover_text("Opens the system's file dialog.").clicked() {
+            if browse.hover_tooltip("Opens the system's file dialog.").clicked() {
                 self.browse(ui.ctx());
             }
             field
@@ -275,7 +276,7 @@ impl PathDialog {
             _ => whole.clone(),
         };
         ui.add(egui::Label::new(RichText::new(shown).small().color(theme::QUIET)).truncate())
-            .on_hover_text(whole);
+            .hover_tooltip(whole);
     }
 
     /// The lines that hold an error, a warning or a question.

@@ -4,6 +4,7 @@ use egui::{Frame, Ui};
 use lovelock_project::Project;
 use lovelock_project::project::HairMorph;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::setting;
 
 /// The slider from the project's own style to the second one, and what ends the morph.
@@ -17,13 +18,13 @@ pub(super) fn ui(ui: &mut Ui, project: &mut Project) {
         ui.horizontal(|ui| {
             let take = ui.button(format!("Become {name}"));
             if take
-                .on_hover_text("Ends the morph. The second style becomes the style of the project.")
+                .hover_tooltip("Ends the morph. The second style becomes the style of the project.")
                 .clicked()
             {
                 ends = Some(true);
             }
             let end = ui.button("End morph");
-            if end.on_hover_text("Ends the morph with the style that the project had.").clicked() {
+            if end.hover_tooltip("Ends the morph with the style that the project had.").clicked() {
                 ends = Some(false);
             }
         });

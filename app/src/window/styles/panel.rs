@@ -8,6 +8,7 @@ use lovelock_project::styles::{Style, StyleParts};
 use super::dialogs::{self, Dialog};
 use super::tile::{GAP, Tile, height, tile};
 use super::{Browser, Entry, Hover, Kept, Request, current};
+use crate::window::control::HoverTooltip;
 use crate::window::control::note;
 use crate::window::picker::Picked;
 use crate::window::{keys, theme};
@@ -41,10 +42,10 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
         }
         let tip = "Shows styles with these words in their name, description or tags. Enter applies the first, the down key goes to \
                    the pictures.";
-        field.on_hover_text(tip);
+        field.hover_tooltip(tip);
         let save = ui.add_enabled(browser.own.is_some(), Button::new("Save as style…"));
         let tip = "Keeps this hairstyle with its colours and motion among your own.";
-        if save.on_hover_text(tip).on_disabled_hover_text("The system has no folder for your data.").clicked()
+        if save.hover_tooltip(tip).disabled_hover_tooltip("The system has no folder for your data.").clicked()
         {
             let style = Style::of_project(project);
             browser.dialog = Some(Dialog::Save { style: Box::new(style), name: String::new() });
@@ -73,7 +74,7 @@ fn parts(ui: &mut Ui, project: &Project, browser: &mut Browser) {
             (&mut parts.motion, "Motion", "A click takes how the hair moves."),
         ];
         for (on, name, tip) in toggles {
-            if ui.selectable_label(*on, name).on_hover_text(tip).clicked() {
+            if ui.selectable_label(*on, name).hover_tooltip(tip).clicked() {
                 *on = !*on;
             }
         }
@@ -85,7 +86,7 @@ fn parts(ui: &mut Ui, project: &Project, browser: &mut Browser) {
                 None => "The hair does not have a style of your own.",
             };
             let tip = "Puts the hair as it is now into your style, in place of what is in it.";
-            updates = button.on_hover_text(tip).on_disabled_hover_text(why_not).clicked();
+            updates = button.hover_tooltip(tip).disabled_hover_tooltip(why_not).clicked();
         });
     });
     if let Some(entry) = own.filter(|_| updates) {
@@ -109,14 +110,14 @@ fn chips(ui: &mut Ui, browser: &mut Browser) {
         star.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, true, browser.only_favourites, "Favourites only")
         });
-        if star.on_hover_text("Shows favourites only.").clicked() {
+        if star.hover_tooltip("Shows favourites only.").clicked() {
             browser.only_favourites = !browser.only_favourites;
         }
         for tag in browser.all_tags() {
             let on = browser.tags.contains(&tag);
             let text = egui::RichText::new(&tag).small();
             let chip =
-                ui.selectable_label(on, text).on_hover_text(format!("Shows only styles that are {tag}."));
+                ui.selectable_label(on, text).hover_tooltip(format!("Shows only styles that are {tag}."));
             if chip.clicked() && !browser.tags.remove(&tag) {
                 browser.tags.insert(tag);
             }
@@ -231,7 +232,7 @@ fn one(
         response.scroll_to_me(Some(egui::Align::Center));
     }
     let tip = format!("{}\n\nA click applies it. More by a right click.", look.text);
-    response.on_hover_text(tip).context_menu(|ui| {
+    response.hover_tooltip(tip).context_menu(|ui| {
         let name = if favourite { "No favourite" } else { "Favourite" };
         let mut entries = vec![
             ("Apply shape", Action::Apply(StyleParts::SHAPE)),
@@ -253,7 +254,7 @@ fn one(
             }
         }
         if let Some(own) = &browser.own
-            && ui.button("Show folder").on_hover_text(own.folder().display().to_string()).clicked()
+            && ui.button("Show folder").hover_tooltip(own.folder().display().to_string()).clicked()
         {
             if let Err(why) = show_folder(own.folder()) {
                 browser.requests.push(Request::Failed(why));

@@ -6,6 +6,7 @@ use egui::{
 use egui_material_icons::icons::ICON_STAR;
 use lovelock_jobs::presets::thumbnail;
 
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// Points between tiles.
@@ -103,5 +104,5 @@ fn star(ui: &Ui, tile_response: &Response, picture: Rect, tile: &Tile<'_>) -> bo
         egui::TextStyle::Button,
     );
     ui.painter().galley(Align2::CENTER_CENTER.anchor_size(rect.center(), galley.size()).min, galley, color);
-    response.on_hover_text("Favourites can be shown alone.").clicked()
+    response.hover_tooltip("Favourites can be shown alone.").clicked()
 }

@@ -33,7 +33,7 @@ fn small() -> Project {
 fn gauges_show_advice_and_places() {
     let state = (bad_gauges(), None, Vec::new());
     let mut harness = screen(state, |ui, (gauges, shown, asked): &mut (Vec<Gauge>, _, Vec<_>)| {
-        asked.extend(panels::health::ui(ui, gauges, *shown));
+        asked.extend(panels::health::ui(ui, gauges, false, *shown));
     });
     assert!(harness.query_by_label("Problems:").is_some());
     let said = texts(&harness);

@@ -76,3 +76,24 @@ fn an_error_stays_until_it_is_closed_and_others_wait_for_it() {
     harness.run_steps(2);
     assert!(harness.state().state.errors().is_empty());
 }
+
+#[test]
+fn a_written_file_can_be_opened_and_shown_in_its_folder() {
+    let mut notices = Notices::default();
+    notices.push_written("Recorded dance.mp4", "/films/out/dance.mp4".into());
+    notices.push(Kind::Done, "Saved");
+    let state = (notices, Vec::new());
+    let mut harness =
+        screen_of(vec2(640.0, 400.0), state, |ui, (notices, opened): &mut (Notices, Vec<_>)| {
+            let image = ui.max_rect();
+            opened.extend(notices.show(ui.ctx(), image));
+        });
+    harness.run_steps(2);
+    assert_eq!(harness.query_all_by_label("Open").count(), 1, "only of what was written");
+    for button in ["Open", "Show in folder"] {
+        harness.get_by_label(button).click();
+        harness.run_steps(3);
+    }
+    let opened: Vec<_> = harness.state().state.1.iter().map(|path| path.display().to_string()).collect();
+    assert_eq!(opened, ["/films/out/dance.mp4", "/films/out"]);
+}

@@ -3,29 +3,35 @@
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use lovelock_project::project::{Marker, MotionSection, MotionSource, RecordingSection, SoundSection};
 use lovelock_project::tracks::Track;
 use lovelock_style::StyleStack;
 
 use super::super::command::Command;
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
-use crate::window::timeline::{self, Edited, Take, TimelineRequest, View, Writing, Zoom};
+use crate::window::timeline::{self, Edited, Recorded, Take, TimelineRequest, View, Writing, Zoom};
 
-struct State {
-    view: View,
+pub(super) struct State {
+    pub(super) view: View,
     zoom: Zoom,
+    pub(super) tracks_height: Option<f32>,
+    /// The area above the timeline.
+    pub(super) above: Rect,
     recording: RecordingSection,
     markers: Vec<Marker>,
-    tracks: Vec<Track>,
+    pub(super) tracks: Vec<Track>,
     motion: MotionSection,
     sound: SoundSection,
     asked: Vec<TimelineRequest>,
 }
 
-fn state(view: View) -> State {
+pub(super) fn state(view: View) -> State {
     State {
         view,
         zoom: Zoom::default(),
+        tracks_height: None,
+        above: Rect::NOTHING,
         recording: RecordingSection::default(),
         markers: vec![Marker { secs: 6.0, name: "turn".to_owned() }],
         tracks: Vec::new(),
@@ -40,15 +46,24 @@ fn bar(view: View) -> Harness<'static, Shown<State>> {
 }
 
 fn with_tracks(state: State) -> Harness<'static, Shown<State>> {
-    let size = vec2(900.0, timeline::height(state.tracks.len(), state.view.sound.is_some()));
+    screen_with(SCREEN, state)
+}
+
+/// The size of the screen, points.
+const SCREEN: egui::Vec2 = vec2(900.0, 700.0);
+
+/// The timeline at the bottom of a screen of that size.
+pub(super) fn screen_with(size: egui::Vec2, state: State) -> Harness<'static, Shown<State>> {
     screen_of(size, state, |ui, state: &mut State| {
         let State { recording, markers, tracks, motion, sound, .. } = state;
         let mut edited = Edited { recording, markers, tracks, motion, sound, stack: &StyleStack::default() };
-        state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
+        let kept = (&mut state.zoom, &mut state.tracks_height);
+        state.asked.extend(timeline::panel(ui, &state.view, kept, &mut edited));
+        state.above = ui.available_rect_before_wrap();
     })
 }
 
-fn view() -> View {
+pub(super) fn view() -> View {
     View {
         time_secs: 2.0,
         duration_secs: 8.0,
@@ -66,7 +81,7 @@ fn view() -> View {
     }
 }
 
-fn take() -> View {
+pub(super) fn take() -> View {
     View { take: Some(Take { name: "first".to_owned(), backwards: false }), ..view() }
 }
 
@@ -111,7 +126,7 @@ fn a_click_seeks_and_a_drag_stays_in_range() {
     let mut harness = bar(view());
     let rect: Rect = control(&harness, Role::Slider, "Time").rect();
     // The names of the lanes are left of the ruler.
-    let (left, right) = (rect.left() + 44.0, rect.right());
+    let (left, right) = (rect.left() + 52.0, rect.right());
     let at = pos2(0.5 * (left + right), rect.bottom() - 4.0);
     click(&mut harness, at);
     let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
@@ -145,7 +160,7 @@ fn the_wheel_magnifies_and_a_click_seeks_in_the_shown_range() {
     }
     assert_ne!(harness.state().state.zoom, Zoom::default());
     harness.state_mut().state.asked.clear();
-    click(&mut harness, pos2(rect.left() + 46.0, right.y));
+    click(&mut harness, pos2(rect.left() + 54.0, right.y));
     let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
         panic!("no time was asked for")
     };
@@ -185,7 +200,11 @@ fn clips_of_zero_length_and_of_days_are_shown() {
     for (time_secs, duration_secs) in
         [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0), (0.0, f64::INFINITY)]
     {
-        for view in [view(), take(), View { recording: Some([2.5, 2.0]), ..view() }] {
+        for view in [
+            view(),
+            take(),
+            View { recording: Some(Recorded { from_secs: 1.0, secs: 2.5, kept_secs: 2.0 }), ..view() },
+        ] {
             let mut harness = bar(View { time_secs, duration_secs, ..view });
             let rect = control(&harness, Role::Slider, "Time").rect();
             click(&mut harness, pos2(rect.center().x, rect.bottom() - 4.0));
@@ -227,10 +246,7 @@ fn key_at(harness: &Harness<'_, Shown<State>>, secs: f32, height: f32) -> egui::
 fn tracks_are_muted_smoothed_and_deleted() {
     let mut harness = tracked();
     harness.check_accessibility();
-    assert!(
-        harness.state().taken.right() <= 900.0
-            && harness.state().taken.bottom() <= timeline::height(2, false)
-    );
+    assert!(harness.state().taken.right() <= SCREEN.x && harness.state().taken.bottom() <= SCREEN.y);
     for (button, says) in [("Mute", "own value"), ("Smooth", "jitter"), ("Delete", "Removes")] {
         let name = format!("{button} track Camera distance");
         let at = control(&harness, Role::Button, &name).rect().center();
@@ -325,7 +341,7 @@ fn the_clip_menu_changes_clip_tempo_and_trim() {
 }
 
 /// A view with a sound that has a beat every half second.
-fn with_sound() -> State {
+pub(super) fn with_sound() -> State {
     let lane = timeline::SoundLane {
         name: "song.ogg".to_owned(),
         loaded: std::sync::Arc::new(crate::window::panels::clicks()),
@@ -351,7 +367,9 @@ fn the_sound_is_drawn_under_the_ruler_and_a_drag_shifts_it() {
     let said = tooltip_at(&mut harness, lane.center()).expect("a tooltip");
     assert!(said.contains("song.ogg") && said.contains("Alt"), "{said}");
     // Control: without a sound there is no lane, and the timeline is lower.
-    assert!(timeline::height(0, true) > timeline::height(0, false));
+    let silent = bar(view());
+    assert!(silent.query_by_role_and_label(Role::Slider, "Sound on the timeline").is_none());
+    assert!(silent.state().state.above.bottom() > harness.state().state.above.bottom());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
 use lovelock_project::project::{MotionSection, MotionSource};
 
 use super::{Edited, TimelineRequest, View};
+use crate::window::control::HoverTooltip;
 use crate::window::control::settings;
 use crate::window::theme;
 
@@ -25,7 +26,7 @@ pub(super) fn menu(
             ui.set_width(270.0);
             request = contents(ui, view, edited);
         });
-        let response = response.on_hover_text("Clip, trim, tempo and loop of the motion.");
+        let response = response.hover_tooltip("Clip, trim, tempo and loop of the motion.");
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
     });
     request
@@ -38,7 +39,8 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Timelin
     let pointed = recording.first_frame > 0 || recording.end_frame.is_some();
     let motion = &mut *edited.motion;
     for clip in &view.clips {
-        let on = motion.source == MotionSource::Clip && motion.clip == *clip;
+        let plays = if motion.clip.is_empty() { &view.clip } else { &motion.clip };
+        let on = motion.source == MotionSource::Clip && plays == clip;
         if ui.selectable_label(on, clip).clicked() {
             (motion.source, motion.clip) = (MotionSource::Clip, clip.clone());
             (motion.start_secs, motion.end_secs) = (d.start_secs, d.end_secs);
@@ -50,13 +52,13 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Timelin
     }
     ui.separator();
     let trim = ui.add_enabled(pointed, egui::Button::new("Trim to in and out points"));
-    if trim.on_hover_text("Plays only the part between the brackets on the ruler.").clicked() {
+    if trim.hover_tooltip("Plays only the part between the brackets on the ruler.").clicked() {
         request = Some(TimelineRequest::Trim);
         ui.close();
     }
     let trimmed = motion.start_secs > 0.0 || motion.end_secs.is_some();
     let whole = ui.add_enabled(trimmed, egui::Button::new("Whole clip"));
-    if whole.on_hover_text("Removes the trim.").clicked() {
+    if whole.hover_tooltip("Removes the trim.").clicked() {
         request = Some(TimelineRequest::Untrim);
         ui.close();
     }

@@ -4,15 +4,16 @@ use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Strok
 use lovelock_project::project::Marker;
 
 use super::scale::Scale;
-use super::zoom::tick_secs;
-use super::{Edited, TimelineRequest, View, Zoom, sound, thumbnails};
+use super::zoom::{FRAMES_BELOW_SECS, tick_secs};
+use super::{Edited, Recorded, TimelineRequest, View, Zoom, sound, thumbnails};
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 const RULER: f32 = 22.0;
 const LANE: f32 = 15.0;
 /// Widths of the names of lanes without and with tracks, points.
-const NAMES: f32 = 44.0;
-const NAMES_OF_TRACKS: f32 = 150.0;
+const NAMES: f32 = 52.0;
+const NAMES_OF_TRACKS: f32 = 170.0;
 
 pub(super) fn ui(
     ui: &mut Ui,
@@ -35,7 +36,7 @@ pub(super) fn ui(
     let [from, to] = zoom.shown(duration);
     let scale = Scale::new(rect.x_range(), [from, to]);
 
-    ruler(ui, rect, scale);
+    ruler(ui, rect, scale, super::fps(edited.recording));
     let strip =
         Rect::from_x_y_ranges(rect.x_range(), rect.top() + below..=rect.top() + below + thumbnails::HEIGHT);
     thumbnails::lane(ui, strip, scale, *zoom, duration, &view.thumbs);
@@ -62,12 +63,16 @@ pub(super) fn ui(
     if let Some(take) = &view.take {
         name(ui, whole, lane(1.0), "Take");
         bar(ui, lane(1.0), scale, [0.0, duration], theme::ACCENT.gamma_multiply(0.45), &take.name);
-    } else if let Some([secs, kept]) = view.recording {
+    } else if let Some(Recorded { from_secs, secs, kept_secs }) = view.recording {
         name(ui, whole, lane(1.0), "Take");
-        // The time of a take goes on while the clip repeats, so its length is drawn from the left.
-        let end = secs.min(duration);
-        bar(ui, lane(1.0), scale, [0.0, end], theme::RECORDING.gamma_multiply(0.35), "");
-        bar(ui, lane(1.0), scale, [0.0, kept.min(end)], theme::RECORDING.gamma_multiply(0.6), "recording");
+        for (secs, strength, text) in [(secs, 0.35, ""), (kept_secs, 0.6, "recording")] {
+            let color = theme::RECORDING.gamma_multiply(strength);
+            // The text stands where the recording began.
+            let mut text = text;
+            for part in recorded_parts(from_secs, secs, duration) {
+                bar(ui, lane(1.0), scale, part, color, std::mem::take(&mut text));
+            }
+        }
     }
     points(ui, rect, scale, edited, duration);
     let flagged = flags(ui, rect, scale, edited.markers, &beats);
@@ -77,7 +82,7 @@ pub(super) fn ui(
         painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::ACCENT));
         painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
     }
-    let response = response.on_hover_text(
+    let response = response.hover_tooltip(
         "Drag to scrub. The wheel zooms, the right button pans, and a double-click shows the whole timeline.",
     );
     if response.double_clicked() {
@@ -87,6 +92,17 @@ pub(super) fn ui(
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
     let at_track = super::tracks::ui(ui, (names, &beats), scale, view, edited);
     of_clip.or(flagged.or(at).or(at_track).map(TimelineRequest::Seek))
+}
+
+/// The parts of a dance of `duration` that were recorded in `secs` from `from` on: a dance that repeats goes on at its start.
+fn recorded_parts(from: f64, secs: f64, duration: f64) -> Vec<[f64; 2]> {
+    let [from, secs] = [from, secs].map(|secs| if secs.is_finite() { secs.max(0.0) } else { 0.0 });
+    let from = from.min(duration);
+    if secs >= duration {
+        return vec![[0.0, duration]];
+    }
+    let end = from + secs;
+    if end > duration { vec![[from, duration], [0.0, end - duration]] } else { vec![[from, end]] }
 }
 
 /// The times of the beats on the timeline, seconds.
@@ -112,12 +128,12 @@ fn magnify(ui: &Ui, response: &Response, rect: Rect, zoom: &mut Zoom, duration: 
     }
 }
 
-/// Ticks and numbers at round times, or at frames if there is room.
-fn ruler(ui: &Ui, rect: Rect, scale: Scale) {
+/// Ticks and numbers at round times, or at frames of the film, `fps` per second, if there is room.
+fn ruler(ui: &Ui, rect: Rect, scale: Scale, fps: f64) {
     let painter = ui.painter_at(rect);
     let ground = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + RULER));
     painter.rect_filled(ground, 2.0, theme::PAGE);
-    let every = tick_secs(f64::from(scale.width) / (scale.to - scale.from).max(1e-9), 44.0);
+    let every = tick_secs(f64::from(scale.width) / (scale.to - scale.from).max(1e-9), 44.0, fps);
     let first = (scale.from / every).floor() as i64;
     // The number of labels is bounded by the width.
     let count = ((scale.to - scale.from) / every).ceil().clamp(0.0, 1000.0) as i64 + 1;
@@ -127,7 +143,7 @@ fn ruler(ui: &Ui, rect: Rect, scale: Scale) {
         let ends = [pos2(x, ground.bottom() - 6.0), pos2(x, ground.bottom())];
         painter.line_segment(ends, Stroke::new(1.0, theme::QUIET));
         let text = match every {
-            e if e < 0.09 => format!("f{}", (secs * super::FRAMES_PER_SEC).round()),
+            e if e < FRAMES_BELOW_SECS => format!("f{}", (secs * fps).round()),
             e if e < 0.99 => format!("{secs:.1}"),
             e if e < 60.0 => format!("{secs:.0}"),
             _ => format!("{}:{:02}", secs as i64 / 60, secs as i64 % 60),
@@ -153,7 +169,7 @@ fn bar(ui: &Ui, lane: Rect, scale: Scale, [from, to]: [f64; 2], color: egui::Col
 /// In and out points: the frames of a recording, as brackets that can be dragged.
 fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: f64) {
     let recording = &mut *edited.recording;
-    let fps = if recording.fps > 0.0 { recording.fps } else { 30.0 };
+    let fps = super::fps(recording);
     let last = ((duration * fps).round() as u64).max(1);
     let mut ends = [recording.first_frame, recording.end_frame.unwrap_or(last)];
     let before = ends;
@@ -167,7 +183,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
             ends[i] = if i == 0 { frame.min(ends[1].saturating_sub(1)) } else { frame.max(ends[0] + 1) };
         }
         let response =
-            response.on_hover_text(format!("{label} of recordings: frame {} at {fps} a second.", ends[i]));
+            response.hover_tooltip(format!("{label} of recordings: frame {} at {fps} a second.", ends[i]));
         let hot = response.hovered() || response.dragged();
         let color = if hot { theme::BRIGHT } else { theme::ACCENT };
         let (x, inward) = (scale.x(ends[i] as f64 / fps), if i == 0 { 4.0 } else { -4.0 });
@@ -221,7 +237,7 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>, beats: &[
             removed = Some(i);
         }
         let hot = response.hovered();
-        response.on_hover_text(format!(
+        response.hover_tooltip(format!(
             "{} at {:.2} s. Click to go to it, drag to move it, right-click to remove it.",
             marker.name, marker.secs
         ));
@@ -238,4 +254,17 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>, beats: &[
         markers.remove(i);
     }
     sought
+}
+
+#[cfg(test)]
+mod tests {
+    use super::recorded_parts;
+
+    #[test]
+    fn a_recording_is_drawn_from_where_it_began() {
+        assert_eq!(recorded_parts(3.0, 2.0, 8.0), [[3.0, 5.0]]);
+        assert_eq!(recorded_parts(6.0, 3.0, 8.0), [[6.0, 8.0], [0.0, 1.0]], "the dance repeats");
+        assert_eq!(recorded_parts(6.0, 30.0, 8.0), [[0.0, 8.0]]);
+        assert_eq!(recorded_parts(f64::NAN, -1.0, 8.0), [[0.0, 0.0]]);
+    }
 }

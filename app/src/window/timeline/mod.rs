@@ -14,23 +14,71 @@ pub(crate) use zoom::Zoom;
 
 use std::sync::Arc;
 
-use egui::Ui;
+use egui::{CursorIcon, Id, Panel, Rect, Sense, Stroke, Ui};
 use lovelock_project::project::{Marker, MotionSection, RecordingSection, SoundSection};
 use lovelock_project::tracks::Track;
 use lovelock_style::StyleStack;
 
 use super::command::Command;
+use super::control::HoverTooltip;
 use super::soundtrack::Loaded;
-
-/// Frames per second in which times are counted: the steps of the simulation.
-const FRAMES_PER_SEC: f64 = 1.0 / lovelock_session::clock::STEP_SECS;
+use super::theme;
 
 /// Height of the panel without tracks, points.
 pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;
 
-/// Height of the panel with that number of tracks, points; more tracks scroll.
-pub(crate) fn height(tracks: usize, has_sound: bool) -> f32 {
-    HEIGHT + tracks::height(tracks) + if has_sound { sound::HEIGHT } else { 0.0 }
+/// The largest part of the height of the window that the timeline takes.
+const MOST_OF_WINDOW: f32 = 0.6;
+
+/// Height of the panel without tracks, points.
+fn fixed_height(has_sound: bool) -> f32 {
+    HEIGHT + if has_sound { sound::HEIGHT } else { 0.0 }
+}
+
+/// Shows the timeline at the bottom of the window. Its height follows the tracks up to a few of them, unless the user drags the
+/// upper edge, which sets `tracks_height`, points; a double-click on the edge makes it follow again. Further tracks scroll.
+pub(crate) fn panel(
+    ui: &mut Ui,
+    view: &View,
+    (zoom, tracks_height): (&mut Zoom, &mut Option<f32>),
+    edited: &mut Edited<'_>,
+) -> Option<TimelineRequest> {
+    let fixed = fixed_height(view.sound.is_some());
+    let most = MOST_OF_WINDOW * ui.ctx().content_rect().height() - fixed;
+    let rows = edited.tracks.len();
+    let room = tracks::room(rows, *tracks_height, most);
+    Panel::bottom("timeline")
+        .exact_size(fixed + room)
+        .resizable(false)
+        .show(ui, |ui| {
+            if rows > 0 {
+                edge(ui, room, tracks_height);
+            }
+            self::ui(ui, view, zoom, edited)
+        })
+        .inner
+}
+
+/// The upper edge of the panel, which a drag moves; the tracks are `room` points high.
+fn edge(ui: &Ui, room: f32, tracks_height: &mut Option<f32>) {
+    const REACH: f32 = 3.0;
+    let panel = ui.max_rect();
+    let y = panel.top() - 1.0;
+    let handle = Rect::from_x_y_ranges(panel.x_range(), y - REACH..=y + REACH);
+    let response = ui.interact(handle, Id::unique("timeline edge"), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Height of the timeline"));
+    let response = response
+        .on_hover_cursor(CursorIcon::ResizeVertical)
+        .hover_tooltip("Drag to show more or fewer tracks. A double-click follows their number again.");
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        *tracks_height = Some(room + y - at.y);
+    }
+    if response.double_clicked() {
+        *tracks_height = None;
+    }
+    if response.hovered() || response.dragged() {
+        ui.painter().with_clip_rect(handle).hline(panel.x_range(), y, Stroke::new(2.0, theme::ACCENT));
+    }
 }
 
 /// The state that the timeline shows.
@@ -54,8 +102,8 @@ pub(crate) struct View {
     pub(crate) take: Option<Take>,
     /// Whether there is a recorded take to play.
     pub(crate) can_play_take: bool,
-    /// Seconds of the take that is being recorded, and how many of them are on the disk.
-    pub(crate) recording: Option<[f64; 2]>,
+    /// The take that is being recorded.
+    pub(crate) recording: Option<Recorded>,
     /// Thumbnails by their times.
     pub(crate) thumbs: Vec<(f64, egui::TextureId)>,
     /// The recording of tracks.
@@ -77,6 +125,17 @@ impl PartialEq for SoundLane {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && Arc::ptr_eq(&self.loaded, &other.loaded)
     }
+}
+
+/// What has been recorded of a take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Recorded {
+    /// Time of the timeline at which the recording began, seconds.
+    pub(crate) from_secs: f64,
+    /// Recorded time, seconds.
+    pub(crate) secs: f64,
+    /// Time of it that is on the disk, seconds.
+    pub(crate) kept_secs: f64,
 }
 
 /// The recording of tracks by moving controls.
@@ -130,6 +189,11 @@ pub(crate) struct Edited<'a> {
     pub(crate) stack: &'a StyleStack,
 }
 
+/// Frames per second of the film, in which the timeline counts.
+fn fps(recording: &RecordingSection) -> f64 {
+    if recording.fps > 0.0 { recording.fps } else { RecordingSection::default().fps }
+}
+
 /// The row of buttons, and the ruler with its lanes.
 pub(crate) fn ui(
     ui: &mut Ui,
@@ -138,7 +202,7 @@ pub(crate) fn ui(
     edited: &mut Edited<'_>,
 ) -> Option<TimelineRequest> {
     ui.spacing_mut().item_spacing.y = 2.0;
-    let pressed = ui.horizontal(|ui| transport::ui(ui, view)).inner;
+    let pressed = ui.horizontal(|ui| transport::ui(ui, view, fps(edited.recording))).inner;
     let sought = lanes::ui(ui, view, zoom, edited);
     pressed.or(sought)
 }

@@ -5,6 +5,7 @@ use lovelock_project::project::SoundSection;
 
 use super::SoundLane;
 use super::scale::Scale;
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// Height of the lane, points.
@@ -22,7 +23,7 @@ pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section
         section.offset_secs = (section.offset_secs + secs).clamp(-most, most);
     }
     let hot = response.hovered() || response.dragged();
-    response.on_hover_text(format!(
+    response.hover_tooltip(format!(
         "{}, from {:.2} s on. Drag it to shift it against the dance. Keys and markers snap to its beats; Alt lets them go.",
         sound.name, section.offset_secs
     ));

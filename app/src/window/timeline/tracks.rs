@@ -7,17 +7,22 @@ use lovelock_project::tracks::Track;
 
 use super::scale::Scale;
 use super::{Edited, View};
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// Height of a track, points.
 const TRACK: f32 = 30.0;
-/// The greatest height of all tracks; more tracks scroll.
+/// The greatest height of all tracks unless the user sets one; more tracks scroll.
 const MOST: f32 = 124.0;
 /// Distance from a key within which the pointer grabs it, points.
 const REACH: f32 = 6.0;
-/// Height of that number of tracks, points.
-pub(super) fn height(tracks: usize) -> f32 {
-    (tracks as f32 * TRACK).min(MOST)
+
+/// Height of the part that shows that number of tracks, points: as `wanted`, at most `most`, and neither less than one track nor
+/// more than all.
+pub(super) fn room(tracks: usize, wanted: Option<f32>, most: f32) -> f32 {
+    let all = tracks as f32 * TRACK;
+    let wanted = wanted.filter(|height| height.is_finite()).unwrap_or(MOST);
+    wanted.min(most).max(TRACK).min(all)
 }
 
 /// A key that is being dragged: its index, which of its numbers, and the range of the lane at the start of the drag.
@@ -50,7 +55,10 @@ pub(super) fn ui(
     }
     let mut sought = None;
     let mut asked = None;
-    ScrollArea::vertical().id_salt("tracks").max_height(MOST).auto_shrink(false).show(ui, |ui| {
+    // egui's own least height would push the buttons above out of the panel.
+    let room = ui.available_height().max(0.0);
+    let scrolled = ScrollArea::vertical().id_salt("tracks").max_height(room).min_scrolled_height(0.0);
+    scrolled.auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (i, track) in tracks.iter_mut().enumerate() {
             let width = names + scale.x_range().span();
@@ -111,7 +119,7 @@ fn head_ui(
             ),
         ] {
             let button = egui::Button::new(RichText::from(icon).size(13.0)).frame(false);
-            let response = ui.add_enabled(enabled, button).on_hover_text(tip);
+            let response = ui.add_enabled(enabled, button).hover_tooltip(tip);
             let name = format!("{name} {label}");
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
             if response.clicked() {
@@ -128,7 +136,7 @@ fn head_ui(
         let text = egui::Label::new(RichText::new(label).size(10.5).color(color)).truncate();
         let room = vec2(ui.available_width(), head.height());
         ui.allocate_ui_with_layout(room, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.add(text).on_hover_text(format!("{label}: {}", counted(track.keys.len(), "key", "keys")));
+            ui.add(text).hover_tooltip(format!("{label}: {}", counted(track.keys.len(), "key", "keys")));
         });
     });
     asked
@@ -184,7 +192,7 @@ fn lane_ui(
     }
     let tip = "Drag a key to move it, right-click it to remove it, double-click to add one. A click elsewhere seeks.";
     let at = response.interact_pointer_pos().filter(|_| response.clicked() && near.is_none());
-    response.on_hover_text(tip);
+    response.hover_tooltip(tip);
     at.map(|at| scale.secs(at.x))
 }
 

@@ -4,14 +4,15 @@ use super::super::command::{Command, CommandInfo};
 use egui::{RichText, Ui, Vec2};
 use egui_material_icons::icons;
 
-use super::{FRAMES_PER_SEC, TimelineRequest, View};
+use super::{Recorded, TimelineRequest, View};
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// The rates on offer, with their labels.
 const RATES: [(f64, &str); 6] =
     [(0.1, "1/10 ×"), (0.25, "1/4 ×"), (0.5, "1/2 ×"), (1.0, "1 ×"), (1.5, "1 1/2 ×"), (2.0, "2 ×")];
 
-pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<TimelineRequest> {
+pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> {
     let mut request = None;
     let play = if view.playing { icons::ICON_PAUSE } else { icons::ICON_PLAY_ARROW };
     for (icon, command) in [
@@ -38,13 +39,17 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<TimelineRequest> {
     }
     request = rate(ui, view.rate).or(request);
     ui.monospace(format!("{:6.2} s", view.time_secs));
-    let frame = (view.time_secs * FRAMES_PER_SEC).round() as i64;
-    ui.label(RichText::new(format!("frame {frame}")).small().color(theme::QUIET));
+    ui.label(RichText::new(format!("frame {}", frame(view.time_secs, fps))).small().color(theme::QUIET)).hover_tooltip(
+        format!(
+            "Frame of the film, {fps} per second, as the Recording panel and the in and out points count. An arrow key moves by one step of \
+             the simulation, 1/60 s."
+        ),
+    );
     ui.add_space(12.0);
     match (&view.take, view.recording) {
         (Some(take), _) => {
             ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
-                .on_hover_text("Body and hair move as recorded. Lights, look and camera can be changed.");
+                .hover_tooltip("Body and hair move as recorded. Lights, look and camera can be changed.");
             if button(ui, icons::ICON_CLOSE.into(), Command::LeaveTake.info()) {
                 request = Some(TimelineRequest::Run(Command::LeaveTake));
             }
@@ -59,24 +64,31 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<TimelineRequest> {
             {
                 request = Some(TimelineRequest::Run(Command::PlayTake));
             }
-            if let Some([secs, kept]) = recording {
+            if let Some(Recorded { secs, kept_secs, .. }) = recording {
                 ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
-                    .on_hover_text(format!("{kept:.1} s of the take are already safe on the disk."));
+                    .hover_tooltip(format!("{kept_secs:.1} s of the take are already safe on the disk."));
             }
         }
     }
     request
 }
 
+/// The number of the frame at a time, with a digit after the point between two frames.
+fn frame(secs: f64, fps: f64) -> String {
+    let frame = secs * fps;
+    let whole = frame.round();
+    if (frame - whole).abs() < 0.05 { format!("{whole:.0}") } else { format!("{frame:.1}") }
+}
+
 /// A button for a command, which screen readers announce by the command's name.
 fn button(ui: &mut Ui, icon: RichText, info: &CommandInfo) -> bool {
-    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).on_hover_text(tip(info));
+    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).hover_tooltip(tip(info));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, info.label));
     response.clicked()
 }
 
 fn toggle(ui: &mut Ui, on: bool, icon: egui_material_icons::MaterialIcon, info: &CommandInfo) -> bool {
-    let response = ui.selectable_label(on, icon).on_hover_text(tip(info));
+    let response = ui.selectable_label(on, icon).hover_tooltip(tip(info));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, info.label));
     response.clicked()
 }
@@ -100,6 +112,19 @@ fn rate(ui: &mut Ui, rate: f64) -> Option<TimelineRequest> {
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Rate"));
     response
         .response
-        .on_hover_text("Speed of playback: seconds of the dance per second. Hair slows down with it.");
+        .hover_tooltip("Speed of playback: seconds of the dance per second. Hair slows down with it.");
     (chosen != rate).then_some(TimelineRequest::Rate(chosen))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frame;
+
+    #[test]
+    fn frames_are_those_of_the_film() {
+        assert_eq!(frame(2.0, 30.0), "60");
+        assert_eq!(frame(2.0 + 1.0 / 60.0, 30.0), "60.5");
+        assert_eq!(frame(2.0 + 1.0 / 60.0, 60.0), "121");
+        assert_eq!(frame(0.0, 23.976), "0");
+    }
 }

@@ -51,27 +51,18 @@ impl Zoom {
     }
 }
 
-/// Seconds between two numbers of the ruler: the finest of frames and round times at which numbers do not overlap.
-pub(super) fn tick_secs(points_per_sec: f64, room: f64) -> f64 {
-    const STEPS: [f64; 16] = [
-        1.0 / 60.0,
-        1.0 / 30.0,
-        0.1,
-        0.2,
-        0.5,
-        1.0,
-        2.0,
-        5.0,
-        10.0,
-        30.0,
-        60.0,
-        300.0,
-        600.0,
-        1800.0,
-        3600.0,
-        36000.0,
-    ];
-    STEPS.into_iter().find(|step| step * points_per_sec >= room).unwrap_or(360_000.0)
+/// Numbers of the ruler that are nearer than this are frames, seconds.
+pub(super) const FRAMES_BELOW_SECS: f64 = 0.09;
+
+/// Seconds between two numbers of the ruler: the finest of frames, `fps` per second, and round times at which numbers do not overlap.
+pub(super) fn tick_secs(points_per_sec: f64, room: f64, fps: f64) -> f64 {
+    const FRAMES: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
+    const STEPS: [f64; 14] =
+        [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 600.0, 1800.0, 3600.0, 36000.0];
+    let frames = FRAMES.map(|frames| frames / fps.max(1e-3));
+    let steps = frames.into_iter().filter(|step| *step < FRAMES_BELOW_SECS).chain(STEPS);
+    let mut steps = steps.filter(|step| step * points_per_sec >= room);
+    steps.next().unwrap_or(360_000.0)
 }
 
 #[cfg(test)]
@@ -110,10 +101,13 @@ mod tests {
 
     #[test]
     fn ticks_are_frames_when_near_and_hours_when_far() {
-        assert_eq!(tick_secs(6000.0, 40.0), 1.0 / 60.0);
-        assert_eq!(tick_secs(100.0, 40.0), 0.5);
-        assert_eq!(tick_secs(41.0, 40.0), 1.0);
-        assert_eq!(tick_secs(0.01, 40.0), 36_000.0);
-        assert_eq!(tick_secs(0.0, 40.0), 360_000.0);
+        assert_eq!(tick_secs(6000.0, 40.0, 60.0), 1.0 / 60.0);
+        assert_eq!(tick_secs(6000.0, 40.0, 24.0), 1.0 / 24.0);
+        assert_eq!(tick_secs(600.0, 40.0, 24.0), 2.0 / 24.0);
+        assert_eq!(tick_secs(6000.0, 40.0, 1.0), 0.1, "seconds where frames are longer");
+        assert_eq!(tick_secs(100.0, 40.0, 30.0), 0.5);
+        assert_eq!(tick_secs(41.0, 40.0, 30.0), 1.0);
+        assert_eq!(tick_secs(0.01, 40.0, 30.0), 36_000.0);
+        assert_eq!(tick_secs(0.0, 40.0, 30.0), 360_000.0);
     }
 }

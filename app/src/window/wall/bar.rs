@@ -7,6 +7,7 @@ use lovelock_project::variants::{Family, Locks, label_of, varied};
 
 use super::WallLayout;
 use super::rounds::Rounds;
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// What the toolbar asks for.
@@ -31,19 +32,19 @@ pub(super) fn ui(
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 4.0);
         let other = ui.button(format!("{} Others", ICON_CASINO.codepoint));
-        if other.on_hover_text("Shows other variants of the present hairstyle.").clicked() {
+        if other.hover_tooltip("Shows other variants of the present hairstyle.").clicked() {
             action = Some(Action::Again);
         }
         let back = ui.add_enabled(rounds.has_before(), egui::Button::new(ICON_ARROW_BACK));
         back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Variants before"));
-        if back.on_hover_text("Shows the variants before these.").clicked() {
+        if back.hover_tooltip("Shows the variants before these.").clicked() {
             action = Some(Action::Back);
         }
         ui.separator();
         let mut percent = 100.0 * layout.amount;
         let slider =
             egui::Slider::new(&mut percent, 0.0..=100.0).fixed_decimals(0).suffix(" %").text("Range");
-        if ui.add(slider).on_hover_text("How far variants are from the present hairstyle.").changed() {
+        if ui.add(slider).hover_tooltip("How far variants are from the present hairstyle.").changed() {
             layout.amount = percent / 100.0;
         }
         ui.separator();
@@ -52,7 +53,7 @@ pub(super) fn ui(
             let icon = if locked { ICON_LOCK } else { ICON_LOCK_OPEN };
             let text = format!("{} {}", icon.codepoint, family.label());
             let tip = format!("{} Locked, it is the same in all variants.", family.text());
-            let response = ui.selectable_label(locked, text).on_hover_text(tip);
+            let response = ui.selectable_label(locked, text).hover_tooltip(tip);
             response.widget_info(|| {
                 egui::WidgetInfo::selected(
                     egui::Role::CheckBox,
@@ -67,17 +68,17 @@ pub(super) fn ui(
         }
         ui.menu_button("More locks", |ui| single_locks(ui, &mut layout.locks, project))
             .response
-            .on_hover_text("Locks single settings.");
+            .hover_tooltip("Locks single settings.");
         ui.separator();
         if let Some(ms) = ms {
             let rate =
                 RichText::new(format!("{:.1} images/s", 1e3 / ms.max(1.0))).small().color(theme::QUIET);
             ui.add(egui::Label::new(rate).extend())
-                .on_hover_text("Rounds of nine images per second, each with its own simulation.");
+                .hover_tooltip("Rounds of nine images per second, each with its own simulation.");
         }
         let close = ui.button(ICON_CLOSE);
         close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Close the wall"));
-        if close.on_hover_text("Returns to the single image.").clicked() {
+        if close.hover_tooltip("Returns to the single image.").clicked() {
             action = Some(Action::Close);
         }
         ui.label(
@@ -103,7 +104,7 @@ fn single_locks(ui: &mut Ui, locks: &mut Locks, project: &Project) {
             ui.add_enabled_ui(!whole, |ui| {
                 if ui
                     .checkbox(&mut locked, label_of(project, &entry))
-                    .on_hover_text(entry.info.text)
+                    .hover_tooltip(entry.info.text)
                     .changed()
                 {
                     toggle(&mut locks.paths, entry.path);

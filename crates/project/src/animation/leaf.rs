@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use lovelock_base::settings::{AnySettings, entries, find, set_value};
+use lovelock_base::settings::{AnySettings, Info, Kind, Value, entries, find, set_value};
 
 use crate::project::Project;
 
@@ -11,8 +11,9 @@ use crate::project::Project;
 /// `hair` these are only the layers and the morph, see [`is_keyable`].
 const SECTIONS: [&str; 7] = ["hair", "look", "simulation", "shadow", "lights", "camera", "picture"];
 
-/// Whether the number at a path may follow the timeline. Growing, importing, cutting and tying load the hair again.
-fn is_keyable(path: &str) -> bool {
+/// Whether the setting at a path, such as `lights.0.intensity`, may follow the timeline. Growing, importing, cutting and tying load
+/// the hair again.
+pub fn is_keyable(path: &str) -> bool {
     let section = path.split('.').next().unwrap_or_default();
     SECTIONS.contains(&section)
         && (section != "hair" || path.starts_with("hair.stack.") || path == "hair.morph.amount")
@@ -30,11 +31,42 @@ fn component(path: &str) -> Option<(&str, usize)> {
     Some((vector, index.parse().ok()?))
 }
 
+/// The numbers that a key holds of a value: those of the value, 0 or 1 for a switch, the place in the list for a choice. None of what
+/// is left out.
+pub fn key_numbers(info: &Info, value: Value) -> Vec<f64> {
+    match (info.kind, value) {
+        (_, Value::Switch(on)) => vec![f64::from(u8::from(on))],
+        (Kind::Choice(options), Value::Choice(id)) => {
+            let place = options.iter().position(|(known, _)| known == id);
+            place.map(|place| place as f64).into_iter().collect()
+        }
+        _ => value.numbers(),
+    }
+}
+
+/// The value of the same type as `value` that a key with these numbers holds.
+fn value_of(info: &Info, value: Value, numbers: &[f64]) -> Option<Value> {
+    match (info.kind, value, numbers) {
+        (_, Value::Switch(_), [number]) => number.is_finite().then_some(Value::Switch(*number >= 0.5)),
+        (Kind::Choice(options), Value::Choice(_), [number]) if number.is_finite() => {
+            let (id, _) = options.iter().nth(number.round().max(0.0) as usize)?;
+            Some(Value::Choice(id))
+        }
+        _ => value.with_numbers(numbers),
+    }
+}
+
+/// Whether values of a target go from one to the next without any between them.
+pub(super) fn is_held(project: &Project, target: &str) -> bool {
+    let found = path_of(target).and_then(|path| Some(find(project, &path)?.1));
+    matches!(found, Some(Value::Switch(_) | Value::Choice(_)))
+}
+
 /// The numbers of the project at a target.
 pub(super) fn numbers_at(project: &Project, target: &str) -> Option<Vec<f64>> {
     let path = path_of(target)?;
-    if let Some((_, value)) = find(project, &path) {
-        return Some(value.numbers()).filter(|numbers| !numbers.is_empty());
+    if let Some((info, value)) = find(project, &path) {
+        return Some(key_numbers(info, value)).filter(|numbers| !numbers.is_empty());
     }
     let (vector, index) = component(&path)?;
     let number = find(project, vector)?.1.numbers().get(index).copied();
@@ -53,7 +85,7 @@ pub(super) fn set_numbers(root: &mut dyn AnySettings, path: &str, numbers: &[f64
         *slot = *number;
         (path, numbers) = (vector, Cow::Owned(all));
     }
-    if let Some(value) = find(root, path).and_then(|(_, value)| value.with_numbers(&numbers)) {
+    if let Some(value) = find(root, path).and_then(|(info, value)| value_of(info, value, &numbers)) {
         set_value(root, path, value);
     }
 }
@@ -74,7 +106,7 @@ pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64
         return Vec::new();
     }
     let old: HashMap<String, Vec<f64>> =
-        entries(before).into_iter().map(|entry| (entry.path, entry.value.numbers())).collect();
+        entries(before).into_iter().map(|entry| (entry.path, key_numbers(entry.info, entry.value))).collect();
     // A list of another length has other parts, and no number of it has moved.
     let same_lights = before.lights.len() == after.lights.len();
     let masks = |project: &Project, id: &str| {
@@ -89,7 +121,7 @@ pub(super) fn changed(before: &Project, after: &Project) -> Vec<(String, Vec<f64
     let moved = entries(after).into_iter().filter_map(|entry| {
         let section = entry.path.split('.').next()?;
         let at = SECTIONS.iter().position(|name| *name == section).filter(|_| is_keyable(&entry.path))?;
-        let (old, new) = (old.get(&entry.path)?, entry.value.numbers());
+        let (old, new) = (old.get(&entry.path)?, key_numbers(entry.info, entry.value));
         let finite = old.iter().chain(&new).all(|number| number.is_finite());
         let same_list = match section {
             "lights" => same_lights,

@@ -4,14 +4,18 @@
 //! plays into keys.
 
 mod animate;
+mod keys;
 mod leaf;
 mod overdub;
 mod style;
 
 pub use animate::Animation;
+pub use leaf::{is_keyable, key_numbers};
 pub use overdub::{Moment, Overdub};
 pub use style::{StyleTracks, StyleValues};
 
+#[cfg(test)]
+mod keys_tests;
 #[cfg(test)]
 mod ride_tests;
 #[cfg(test)]

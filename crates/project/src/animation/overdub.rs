@@ -1,6 +1,6 @@
 //! Writes keys for controls that are moved during playback.
 
-use super::leaf::{changed, numbers_at, set_all};
+use super::leaf::{changed, is_held, numbers_at, set_all};
 use crate::project::Project;
 use crate::tracks::{Key, STACK_TARGET, Track, curve};
 
@@ -38,6 +38,8 @@ struct Touch {
     target: String,
     /// The track before this pass; no keys if there was no track.
     before: Vec<Key>,
+    /// [`Track::held`].
+    held: bool,
     /// Start and end of the written part, seconds.
     from: f64,
     to: f64,
@@ -58,6 +60,8 @@ struct Touch {
 #[derive(Clone, Debug, Default)]
 pub struct Overdub {
     armed: bool,
+    /// The only target that is recorded; all if `None`.
+    only: Option<String>,
     touches: Vec<Touch>,
     refused: Option<String>,
 }
@@ -70,7 +74,17 @@ impl Overdub {
 
     /// Sets whether controls that are moved from now on write keys. Controls that are held continue until they are released.
     pub fn set_armed(&mut self, armed: bool) {
-        self.armed = armed;
+        (self.armed, self.only) = (armed, None);
+    }
+
+    /// From now on the control of `target` alone writes keys: during playback a track, and while paused a key where it is moved.
+    pub fn arm_only(&mut self, target: String) {
+        (self.armed, self.only) = (true, Some(target));
+    }
+
+    /// The only target that writes keys, if not all do.
+    pub fn only(&self) -> Option<&str> {
+        self.only.as_deref()
     }
 
     /// Releases all held controls without writing a key, because their tracks were undone.
@@ -79,7 +93,7 @@ impl Overdub {
     }
 
     /// The targets that are being written.
-    pub fn writes(&self) -> impl Iterator<Item = &str> {
+    pub fn writes(&self) -> impl Iterator<Item = &str> + Clone {
         self.touches.iter().map(|touch| touch.target.as_str())
     }
 
@@ -117,12 +131,13 @@ impl Overdub {
         let writes = self.armed && now.playing;
         let mut keep: Vec<String> = tracked.clone();
         for (target, value) in moved {
+            let chosen = self.only.as_ref().is_none_or(|only| *only == target);
             let is_tracked = tracked.contains(&target);
             let held = self.touches.iter_mut().find(|touch| touch.target == target);
             if let Some(touch) = held {
                 touch.value = unwrapped(&target, value, Some(&touch.value));
                 (touch.gripped, touch.moved_secs) = (touch.gripped || now.held, now.clock_secs);
-            } else if writes && has_room(&edited, &target) {
+            } else if writes && chosen && has_room(&edited, &target) {
                 let from = numbers_at(shown, &target).unwrap_or_else(|| value.clone());
                 self.touches.push(Touch::begin(&edited, target.clone(), now, from, value));
                 keep.push(target);
@@ -132,6 +147,10 @@ impl Overdub {
                     let value = unwrapped(&target, value, before.as_ref());
                     track.put(now.secs, value);
                 }
+            } else if self.only.as_ref() == Some(&target) && !now.playing {
+                // The first key of the control that is recorded alone.
+                edited.set_key(&target, now.secs, value);
+                keep.push(target);
             } else if is_tracked {
                 let label = Track::new(target).label_in(&edited.hair.stack);
                 self.refused.get_or_insert(label);
@@ -189,6 +208,7 @@ impl Touch {
         let secs = now.secs;
         let track = project.timeline.tracks.iter().find(|track| track.target == target);
         let before = track.map_or_else(Vec::new, |track| track.keys.clone());
+        let held = is_held(project, &target);
         let value = unwrapped(&target, value, Some(&from));
         // A key with the old value, so that the track does not ramp from the key before it.
         let start = Key { secs: (secs - EDGE_SECS).max(0.0), value: from };
@@ -196,6 +216,7 @@ impl Touch {
         Self {
             target,
             before,
+            held,
             from: at,
             to: at,
             last: secs,
@@ -292,7 +313,10 @@ impl Touch {
         let keys = self.joined(self.ends(now));
         let tracks = &mut project.timeline.tracks;
         // In range, so that saving and loading changes nothing.
-        let Some(track) = (Track { keys, ..Track::new(self.target.clone()) }).in_range() else { return };
+        let Some(track) = (Track { keys, held: self.held, ..Track::new(self.target.clone()) }).in_range()
+        else {
+            return;
+        };
         match tracks.iter_mut().find(|track| track.target == self.target) {
             Some(old) => *old = track,
             None => tracks.push(track),
@@ -305,7 +329,8 @@ impl Touch {
         if self.before.is_empty() {
             return written;
         }
-        let edge = |secs: f64| curve::value_at(&self.before, secs).map(|value| Key { secs, value });
+        let edge =
+            |secs: f64| curve::value_at(&self.before, secs, self.held).map(|value| Key { secs, value });
         let (from, to) = (self.from, self.to);
         let mut keys: Vec<Key> =
             self.before.iter().filter(|key| key.secs < from - EDGE_SECS).cloned().collect();

@@ -384,6 +384,11 @@ impl RecordingSection {
         first..self.end_frame.unwrap_or(clip_frames.max(first + 1))
     }
 
+    /// Removes the in and the out point.
+    pub fn record_all(&mut self) {
+        (self.first_frame, self.end_frame) = (0, None);
+    }
+
     /// The most samples per frame.
     pub const MOST_SUBFRAMES: u32 = 64;
 }

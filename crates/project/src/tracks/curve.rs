@@ -9,8 +9,8 @@ const SMOOTH_SECS: f64 = 0.1;
 /// Interval at which a track is sampled for smoothing, seconds.
 const SAMPLE_SECS: f64 = 1.0 / 60.0;
 
-/// The value at a time, linear from key to key, which is also what thinning assumes.
-pub(crate) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
+/// The value at a time: that of the key before it if `held`, otherwise linear from key to key, which is also what thinning assumes.
+pub(crate) fn value_at(keys: &[Key], secs: f64, held: bool) -> Option<Vec<f64>> {
     let (first, last) = (keys.first()?, keys.last()?);
     // NaN gives the first value.
     if secs.is_nan() || secs <= first.secs {
@@ -21,6 +21,9 @@ pub(crate) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
     }
     let i = keys.partition_point(|key| key.secs <= secs) - 1;
     let (a, b) = (&keys[i], &keys[i + 1]);
+    if held {
+        return Some(a.value.clone());
+    }
     let length = b.secs - a.secs;
     if length <= 0.0 {
         return Some(b.value.clone());
@@ -93,7 +96,7 @@ pub(crate) fn smoothed(keys: &[Key]) -> Vec<Key> {
     let count = ((length / SAMPLE_SECS).ceil() as usize).min(Track::MOST_KEYS - 1);
     let step = length / count as f64;
     let at = |i: usize| first.secs + step * i as f64;
-    let samples: Vec<Vec<f64>> = (0..=count).filter_map(|i| value_at(keys, at(i))).collect();
+    let samples: Vec<Vec<f64>> = (0..=count).filter_map(|i| value_at(keys, at(i), false)).collect();
     let reach = ((3.0 * SMOOTH_SECS / step).ceil() as usize).min(count);
     let weight = |d: usize| (-0.5 * (d as f64 * step / SMOOTH_SECS).powi(2)).exp();
     let smooth = |i: usize| -> Vec<f64> {

@@ -10,7 +10,7 @@ pub const STACK_TARGET: &str = "hair/stack/";
 /// The target of the amount of the morph.
 pub const MORPH_TARGET: &str = "hair/morph/amount";
 
-/// The value of a track at a time. A track is linear between keys and constant before the first and after the last.
+/// The value of a track at a time. A track is linear between keys, unless it is held, and constant before the first and after the last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Key {
@@ -28,6 +28,9 @@ pub struct Track {
     pub target: String,
     /// Whether the project's own value is used instead of the track's.
     pub muted: bool,
+    /// Whether each key's value stays until the next key, as that of a switch or a choice does.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub held: bool,
     /// The keys, in ascending order of time.
     pub keys: Vec<Key>,
 }
@@ -43,6 +46,8 @@ impl Track {
     pub const LONGEST_TARGET: usize = 120;
     /// Keys closer together than this are merged, seconds.
     pub const NEAREST_SECS: f64 = 1.0 / 240.0;
+    /// A key no farther from a time than this is the key at that time, seconds: half a step of the simulation.
+    pub const AT_SECS: f64 = 1.0 / 120.0;
 
     /// A track without keys.
     pub fn new(target: impl Into<String>) -> Self {
@@ -97,7 +102,13 @@ impl Track {
 
     /// The value at a time; `None` for a track without keys.
     pub fn value_at(&self, secs: f64) -> Option<Vec<f64>> {
-        curve::value_at(&self.keys, secs)
+        curve::value_at(&self.keys, secs, self.held)
+    }
+
+    /// The key at a time, within half a step of the simulation.
+    pub fn key_at(&self, secs: f64) -> Option<&Key> {
+        let off = |key: &&Key| (key.secs - secs).abs();
+        self.keys.iter().filter(|key| off(key) <= Self::AT_SECS).min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     /// Adds a key and replaces keys closer than [`Track::NEAREST_SECS`].
@@ -111,7 +122,9 @@ impl Track {
 
     /// Removes jitter faster than about a fifth of a second. The first and last keys stay.
     pub fn smooth(&mut self) {
-        self.keys = curve::smoothed(&self.keys);
+        if !self.held {
+            self.keys = curve::smoothed(&self.keys);
+        }
     }
 
     /// The minimum and maximum of each number.

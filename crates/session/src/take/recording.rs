@@ -25,6 +25,8 @@ pub struct TakeProgress {
     pub kept: u64,
     /// Recorded time, seconds.
     pub secs: f64,
+    /// Time of the timeline at which the recording began, seconds.
+    pub from_secs: f64,
 }
 
 /// A take that is being recorded: every step of an engine, and the changes of the project.
@@ -32,6 +34,7 @@ pub struct TakeRecording {
     writer: TakeWriter,
     frame: TakeFrame,
     step_secs: f64,
+    from_secs: f64,
     project: Arc<Project>,
 }
 
@@ -73,6 +76,7 @@ impl TakeRecording {
             writer: TakeWriter::create(path, header)?,
             frame: TakeFrame::default(),
             step_secs: engine.step_secs(),
+            from_secs: engine.position_secs(),
             project: Arc::clone(project),
         };
         recording.push(engine)?;
@@ -120,6 +124,7 @@ impl TakeRecording {
             frames,
             kept: self.writer.kept_frames(),
             secs: frames as f64 * self.step_secs,
+            from_secs: self.from_secs,
         }
     }
 

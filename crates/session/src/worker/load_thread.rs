@@ -106,6 +106,19 @@ impl LoadThread {
         Ok(Self { requests, cancelled, progress, layers, thread: Some(thread) })
     }
 
+    /// A handle of a load of `project` that never ends.
+    #[cfg(test)]
+    pub(super) fn that_never_ends(project: Arc<Project>) -> Self {
+        let begun = Some((project, Access::new()));
+        let requests = Requests { begun, ..Requests::default() };
+        Self {
+            requests: Arc::new((Mutex::new(requests), Condvar::new())),
+            cancelled: Arc::default(),
+            progress: Arc::default(),
+            thread: None,
+        }
+    }
+
     /// Requests the scene of a project. A request that has not started is replaced. A running one is cancelled if it reads other
     /// files; otherwise it is completed and shown, because a dragged slider sends a request at every frame.
     pub(super) fn request(&self, project: Arc<Project>, access: Access) {

@@ -35,8 +35,8 @@ use crate::take::{TakeProgress, TakeRecording, TakeTransport};
 /// Number of consecutive panics after which the simulation stops until something changes.
 const MOST_PANICS: u32 = 3;
 
-/// Time after which strokes that wait for a scene are looked at again.
-const STROKES_AGAIN: Duration = Duration::from_millis(50);
+/// Time after which what waits for a scene or a take is looked at again.
+const AGAIN: Duration = Duration::from_millis(50);
 
 /// The state of the simulation thread.
 pub(super) struct SimulationThread {
@@ -115,6 +115,7 @@ impl SimulationThread {
         let mut watch = Stopwatch::start();
         loop {
             let timeout = match (&self.take, &self.engine) {
+                (None, _) if self.awaits_take() => Some(AGAIN),
                 _ if self.preroll.is_some() => Some(Duration::ZERO),
                 // A take is interpolated at any rate: one snapshot per image.
                 (Some(_), _) => {
@@ -123,11 +124,8 @@ impl SimulationThread {
                 (None, Some(_)) => self.playback.until_next(),
                 (None, None) => None,
             };
-            let timeout = if self.has_waiting_strokes() {
-                Some(timeout.unwrap_or(STROKES_AGAIN).min(STROKES_AGAIN))
-            } else {
-                timeout
-            };
+            let timeout =
+                if self.has_waiting_strokes() { Some(timeout.unwrap_or(AGAIN).min(AGAIN)) } else { timeout };
             let requests = self.mailbox.take(self.until_calm(timeout));
             if requests.stop {
                 // Closing the window must not lose the recording.
@@ -156,6 +154,11 @@ impl SimulationThread {
         if self.take.is_some() {
             (self.preroll, self.settling_pending) = (None, false);
             self.play(changed, elapsed_secs);
+        } else if self.awaits_take() {
+            // Hair that moves on would not be that of the take.
+            if changed {
+                self.show();
+            }
         } else if self.preroll.is_some() {
             self.advance_preroll(changed);
         } else {
@@ -317,6 +320,11 @@ impl SimulationThread {
                 self.record_change();
             }
         }
+    }
+
+    /// Whether a take is being opened in place of the simulation.
+    fn awaits_take(&self) -> bool {
+        self.project.as_ref().is_some_and(|project| project.take.file.is_some()) && self.loader.is_busy()
     }
 
     fn set_scene(&mut self, scene: Arc<Scene>) {

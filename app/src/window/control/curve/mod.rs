@@ -12,6 +12,7 @@ use lovelock_style::Ramp;
 pub(crate) use model::CurveModel;
 
 use super::number::Limits;
+use crate::window::control::HoverTooltip;
 use crate::window::{keys, theme};
 
 /// Height of the curve, points, and the margin around it for the handles.
@@ -83,12 +84,12 @@ impl Curve<'_> {
             if differs && name.double_clicked() {
                 value.clone_from(default);
             }
-            name.on_hover_text(self.described(differs));
+            name.hover_tooltip(self.described(differs));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let name = format!("Presets of {}", self.label);
                 let menu = ui.menu_button(ICON_SHOW_CHART, |ui| Self::menu(ui, value, default));
                 menu.response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
-                menu.response.on_hover_text("Curves that are often needed.");
+                menu.response.hover_tooltip("Curves that are often needed.");
             });
         });
     }
@@ -172,7 +173,7 @@ impl Curve<'_> {
             self.described(value != default)
         );
         let cursor = if value.is_free() { CursorIcon::Crosshair } else { CursorIcon::Default };
-        response.on_hover_text(tip).on_hover_cursor(cursor)
+        response.hover_tooltip(tip).on_hover_cursor(cursor)
     }
 
     /// Shows one point and moves it. The second result is whether it is to be removed: `Some(false)` while it is held away from the curve.
@@ -230,7 +231,7 @@ impl Curve<'_> {
         let now = value.points().get(point).map_or(at[1], |point| point[1]);
         let name = format!("{}, {}", self.label, value.name(point));
         response.widget_info(|| WidgetInfo::slider(true, f64::from(now * self.unit.1), name.as_str()));
-        (response.on_hover_text(format!("{} Drag it, or use the arrow keys.", self.tip)), removes)
+        (response.hover_tooltip(format!("{} Drag it, or use the arrow keys.", self.tip)), removes)
     }
 
     /// The exact numbers of the selected point.
@@ -250,14 +251,14 @@ impl Curve<'_> {
             let shown = ui.add_enabled_ui(free, |ui| number(ui, "At", &mut to, 0.0..=100.0, " %")).inner;
             let fixed = "\n\nThis point stays at its place.";
             let tip = if free { tip.to_owned() } else { format!("{tip}{fixed}") };
-            if shown.labelled_by(label.id).on_hover_text(&tip).on_disabled_hover_text(&tip).changed() {
+            if shown.labelled_by(label.id).hover_tooltip(&tip).disabled_hover_tooltip(&tip).changed() {
                 value.set(point, [to / 100.0, height]);
             }
             let label = ui.label(RichText::new("Value").small().color(theme::QUIET));
             let mut to = height * factor;
             let shown =
                 number(ui, "Value", &mut to, low * factor..=high * factor, unit).labelled_by(label.id);
-            let shown = shown.on_hover_text("The value at the selected point.");
+            let shown = shown.hover_tooltip("The value at the selected point.");
             if shown.double_clicked() {
                 value.restore(point, default);
             } else if shown.changed() {
@@ -268,7 +269,7 @@ impl Curve<'_> {
                 let response = ui.add_enabled(points.len() > 1, remove);
                 response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, "Remove the point"));
                 let tip = "Removes the selected point. One point always remains.";
-                if response.on_hover_text(tip).on_disabled_hover_text(tip).clicked() && value.remove(point) {
+                if response.hover_tooltip(tip).disabled_hover_tooltip(tip).clicked() && value.remove(point) {
                     select(ui, id, point.saturating_sub(1));
                 }
             }

@@ -5,6 +5,7 @@ use egui::{Button, PopupCloseBehavior, ScrollArea, Ui};
 use lovelock_style::{Kind, Layer, Mask, MaskPart, MaskRegion, Operation, StyleStack, Subject};
 
 use super::LayersView;
+use crate::window::control::HoverTooltip;
 use crate::window::picker::Picker;
 use crate::window::search::{best_first, fit};
 
@@ -39,7 +40,7 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
         }
         let tip = "Adds a change of the hair after the selected layer.";
         let full = format!("There are {} layers, the most.", StyleStack::MOST_LAYERS);
-        button.on_hover_text(tip).on_disabled_hover_text(full);
+        button.hover_tooltip(tip).disabled_hover_tooltip(full);
     });
 }
 
@@ -87,7 +88,7 @@ fn choose(ui: &mut Ui, search: &mut Picker) -> Option<&'static Kind> {
             if kinds().any(|kind| kind.subject == subject) {
                 let menu = ui.menu_button(name, |ui| {
                     for kind in kinds().filter(|kind| kind.subject == subject) {
-                        if ui.button(kind.label).on_hover_text(kind.text).clicked() {
+                        if ui.button(kind.label).hover_tooltip(kind.text).clicked() {
                             chosen = Some(kind);
                         }
                     }
@@ -105,7 +106,7 @@ fn choose(ui: &mut Ui, search: &mut Picker) -> Option<&'static Kind> {
     let most = ScrollArea::vertical().max_height(LIST);
     most.show(ui, |ui| {
         for (i, kind) in found.iter().enumerate() {
-            let row = ui.add(Button::selectable(search.is_chosen(i), kind.label)).on_hover_text(kind.text);
+            let row = ui.add(Button::selectable(search.is_chosen(i), kind.label)).hover_tooltip(kind.text);
             search.show(i, &row);
             if row.clicked() || (picked.entered && search.is_chosen(i)) {
                 chosen = Some(*kind);

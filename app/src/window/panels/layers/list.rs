@@ -6,6 +6,7 @@ use egui_material_icons::icons::{ICON_CHEVRON_RIGHT, ICON_EXPAND_MORE};
 use lovelock_style::{Layer, StyleStack};
 
 use super::{LayersView, picked, row};
+use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
 /// A row of the list, by the number of its layer or group.
@@ -152,7 +153,7 @@ fn layer_row(
     let place = (index, group);
     drop_on(ui, rect, response.id.with("drop"), place, Some(index + 1), action);
     let what = layer.operation.known().map_or("", |operation| operation.kind().text);
-    response.on_hover_text(format!(
+    response.hover_tooltip(format!(
         "{what}\n\nDouble-click renames. Ctrl+D duplicates, Delete removes, Ctrl+click picks several."
     ));
 }
@@ -248,7 +249,7 @@ fn group_row(
     let inside = dragged.is_some_and(|row| matches!(*row, Row::Layer(_)));
     let lower = inside.then_some(index);
     drop_into(ui, rect, drop, [(index, None), (lower.unwrap_or(index), inside.then_some(id))], action);
-    response.on_hover_text("A group of layers. Double-click renames. Drag layers into it or out of it.");
+    response.hover_tooltip("A group of layers. Double-click renames. Drag layers into it or out of it.");
 }
 
 /// The triangle that hides the layers of a group.
@@ -257,7 +258,7 @@ fn fold(ui: &mut Ui, rect: Rect, icon: MaterialIcon, is_folded: bool) -> bool {
     let response = ui.new_child(place).add_sized(rect.size(), egui::Button::new(icon).frame(false));
     response
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, !is_folded, "Fold the group"));
-    response.on_hover_text("Hides or shows the layers of the group.").clicked()
+    response.hover_tooltip("Hides or shows the layers of the group.").clicked()
 }
 
 /// The area of a row, with its background.

@@ -5,6 +5,7 @@ use egui_material_icons::icons::{ICON_BRUSH, ICON_CLOSE, ICON_VISIBILITY};
 use lovelock_style::{Mask, MaskBrush, MaskPart, MaskRegion};
 
 use super::LayersView;
+use crate::window::control::HoverTooltip;
 use crate::window::control::{note, settings};
 
 pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
@@ -12,7 +13,7 @@ pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: bool, tip: &str| {
             let response = ui.add(egui::Button::selectable(on, (icon.rich_text(), name)));
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, name));
-            response.on_hover_text(tip).clicked()
+            response.hover_tooltip(tip).clicked()
         };
         let tip = "Shows the mask on hair and scalp: dark where the layer does nothing, yellow where it acts wholly. Key: K";
         if toggle(ICON_VISIBILITY, "Show mask", view.show_mask, tip) {
@@ -43,7 +44,7 @@ fn painting(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
             ("Turn round", "Paints what is not painted, and erases what is.", |value| 1.0 - value),
         ];
         for (name, tip, change) in changes {
-            if ui.button(name).on_hover_text(tip).clicked()
+            if ui.button(name).hover_tooltip(tip).clicked()
                 && let Some(part) = mask.painted_mut()
             {
                 part.map.paint(|_, value| change(value));
@@ -70,10 +71,10 @@ fn parts(ui: &mut Ui, mask: &mut Mask) {
                             ui.selectable_value(&mut part.region, region, label);
                         }
                     });
-                combo.response.labelled_by(name.id).on_hover_text("Which part of the head this is.");
+                combo.response.labelled_by(name.id).hover_tooltip("Which part of the head this is.");
                 let remove = ui.add(egui::Button::new(ICON_CLOSE).frame(false));
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Remove"));
-                if remove.on_hover_text("Removes the region from the mask.").clicked() {
+                if remove.hover_tooltip("Removes the region from the mask.").clicked() {
                     removed = Some(i);
                 }
             });
@@ -95,9 +96,9 @@ fn parts(ui: &mut Ui, mask: &mut Mask) {
     ui.horizontal(|ui| {
         let full = mask.parts.len() >= Mask::MOST_PARTS;
         let add = ui.add_enabled(!full, egui::Button::new("Add region"));
-        if add.on_hover_text("Limits the layer to a region of the head.").clicked() {
+        if add.hover_tooltip("Limits the layer to a region of the head.").clicked() {
             mask.parts.push(MaskPart::region(MaskRegion::Front));
         }
-        ui.checkbox(&mut mask.inverted, "Invert all").on_hover_text("Takes the rest of the head.");
+        ui.checkbox(&mut mask.inverted, "Invert all").hover_tooltip("Takes the rest of the head.");
     });
 }

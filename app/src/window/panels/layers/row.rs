@@ -3,6 +3,7 @@
 use egui::{Align, Color32, Layout, Rect, Response, RichText, Ui, UiBuilder, Widget, pos2, vec2};
 use egui_material_icons::icons::{ICON_DRAG_INDICATOR, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{Limits, is_escaped};
 use crate::window::theme;
 
@@ -62,7 +63,7 @@ fn put(ui: &mut Ui, rect: Rect, name: &str, widget: impl Widget) -> Response {
 pub(super) fn grip(ui: &mut Ui, rect: Rect) -> Response {
     let icon = ICON_DRAG_INDICATOR.rich_text().color(theme::QUIET);
     let grip = put(ui, rect, "grip", egui::Label::new(icon).sense(egui::Sense::drag()));
-    grip.on_hover_text("Drag to move the layer. Layers act from the top to the bottom.")
+    grip.hover_tooltip("Drag to move the layer. Layers act from the top to the bottom.")
         .on_hover_cursor(egui::CursorIcon::Grab)
 }
 
@@ -70,7 +71,7 @@ pub(super) fn grip(ui: &mut Ui, rect: Rect) -> Response {
 pub(super) fn eye(ui: &mut Ui, rect: Rect, on: &mut bool, (name, tip): (&str, &str)) {
     let icon = if *on { ICON_VISIBILITY } else { ICON_VISIBILITY_OFF };
     let text = icon.rich_text().color(if *on { theme::BRIGHT } else { theme::QUIET });
-    let response = put(ui, rect, "eye", egui::Button::new(text).frame(false)).on_hover_text(tip);
+    let response = put(ui, rect, "eye", egui::Button::new(text).frame(false)).hover_tooltip(tip);
     if response.clicked() {
         *on = !*on;
     }
@@ -102,7 +103,7 @@ pub(super) fn rename(ui: &mut Ui, rect: Rect, text: &mut String, longest: usize)
         ui.data_mut(|data| data.remove::<bool>(first));
     }
     let entered = (ends && !canceled).then(|| text.trim().to_owned());
-    response.on_hover_text("Enter gives the name, Escape keeps the old one.");
+    response.hover_tooltip("Enter gives the name, Escape keeps the old one.");
     (entered, ends)
 }
 
@@ -132,13 +133,13 @@ pub(super) fn weight(ui: &mut Ui, rect: Rect, value: &mut f32, (name, tip): (&st
     } else if response.changed() {
         *value = percent / 100.0;
     }
-    response.on_hover_text(format!("{tip}{changed}"));
+    response.hover_tooltip(format!("{tip}{changed}"));
 }
 
 /// The button that makes a row the only one that acts. Returns whether it was clicked.
 pub(super) fn solo(ui: &mut Ui, rect: Rect, on: bool, tip: &str) -> bool {
     let text = RichText::new("S").color(if on { theme::ACCENT } else { theme::QUIET });
-    put(ui, rect, "solo", egui::Button::selectable(on, text)).on_hover_text(tip).clicked()
+    put(ui, rect, "solo", egui::Button::selectable(on, text)).hover_tooltip(tip).clicked()
 }
 
 /// The picture of a mask.

@@ -77,6 +77,7 @@ impl Bench {
             },
             body: super::body::LoadedBody {
                 clips: vec!["dance".to_owned(), "walk".to_owned()],
+                clip: "dance".to_owned(),
                 joints: vec!["hips".to_owned(), "hips/spine/neck/head".to_owned()],
                 head: "hips/spine/neck/head".to_owned(),
                 notes: Vec::new(),

@@ -75,6 +75,7 @@ fn body_clip_file_and_head_joint_are_chosen() {
     let state = (Project::default(), None);
     let loaded = body::LoadedBody {
         clips: vec!["dance".to_owned(), "walk".to_owned()],
+        clip: "dance".to_owned(),
         joints: vec!["hips".to_owned(), "hips/head".to_owned()],
         head: "hips/head".to_owned(),
         notes: vec!["one note".to_owned()],

@@ -91,9 +91,9 @@ fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
     harness.run_steps(5);
     assert_eq!(harness.state().state.1, Some(RecordingRequest::Cancel));
     for (state, text) in [
-        (State::Done("48 frames in a b.mp4".to_owned()), "48 frames"),
+        (State::Done { what: "48 frames in a b.mp4".to_owned(), out: "a b.mp4".into() }, "48 frames"),
         (State::Failed("out.mp4: the disk is full".to_owned()), "disk is full"),
-        (State::Cancelled, "Cancelled"),
+        (State::Cancelled("Recording cancelled.".to_owned()), "cancelled"),
     ] {
         harness.state_mut().state = (state, None);
         harness.run();
@@ -112,5 +112,5 @@ fn progress_is_described_in_words() {
     assert_eq!(said("Frame", 1, 288, Some(340.0)), "Frame 1 of 288, 6 min left");
     assert_eq!(said("Frame", 1, 9000, Some(9000.0)), "Frame 1 of 9000, 2 h 30 min left");
     assert!(said("Frame", 1, 2, Some(f64::INFINITY)).ends_with("left"));
-    assert_eq!(State::Cancelled.progress(), None);
+    assert_eq!(State::Cancelled(String::new()).progress(), None);
 }

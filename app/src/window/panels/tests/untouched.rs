@@ -6,6 +6,7 @@ use lovelock_project::project::{BodySource, HairSource, MotionSource};
 use serde_json::Value;
 
 use super::{Bench, PANELS, projects};
+use crate::window::control::HoverTooltip;
 use crate::window::control::section;
 use crate::window::testing::{screen, unfold};
 
@@ -94,7 +95,7 @@ fn a_control_that_rounds_is_detected() {
     // A plain slider rounds its value to the digits that it shows.
     let mut harness = screen(0.123_456_f64, |ui, value| {
         let response = ui.add(egui::Slider::new(value, 0.0..=0.1).fixed_decimals(2));
-        response.on_hover_text("plain");
+        response.hover_tooltip("plain");
     });
     harness.run();
     assert_ne!(harness.state().state, 0.123_456);

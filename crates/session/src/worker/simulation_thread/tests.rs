@@ -326,3 +326,27 @@ fn the_nearer_step_is_shown_across_a_jump() {
         assert!(same && head_error(&shown) < 1e-3, "part {part}");
     }
 }
+
+#[test]
+fn the_simulation_waits_while_a_take_is_opened() {
+    let project = small_project();
+    let (scene, _) = load(&project);
+    let mut driven = Driven::new(&project, &scene);
+    driven.inside.playback.set_playing(true);
+    let mut takes = project.clone();
+    takes.take.file = Some(lovelock_project::files::FileRef::new("/a/take.take"));
+    let takes = Arc::new(takes);
+    driven.inside.loader = Arc::new(LoadThread::that_never_ends(Arc::clone(&takes)));
+    driven.inside.project = Some(takes);
+    let before = driven.hash();
+    for _ in 0..5 {
+        driven.turn(Requests::default(), 2.0 * STEP_SECS);
+    }
+    assert_eq!(driven.hash(), before);
+    // Control: the same turns move hair that waits for nothing.
+    driven.inside.project = Some(Arc::new(project));
+    for _ in 0..5 {
+        driven.turn(Requests::default(), 2.0 * STEP_SECS);
+    }
+    assert_ne!(driven.hash(), before);
+}

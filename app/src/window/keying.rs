@@ -1,0 +1,37 @@
+//! What the window does with keys that are set at controls.
+
+use lovelock_project::Project;
+use lovelock_project::tracks::Track;
+
+use super::control::KeyRequest;
+use super::{Window, notices};
+
+impl Window {
+    /// Sets or removes a key of `project`, the one that the panels edit, at the current time, or records a control.
+    pub(super) fn key(&mut self, request: KeyRequest, project: &mut Project) {
+        let secs = self.now_secs();
+        match request {
+            KeyRequest::Add { target, value } => {
+                if !project.set_key(&target, secs, value) {
+                    let (tracks, keys) = (Track::MOST, Track::MOST_KEYS);
+                    self.warn([format!(
+                        "There is no room for another key: a project has at most {tracks} tracks of {keys} keys."
+                    )]);
+                }
+            }
+            KeyRequest::Remove { target } => {
+                project.remove_key(&target, secs);
+            }
+            KeyRequest::Record { target, label } => {
+                self.overdub.arm_only(target);
+                let what = if self.session.playing {
+                    "Hold and move it to write its track"
+                } else {
+                    "Play the dance and move it to write its track, or move it now to set a key"
+                };
+                self.notices
+                    .push(notices::Kind::Done, format!("{label} is recorded. {what}. W ends the recording."));
+            }
+        }
+    }
+}
