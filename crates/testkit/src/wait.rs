@@ -5,7 +5,7 @@ use std::time::Duration;
 use lovelock_base::clock::Stopwatch;
 
 /// The time after which a wait is taken for a hang. No test comes near it, however busy the machine is.
-pub const HANG: Duration = Duration::from_secs(900);
+pub const HANG: Duration = Duration::from_mins(15);
 
 /// The pause between two looks.
 const PAUSE: Duration = Duration::from_millis(2);
