@@ -234,10 +234,12 @@ pub(crate) struct Compare {
     /// Pixel whose hair is probed; may be given several times. Some are chosen if none is given.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub(crate) probe: Vec<[u32; 2]>,
-    /// Number of draws per time measurement, 1 to 1000. Times of fewer than 30 draws are rough.
-    #[arg(long, default_value_t = lovelock_study::batch::CompareRequest::DEFAULT_DRAWS,
-        value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub(crate) draws: u32,
+    /// Number of draws per time measurement, 1 to 1000; 30, or 5 with --quick. Times of fewer than 30 draws are rough.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) draws: Option<u32>,
+    /// Leave out swim, banding, the turning light and the stray hair, and time fewer draws.
+    #[arg(long)]
+    pub(crate) quick: bool,
 }
 
 /// Shadow methods; all of them if empty.

@@ -29,6 +29,7 @@ impl Bar {
     }
 
     pub(super) fn show(&mut self, progress: &Progress) {
+        let mut estimated = None;
         let (what, done, total) = match progress {
             Progress::Loading { what } => (what.as_str(), 0, 1),
             Progress::Loaded { problems } => {
@@ -40,9 +41,11 @@ impl Bar {
             Progress::Simulating { done, total } => ("simulating", *done, *total),
             Progress::Frame { done, total, .. } => ("frame", *done, *total),
             Progress::Kept { done, total } => ("kept", *done, *total),
-            Progress::Comparing { what, done, total } => {
+            Progress::Comparing { what, done, total, left_secs } => {
+                estimated = *left_secs;
                 if self.drawn.is_none() && self.part != *what {
-                    eprintln!("{what} ({done} of {total})");
+                    let left = estimated.map_or_else(String::new, about);
+                    eprintln!("{what} ({} of {total}{left})", done + 1);
                     self.part.clone_from(what);
                 }
                 (what.as_str(), *done, *total)
@@ -52,6 +55,7 @@ impl Bar {
         // Estimated only from rendered frames, because frames that are kept take no time.
         let left = self.pace.left_secs(what, done, total);
         let left = left.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
+        let left = estimated.map_or(left, about);
         let left = format!("{}{left}", self.steps(progress));
         if let Some(bar) = &self.drawn {
             bar.set_prefix(left);
@@ -92,4 +96,9 @@ impl Bar {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Estimated time left as the end of a line.
+fn about(secs: f64) -> String {
+    format!(", about {} left", Pace::in_words(secs))
 }

@@ -27,7 +27,12 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
         backends: task.backend.clone().map(|backends| backends.0).unwrap_or_default(),
         sweeps: task.sweep.clone(),
         probes: task.probe.clone(),
-        draws: task.draws,
+        draws: task.draws.unwrap_or(if task.quick {
+            CompareRequest::QUICK_DRAWS
+        } else {
+            CompareRequest::DEFAULT_DRAWS
+        }),
+        quick: task.quick,
         access: std::mem::take(&mut scene.access),
         gpu: None,
     };
@@ -63,6 +68,12 @@ fn summary(report: &CompareReport, page: &str) -> String {
     }
     if let Some(change) = reference.doubt_at_points() {
         line(format_args!("errors at points below {change:.4} may come from the reference"));
+    }
+    if let Some(between) = &reference.gpu_from_cpu {
+        line(format_args!(
+            "the GPU's reference image differs from the CPU's by FLIP {:.4}; no row includes this difference",
+            between.flip.mean
+        ));
     }
     for sentence in reference.refused.iter().chain(&report.notes) {
         line(format_args!("{sentence}"));

@@ -73,7 +73,8 @@ fn draw_thumbnails(styles: &[Listed], folder: &Path) -> Result<(), ProjectError>
     let total = styles.len() as u64;
     watched(|progress| {
         for (done, listed) in (0_u64..).zip(styles) {
-            let what = || Progress::Comparing { what: listed.style.name.clone(), done, total };
+            let what =
+                || Progress::Comparing { what: listed.style.name.clone(), done, total, left_secs: None };
             let file = thumbnail::draw(&mut portraits, &listed.style, &mut |_| progress(what()))?;
             thumbnail::keep(&folder.join(thumbnail_name(listed)), &file)?;
         }

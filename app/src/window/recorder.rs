@@ -4,18 +4,19 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lovelock_base::words::counted;
-use lovelock_jobs::record::{RecordJob, RecordRequest};
+use lovelock_jobs::record::{RecordRequest, Recorded, record_in_background};
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_session::clock::Pace;
+use lovelock_session::job::BackgroundJob;
 use lovelock_session::progress::Progress;
 
 use super::panels::recording::{State, bytes_in_words};
 
 /// The recording that runs, if any, and the result of the last one. Dropping it cancels the recording.
 pub(crate) struct Recorder {
-    running: Option<(RecordJob, Pace)>,
+    running: Option<(BackgroundJob<Recorded>, Pace)>,
     /// Whether the recording that runs was cancelled.
     cancelled: bool,
     /// Where the recording that runs is written.
@@ -46,7 +47,7 @@ impl Recorder {
         let request =
             RecordRequest { out: out.to_owned(), access, panes, resume, ..RecordRequest::default() };
         let ctx = ctx.clone();
-        match RecordJob::start(project, request, Arc::new(move || super::images::wake(&ctx))) {
+        match record_in_background(project, request, Arc::new(move || super::images::wake(&ctx))) {
             Ok(job) => {
                 self.state =
                     State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
@@ -82,7 +83,7 @@ impl Recorder {
                 }
                 Progress::Frame { done, total, .. } => ("Frame".to_owned(), done, total),
                 Progress::Kept { done, total } => ("Kept".to_owned(), done, total),
-                Progress::Comparing { what, done, total } => (what, done, total),
+                Progress::Comparing { what, done, total, .. } => (what, done, total),
                 Progress::Finishing => ("Finishing".to_owned(), 1, 1),
             };
             let left_secs = pace.left_secs(&what, done, total);

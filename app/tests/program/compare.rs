@@ -123,3 +123,29 @@ fn wrong_requests_are_rejected_in_one_line_without_output() {
         assert!(ran.refused(2).contains(method.id()), "{}", ran.stderr);
     }
 }
+
+#[test]
+fn a_quick_comparison_leaves_out_stability_and_names_its_steps() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    project.look.real_hairs *= 0.05;
+    saved(dir.path(), "p.lovelock", &project);
+    let args = "compare p.lovelock -o out --frame 3 --methods none,voxel-map --size 64x64 --backend cpu --quick --json";
+    let ran = run(dir.path(), args.split(' '));
+    let json = ran.done().json();
+    let notes = json["notes"].to_string();
+    assert!(notes.contains("quick comparison") && notes.contains("only 5 draws"), "{notes}");
+    for method in json["methods"].as_array().expect("methods") {
+        assert_eq!(method["times"][0]["count"], Value::from(5));
+        assert!(method["flip"]["mean"].is_number() && method["transmittance"]["rmse"].is_number());
+        for key in ["stability", "light_sweep", "stray", "banding"] {
+            assert!(method[key].is_null(), "{key} in {method}");
+        }
+    }
+    // Two ground truths, that at points, the images, the probes, and two methods.
+    for step in ["ground truth for none (1 of 7)", "ground truth at points (3 of 7", "voxel-map (7 of 7"] {
+        assert!(ran.stderr.lines().any(|line| line.starts_with(step)), "{step}: {}", ran.stderr);
+    }
+    let last = ran.stderr.lines().find(|line| line.starts_with("voxel-map (7")).unwrap_or_default();
+    assert!(last.contains("about") && last.ends_with("left)"), "an estimate: {last}");
+}

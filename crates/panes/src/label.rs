@@ -1,5 +1,7 @@
 //! Labels of panes.
 
+use std::fmt::Write as _;
+
 use lovelock_project::project::Contender;
 
 use crate::request::{LiveError, LivePane};
@@ -27,6 +29,37 @@ impl LivePane {
         }
         parts.extend(self.flip.map(|flip| format!("FLIP {flip:.4}")));
         parts.join(" · ")
+    }
+
+    /// What the numbers of [`LivePane::figures_label`] are, a paragraph each.
+    pub fn figures_text(&self) -> String {
+        let mut text = "Time: the median of the last images, with the shadow maps. While nothing moves, maps are kept and count with the \
+                        time that they took when they were made.\n\nMemory: the shadow maps of all lights."
+            .to_owned();
+        match &self.error {
+            LiveError::NotMeasured => {}
+            LiveError::Reference => text.push_str(
+                "\n\nThe reference: errors of the other panes are differences from its transmittance.",
+            ),
+            LiveError::Measured { bias, p99, .. } => {
+                let side = if *bias > 0.0 { "too bright" } else { "too dark" };
+                let _ = write!(
+                    text,
+                    "\n\nError: root mean square difference of transmittance from Exact with the project's settings, for the first light \
+                     that is on, over all points of strands, also those that the camera does not see. 0 is none, 1 is full light against none. \
+                     Mean {bias:+.4} ({side}), 99 of 100 points below {p99:.3}."
+                );
+            }
+            LiveError::Refused(why) => {
+                let _ = write!(text, "\n\nNo error: {why}");
+            }
+        }
+        if self.flip.is_some() {
+            text.push_str(
+                "\n\nFLIP: mean perceived difference of the image from one that the same backend draws with exact shadows and transparency.",
+            );
+        }
+        text
     }
 }
 

@@ -35,7 +35,8 @@ pub struct LiveRequest {
     pub probe: Option<ProbePlace>,
 }
 
-/// Times of a pane, milliseconds. Strands are interpolated once for all panes and not counted.
+/// Times of a pane, milliseconds: those of an image while everything moves. What a renderer keeps while nothing moves counts with the
+/// time that it took when it was last made. Strands are interpolated once for all panes and not counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LiveTimes {
     /// Building the shadow maps; `None` if the device does not measure passes.
@@ -51,6 +52,7 @@ pub struct LiveTimes {
 impl LiveTimes {
     /// The times of an image.
     pub(super) fn of(stats: &FrameStats) -> Self {
+        let stats = stats.made_anew();
         let whole = stats.shadow_ms + stats.draw_ms;
         if stats.passes.is_empty() {
             return Self { whole, ..Self::default() };

@@ -44,9 +44,6 @@ pub enum RenderError {
         /// The number that is needed.
         needed: usize,
     },
-    /// Given transmittance is not supported on the GPU.
-    #[error("only the CPU renders with given transmittance: choose the backend `cpu`")]
-    KnownOnGpu,
 }
 
 impl From<lovelock_shadow::GpuShadowError> for RenderError {

@@ -106,6 +106,9 @@ pub struct FrameStats {
     pub draw_ms: f64,
     /// The times of the passes `shadow/…` and `draw/…` in their order, added up over lights, as far as the backend measures them.
     pub passes: Vec<PassTime>,
+    /// The passes that were left out because nothing moved and their results were kept, with the times that they took when they last
+    /// ran.
+    pub kept: Vec<PassTime>,
     /// Segments that were drawn.
     pub segments: u64,
     /// Bytes of the shadow maps.
@@ -133,6 +136,20 @@ impl FrameStats {
         self.sum_ms(|name| ASKING.contains(&name))
     }
 
+    /// What the picture costs while hair, body and lights move: passes that were left out count with the times that they took when they
+    /// last ran.
+    #[must_use]
+    pub fn made_anew(&self) -> Self {
+        let mut anew = self.clone();
+        for pass in anew.kept.drain(..) {
+            let stage =
+                if pass.name.starts_with("shadow/") { &mut anew.shadow_ms } else { &mut anew.draw_ms };
+            *stage += pass.ms;
+            anew.passes.push(pass);
+        }
+        anew
+    }
+
     fn sum_ms(&self, of: impl Fn(&str) -> bool) -> f64 {
         self.passes.iter().filter(|pass| of(&pass.name)).map(|pass| pass.ms).fold(0.0, |sum, ms| sum + ms)
     }
@@ -144,6 +161,21 @@ const ASKING: [&str; 2] = ["shadow/ask", "shadow/columns"];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_kept_counts_as_when_it_was_made() {
+        let pass = |name: &str, ms: f64| PassTime { name: name.to_owned(), ms };
+        let stats = FrameStats {
+            draw_ms: 5.0,
+            passes: vec![pass("draw/tiles", 5.0)],
+            kept: vec![pass("shadow/build", 2.0), pass("shadow/ask", 1.0), pass("draw/body-depth", 0.5)],
+            ..FrameStats::default()
+        };
+        let anew = stats.made_anew();
+        assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.ask_ms()), (3.0, 5.5, 2.0, 1.0));
+        assert!(anew.kept.is_empty() && anew.made_anew() == anew);
+        assert_eq!((stats.build_ms(), stats.ask_ms()), (0.0, 0.0), "the picture itself built nothing");
+    }
 
     #[test]
     fn building_and_asking_are_told_apart_by_the_names_of_passes() {

@@ -137,6 +137,14 @@ impl Renderer {
         self.gpu.as_ref().map(GpuRenderer::gpu)
     }
 
+    /// Whether results are kept for the next picture while nothing moves, which is so at first; see [`CpuRenderer::set_keeping`]. The GPU
+    /// keeps nothing.
+    pub fn set_keeping(&mut self, keeps: bool) {
+        if self.gpu.is_none() {
+            self.cpu.get_or_insert_default().set_keeping(keeps);
+        }
+    }
+
     /// Renders `input` at `width` by `height` pixels.
     ///
     /// # Errors

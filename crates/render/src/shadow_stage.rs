@@ -29,6 +29,8 @@ pub(crate) struct ShadowStage {
     pub bytes: u64,
     /// The times of builds and lookups, added up over lights.
     pub passes: Vec<PassTime>,
+    /// The time of every pass when it was last run, for what is kept while nothing moves.
+    pub made: Vec<PassTime>,
     vertices: [Vec<f32>; 3],
     /// The places at which strands are looked up.
     asked: [Vec<f32>; 3],
@@ -126,6 +128,7 @@ impl ShadowStage {
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
         if self.method != Some(method) {
             self.lights.clear();
+            self.made.clear();
             self.method = Some(method);
         }
         self.lights.truncate(lights.len());
@@ -244,7 +247,10 @@ impl ShadowStage {
     }
 
     fn passed(&mut self, name: &str, part: &Stopwatch) {
-        self.passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
+        let pass = PassTime { name: name.to_owned(), ms: part.ms() };
+        self.made.retain(|made| made.name != name);
+        self.made.push(pass.clone());
+        self.passes.push(pass);
     }
 
     /// Transmittance of light `light` at the strand points of the last run.
@@ -295,7 +301,7 @@ const PIECE: usize = 8192;
 
 /// Packs the values of up to four lights into one word per point, the first light in the lowest byte. Bytes without a light are
 /// 255.
-fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
+pub(crate) fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
     packed.clear();
     packed.resize(count, u32::MAX);
     packed.par_chunks_mut(PIECE).enumerate().for_each(|(piece, words)| {

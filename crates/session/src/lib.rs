@@ -8,7 +8,7 @@
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
 //! - [`strokes`]: brushes on the hair of an engine, and recorded strokes played on a project.
 //! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
-//! - [`clock`], [`stats`], [`latest`], [`threads`], [`memory`], [`machine`] and [`new_folders`]: parts that the others need.
+//! - [`clock`], [`stats`], [`job`], [`latest`], [`threads`], [`memory`], [`machine`] and [`new_folders`]: parts that the others need.
 //!
 //! Nothing here depends on a window or a command line.
 
@@ -18,6 +18,7 @@ pub mod dance;
 pub mod engine;
 pub mod filmstrip;
 pub mod health;
+pub mod job;
 pub mod latest;
 pub mod machine;
 pub mod memory;

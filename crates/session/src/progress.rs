@@ -48,6 +48,8 @@ pub enum Progress {
         done: u64,
         /// Total number of parts.
         total: u64,
+        /// Estimated seconds until all parts are done, if they are estimated.
+        left_secs: Option<f64>,
     },
     /// The file is completed.
     Finishing,

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StabilityReport {
     /// Standard deviation of transmittance under shifts of the map by less than a texel, root mean square over points and
-    /// over [`CompareReport::swim_frames`](crate::report::CompareReport::swim_frames).
-    pub swim: f64,
+    /// over [`CompareReport::swim_frames`](crate::report::CompareReport::swim_frames); null in a quick comparison.
+    pub swim: Option<f64>,
     /// 99th percentile over the points of each point's deviation over these frames.
-    pub swim_p99: f64,
+    pub swim_p99: Option<f64>,
     /// Largest change of transmittance at a point from one frame to the next; null for a single frame.
     pub pop: Option<f64>,
     /// 99th percentile of that over points.

@@ -80,12 +80,39 @@ pub struct Reference {
     pub probes: Vec<NamedTruth>,
     /// Ground truth at points: transmittance of the exact method on a fine map.
     pub points: Option<PointTruth>,
-    /// File of the reference image, rendered from converged transmittance with exact transparency.
+    /// File of the reference image, rendered from converged transmittance with exact transparency: that of the first backend.
     pub picture: Option<String>,
+    /// The reference image of each backend. Images are compared with that of their own backend.
+    #[serde(default)]
+    pub pictures: Vec<ReferencePicture>,
+    /// Difference of the GPU's reference image from that of the CPU; null if nothing was rendered on the GPU. It is in no method's
+    /// numbers.
+    #[serde(default)]
+    pub gpu_from_cpu: Option<ImageDifference>,
     /// File of that transmittance in colour.
     pub transmittance: Option<String>,
     /// Missing parts of the ground truth, with numbers, one sentence each.
     pub refused: Vec<String>,
+}
+
+/// The reference image of one backend.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReferencePicture {
+    /// `cpu` or `gpu`.
+    pub backend: String,
+    /// Its file.
+    pub file: String,
+}
+
+/// Difference of two images.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImageDifference {
+    /// Perceived difference (FLIP, 0 to 1).
+    pub flip: FlipError,
+    /// Peak signal-to-noise ratio, decibels; null if the images are equal.
+    pub psnr_db: Option<f64>,
+    /// Structural similarity, 1 if the images are equal; null if they are smaller than its window.
+    pub ssim: Option<f64>,
 }
 
 /// Converged transmittance for one footprint.
@@ -195,7 +222,7 @@ pub struct MethodReport {
     pub transmittance_common: Option<TransmittanceError>,
     /// The same against the ground truth at points. Null for the method that is this ground truth.
     pub transmittance_at_points: Option<TransmittanceError>,
-    /// Perceived difference from the reference image (FLIP, 0 to 1).
+    /// Perceived difference from the reference image of the same backend (FLIP, 0 to 1).
     pub flip: Option<FlipError>,
     /// Peak signal-to-noise ratio of the image, decibels; also null if the images are equal.
     pub psnr_db: Option<f64>,

@@ -75,7 +75,8 @@ pub fn sheet(
     let mut canvas = Canvas::new(whole_width as usize, whole_height as usize, PAGE);
     for (i, listed) in styles.iter().enumerate() {
         let what = listed.style.name.clone();
-        report_progress(progress, Progress::Comparing { what, done: i as u64, total: styles.len() as u64 })?;
+        let (done, total) = (i as u64, styles.len() as u64);
+        report_progress(progress, Progress::Comparing { what, done, total, left_secs: None })?;
         let mut project = Portraits::project_of(&listed.style);
         (request.change)(&mut project)?;
         let mut access = Access::new();
@@ -88,8 +89,9 @@ pub fn sheet(
             Progress::Loaded { .. } => progress(step),
             _ => progress(Progress::Comparing {
                 what: listed.style.name.clone(),
-                done: i as u64,
-                total: styles.len() as u64,
+                done,
+                total,
+                left_secs: None,
             }),
         })?;
         let [x, y] = places.of_style(i as u32);

@@ -13,7 +13,7 @@ mod sound;
 mod take;
 
 pub use curves::{CurveRecordReport, CurveSource, is_curves, record_curves};
-pub use job::{RecordJob, Recorded};
+pub use job::{Recorded, record_in_background};
 pub use pictures::record;
 pub use report::{RecordReport, StageMedians};
 pub use request::RecordRequest;

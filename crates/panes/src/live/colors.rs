@@ -153,7 +153,8 @@ impl Rounds {
         let own = self.takes.instant(index).and_then(Result::ok);
         let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
         let size = [request.width, request.height];
-        let exact = self.reference.picture(&request.project, snapshot, strands, size)?;
+        let gpu = self.renderers.last(index).and_then(|renderer| renderer.gpu().cloned());
+        let exact = self.reference.picture(&request.project, snapshot, strands, size, gpu.as_ref())?;
         let is_itself = pane.error == LiveError::Reference
             && pane.contender.transparency == Transparency::Exact
             && *picture == *exact;

@@ -8,8 +8,8 @@ use lovelock_groom::{HairLook, Strands};
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Backend, Camera, CpuRenderer, HairDrawing, Light, Picture, RayMarkKind, ShadowMethod, ShadowSettings,
-    Transparency,
+    Backend, Camera, CpuRenderer, FrameInput, Gpu, HairDrawing, Light, Picture, RayMarkKind, RenderError,
+    Renderer, ShadowMethod, ShadowSettings, Transparency,
 };
 use lovelock_session::snapshot::FrameSnapshot;
 
@@ -24,8 +24,11 @@ pub(super) struct ExactReference {
     /// Renders the image that is only used for its transmittance and maps.
     unseen: CpuRenderer,
     seen: CpuRenderer,
+    /// Renders the image for panes on a graphics device.
+    seen_on_device: Option<Renderer>,
     transmittance: Option<(TransmittanceKey, OrReason<Vec<f32>>)>,
-    picture: Option<(PictureKey, OrReason<Picture>)>,
+    /// The image of the CPU, and that of the device.
+    pictures: [Option<(PictureKey, OrReason<Picture>)>; 2],
 }
 
 /// A result, or a sentence that says why there is none.
@@ -62,11 +65,12 @@ impl ExactReference {
     /// The memory that is kept for the next instant, bytes.
     pub(super) fn bytes(&self) -> u64 {
         let found = self.transmittance.as_ref().and_then(|(_, found)| found.as_ref().ok());
-        let picture = self.picture.as_ref().and_then(|(_, found)| found.as_ref().ok());
+        let pictures = self.pictures.iter().flatten().filter_map(|(_, found)| found.as_ref().ok());
         self.unseen.bytes()
             + self.seen.bytes()
+            + self.seen_on_device.as_ref().map_or(0, Renderer::bytes)
             + found.map_or(0, |found| list_bytes(found))
-            + picture.map_or(0, |picture| picture.bytes())
+            + pictures.map(|picture| picture.bytes()).sum::<u64>()
     }
 
     /// Whether a contender is the reference itself, because it reads the same map in the same way.
@@ -120,7 +124,8 @@ impl ExactReference {
         found
     }
 
-    /// The image of strands with exact shadows and transparency.
+    /// The image of strands with exact shadows and transparency, rendered on `gpu`, or on the CPU without it: the backend of the pane
+    /// that is compared, so that the difference between backends is no error.
     ///
     /// # Errors
     /// A sentence if the size is out of range, or the map needs too much memory.
@@ -130,6 +135,7 @@ impl ExactReference {
         snapshot: &Arc<FrameSnapshot>,
         strands: &Strands,
         size: [u32; 2],
+        gpu: Option<&Arc<Gpu>>,
     ) -> OrReason<Picture> {
         let mut exact = project.clone();
         exact.shadow.method = ShadowMethod::Exact;
@@ -139,16 +145,41 @@ impl ExactReference {
         exact.compare.panes = Vec::new();
         let camera = snapshot.camera(&exact.camera);
         let key = PictureKey { instant: Instant(Arc::clone(snapshot)), project: exact, camera, size };
-        if let Some((held, found)) = &self.picture
+        let slot = usize::from(gpu.is_some());
+        if let Some((held, found)) = &self.pictures[slot]
             && *held == key
         {
             return found.clone();
         }
         let mut picture = Picture::default();
-        let drawn = draw(&mut self.seen, &key.project, snapshot, strands, size, &mut picture);
+        let drawn = match gpu {
+            None => draw(&mut self.seen, &key.project, snapshot, strands, size, &mut picture),
+            Some(gpu) => self.draw_on(gpu, &key.project, snapshot, strands, size, &mut picture),
+        };
+        if drawn.is_err() {
+            // Its device may be lost.
+            self.seen_on_device = None;
+        }
         let found = drawn.map(|()| Arc::new(picture));
-        self.picture = Some((key, found.clone()));
+        self.pictures[slot] = Some((key, found.clone()));
         found
+    }
+
+    fn draw_on(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        project: &Project,
+        snapshot: &FrameSnapshot,
+        strands: &Strands,
+        size: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<(), String> {
+        let same = |renderer: &Renderer| renderer.gpu().is_some_and(|own| own.device == gpu.device);
+        let renderer = match self.seen_on_device.take().filter(same) {
+            Some(renderer) => renderer,
+            None => Renderer::on_device(gpu).map_err(|error| error.to_string())?,
+        };
+        draw(self.seen_on_device.insert(renderer), project, snapshot, strands, size, picture)
     }
 
     /// The steps of transmittance along the light through `p`, for the light and the instant of the last call of
@@ -160,17 +191,33 @@ impl ExactReference {
     }
 }
 
+/// What renders a reference.
+trait Draws {
+    fn draw(&mut self, input: &FrameInput, size: [u32; 2], picture: &mut Picture) -> Result<(), RenderError>;
+}
+
+impl Draws for CpuRenderer {
+    fn draw(&mut self, input: &FrameInput, size: [u32; 2], picture: &mut Picture) -> Result<(), RenderError> {
+        self.picture(input, size[0], size[1], picture).map(|_| ())
+    }
+}
+
+impl Draws for Renderer {
+    fn draw(&mut self, input: &FrameInput, size: [u32; 2], picture: &mut Picture) -> Result<(), RenderError> {
+        self.picture(input, size[0], size[1], picture).map(|_| ())
+    }
+}
+
 fn draw(
-    renderer: &mut CpuRenderer,
+    renderer: &mut impl Draws,
     project: &Project,
     snapshot: &FrameSnapshot,
     strands: &Strands,
-    [width, height]: [u32; 2],
+    size: [u32; 2],
     picture: &mut Picture,
 ) -> Result<(), String> {
     let project = project.compared();
     let camera = snapshot.camera(&project.camera);
     let input = input_of(snapshot, &project, strands, &camera);
-    let drawn = renderer.picture(&input, width, height, picture);
-    drawn.map(|_| ()).map_err(|error| error.to_string())
+    renderer.draw(&input, size, picture).map_err(|error| error.to_string())
 }

@@ -390,3 +390,29 @@ fn panes_that_rest_keep_nothing_and_are_drawn_again() {
     assert!(pixels(&rig.pane(0)) == pixels(&before), "the same panes again");
     assert!(rig.live.held_bytes() > 0);
 }
+
+#[test]
+fn a_pane_at_rest_shows_what_its_work_costs() {
+    let mut rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::OpacityMaps]);
+    rig.draw(rig.request(&[0, 1]));
+    let costs = |rig: &Rig| [0, 1].map(|index| rig.pane(index).times);
+    let first = costs(&rig);
+    // Only the camera turns: the maps are kept.
+    rig.project.camera.fov_y *= 0.9;
+    rig.draw(rig.request(&[0, 1]));
+    for (before, after) in first.into_iter().zip(costs(&rig)) {
+        assert!(
+            before.build.is_some_and(|ms| ms > 0.0) && before.ask.is_some_and(|ms| ms > 0.0),
+            "{before:?}"
+        );
+        assert_eq!((after.build, after.ask), (before.build, before.ask), "of the same maps");
+        assert!(after.draw.is_some_and(|ms| ms > 0.0) && after != before, "{after:?}");
+        assert!(after.whole >= before.build.unwrap_or(0.0) + before.ask.unwrap_or(0.0));
+    }
+    // Negative control: with another extinction the maps are made again.
+    rig.project.look.extinction_scale *= 0.5;
+    rig.draw(rig.request(&[0, 1]));
+    for (before, after) in first.into_iter().zip(costs(&rig)) {
+        assert_ne!((after.build, after.ask), (before.build, before.ask));
+    }
+}

@@ -49,6 +49,8 @@ pub struct CpuRenderer {
     shadow: ShadowStage,
     placed: PlacedScene,
     depth: Vec<DepthMap>,
+    /// How long the depth maps took when they were last drawn, milliseconds.
+    depth_ms: f64,
     tiles: Vec<u8>,
     plain: PlainTiles,
     layers: LayerTiles,
@@ -102,6 +104,7 @@ impl Default for CpuRenderer {
             shadow: ShadowStage::default(),
             placed: PlacedScene::new(Width::widest()),
             depth: Vec::new(),
+            depth_ms: 0.0,
             tiles: Vec::new(),
             plain: PlainTiles::default(),
             layers: LayerTiles::default(),
@@ -124,6 +127,12 @@ impl CpuRenderer {
     #[must_use]
     pub fn keeping_nothing(self) -> Self {
         Self { keeps: false, ..self }
+    }
+
+    /// Whether results are kept for the next picture while nothing moves, which is so at first. Times of repeated pictures only mean
+    /// something without.
+    pub fn set_keeping(&mut self, keeps: bool) {
+        self.keeps = keeps;
     }
 
     /// The memory that it keeps from picture to picture, bytes: what it has drawn, and the scratch memory of threads.
@@ -207,10 +216,12 @@ impl CpuRenderer {
         let casters =
             clusters.as_ref().filter(|_| share >= 1.0).map(|hair| of_casters(input, hair, &picture));
         let input = casters.as_ref().unwrap_or(input);
-        let mut unchanged = self.kept.follow(input);
-        if !self.keeps {
-            unchanged = Unchanged { body: false, hair: false };
-        }
+        let unchanged = if self.keeps {
+            self.kept.follow(input)
+        } else {
+            self.kept.forget();
+            Unchanged { body: false, hair: false }
+        };
         let mut made = std::mem::take(&mut self.strands);
         let strands = match input.hair {
             HairPose::Guides(_) if unchanged.hair => &made,
@@ -259,6 +270,11 @@ impl CpuRenderer {
 
         let watch = Stopwatch::start();
         let mut passes = self.shadow.passes.clone();
+        let mut kept = Vec::new();
+        if unchanged.hair {
+            let is_new = |pass: &PassTime| passes.iter().any(|new| new.name == pass.name);
+            kept.extend(self.shadow.made.iter().filter(|pass| !is_new(pass)).cloned());
+        }
         let mut passed = |name: &str, part: &Stopwatch| {
             passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
         };
@@ -275,7 +291,10 @@ impl CpuRenderer {
         };
         let view =
             View::new(&uniform, (&light.grid, fibre_view()), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
-        if !unchanged.body {
+        if unchanged.body {
+            kept.push(PassTime { name: "draw/body-depth".to_owned(), ms: self.depth_ms });
+        } else {
+            self.depth_ms = part.ms();
             passed("draw/body-depth", &part);
         }
 
@@ -334,7 +353,7 @@ impl CpuRenderer {
                 held.write(&grid, layers);
                 self.layers = held;
                 passed("draw/layers", &part);
-                return Ok(self.stats(shadow_ms, &watch, passes));
+                return Ok(self.stats(shadow_ms, &watch, (passes, kept)));
             }
         };
         let part = Stopwatch::start();
@@ -372,15 +391,21 @@ impl CpuRenderer {
         copy_rows(&tiles, 4, &grid, &mut picture.rgba);
         self.tiles = tiles;
         passed("draw/tiles", &part);
-        Ok(self.stats(shadow_ms, &watch, passes))
+        Ok(self.stats(shadow_ms, &watch, (passes, kept)))
     }
 
-    fn stats(&self, shadow_ms: f64, drawing: &Stopwatch, passes: Vec<PassTime>) -> FrameStats {
+    fn stats(
+        &self,
+        shadow_ms: f64,
+        drawing: &Stopwatch,
+        (passes, kept): (Vec<PassTime>, Vec<PassTime>),
+    ) -> FrameStats {
         FrameStats {
             interpolate_ms: 0.0,
             shadow_ms,
             draw_ms: drawing.ms(),
             passes,
+            kept,
             segments: self.placed.segments().len() as u64,
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),

@@ -12,7 +12,8 @@ use lovelock_shadow::{
 };
 
 use super::hair::HairBuffers;
-use crate::{FrameInput, Light, MAX_LIGHTS, RenderError};
+use crate::shadow_stage::pack;
+use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 pub(super) struct GpuShadowStage {
@@ -80,7 +81,11 @@ impl GpuShadowStage {
             .take(MAX_LIGHTS)
             .map(Light::normalized)
             .collect();
-        let method = input.shadow.method;
+        let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
+        if let Some(known) = input.known {
+            let vertices = vertices.map_or(0, |vertices| vertices.count as usize);
+            known.check(lights.len(), hair.drawn().point_count as usize, vertices)?;
+        }
         if self.method != method
             && let Some(old) = self.methods.get_mut(&self.method)
         {
@@ -94,7 +99,9 @@ impl GpuShadowStage {
         self.lights = lights.len();
         self.frames.truncate(lights.len());
         let anchor: Vec3 = input.world_from_head.translation.into();
-        commands.encoder().clear_buffer(&self.sum, 0, None);
+        if input.known.is_none() {
+            commands.encoder().clear_buffer(&self.sum, 0, None);
+        }
         for (slot, light) in lights.iter().enumerate() {
             // Transported instead of recomputed, so that the map does not roll while the light is dragged.
             let frame = match self.frames.get(slot) {
@@ -123,8 +130,11 @@ impl GpuShadowStage {
                 out: hair.transmittance(),
                 sum: Some(&self.sum),
             };
-            shadow.look_up(slot, gpu, commands, &targets);
-            if let Some(vertices) = vertices {
+            if input.known.is_none() {
+                shadow.look_up(slot, gpu, commands, &targets);
+            }
+            let asked = input.known.is_none_or(|known| known.at_vertices.is_empty());
+            if let Some(vertices) = vertices.filter(|_| asked) {
                 let targets = GpuTargets {
                     points: vertices.positions,
                     stride: 2,
@@ -134,6 +144,9 @@ impl GpuShadowStage {
                 };
                 shadow.look_up(slot, gpu, commands, &targets);
             }
+        }
+        if let Some(known) = &input.known {
+            write_known(gpu, known, &self.sum, hair.transmittance(), vertices);
         }
         if lights.is_empty() {
             // Without lights there is nothing to shadow.
@@ -210,6 +223,31 @@ impl GpuShadowStage {
     /// The transform from world space to the layer of light `k`; far outside if it has none.
     pub fn columns_from_world(&self, k: usize) -> Mat4 {
         self.columns.uv_from_world(k)
+    }
+}
+
+/// Uploads given transmittance, and the sum of its bytes, in place of what the map would return.
+fn write_known(
+    gpu: &Gpu,
+    known: &KnownTransmittance,
+    sum: &wgpu::Buffer,
+    at_points: &wgpu::Buffer,
+    vertices: Option<Vertices>,
+) {
+    let mut packed = Vec::new();
+    let mut upload = |lists: &[Vec<f32>], to: &wgpu::Buffer| {
+        let lists: Vec<&[f32]> = lists.iter().map(Vec::as_slice).collect();
+        pack(&lists, lists.first().map_or(0, |list| list.len()), &mut packed);
+        gpu.upload(to, 0, &packed);
+        packed.iter().map(|word| word & 0xff).fold(0, u32::saturating_add)
+    };
+    let mut sums = [0_u32; SUM_WORDS as usize];
+    sums[0] = upload(known.at_points, at_points);
+    gpu.upload(sum, 0, &sums);
+    if let Some(vertices) = vertices
+        && !known.at_vertices.is_empty()
+    {
+        upload(known.at_vertices, vertices.hair);
     }
 }
 

@@ -1,12 +1,12 @@
 //! The image, times and errors of one entrant.
 
-use lovelock_metrics::{Errors, Image, Spread, errors, errors_of, flip, psnr_db, ssim};
+use lovelock_metrics::{Errors, Spread, errors, errors_of};
 use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, FrameStats, Picture, Renderer};
 
 use super::truth::Points;
 use super::work::CheckCancel;
-use crate::report::{FlipError, MethodReport, StageMs, TimeSpread, TransmittanceError};
+use crate::report::{MethodReport, StageMs, TimeSpread, TransmittanceError};
 
 /// Number of untimed draws that create buffers and fill caches.
 const WARM_UP: u32 = 3;
@@ -18,8 +18,8 @@ pub(super) struct Drawn {
     pub transmittance: Vec<f32>,
 }
 
-/// Renders `draws` times after a warm-up and records times and memory. `check_cancel` is called before each draw, outside the
-/// measured time.
+/// Renders `draws` times after a warm-up and records times and memory. Every draw builds and looks up its maps, as while hair moves.
+/// `check_cancel` is called before each draw, outside the measured time.
 ///
 /// # Errors
 /// If the shadow needs too much memory or the device is lost, or the error of `check_cancel`.
@@ -33,13 +33,17 @@ pub(super) fn draw(
 ) -> Result<Drawn, ProjectError> {
     let mut picture = Picture::default();
     let mut stats = Vec::new();
-    for draw in 0..WARM_UP + draws.max(1) {
+    renderer.set_keeping(false);
+    let timed = (0..WARM_UP + draws.max(1)).try_for_each(|draw| {
         check_cancel()?;
         let one = renderer.picture(input, width, height, &mut picture)?;
         if draw >= WARM_UP {
             stats.push(one);
         }
-    }
+        Ok::<_, ProjectError>(())
+    });
+    renderer.set_keeping(true);
+    timed?;
     let transmittance = renderer.transmittance(0)?;
     report.times = times(&stats);
     let median = |name: &str| report.times.iter().find(|time| time.name == name).map(|time| time.median);
@@ -99,26 +103,62 @@ pub(super) fn transmittance_error(
     TransmittanceError { count: count as u64, rmse, bias, p99, max, first10_rmse }
 }
 
-/// Records the difference of an image from the reference, and returns it per pixel. `hair` is finite where a pixel shows hair.
-///
-/// # Errors
-/// If the images have different sizes.
-pub(super) fn picture_error(
-    picture: &Picture,
-    reference: &Picture,
-    hair: &[f32],
-    report: &mut MethodReport,
-) -> Result<Vec<f32>, lovelock_metrics::ImageError> {
-    let test = Image::new(picture.width, picture.height, &picture.rgba)?;
-    let reference = Image::new(reference.width, reference.height, &reference.rgba)?;
-    let seen = flip(&reference, &test)?;
-    let on_hair = seen.values.iter().zip(hair).filter(|(_, hair)| hair.is_finite());
-    let (sum, count) =
-        on_hair.fold((0.0, 0_u64), |(sum, count), (seen, _)| (sum + f64::from(*seen), count + 1));
-    let hair_mean = (count > 0).then(|| sum / count as f64);
-    report.flip = Some(FlipError { mean: seen.mean(), hair_mean, p99: seen.percentile(0.99) });
-    report.psnr_db = Some(psnr_db(&reference, &test)?).filter(|db| db.is_finite());
-    // An image smaller than the SSIM window has no SSIM.
-    report.ssim = ssim(&reference, &test).ok();
-    Ok(seen.values)
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use lovelock_base::clock::Stopwatch;
+    use lovelock_project::files::Access;
+    use lovelock_render::{Backend, ShadowMethod};
+    use lovelock_session::dance::Dance;
+    use lovelock_session::progress::Progress;
+    use lovelock_session::testing::small_project;
+    use lovelock_shadow::{MapKind, cpu_shadow};
+
+    use super::super::hair::{Hair, lights};
+    use super::*;
+
+    /// Times are compared by a factor that no load of the machine makes: the least of several benchmarks with a median of draws.
+    #[test]
+    fn the_times_of_every_method_are_those_of_its_work() {
+        let mut project = small_project().compared();
+        // With one light, a draw and the benchmark build one map each.
+        project.lights.truncate(1);
+        project.lights[0].enabled = true;
+        let mut progress = |_: Progress| ControlFlow::Continue(());
+        let (mut dance, _) = Dance::open(&project, &Access::new(), 30.0, &mut progress).expect("a dance");
+        dance.begin(0, 0.0, &mut progress).expect("a start");
+        let hair = Hair::new(dance.snapshot(0).expect("a snapshot"), &project);
+        let light = &lights(&project)[0];
+        for &method in ShadowMethod::ALL.iter().filter(|method| method.map_kind() != MapKind::None) {
+            project.shadow.method = method;
+            let input = hair.shadow_input(&project, light);
+            let mut map = cpu_shadow(method);
+            let strands = &hair.strands;
+            let mut answers = vec![1.0; strands.points()];
+            let mut benchmark = || {
+                let watch = Stopwatch::start();
+                map.build(&input, &project.shadow).expect("a map");
+                map.transmittance_at(&strands.x, &strands.y, &strands.z, &mut answers);
+                watch.ms()
+            };
+            let least = (0..5).map(|_| benchmark()).fold(f64::MAX, f64::min);
+
+            let frame = hair.frame_input(&project);
+            let mut renderer = Renderer::open(Backend::Cpu).expect("the CPU");
+            let mut report = MethodReport::default();
+            draw(&mut renderer, &frame, [32, 32], 5, &mut report, &mut || Ok(())).expect("draws");
+            let ms = report.ms.and_then(|ms| Some([ms.build?, ms.query?])).expect("times");
+            assert!(ms.iter().all(|ms| *ms > 0.0), "{method}: {ms:?}");
+            assert!(ms[0] + ms[1] >= 0.1 * least, "{method}: {ms:?} of {least}");
+
+            // Negative control: a renderer that keeps its maps would be caught, and says what it kept.
+            let mut picture = Picture::default();
+            let mut draw = || renderer.picture(&frame, 32, 32, &mut picture).expect("a picture");
+            let (first, second) = (draw(), draw());
+            assert_eq!((second.build_ms(), second.ask_ms()), (0.0, 0.0), "{method}");
+            let anew = second.made_anew();
+            assert_eq!((anew.build_ms(), anew.ask_ms()), (first.build_ms(), first.ask_ms()), "{method}");
+        }
+    }
 }

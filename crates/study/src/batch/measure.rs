@@ -5,6 +5,7 @@ use lovelock_render::{FrameInput, Renderer, ValueRenderer};
 
 use super::entrants::{Entrant, file_name};
 use super::maps::{Kind, at_pixels};
+use super::pictures::picture_error;
 use super::probe::Probe;
 use super::swim::swimming;
 use super::work::{Against, CheckCancel, Work};
@@ -32,9 +33,11 @@ impl Work<'_> {
         let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, check_cancel)?;
         let [width, height] = self.size;
         report.files.picture = Some(self.folder.picture(&name, (width, height, &drawn.picture.rgba))?);
-        if let Some(reference) = against.picture {
-            let seen = draw::picture_error(&drawn.picture, reference, against.hair_pixels, report)
-                .map_err(ProjectError::work)?;
+        if let Some(reference) = against.pictures.of(renderer.backend()) {
+            let (difference, seen) =
+                picture_error(&drawn.picture, reference, against.hair_pixels).map_err(ProjectError::work)?;
+            report.flip = Some(difference.flip);
+            (report.psnr_db, report.ssim) = (difference.psnr_db, difference.ssim);
             report.files.picture_error = self.pixel_map(&name, maps::PICTURE_ERROR, &seen)?;
         }
         // The points at which light reaches clusters are not those of the strands.
@@ -64,14 +67,17 @@ impl Work<'_> {
             report.transmittance_at_points =
                 Some(draw::transmittance_error(&drawn.transmittance, &points.transmittance, against.points));
         }
-        report.banding = banding::slab(&entrant.contender.shadow);
-
-        report.stray = stray::stray(&entrant.contender.shadow);
-
-        let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), check_cancel)?;
-        report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
-        let mut stability =
-            StabilityReport { swim: swim.rms, swim_p99: swim.p99, ..StabilityReport::default() };
+        if self.request.quick && against.film.is_none() {
+            return Ok(());
+        }
+        let mut stability = StabilityReport::default();
+        if !self.request.quick {
+            report.banding = banding::slab(&entrant.contender.shadow);
+            report.stray = stray::stray(&entrant.contender.shadow);
+            let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), check_cancel)?;
+            report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
+            (stability.swim, stability.swim_p99) = (Some(swim.rms), Some(swim.p99));
+        }
         if let Some(film) = against.film {
             let (pop, flicker) = film.watch(renderer, &project, truth, check_cancel)?;
             (stability.pop, stability.pop_p99) = (Some(pop.max), Some(pop.p99));

@@ -36,6 +36,9 @@ pub struct CompareRequest {
     pub probes: Vec<[u32; 2]>,
     /// Number of draws per time measurement, after a warm-up; at least one.
     pub draws: u32,
+    /// Whether the tests of stability, swim and banding are left out: images, errors, times, memory and probes only, and pop and flicker
+    /// of several frames.
+    pub quick: bool,
     /// The files that the project may read.
     pub access: Access,
     /// The device to render on instead of opening one for `backends`.
@@ -57,6 +60,7 @@ impl Default for CompareRequest {
             sweeps: Vec::new(),
             probes: Vec::new(),
             draws: Self::DEFAULT_DRAWS,
+            quick: false,
             access: Access::default(),
             gpu: None,
         }
@@ -66,4 +70,6 @@ impl Default for CompareRequest {
 impl CompareRequest {
     /// Default number of draws. Medians and percentiles of fewer draws are rough, and the report says so.
     pub const DEFAULT_DRAWS: u32 = 30;
+    /// Default number of draws of a quick comparison.
+    pub const QUICK_DRAWS: u32 = 5;
 }

@@ -67,6 +67,9 @@ pub fn compare(
     if request.draws < CompareRequest::DEFAULT_DRAWS {
         report.notes.push(few_draws(request.draws.max(1)));
     }
+    if request.quick {
+        report.notes.push(QUICK.to_owned());
+    }
     if animated && snapshots.len() > 1 {
         report.notes.push("Tracks stand still at their values of the first frame.".to_owned());
     }
@@ -90,6 +93,10 @@ pub fn compare(
     folder.tidy(&report);
     Ok(report)
 }
+
+/// The note on what a quick comparison leaves out.
+const QUICK: &str =
+    "This is a quick comparison: swim, banding, the turning light and the stray hair were not measured.";
 
 /// The note on times of fewer draws than [`CompareRequest::DEFAULT_DRAWS`].
 fn few_draws(draws: u32) -> String {

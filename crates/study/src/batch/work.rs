@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lovelock_metrics::pareto;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Light, Picture, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
+use lovelock_render::{Light, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
 use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::CONVERGED_CHANGE;
@@ -15,9 +15,11 @@ use super::entrants::Entrant;
 use super::folder::Folder;
 use super::hair::Hair;
 use super::light_sweep::LightSweep;
+use super::pictures::ReferencePictures;
 use super::probe::Probe;
 use super::request::CompareRequest;
 use super::stability::{Film, fits};
+use super::steps::{Step, Steps};
 use super::swim::frames_shifted;
 use super::truth::{Points, Truths};
 use super::{maps, probe};
@@ -43,7 +45,7 @@ pub(super) struct Against<'a> {
     /// Index of the one that is common to all.
     pub common: usize,
     pub points: Option<&'a Points>,
-    pub picture: Option<&'a Picture>,
+    pub pictures: &'a ReferencePictures,
     pub film: Option<&'a Film>,
     /// The frames in which maps are shifted.
     pub shifted: &'a [Arc<FrameSnapshot>],
@@ -65,22 +67,24 @@ impl Work<'_> {
         report: &mut CompareReport,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), ProjectError> {
-        let total = entrants.len() as u64 + 2;
-        let mut done = 0;
-        let mut part = |what: String, is_next: bool| {
-            done += u64::from(is_next);
-            report_progress(progress, Progress::Comparing { what, done: done.min(total), total })
+        let mut steps = Steps::new(self.steps(snapshots.len(), entrants.len()));
+        let mut part = |what: String, begins: bool| {
+            if begins {
+                steps.begin();
+            }
+            let ([done, total], left_secs) = (steps.count(), steps.left_secs());
+            report_progress(progress, Progress::Comparing { what, done, total, left_secs })
         };
         let Some(first) = snapshots.first() else { return Ok(()) };
         let hair = Hair::new(Arc::clone(first), self.project);
         let mut truths = Truths::default();
         let mut found = Vec::new();
         for entrant in &entrants {
-            part(format!("the truth for {}", entrant.report.name), false)?;
+            part(format!("ground truth for {}", entrant.report.name), true)?;
             let place = (&hair, self.project, &self.lights[0]);
             found.push(truths.find(place, &entrant.contender.shadow, Some(&entrant.report.name)));
         }
-        part("the truth at points".to_owned(), true)?;
+        part("ground truth at points".to_owned(), true)?;
         let points = match Points::new(&hair, self.project, &self.lights[0]) {
             Ok(points) => Some(points),
             Err(error) => {
@@ -88,19 +92,25 @@ impl Work<'_> {
                 None
             }
         };
-        part("the reference picture".to_owned(), true)?;
+        part("reference images".to_owned(), true)?;
         let shadow = ShadowSettings { method: ShadowMethod::Exact, ..self.project.shadow };
         let (common, _) = truths.find((&hair, self.project, &self.lights[0]), &shadow, None);
-        let picture = self.reference(&hair, &truths.0[common], report)?;
+        let pictures = self.reference(&hair, &truths.0[common], renderers, report)?;
         note_truths(report, &truths, points.as_ref());
         let film = self.film(snapshots, &truths, report, &mut part)?;
-        let shifted = frames_shifted(snapshots.len());
+        let shifted = if self.request.quick { Vec::new() } else { frames_shifted(snapshots.len()) };
         report.swim_frames = shifted.iter().map(|at| report.frames[0] + *at as u64).collect();
         let shifted: Vec<_> = shifted.iter().map(|at| Arc::clone(&snapshots[*at])).collect();
         let place = (&hair, self.project, &self.lights[0]);
-        let check_cancel = || part("the truth under a light that turns".to_owned(), false);
-        let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, check_cancel)?;
-        let light_sweep = light_sweep.map_err(|refused| report.notes.push(refused)).ok();
+        let light_sweep = if self.request.quick {
+            None
+        } else {
+            let turning = || "ground truth under a turning light".to_owned();
+            part(turning(), true)?;
+            let check_cancel = || part(turning(), false);
+            let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, check_cancel)?;
+            light_sweep.map_err(|refused| report.notes.push(refused)).ok()
+        };
 
         let mut values = ValueRenderer::default();
         let input = hair.frame_input(self.project);
@@ -109,6 +119,8 @@ impl Work<'_> {
         let lit = vec![1.0; hair.strands.points()];
         let numbers = known.unwrap_or(&lit);
         let hair_pixels = maps::at_pixels(&mut values, &input, numbers, self.size)?;
+        report.reference.gpu_from_cpu = pictures.gpu_from_cpu(&hair_pixels).map_err(ProjectError::work)?;
+        part("probes".to_owned(), true)?;
         let mut probes = self.probes(&mut values, &hair, &hair_pixels, points.as_ref(), report);
         report.reference.settle();
 
@@ -117,7 +129,7 @@ impl Work<'_> {
             truths: &truths,
             common,
             points: points.as_ref(),
-            picture: picture.as_ref(),
+            pictures: &pictures,
             film: film.as_ref(),
             shifted: &shifted,
             light_sweep: light_sweep.as_ref(),
@@ -126,7 +138,7 @@ impl Work<'_> {
         report.legends = maps::kinds(film.is_some()).map(|kind| kind.legend()).collect();
         for (entrant, (truth, cell_size)) in entrants.into_iter().zip(found) {
             let name = entrant.report.name.clone();
-            part(name.clone(), false)?;
+            part(name.clone(), true)?;
             let backend = entrant.contender.backend;
             let Some(renderer) = renderers.iter_mut().find(|open| open.backend() == backend) else {
                 continue;
@@ -149,9 +161,19 @@ impl Work<'_> {
             mark_fronts(report);
             report.probes = probes.iter().map(|probe| probe.report.clone()).collect();
             self.folder.report(report)?;
-            part(format!("{name} is done"), true)?;
         }
         Ok(())
+    }
+
+    /// The steps of the run, in order.
+    fn steps(&self, frames: usize, entrants: usize) -> Vec<Step> {
+        let mut steps = vec![Step::Truth; entrants];
+        steps.extend([Step::Points, Step::Picture]);
+        steps.extend((frames > 1).then_some(Step::Film));
+        steps.extend((!self.request.quick).then_some(Step::LightSweep));
+        steps.push(Step::Probes);
+        steps.extend(vec![Step::Entrant; entrants]);
+        steps
     }
 
     /// The probed rays. A pixel without hair is skipped.
@@ -210,7 +232,9 @@ impl Work<'_> {
             report.notes.push(refused);
             return Ok(None);
         }
-        let check_cancel = || part("the truth frame by frame".to_owned(), false);
+        let by_frame = || "ground truth of every frame".to_owned();
+        part(by_frame(), true)?;
+        let check_cancel = || part(by_frame(), false);
         let frames = (report.frames[0], snapshots);
         Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, check_cancel)
             .map(Some)

@@ -9,7 +9,7 @@ mod stability;
 mod tables;
 mod words;
 
-use crate::report::{CompareReport, ProbeReport};
+use crate::report::{CompareReport, ImageDifference, ProbeReport};
 use figures::Cost;
 use names::{Group, Names, groups};
 use std::fmt::Write as _;
@@ -158,6 +158,7 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         out += "<p class=\"note\">Click a heading to sort by it; hover over one to see what it means. Shaded costs are on the front: \
                 no other method of the table is both more accurate (by <i>One truth</i>) and cheaper.</p>";
     }
+    out += &between_backends(report);
     if names.draws {
         out += "<p class=\"note\">Only strands have errors of transmittance and swimming. Images of clusters are compared with the \
                 reference, which is drawn as strands. <i>Times</i> has the times of whole images.</p>";
@@ -170,6 +171,20 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         out += "</ul>";
     }
     out
+}
+
+/// The difference between the reference images of the two backends; empty if only one was rendered.
+fn between_backends(report: &CompareReport) -> String {
+    let Some(difference) = report.reference.gpu_from_cpu else { return String::new() };
+    let ImageDifference { flip, psnr_db, ssim } = difference;
+    let psnr = if psnr_db.is_none() { "∞".to_owned() } else { fixed(psnr_db, 1) };
+    format!(
+        "<p class=\"note\"><b>Between the backends:</b> the GPU's reference image differs from the CPU's by FLIP {} ({} in hair), PSNR \
+         {psnr} dB, SSIM {}. Images are compared with the reference image of their own backend, so no row includes this difference.</p>",
+        fixed(Some(flip.mean), 4),
+        fixed(flip.hair_mean, 4),
+        fixed(ssim, 4)
+    )
 }
 
 fn costs(groups: &[Group<'_>], names: &Names) -> String {

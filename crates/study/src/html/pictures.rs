@@ -1,8 +1,8 @@
 //! Images and maps: a wipe between two, and all of one kind beside each other.
 
-use super::names::{Names, color};
+use super::names::{Names, backend, color};
 use super::words::{address, escaped};
-use crate::report::{CompareReport, MethodFiles};
+use crate::report::{CompareReport, MethodFiles, ReferencePicture};
 use std::fmt::Write as _;
 
 /// Selects the file of one kind from those of a method.
@@ -24,9 +24,8 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
     let mut cards = String::new();
     for (kind, title, file) in KINDS {
         let mut of_kind = String::new();
-        let reference = (kind == "picture").then_some(report.reference.picture.as_ref()).flatten();
-        if let Some(file) = reference {
-            of_kind += &card(kind, file, "Reference", "#202124");
+        for (name, file) in references(report).into_iter().filter(|_| kind == "picture") {
+            of_kind += &card(kind, file, &name, "#202124");
         }
         for method in &report.methods {
             if let Some(file) = file(&method.files) {
@@ -59,6 +58,16 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
          {first} is on the left.</p>\
          <div id=\"cards\" class=\"cards\" data-kind=\"picture\">{cards}</div>"
     )
+}
+
+/// The reference images with their names, which contain the backend if there are several.
+fn references(report: &CompareReport) -> Vec<(String, &str)> {
+    let reference = &report.reference;
+    if reference.pictures.len() < 2 {
+        return reference.picture.iter().map(|file| ("Reference".to_owned(), file.as_str())).collect();
+    }
+    let named = |picture: &'_ ReferencePicture| format!("Reference · {}", backend(&picture.backend));
+    reference.pictures.iter().map(|picture| (named(picture), picture.file.as_str())).collect()
 }
 
 fn card(kind: &str, file: &str, name: &str, color: &str) -> String {

@@ -122,7 +122,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
             (time(stages.and_then(|s| s.build)), if quick { "first front" } else { "first" }),
             (time(stages.and_then(|s| s.query)), if quick { "front" } else { "" }),
             ((bytes(memory), memory.map(|b| b as f64)), if little { "front" } else { "" }),
-            (four(method.stability.map(|stability| stability.swim)), "first"),
+            (four(method.stability.and_then(|stability| stability.swim)), "first"),
         ];
         rows += &cells.map(|((text, value), class)| cell(&text, value, class)).concat();
         rows += "</tr>";
@@ -172,8 +172,8 @@ pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
             continue;
         }
         let numbers = [
-            (found.map(|f| f.swim), ""),
-            (found.map(|f| f.swim_p99), ""),
+            (found.and_then(|f| f.swim), ""),
+            (found.and_then(|f| f.swim_p99), ""),
             (found.and_then(|f| f.pop), "first"),
             (found.and_then(|f| f.pop_p99), ""),
             (found.and_then(|f| f.flicker), ""),

@@ -91,8 +91,8 @@ fn report() -> CompareReport {
                     ..ChangeReport::default()
                 }),
                 stability: Some(StabilityReport {
-                    swim: 0.0123,
-                    swim_p99: 0.05,
+                    swim: Some(0.0123),
+                    swim_p99: Some(0.05),
                     ..StabilityReport::default()
                 }),
                 banding: Some(BandingReport {
@@ -188,6 +188,27 @@ fn the_page_asks_for_nothing_beyond_its_folder() {
         assert!(!page.contains(never), "{never}");
     }
     assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn the_difference_between_the_backends_has_a_line_of_its_own() {
+    let mut two = report();
+    assert!(!page(&two).contains("Between the backends"), "one backend drew the reference");
+    let of = |backend: &str| ReferencePicture {
+        backend: backend.into(),
+        file: format!("pictures/reference-{backend}.png"),
+    };
+    two.reference.pictures = vec![of("cpu"), of("gpu")];
+    let flip = FlipError { mean: 0.0044, p99: 0.05, hair_mean: Some(0.0123) };
+    two.reference.gpu_from_cpu = Some(ImageDifference { flip, psnr_db: Some(41.26), ssim: Some(0.9876) });
+    let text = page(&two);
+    let line = text.lines().find(|line| line.contains("Between the backends")).expect("a line");
+    for number in ["FLIP 0.0044", "0.0123 in hair", "41.3 dB", "SSIM 0.9876"] {
+        assert!(line.contains(number), "{number}");
+    }
+    for name in ["Reference · CPU", "Reference · GPU"] {
+        assert!(text.contains(&format!("data-name=\"{name}\"")), "{name}");
+    }
 }
 
 #[test]

@@ -85,9 +85,6 @@ impl GpuRenderer {
         images: &mut DeviceImages,
     ) -> Result<(Arc<DeviceImage>, FrameStats), RenderError> {
         check_size_for(size[0], size[1], self.gpu.max_picture_side())?;
-        if input.known.is_some() {
-            return Err(RenderError::KnownOnGpu);
-        }
         self.is_whole = false;
         let gpu = Arc::clone(&self.gpu);
         let before = gpu.traffic();

@@ -65,9 +65,6 @@ impl GpuRenderer {
         back: bool,
     ) -> Result<PendingPicture, RenderError> {
         check_size_for(width, height, self.gpu.max_picture_side())?;
-        if input.known.is_some() {
-            return Err(RenderError::KnownOnGpu);
-        }
         self.is_whole = false;
         let gpu = Arc::clone(&self.gpu);
         let (watch, before) = (Stopwatch::start(), gpu.traffic());
