@@ -174,7 +174,7 @@ impl Source {
                         }
                         CurveMotion::Still => {
                             let message = format!(
-                                "--beside {}: a {} file, and a take was wanted",
+                                "--beside {}: found a {} file; must be a take",
                                 take.display(),
                                 kind.label()
                             );

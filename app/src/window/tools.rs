@@ -114,8 +114,7 @@ impl Window {
     /// Cuts the hair beyond a line on the screen, as it is in the image.
     fn cut(&mut self, view: View, painted: &RenderedImage, line: [egui::Pos2; 2], project: &mut Project) {
         if project.hair.morph.to.is_some() {
-            let why =
-                "Hair between two styles cannot be cut. End the morph first, or become the second style.";
+            let why = "Scissors cannot cut during a morph. End it, or choose Become.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         }
         let before = &project.hair.cut;

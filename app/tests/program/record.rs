@@ -62,7 +62,8 @@ fn recordings() -> Option<&'static Recordings> {
 #[test]
 fn a_recorded_film_can_be_read_back() {
     let Some(recordings) = recordings() else { return };
-    recordings.film.done();
+    let printed = &recordings.film.done().stderr;
+    assert!(!printed.contains("error"), "an error where nothing failed: {printed}");
     let film = read_film(&recordings.dir.path().join(FILM)).expect("a film");
     assert_eq!((film.width, film.height, film.frames), (96, 64, 4));
     assert_eq!(film.codec, "avc1");
@@ -412,7 +413,7 @@ fn takes_beside_each_other_give_the_same_image_each_time() {
     let below = |half: &[u8]| half[4 * 150 * 40..].to_vec();
     assert!(below(&itself) == below(&calm));
     let refused = run(&["record", "calm.take", "--beside", "calm.lovelock", "-o", "d"]);
-    assert!(refused.refused(2).contains("a take was wanted"), "{refused:?}");
+    assert!(refused.refused(2).contains("must be a take"), "{refused:?}");
 }
 
 /// The pixels of a PNG file, four bytes per pixel.

@@ -52,7 +52,9 @@ impl Outcome {
 /// The program, without a display.
 pub fn lovelock() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lovelock"));
-    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("LOVELOCK_LOG");
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "NODEVICE_SELECT", "LOVELOCK_LOG"] {
+        command.env_remove(name);
+    }
     command
 }
 

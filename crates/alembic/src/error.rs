@@ -9,7 +9,7 @@ pub enum AlembicError {
     #[error("cannot be read: {0}")]
     Io(#[from] std::io::Error),
     /// The file contradicts itself or the format.
-    #[error("byte {offset}: found {found}, wanted {wanted}")]
+    #[error("byte {offset}: found {found}; must be {wanted}")]
     Malformed {
         /// The position in the file, in bytes from its start.
         offset: u64,

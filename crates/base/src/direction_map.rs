@@ -118,7 +118,7 @@ impl<'de> Deserialize<'de> for DirectionMap {
         match lz4_flex::decompress_into(&packed, &mut values) {
             Ok(Self::TEXELS) => Ok(Self(values.into())),
             Ok(found) => {
-                Err(D::Error::custom(format!("a painted mask of {found} texels; wanted {}", Self::TEXELS)))
+                Err(D::Error::custom(format!("a painted mask of {found} texels; must be {}", Self::TEXELS)))
             }
             Err(error) => Err(D::Error::custom(format!("a painted mask: {error}"))),
         }

@@ -15,7 +15,7 @@ pub enum GltfError {
         source: std::io::Error,
     },
     /// The content contradicts itself or the format.
-    #[error("{file}: {place}: found {found}, wanted {wanted}")]
+    #[error("{file}: {place}: found {found}; must be {wanted}")]
     Malformed {
         /// The file as the user named it.
         file: String,

@@ -43,7 +43,7 @@ impl FromStr for HairShading {
     fn from_str(id: &str) -> Result<Self, String> {
         Self::ALL.iter().copied().find(|shading| shading.names().0 == id).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|shading| shading.names().0).collect();
-            format!("unknown shading `{id}`: expected one of {}", known.join(", "))
+            format!("unknown shading `{id}`: must be one of {}", known.join(", "))
         })
     }
 }
@@ -151,7 +151,7 @@ impl Settings for HairLook {
         Setting::color(
             field!(Self, dye),
             "Dye",
-            "Colour of the dye, as a head of hair with this dye looks in white light.",
+            "Colour of the dye: how a head of hair with it looks in white light.",
         ),
         Setting::number(
             field!(Self, dye_amount),
@@ -171,7 +171,7 @@ impl Settings for HairLook {
             field!(Self, highlight_lightening),
             [0.0, 1.0],
             "Lightening",
-            "How much less pigment lightened locks have.",
+            "How much pigment is removed from lightened locks.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -238,15 +238,14 @@ impl Settings for HairLook {
             field!(Self, many_scattering),
             [0.0, 1.0],
             "Between strands",
-            "Share of the light that reaches the eye by way of other strands. Without it light hair is \
-             too dark.",
+            "Share of the light scattered between strands that is drawn. Without it light hair is too dark.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, width_scale),
             [0.05, 2.0],
             "Strand width",
-            "Width of a drawn strand, as a multiple of the width of the hairs that it stands for.",
+            "Width of a drawn strand, relative to the total width of the hairs that it represents.",
         )
         .logarithmic(),
         Setting::number(
@@ -260,8 +259,7 @@ impl Settings for HairLook {
             field!(Self, real_hairs),
             [1.0, 1e7],
             "Hair count",
-            "Number of real hairs that all drawn strands together stand for. More hair casts denser \
-             shadows.",
+            "Number of real hairs that the drawn strands represent. More hair casts denser shadows.",
         )
         .unit(Unit::THOUSANDS)
         .soft([1e4, 2e5]),

@@ -36,7 +36,7 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
     let write = format.and_then(|format| format.write);
     if write.is_none() && CurveFormat::of(out).is_none() {
         return Err(ProjectError::option(format!(
-            "{}: found no extension of a hair format; wanted .{}",
+            "{}: found no extension of a hair format; must end in .{}",
             out.display(),
             written_extensions().join(", .")
         )));

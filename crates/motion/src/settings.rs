@@ -218,7 +218,7 @@ impl Settings for BodySettings {
         Setting::choice::<OwnHair>(
             field!(Self, own_hair),
             "Model's hair",
-            "Whether the hair that the character was made with is part of the body.",
+            "Whether the model's own hair is drawn as a part of the body.",
         ),
     ];
 }

@@ -51,7 +51,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// A file that is read back is invalid.
-    #[error("{}: at byte {offset}: found {found}, expected {wanted}", path.display())]
+    #[error("{}: at byte {offset}: found {found}; must be {wanted}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,

@@ -58,7 +58,7 @@ impl fmt::Display for Backend {
 
 /// An unknown name of a backend.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown backend `{found}`: expected auto, gpu or cpu")]
+#[error("unknown backend `{found}`: must be auto, gpu or cpu")]
 pub struct UnknownBackend {
     /// The name that was given.
     pub found: String,
@@ -83,6 +83,6 @@ mod tests {
             assert_eq!(backend.id().parse(), Ok(backend));
         }
         let error = "metal".parse::<Backend>().unwrap_err().to_string();
-        assert_eq!(error, "unknown backend `metal`: expected auto, gpu or cpu");
+        assert_eq!(error, "unknown backend `metal`: must be auto, gpu or cpu");
     }
 }

@@ -43,7 +43,7 @@ impl FromStr for HairDrawing {
     fn from_str(id: &str) -> Result<Self, String> {
         Self::ALL.iter().copied().find(|drawing| drawing.names().0 == id).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|drawing| drawing.names().0).collect();
-            format!("hair cannot be drawn as `{id}`: expected one of {}", known.join(", "))
+            format!("hair cannot be drawn as `{id}`: must be one of {}", known.join(", "))
         })
     }
 }

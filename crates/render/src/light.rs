@@ -103,8 +103,7 @@ impl Settings for Light {
             field!(Self, specular),
             [0.0, 1.0],
             "Highlights",
-            "How strongly the light makes highlights: fully for a lamp, hardly for a large soft \
-             source.",
+            "How strongly the light makes highlights: high for a lamp, low for a large soft source.",
         )
         .unit(Unit::FRACTION),
         Setting::number(

@@ -117,8 +117,7 @@ impl Settings for PictureSettings {
         Setting::choice::<HairDrawing>(
             field!(Self, draw),
             "Draw hair as",
-            "What hair is drawn as: strand by strand, lock by lock from a database of rendered sectors, or \
-             strands where it is large in the image and locks where it is small.",
+            "How hair is drawn: as strands, as locks from a database of rendered sectors, or as strands where it is large in the image and locks where it is small.",
         ),
         Setting::number(
             field!(Self, cluster_size),
@@ -141,18 +140,12 @@ impl Settings for PictureSettings {
             "What renders the image: the graphics card or the CPU alone. Automatic uses the graphics \
              card where there is a real one.",
         ),
-        Setting::number(
-            field!(Self, strand_opacity),
-            [0.05, 1.0],
-            "Strand opacity",
-            "How much a strand hides of what is behind it.",
-        )
-        .unit(Unit::FRACTION),
+        Setting::number(field!(Self, strand_opacity), [0.05, 1.0], "Strand opacity", "Opacity of a strand.")
+            .unit(Unit::FRACTION),
         Setting::choice::<StrandCount>(
             field!(Self, strands),
             "Strands",
-            "How many strands are drawn: as many as suit their size on the screen, a fixed number, or \
-             those that the hairstyle stores. Shadows are always cast by the stored strands.",
+            "How many strands are drawn: a number that suits their size on the screen, a fixed number, or those that the hairstyle stores. Shadows are always cast by the stored strands.",
         ),
         Setting::number(
             field!(Self, strand_detail),

@@ -43,7 +43,7 @@ impl FromStr for StrandCount {
     fn from_str(id: &str) -> Result<Self, String> {
         Self::ALL.iter().copied().find(|count| count.names().0 == id).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|count| count.names().0).collect();
-            format!("unknown number of strands `{id}`: expected one of {}", known.join(", "))
+            format!("unknown number of strands `{id}`: must be one of {}", known.join(", "))
         })
     }
 }

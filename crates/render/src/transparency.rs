@@ -86,7 +86,7 @@ impl FromStr for Transparency {
     fn from_str(id: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|mode| mode.id() == id).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|mode| mode.id()).collect();
-            format!("unknown transparency `{id}`: expected one of {}", known.join(", "))
+            format!("unknown transparency `{id}`: must be one of {}", known.join(", "))
         })
     }
 }

@@ -166,7 +166,7 @@ impl Settings for ClusterSettings {
             field!(Self, macro_tolerance),
             [0.0, 1.0],
             "Sharing",
-            "How unlike locks may be that share one set of parameters. 0 shares only between equal locks.",
+            "How different locks may be that share one set of parameters. At 0 only equal locks share.",
         ),
         Setting::switch(
             field!(Self, curls),

@@ -15,7 +15,7 @@ pub enum SoundError {
         source: io::Error,
     },
     /// The file is no sound, or one that cannot be used.
-    #[error("{}: {found}; wanted {wanted}", path.display())]
+    #[error("{}: {found}; must be {wanted}", path.display())]
     Refused {
         /// The file.
         path: PathBuf,

@@ -12,7 +12,7 @@ pub enum UsdError {
         source: std::io::Error,
     },
     /// The file contradicts itself or its format.
-    #[error("{name}: byte {offset}: found {found}, wanted {wanted}")]
+    #[error("{name}: byte {offset}: found {found}; must be {wanted}")]
     Malformed {
         /// The file.
         name: String,

@@ -112,8 +112,7 @@ impl crate::window::Window {
             self.brushes.on = false;
             self.scissors.held = false;
         } else {
-            let why =
-                "There are as many layers as there can be. Remove one, so that the map gets one of its own.";
+            let why = "The layer limit is reached. Remove a layer first.";
             self.notices.push(crate::window::notices::Kind::Warning, why.to_owned());
         }
     }

@@ -93,12 +93,11 @@ impl Window {
         (snapshot, place, at): (&FrameSnapshot, Vec3, Pos2),
     ) {
         if project.hair.morph.to.is_some() {
-            let why =
-                "Hair between two styles cannot be brushed. End the morph first, or become the second style.";
+            let why = "Brushes cannot work during a morph. End it, or choose Become.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         }
         let Some(layer) = strokes::layer_of(project, self.layers.selected) else {
-            let why = "There are as many layers as there can be. Remove one, so that the brush gets one of its own.";
+            let why = "The layer limit is reached. Remove a layer first.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         };
         let place = snapshot.guides.world_from_head.inverse().transform_point3(place);

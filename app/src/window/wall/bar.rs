@@ -66,7 +66,7 @@ pub(super) fn ui(
                 toggle(&mut layout.locks.families, family);
             }
         }
-        ui.menu_button("More locks", |ui| single_locks(ui, &mut layout.locks, project))
+        ui.menu_button("Keep", |ui| single_locks(ui, &mut layout.locks, project))
             .response
             .hover_tooltip("Locks single settings.");
         ui.separator();

@@ -32,16 +32,16 @@ pub struct EnvironmentError {
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// The system does not give the file's content.
-    #[error("cannot be read ({0}), wanted {FORMATS}")]
+    #[error("cannot be read ({0}); must be {FORMATS}")]
     Io(#[from] std::io::Error),
     /// A folder, a pipe or a device.
-    #[error("is {0}, wanted the file of {FORMATS}")]
+    #[error("is {0}; must be the file of {FORMATS}")]
     NotAFile(&'static str),
     /// The content is neither of the two formats.
-    #[error("contains {0}, wanted {FORMATS}")]
+    #[error("contains {0}; must be {FORMATS}")]
     Format(String),
     /// A format of the two, in a variant that is not read.
-    #[error("has {found}, wanted {wanted}")]
+    #[error("has {found}; must be {wanted}")]
     Variant {
         /// The variant.
         found: String,
@@ -49,7 +49,7 @@ pub enum Problem {
         wanted: &'static str,
     },
     /// No pixels.
-    #[error("is {width} x {height} pixels, wanted at least 1 x 1")]
+    #[error("is {width} x {height} pixels; must be at least 1 x 1")]
     Empty {
         /// Pixels per row.
         width: u64,
@@ -57,7 +57,7 @@ pub enum Problem {
         height: u64,
     },
     /// More pixels than the limit.
-    #[error("is {width} x {height} pixels, wanted at most {MAX_WIDTH} x {MAX_HEIGHT}")]
+    #[error("is {width} x {height} pixels; must be at most {MAX_WIDTH} x {MAX_HEIGHT}")]
     TooLarge {
         /// Pixels per row.
         width: u64,
@@ -65,15 +65,15 @@ pub enum Problem {
         height: u64,
     },
     /// More bytes than the limit.
-    #[error("has {0} bytes, wanted at most {MAX_FILE_BYTES}")]
+    #[error("has {0} bytes; must be at most {MAX_FILE_BYTES}")]
     TooManyBytes(u64),
     /// Pixels compressed together in larger pieces than the limit.
     #[error(
-        "stores its pixels in pieces of {0} bytes, wanted at most {MAX_BLOCK_BYTES}: save it with smaller tiles"
+        "stores its pixels in pieces of {0} bytes; must be at most {MAX_BLOCK_BYTES}: save it with smaller tiles"
     )]
     BlockTooLarge(u64),
     /// The content ends early.
-    #[error("is cut short: found {found}, wanted {wanted}")]
+    #[error("is cut short: found {found}; must be {wanted}")]
     CutShort {
         /// What is there.
         found: String,
@@ -81,7 +81,7 @@ pub enum Problem {
         wanted: String,
     },
     /// The content contradicts its format.
-    #[error("is damaged: found {found}, wanted {wanted}")]
+    #[error("is damaged: found {found}; must be {wanted}")]
     Damaged {
         /// What is there.
         found: String,

@@ -1,6 +1,7 @@
-//! `cargo xtask layers`: prints which crate uses which, and fails on arrows that the architecture lacks and on circles
-//! among modules.
+//! `cargo xtask layers`: prints which crate uses which, and fails on arrows that the architecture lacks, on circles among modules,
+//! and on paths in the documents that lead nowhere.
 
+mod documents;
 mod graph;
 mod house;
 mod modules;
@@ -31,12 +32,13 @@ pub(crate) fn run() -> anyhow::Result<()> {
         modules += found.len();
         faults.extend(rules::circles(name, &found.circles()));
     }
+    faults.extend(documents::dead_paths(tool::root())?);
     for fault in &faults {
         println!("{fault}");
     }
     ensure!(faults.is_empty(), "{} faults of structure; docs/architecture.md has the rules", faults.len());
     println!(
-        "layers: {} crates, every arrow as docs/architecture.md has it; {modules} modules, no circle but those that are named",
+        "layers: {} crates, every arrow as docs/architecture.md has it; {modules} modules, no circle but those that are named, no dead path in the documents",
         graph.members.len()
     );
     Ok(())

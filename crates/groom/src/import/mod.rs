@@ -39,7 +39,7 @@ pub enum ImportError {
         name: String,
     },
     /// In the chosen unit, the groom is too small or too large to be hair.
-    #[error("{name}: the hair would be {size_m:e} m across in this unit, wanted 1e-5 to 100 m")]
+    #[error("{name}: the hair would be {size_m:e} m across in this unit; must be 1e-5 to 100 m")]
     Size {
         /// The hair file.
         name: String,

@@ -30,7 +30,7 @@ pub struct ImportSettings {
     pub points_per_guide: u32,
     /// Where to put the groom after it was fitted.
     pub placement: Placement,
-    /// Chooses among equally good groupings of strands, and their shades.
+    /// Seed of the random numbers that group strands and vary their shades.
     pub seed: u32,
 }
 
@@ -179,7 +179,7 @@ impl Settings for ImportSettings {
             field!(Self, seed),
             [0, u32::MAX as u64],
             "Seed",
-            "Chooses among equally good groupings of strands, and their shades.",
+            "Seed of the random numbers that group strands and vary their shades.",
         )
         .soft([0.0, 999.0]),
     ];

@@ -14,7 +14,7 @@ pub enum HairFileError {
         source: std::io::Error,
     },
     /// The file contradicts itself, its format or its own size.
-    #[error("{name}: byte {offset}: found {}, wanted {wanted}", in_one_line(found))]
+    #[error("{name}: byte {offset}: found {}; must be {wanted}", in_one_line(found))]
     Malformed {
         /// The file.
         name: String,
@@ -26,7 +26,7 @@ pub enum HairFileError {
         wanted: String,
     },
     /// The file is valid, but none of its strands can be drawn.
-    #[error("{name}: no strand left to draw ({reason}), wanted a strand of two points or more")]
+    #[error("{name}: no strand left to draw ({reason}); must have a strand of two or more points")]
     NothingToDraw {
         /// The file.
         name: String,
@@ -53,7 +53,7 @@ mod tests {
         let error = HairFileError::Malformed { name: "a.usda".into(), offset: 3, found, wanted: "d".into() };
         let line = error.to_string();
         assert!(
-            line.starts_with("a.usda: byte 3: found a  b ccc") && line.ends_with("c…, wanted d"),
+            line.starts_with("a.usda: byte 3: found a  b ccc") && line.ends_with("c…; must be d"),
             "{line}"
         );
         assert!(line.len() < 400 && !line.contains(['\n', '\r', '\u{7}']));

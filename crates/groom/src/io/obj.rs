@@ -259,7 +259,7 @@ mod tests {
     fn what_is_no_hair_is_refused() {
         for (text, found) in [
             ("v 0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", "3 vertices, 1 faces and no line"),
-            ("v 0 0 0\nl 1 2\n", "byte 8: found `l 1 2`, wanted vertices from 1 to 1"),
+            ("v 0 0 0\nl 1 2\n", "byte 8: found `l 1 2`; must be vertices from 1 to 1"),
             ("v 0 0 0\nl 1 0\n", "`l 1 0`"),
             ("v 0 0 0\nl 1 -2\n", "`l 1 -2`"),
             ("v 0 zero 0\n", "byte 0: found `v 0 zero 0`"),

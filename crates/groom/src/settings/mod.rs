@@ -13,7 +13,7 @@ pub const MOST_POINTS: u32 = 6_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GroomSettings {
-    /// Chooses among hairstyles that differ only by chance.
+    /// Seed of the random numbers of the hairstyle.
     pub seed: u32,
     /// Number of wisps: groups of strands that move together.
     pub wisps: u32,

@@ -34,7 +34,7 @@ impl Settings for GroomSettings {
             field!(Self, seed),
             [0, u32::MAX as u64],
             "Seed",
-            "Chooses among hairstyles that differ only by chance.",
+            "Seed of the random numbers of the hairstyle.",
         )
         .soft([0.0, 999.0]),
         Setting::number(field!(Self, length), [0.02, 1.0], "Length", "Length of the longest hair.")

@@ -64,7 +64,7 @@ fn tressfx_offsets_are_tested() {
     bytes[12..16].copy_from_slice(&100_000_u32.to_le_bytes());
     assert!(refusal(&bytes).contains("wanted a place inside the file"));
     bytes[12..16].copy_from_slice(&161_u32.to_le_bytes());
-    assert!(refusal(&bytes).contains("byte 161: found a file of 400 bytes, wanted 401 bytes or more"));
+    assert!(refusal(&bytes).contains("byte 161: found a file of 400 bytes; must be 401 bytes or more"));
     // Texture coordinates past the end are harmless, because they are not needed.
     let mut bytes = tressfx(4.0, 3, 5);
     bytes[16..20].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
@@ -112,9 +112,9 @@ fn other_files_are_refused() {
         (b"".as_slice(), "a file of 0 bytes"),
         (b"HA", "a file of 2 bytes"),
         (b"\x89PNG\r\n\x1a\n", r"`\x89PNG`"),
-        (b"glTF\x02\x00\x00\x00", "a file of 8 bytes, wanted the header of a chunk"),
-        (b"GIF89a..", "`GIF8`, wanted `HAIR` (Yuksel)"),
-        (b"HAIR", "a file of 4 bytes, wanted 128 bytes"),
+        (b"glTF\x02\x00\x00\x00", "a file of 8 bytes; must be the header of a chunk"),
+        (b"GIF89a..", "`GIF8`; must be `HAIR` (Yuksel)"),
+        (b"HAIR", "a file of 4 bytes; must be 128 bytes"),
     ] {
         assert!(refusal(bytes).contains(found), "{}", refusal(bytes));
     }
@@ -146,11 +146,11 @@ fn broken_files_load_with_counts_or_are_refused_in_one_line() {
         ("allflags.hair", Ok((7, 56, &[]))),
         ("allonepoint.hair", Err("no strand left to draw (one_point_strands: 5)")),
         ("badmagic.hair", Err("byte 0: found `")),
-        ("countlie.hair", Err("byte 8: found 1000 points, wanted 56")),
-        ("dseg0.hair", Err("byte 8: found 56 points, wanted 7")),
-        ("hugecount.hair", Err("byte 128: found a file of 814 bytes, wanted 8589934718 bytes or more")),
+        ("countlie.hair", Err("byte 8: found 1000 points; must be 56")),
+        ("dseg0.hair", Err("byte 8: found 56 points; must be 7")),
+        ("hugecount.hair", Err("byte 128: found a file of 814 bytes; must be 8589934718 bytes or more")),
         ("nan_inf.hair", Ok((4, 32, &[("distant_strands", 1), ("non_finite_strands", 2)]))),
-        ("nopoints.hair", Err("byte 12: found flags 0x1, wanted bit 1 set")),
+        ("nopoints.hair", Err("byte 12: found flags 0x1; must be bit 1 set")),
         ("nosegs.hair", Ok((7, 56, &[]))),
         ("onepoint.hair", Ok((2, 7, &[("one_point_strands", 2)]))),
         ("tfx_6verts.tfx", Ok((5, 30, &[]))),
@@ -159,7 +159,7 @@ fn broken_files_load_with_counts_or_are_refused_in_one_line() {
         ("trailing.hair", Ok((7, 56, &[("trailing_bytes", 37)]))),
         (
             "truncated.hair",
-            Err("byte 142: found a file of 300 bytes, wanted 814 bytes or more for 56 points"),
+            Err("byte 142: found a file of 300 bytes; must be 814 bytes or more for 56 points"),
         ),
         ("variable_odd.hair", Ok((7, 456, &[]))),
         ("zerolen.hair", Ok((2, 14, &[("repeated_points", 2), ("zero_length_strands", 1)]))),

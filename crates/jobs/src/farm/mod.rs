@@ -123,7 +123,7 @@ pub fn farm(
     let chunk = request.chunk.unwrap_or(10.max(least)).min(count);
     if chunk < least {
         return Err(ProjectError::option(format!(
-            "--chunk {chunk}: {} tasks for {count} frames, and a job has {MOST_TASKS} at most; wanted {least} or more",
+            "--chunk {chunk}: {} tasks for {count} frames, and a job has {MOST_TASKS} at most; must be {least} or more",
             count.div_ceil(chunk)
         )));
     }
@@ -218,13 +218,13 @@ fn as_recorded(project: &Project, take: &Path) -> Result<(), ProjectError> {
 /// Rejects a folder that is not empty.
 fn check_folder(out: &Path) -> Result<(), ProjectError> {
     if out.file_name().is_none() {
-        return Err(ProjectError::option("-o: the folder has no name; wanted a new folder"));
+        return Err(ProjectError::option("-o: the folder has no name; must be a new folder"));
     }
     match fs::read_dir(out).map(Iterator::count) {
         Ok(0) => Ok(()),
         Ok(_) => Err(ProjectError::input(
             out,
-            format!("{}: is not empty; wanted a new or empty folder for the job", out.display()),
+            format!("{}: is not empty; must be a new or empty folder for the job", out.display()),
         )),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => {

@@ -92,7 +92,7 @@ impl FileKind {
         if file.metadata().map_err(cannot_read)?.is_dir() {
             return Err(ProjectError::input(
                 path,
-                format!("{name}: is a folder; wanted one of {}", readable()),
+                format!("{name}: is a folder; must be one of {}", readable()),
             ));
         }
         let mut start = Vec::new();
@@ -114,7 +114,7 @@ impl FileKind {
             );
             ProjectError::input(
                 path,
-                format!("{name}: not a file that is known here: {ending}; wanted {}", readable()),
+                format!("{name}: found an unknown kind of file: {ending}; must be {}", readable()),
             )
         })
     }
@@ -145,7 +145,7 @@ impl FileKind {
                 Err(ProjectError::input(
                     path,
                     format!(
-                        "{}: holds neither hair nor a mesh nor animation; wanted a file with one of them{hair}",
+                        "{}: found neither hair nor a mesh nor animation; must contain one of them{hair}",
                         path.display()
                     ),
                 ))

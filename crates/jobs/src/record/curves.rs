@@ -52,7 +52,7 @@ impl FromStr for CurveSource {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|source| source.id() == text);
-        known.ok_or_else(|| format!("unknown curves `{text}`: expected guides or strands"))
+        known.ok_or_else(|| format!("unknown curves `{text}`: must be guides or strands"))
     }
 }
 
@@ -104,10 +104,7 @@ pub fn record_curves(
     let (project, _) = project.sanitised();
     let out = &request.out;
     let format = CurveFormat::of(out).ok_or_else(|| {
-        ProjectError::option(format!(
-            "{}: wanted a name ending in .usdc, .usd, .usda, .glb or .abc",
-            out.display()
-        ))
+        ProjectError::option(format!("{}: must end in .usdc, .usd, .usda, .glb or .abc", out.display()))
     })?;
     refuse_options_of_pictures(request)?;
     let fps = request.fps.unwrap_or(project.recording.fps);

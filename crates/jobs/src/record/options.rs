@@ -39,12 +39,12 @@ impl Options {
         if !(1..=most).contains(&options.subframes) {
             let asked = options.subframes;
             return Err(ProjectError::option(format!(
-                "motion blur of {asked} pictures a frame: wanted 1 (none) to {most}"
+                "motion blur of {asked} pictures a frame: must be 1 (none) to {most}"
             )));
         }
         if !(0.0..=360.0).contains(&options.shutter_degrees) {
             let asked = options.shutter_degrees;
-            return Err(ProjectError::option(format!("a shutter of {asked} degrees: wanted 0 to 360")));
+            return Err(ProjectError::option(format!("a shutter of {asked} degrees: must be 0 to 360")));
         }
         Ok(options)
     }

@@ -191,9 +191,7 @@ impl<'a> Job<'a> {
         let kind = OutputKind::of(&request.out).map_err(|error| refused(&error))?;
         let options = Options::new(&project, request)?;
         if request.dance_time && project.recording.seamless {
-            return Err(ProjectError::option(
-                "--dance-time: the film goes round, and a round of a take is counted from the take's own start",
-            ));
+            return Err(ProjectError::option("--dance-time: cannot be combined with a seamless loop"));
         }
         let job = Self { project, request, options, kind, fps, width, height };
         lovelock_render::check_size(width, height)?;

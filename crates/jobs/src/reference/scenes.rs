@@ -133,7 +133,7 @@ impl ReferenceScene {
         }
         let join = |ids: &[&str]| ids.join(", ");
         Err(format!(
-            "unknown scene `{id}`: expected {PREFIX}, or {PREFIX}-HAIR-COLOUR-LIGHT with one of {}; {}; {}",
+            "unknown scene `{id}`: must be {PREFIX}, or {PREFIX}-HAIR-COLOUR-LIGHT with one of {}; {}; {}",
             join(&Self::HAIR.map(Preset::id)),
             join(&ReferenceColor::ALL.map(ReferenceColor::id)),
             join(&ReferenceLight::ALL.map(ReferenceLight::id)),
@@ -179,7 +179,7 @@ impl FromStr for ReferenceScene {
     fn from_str(id: &str) -> Result<Self, String> {
         match Self::named(id)?.as_slice() {
             [scene] => Ok(*scene),
-            more => Err(format!("`{id}` names {} scenes: expected one", more.len())),
+            more => Err(format!("`{id}` names {} scenes: must be one", more.len())),
         }
     }
 }

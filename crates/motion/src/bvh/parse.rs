@@ -83,7 +83,7 @@ impl<'a> Cursor<'a> {
     fn expect(&mut self, wanted: &str) -> Result<(), MotionError> {
         match self.word() {
             Some(word) if word.eq_ignore_ascii_case(wanted) => Ok(()),
-            found => Err(self.error(format!("{}; expected `{wanted}`", quote(found)))),
+            found => Err(self.error(format!("{}; must be `{wanted}`", quote(found)))),
         }
     }
 }
@@ -139,7 +139,7 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                     open.push(None);
                 } else {
                     if parent.is_none() && !raw.joints.is_empty() {
-                        let problem = format!("a second root, `{name}`; expected the motion of one figure");
+                        let problem = format!("a second root, `{name}`; must be the motion of one figure");
                         return Err(cursor.error(problem));
                     }
                     open.push(Some(raw.joints.len()));
@@ -177,7 +177,7 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 return Err(cursor.error(format!("MOTION with {} joints still open", open.len())));
             }
             _ => {
-                return Err(cursor.error(format!("{}; expected a joint, its end, or MOTION", quote(word))));
+                return Err(cursor.error(format!("{}; must be a joint, its end, or MOTION", quote(word))));
             }
         }
     }
@@ -188,7 +188,7 @@ fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Res
     for value in &mut offset {
         let word = cursor.word();
         let number = word.and_then(|w| w.parse::<f32>().ok());
-        *value = number.ok_or_else(|| cursor.error(format!("{}; expected a number", quote(word))))?;
+        *value = number.ok_or_else(|| cursor.error(format!("{}; must be a number", quote(word))))?;
     }
     if offset.iter().all(|v| v.is_finite() && v.abs() < 1e9) {
         Ok(offset)
@@ -201,12 +201,12 @@ fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Res
 fn parse_channels(cursor: &mut Cursor) -> Result<Vec<Channel>, MotionError> {
     let word = cursor.word();
     let count = word.and_then(|w| w.parse::<usize>().ok()).filter(|&n| n <= 9);
-    let count = count.ok_or_else(|| cursor.error(format!("{}; expected up to 9 channels", quote(word))))?;
+    let count = count.ok_or_else(|| cursor.error(format!("{}; must be up to 9 channels", quote(word))))?;
     (0..count)
         .map(|_| {
             let word = cursor.word();
             channel(word.unwrap_or_default())
-                .ok_or_else(|| cursor.error(format!("{}; expected a channel such as Xrotation", quote(word))))
+                .ok_or_else(|| cursor.error(format!("{}; must be a channel such as Xrotation", quote(word))))
         })
         .collect()
 }
@@ -242,7 +242,7 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
             "frame time" => frame_secs = value.parse::<f64>().ok(),
             _ => {
                 return Err(
-                    cursor.error(format!("{}; expected `Frames:` or `Frame Time:`", quote(Some(&key))))
+                    cursor.error(format!("{}; must be `Frames:` or `Frame Time:`", quote(Some(&key))))
                 );
             }
         }

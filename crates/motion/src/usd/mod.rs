@@ -63,7 +63,7 @@ impl From<UsdError> for MotionError {
             UsdError::Malformed { name, offset, found, wanted } => Self::Malformed {
                 file: name,
                 place: format!("byte {offset}"),
-                problem: format!("found {found}, wanted {wanted}"),
+                problem: format!("found {found}; must be {wanted}"),
             },
         }
     }

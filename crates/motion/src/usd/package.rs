@@ -24,7 +24,7 @@ pub(super) fn first_layer<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a [u8], M
         String::from_utf8_lossy(bytes.get(30..30 + name_length).ok_or_else(short)?).to_ascii_lowercase();
     if ![".usd", ".usda", ".usdc"].iter().any(|ending| name.ends_with(ending)) {
         return Err(refuse(
-            "the package does not begin with a .usd, .usda or .usdc file; wanted a .usdz file",
+            "the package does not begin with a .usd, .usda or .usdc file; must be a .usdz file",
         ));
     }
     if method != 0 {

@@ -116,7 +116,7 @@ pub(crate) fn parse_text(
     let refuse = |error: ron::error::SpannedError| {
         ProjectError::input(
             path,
-            format!("{name}: line {}: {}; wanted a {what}", error.span.start, error.code),
+            format!("{name}: line {}: {}; must be a {what}", error.span.start, error.code),
         )
     };
     let options = text_options();

@@ -350,8 +350,7 @@ impl Settings for RecordingSection {
         Setting::choice::<FilmQuality>(
             field!(Self, quality),
             "Quality",
-            "How finely a film is encoded. Finer settings keep single hairs apart and make larger \
-             files.",
+            "Quality of the encoded film. Higher settings keep single hairs distinct and make larger files.",
         ),
         Setting::count(
             field!(Self, first_frame),
@@ -467,8 +466,7 @@ impl Settings for Contender {
         Setting::choice::<HairDrawing>(
             field!(Self, draw),
             "Draw hair as",
-            "What hair is drawn as: strand by strand, lock by lock from a database of rendered sectors, or strands \
-             where it is large in the image and locks where it is small. Errors of transmittance are measured at \
+            "How hair is drawn: as strands, as locks from a database of rendered sectors, or as strands where it is large in the image and locks where it is small. Errors of transmittance are measured at \
              strands, so panes that draw locks have none.",
         ),
         Setting::choice::<Transparency>(

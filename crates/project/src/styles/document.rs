@@ -95,7 +95,7 @@ impl Style {
             let name = path.display();
             ProjectError::input(
                 path,
-                format!("{name}: line {}: {}; wanted a style", error.span.start, error.code),
+                format!("{name}: line {}: {}; must be a style", error.span.start, error.code),
             )
         })?;
         let style =

@@ -51,7 +51,7 @@ fn bad_files_are_refused_with_a_sentence() {
     assert!(refused("(version: 99)").contains("newer"), "{}", refused("(version: 99)"));
     for text in ["", "(version: 3, hair: (", "(version: 3, name: 4)", "\u{0}\u{1}", &"(".repeat(100_000)] {
         let message = refused(text);
-        assert!(message.starts_with("s: line ") && message.ends_with("wanted a style"), "{message}");
+        assert!(message.starts_with("s: line ") && message.ends_with("must be a style"), "{message}");
     }
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("large.lovelockstyle");

@@ -25,8 +25,8 @@ pub(super) fn check_place(folder: &Path, listed: Option<&ManifestSound>) -> Resu
         return Ok(());
     }
     Err(RecordError::request(format!(
-        "{}: found a file that the recording before did not write, or that has changed since; wanted none, because the sound of this \
-         recording gets this name: move the file, or record to another folder",
+        "{}: found a file that the previous recording did not write, or that has changed since. The sound of this recording needs \
+         the name: move the file, or record to another folder",
         path.display()
     )))
 }

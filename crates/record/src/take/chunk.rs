@@ -176,14 +176,14 @@ pub(super) fn pack(
 pub(super) fn unpack(packed: &[u8], part: &Part) -> Result<Vec<u8>, String> {
     let crc = crc32fast::hash(packed);
     if packed.len() != part.packed as usize || crc != part.crc {
-        return Err(format!("{} bytes with checksum {crc:08x}, expected {:08x}", packed.len(), part.crc));
+        return Err(format!("{} bytes with checksum {crc:08x}; must be {:08x}", packed.len(), part.crc));
     }
     if part.raw == 0 {
         return Ok(Vec::new());
     }
     let raw = zstd::bulk::decompress(packed, part.raw as usize).map_err(|error| error.to_string())?;
     if raw.len() != part.raw as usize {
-        return Err(format!("{} bytes after decompression, expected {}", raw.len(), part.raw));
+        return Err(format!("{} bytes after decompression; must be {}", raw.len(), part.raw));
     }
     Ok(raw)
 }

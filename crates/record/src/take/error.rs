@@ -51,7 +51,7 @@ pub enum TakeError {
         kept: u64,
     },
     /// The file is not a take.
-    #[error("{}: is not a take: found {found}, expected {wanted}", path.display())]
+    #[error("{}: is not a take: found {found}; must be {wanted}", path.display())]
     NotATake {
         /// The file.
         path: PathBuf,
@@ -82,7 +82,7 @@ pub enum TakeError {
         why: String,
     },
     /// A part of the file is invalid.
-    #[error("{}: at byte {offset}: found {found}, expected {wanted}", path.display())]
+    #[error("{}: at byte {offset}: found {found}; must be {wanted}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,

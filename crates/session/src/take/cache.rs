@@ -101,7 +101,7 @@ fn open(path: &Path, hair: &HairSection) -> Result<CurveCache, ProjectError> {
         .map_err(|error| ProjectError::input(path, error))?;
     if cache.times().len() < 2 {
         let message =
-            format!("{}: found curves of one time; to play them, wanted two or more", path.display());
+            format!("{}: found curves at one time; must have two or more times to be played", path.display());
         return Err(ProjectError::input(path, message));
     }
     Ok(cache)

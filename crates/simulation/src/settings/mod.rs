@@ -184,7 +184,7 @@ pub struct Wind {
     pub turbulence: f32,
     /// Fraction of the wind that the body keeps from the hair behind it.
     pub sheltering: f32,
-    /// Chooses among winds that differ only by chance.
+    /// Seed of the random numbers of the wind.
     pub seed: u32,
 }
 

@@ -47,7 +47,7 @@ impl Settings for SimulationSettings {
             field!(Self, hold),
             [0.0, 60.0],
             "Hold",
-            "Pull toward the style as drawn, strongest at the roots, like hair spray.",
+            "Pull toward the styled shape, strongest at the roots, like hair spray.",
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
@@ -69,7 +69,7 @@ impl Settings for SimulationSettings {
             field!(Self, clamped_links),
             [0, 2],
             "Root attachment",
-            "How wisps leave the scalp: free to turn, or stiffly as drawn for one or two links.",
+            "How wisps leave the scalp: free to turn, or fixed in the styled direction for one or two links.",
         )
         .offered(&[0, 1, 2])
         .named(&["Hinged", "As drawn", "As drawn, firmly"]),
@@ -85,8 +85,7 @@ impl Settings for SimulationSettings {
             field!(Self, style_support),
             [0.0, 1.0],
             "Style support",
-            "How much of its own weight the style carries at rest. 100 % keeps it as drawn, lower \
-             values let it sag.",
+            "How much of its own weight the style carries at rest. 100 % keeps the styled shape, lower values let it sag.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -123,7 +122,7 @@ impl Settings for SimulationSettings {
             field!(Self, air_shelter),
             [0.0, 1.0],
             "Air shelter",
-            "How much of the air the outer hair keeps from the hair inside.",
+            "How strongly outer hair shields inner hair from air.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -190,8 +189,7 @@ impl Settings for SimulationSettings {
             field!(Self, follow_damping),
             [0.0, 1.0],
             "Velocity damping",
-            "Fraction of the correction of its follower that a point's velocity takes on. With low \
-             values wisps gain energy.",
+            "Fraction of the next point's correction that is subtracted from a point's velocity. With low values wisps gain energy.",
         )
         .symbol("s, s_damping in Müller, Kim and Chentanez 2012")
         .unit(Unit::FRACTION),
@@ -251,14 +249,14 @@ impl Settings for Wind {
             field!(Self, sheltering),
             [0.0, 1.0],
             "Sheltering",
-            "How much of the wind the body keeps from the hair behind it.",
+            "How strongly the body shields the hair behind it from wind.",
         )
         .unit(Unit::FRACTION),
         Setting::count(
             field!(Self, seed),
             [0, u32::MAX as u64],
             "Wind seed",
-            "Chooses among winds that differ only by chance.",
+            "Seed of the random numbers of the wind.",
         )
         .soft([0.0, 999.0]),
     ];
@@ -270,8 +268,7 @@ impl Settings for Locks {
             field!(Self, cohesion),
             [0.0, 240.0],
             "Lock cohesion",
-            "How firmly the hair of a lock stays together. Low values let locks fray, high ones keep \
-             them as narrow as drawn.",
+            "How firmly the hair of a lock stays together. Low values let locks fray, high ones keep them as narrow as in the style.",
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
@@ -285,7 +282,7 @@ impl Settings for Locks {
             field!(Self, friction),
             [0.0, 60.0],
             "Lock friction",
-            "How quickly the hair of a lock takes on a common motion.",
+            "How quickly the strands of a lock move alike.",
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
@@ -338,7 +335,7 @@ impl Settings for Repulsion {
             field!(Self, cohesion),
             [0.0, 20.0],
             "Cohesion",
-            "How quickly wisps take on the motion of their neighbours.",
+            "How quickly wisps move like their neighbours.",
         )
         .unit(Unit::PER_SECOND),
     ];

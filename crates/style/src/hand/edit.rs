@@ -13,7 +13,7 @@ pub enum HandChannel {
     Curl,
     /// Turns of the strands about the middle of their lock.
     Twist,
-    /// Factor on the width of strands.
+    /// Width of strands relative to the present one.
     Width,
 }
 

@@ -169,7 +169,7 @@ impl Settings for MaskPart {
         Setting::switch(
             field!(Self, inverted),
             "Invert",
-            "Takes the rest of the head in place of the region.",
+            "Inverts the region: the layer acts on the rest of the head.",
         ),
         Setting::number(
             field!(Self, border),

@@ -30,7 +30,7 @@ impl Settings for Bend {
             field!(Self, angle),
             [-3.1, 3.1],
             "Angle",
-            "How far ends turn. Above 0° they turn under, below 0° out.",
+            "Angle by which the ends turn: positive values turn them under, negative ones out.",
         )
         .unit(Unit::RADIANS),
         Setting::number(

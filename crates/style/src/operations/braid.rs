@@ -53,13 +53,13 @@ impl Settings for Braid {
             field!(Self, count),
             [1, 1000],
             "Braids",
-            "Number of braids of loose hair, each of one patch of the scalp. Hair that ties hold makes one braid for each tie.",
+            "Number of braids in loose hair, each from one patch of the scalp. Tied hair makes one braid per tie.",
         ),
         Setting::number(
             field!(Self, start),
             [0.0, 1.0],
             "Start",
-            "Length of hair before the braid begins, from the tie or from the root.",
+            "Length of loose hair between the root (or tie) and the start of the braid.",
         )
         .unit(Unit::METRES_AS_CM)
         .soft([0.0, 0.3]),
@@ -70,7 +70,7 @@ impl Settings for Braid {
             field!(Self, pitch),
             [0.002, 0.2],
             "Pitch",
-            "Distance between two crossings on one side. Two thirds of the width make a firm plait.",
+            "Distance between two crossings on one side. Two thirds of the width gives a firm braid.",
         )
         .unit(Unit::METRES_AS_MM)
         .soft([0.003, 0.06]),
@@ -78,14 +78,14 @@ impl Settings for Braid {
             field!(Self, tightness),
             [0.0, 1.0],
             "Tightness",
-            "How tightly the bundles are gathered. Low values are soft and uneven.",
+            "How tightly each bundle is gathered. Low values look soft and uneven.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, taper),
             [0.0, 0.9],
             "Taper",
-            "How much narrower the braid is at its end.",
+            "How much narrower the braid is at its end than at its start.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -100,7 +100,7 @@ impl Settings for Braid {
             field!(Self, flyaways),
             [0.0, 0.5],
             "Flyaways",
-            "Share of strands that leave their bundle a little.",
+            "Share of strands that come loose from their bundle.",
         )
         .unit(Unit::FRACTION),
     ];
@@ -115,7 +115,7 @@ impl Operate for Braid {
     const KIND: Kind = Kind {
         id: "braid",
         label: "Braid",
-        text: "Plaits hair in three bundles that cross over and under: one braid for each tie, or many.",
+        text: "Braids hair in three bundles that cross over and under: one braid per tie, or many.",
         subject: Subject::Shape,
     };
 

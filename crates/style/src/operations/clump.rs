@@ -35,20 +35,20 @@ impl Settings for Clump {
             field!(Self, amount),
             [0.0, 1.0],
             "Amount",
-            "How far strands gather toward the middle of their lock. 100 % joins them.",
+            "How far strands move toward the centre of their lock. At 100 % they meet.",
         )
         .unit(Unit::FRACTION),
         Setting::count(
             field!(Self, level),
             [1, 3],
             "Level",
-            "Which locks gather: 1 for whole wisps, 2 for parts of wisps, 3 for parts of those parts.",
+            "Size of the locks: 1 is whole wisps, 2 parts of wisps, 3 parts of those parts.",
         ),
         Setting::count(
             field!(Self, parts),
             [2, 20],
             "Parts",
-            "Smaller locks into which a lock divides at levels 2 and 3.",
+            "Number of smaller locks into which each lock divides at levels 2 and 3.",
         ),
     ];
 }
@@ -57,11 +57,14 @@ impl Operate for Clump {
     const KIND: Kind = Kind {
         id: "clump",
         label: "Clump",
-        text: "Gathers strands toward the middle of their lock.",
+        text: "Gathers strands toward the centre of their lock.",
         subject: Subject::Strands,
     };
-    const RAMPS: &'static [RampInfo] =
-        &[RampInfo { name: "tightness", label: "Tightness along the hair", text: "Factor on the amount." }];
+    const RAMPS: &'static [RampInfo] = &[RampInfo {
+        name: "tightness",
+        label: "Tightness along the hair",
+        text: "Multiplies the amount along the hair.",
+    }];
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {
         if self.amount == 0.0 {

@@ -12,7 +12,7 @@ use crate::Scope;
 use crate::cord::{Gathering, Laid, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
-/// Gathers each lock and winds it in a helix, as corkscrew curls.
+/// Gathers each lock and winds it into a helix, like corkscrew curls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coil {
     /// Radius of the helix, metres.
@@ -44,14 +44,14 @@ impl Settings for Coil {
             field!(Self, gather),
             [0.0, 1.0],
             "Gather",
-            "How far the hair of a lock comes together.",
+            "How tightly the hair of a lock is gathered.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, onset),
             [0.0, 0.3],
             "Onset",
-            "Length of hair from the root over which locks gather and wind.",
+            "Length from the root over which the coil forms.",
         )
         .unit(Unit::METRES_AS_CM),
         Setting::number(
@@ -73,7 +73,7 @@ impl Operate for Coil {
     const KIND: Kind = Kind {
         id: "coil",
         label: "Coil",
-        text: "Gathers each lock and winds it in a helix, as corkscrew curls.",
+        text: "Gathers each lock and winds it into a helix, like corkscrew curls.",
         subject: Subject::Shape,
     };
 

@@ -79,7 +79,7 @@ impl Settings for Curl {
             field!(Self, looseness),
             [0.0, 1.0],
             "Looseness",
-            "How much the strands of a lock differ among each other. 0 % keeps a lock in one ringlet.",
+            "How much strands differ within a lock. At 0 % each lock is one ringlet.",
         )
         .unit(Unit::FRACTION),
     ];
@@ -93,8 +93,16 @@ impl Operate for Curl {
         subject: Subject::Strands,
     };
     const RAMPS: &'static [RampInfo] = &[
-        RampInfo { name: "radius", label: "Radius along the hair", text: "Factor on the radius." },
-        RampInfo { name: "pitch", label: "Pitch along the hair", text: "Factor on the pitch." },
+        RampInfo {
+            name: "radius",
+            label: "Radius along the hair",
+            text: "Multiplies the radius along the hair.",
+        },
+        RampInfo {
+            name: "pitch",
+            label: "Pitch along the hair",
+            text: "Multiplies the pitch along the hair.",
+        },
     ];
 
     fn apply(&self, style: &mut Hairstyle, scope: &Scope<'_>) {

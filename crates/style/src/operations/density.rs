@@ -16,7 +16,7 @@ const STRANDS: u32 = 0xde;
 /// and the strands that are left do not become wider for those that are missing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Density {
-    /// The part of the strands that stays.
+    /// Share of the strands that remain.
     pub share: f32,
 }
 
@@ -31,7 +31,7 @@ impl Settings for Density {
         field!(Self, share),
         [0.0, 1.0],
         "Strands kept",
-        "The part of the strands that stays.",
+        "Share of the strands that remain.",
     )
     .unit(Unit::FRACTION)];
 }
@@ -40,7 +40,7 @@ impl Operate for Density {
     const KIND: Kind = Kind {
         id: "density",
         label: "Density",
-        text: "Thins hair out: removes a part of its strands. Where its curve rises along the hair, they end earlier or later.",
+        text: "Thins hair out by removing a share of its strands. With a curve along the hair, strands end at different lengths.",
         subject: Subject::Strands,
     };
 

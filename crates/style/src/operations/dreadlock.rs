@@ -11,7 +11,7 @@ use crate::Scope;
 use crate::cord::{CordStrand, Gathering, Laid, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
-/// Felts hair into locks of even thickness with rounded ends.
+/// Mats hair into dreadlocks of even thickness with rounded ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dreadlock {
     /// Number of locks.
@@ -40,13 +40,13 @@ impl Settings for Dreadlock {
             field!(Self, count),
             [1, 1000],
             "Locks",
-            "Number of locks, each of one patch of the scalp; at most one for each wisp.",
+            "Number of locks, each from one patch of the scalp. At most one per wisp.",
         ),
         Setting::number(
             field!(Self, start),
             [0.0, 0.3],
             "Start",
-            "Length of hair before a lock begins, from the tie or from the root.",
+            "Length of loose hair between the root (or tie) and the start of the lock.",
         )
         .unit(Unit::METRES_AS_CM)
         .soft([0.0, 0.1]),
@@ -57,7 +57,7 @@ impl Settings for Dreadlock {
             field!(Self, lumps),
             [0.0, 1.0],
             "Lumps",
-            "How much the thickness of a lock and its course vary.",
+            "How much the thickness and the path of a lock vary.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -72,7 +72,7 @@ impl Settings for Dreadlock {
             field!(Self, fuzz),
             [0.0, 0.01],
             "Fuzz",
-            "How far single hairs stand off the surface of a lock.",
+            "How far loose hairs stand out from the surface of a lock.",
         )
         .unit(Unit::METRES_AS_MM),
     ];
@@ -116,7 +116,7 @@ impl Operate for Dreadlock {
     const KIND: Kind = Kind {
         id: "dreadlock",
         label: "Dreadlocks",
-        text: "Felts hair into locks of even thickness with rounded ends.",
+        text: "Mats hair into dreadlocks of even thickness with rounded ends.",
         subject: Subject::Shape,
     };
 

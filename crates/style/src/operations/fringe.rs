@@ -46,7 +46,7 @@ impl Settings for Fringe {
             field!(Self, lean),
             [-1.2, 1.2],
             "Lean",
-            "How the fringe leans. Above 0° it goes to the wearer's left.",
+            "Angle of the fringe. Positive values sweep it to the wearer's left.",
         )
         .unit(Unit::RADIANS),
     ];

@@ -44,7 +44,7 @@ impl Operate for Frizz {
     const KIND: Kind = Kind {
         id: "frizz",
         label: "Frizz",
-        text: "Bends each strand slightly and irregularly.",
+        text: "Adds small irregular bends to each strand.",
         subject: Subject::Strands,
     };
 

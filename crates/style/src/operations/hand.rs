@@ -28,7 +28,7 @@ impl Operate for Hand {
     const KIND: Kind = Kind {
         id: "hand",
         label: "By hand",
-        text: "What was combed, cut and curled with brushes. It follows the places of the scalp.",
+        text: "Brush strokes: combing, cutting, curling. They stay with their place on the scalp.",
         subject: Subject::Shape,
     };
 

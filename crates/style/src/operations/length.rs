@@ -12,7 +12,7 @@ use crate::operate::{Kind, Operate, Subject};
 /// The length to which hair can be lengthened, metres.
 const LONGEST: f32 = 1.5;
 
-/// What decides the length of hair.
+/// How the new length is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthBy {
     /// A factor on its own length.
@@ -74,23 +74,23 @@ impl Default for Length {
 
 impl Settings for Length {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::choice::<LengthBy>(field!(Self, by), "Cut", "What decides the length of hair."),
+        Setting::choice::<LengthBy>(field!(Self, by), "Cut", "How the new length is given."),
         Setting::number(
             field!(Self, factor),
             [0.0, 4.0],
             "Factor",
-            "Factor on the length of hair. More than 100 % lengthens it.",
+            "New length relative to the present one. Above 100 % hair becomes longer.",
         )
         .unit(Unit::FRACTION)
         .soft([0.0, 2.0]),
-        Setting::number(field!(Self, limit), [0.0, 1.5], "Longest", "Length that no hair exceeds.")
+        Setting::number(field!(Self, limit), [0.0, 1.5], "Longest", "Maximum length. Longer hair is cut to it.")
             .unit(Unit::METRES_AS_CM)
             .soft([0.0, 0.7]),
         Setting::number(
             field!(Self, height),
             [-1.5, 0.5],
             "Height",
-            "Height of the plane over the middle of the head. Hair ends where it first reaches it.",
+            "Height of the cutting plane above the centre of the head. Hair ends where it first crosses the plane.",
         )
         .unit(Unit::METRES_AS_CM)
         .soft([-0.6, 0.1]),
@@ -98,23 +98,23 @@ impl Settings for Length {
             field!(Self, tilt),
             [-1.2, 1.2],
             "Tilt",
-            "How the plane rises toward the wearer's left.",
+            "Sideways slope of the plane. Positive values rise toward the wearer's left.",
         )
         .unit(Unit::RADIANS),
-        Setting::number(field!(Self, slope), [-1.2, 1.2], "Slope", "How the plane rises toward the face.")
+        Setting::number(field!(Self, slope), [-1.2, 1.2], "Slope", "Slope of the plane. Positive values rise toward the face.")
             .unit(Unit::RADIANS),
         Setting::number(
             field!(Self, layers),
             [0.0, 1.0],
             "Layers",
-            "How much shorter the hair at the top of the head is. 0 % is blunt.",
+            "How much shorter hair at the top of the head is cut. 0 % is a blunt cut.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, variation),
             [0.0, 1.0],
             "Variation",
-            "How much shorter a lock may be by chance. Higher values thin out the ends.",
+            "Random shortening of locks. Higher values make the ends thinner.",
         )
         .unit(Unit::FRACTION),
     ];

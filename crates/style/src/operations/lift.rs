@@ -1,4 +1,4 @@
-//! Raises hair at its roots, which gives volume.
+//! Lifts hair at its roots for more volume.
 
 use lovelock_base::field;
 use lovelock_base::numbers::smoothstep;
@@ -9,7 +9,7 @@ use crate::Scope;
 use crate::guides::{Lengths, reshape, turn_links, turned};
 use crate::operate::{Kind, Operate, Subject};
 
-/// Raises hair at its roots, which gives volume.
+/// Lifts hair at its roots for more volume.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lift {
     /// How far roots are raised away from the scalp, radians.
@@ -30,14 +30,14 @@ impl Settings for Lift {
             field!(Self, angle),
             [0.0, 1.6],
             "Angle",
-            "How far roots rise from the scalp. Higher values give more volume.",
+            "How far hair lifts off the scalp. Higher values add volume.",
         )
         .unit(Unit::RADIANS),
         Setting::number(
             field!(Self, distance),
             [0.005, 0.3],
             "Distance",
-            "Length of hair from the root that rises.",
+            "Length from the root over which hair is lifted.",
         )
         .unit(Unit::METRES_AS_CM),
     ];
@@ -47,7 +47,7 @@ impl Operate for Lift {
     const KIND: Kind = Kind {
         id: "lift",
         label: "Lift",
-        text: "Raises hair at its roots, which gives volume.",
+        text: "Lifts hair at its roots for more volume.",
         subject: Subject::Shape,
     };
 

@@ -29,15 +29,25 @@ impl Default for Noise {
 
 impl Settings for Noise {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::number(field!(Self, amplitude), [0.0, 0.05], "Amplitude", "How far hair leaves its course.")
-            .unit(Unit::METRES_AS_MM),
-        Setting::number(field!(Self, wavelength), [0.01, 0.5], "Wavelength", "Length of hair between bends.")
-            .unit(Unit::METRES_AS_CM),
+        Setting::number(
+            field!(Self, amplitude),
+            [0.0, 0.05],
+            "Amplitude",
+            "How far hair is moved from its path.",
+        )
+        .unit(Unit::METRES_AS_MM),
+        Setting::number(
+            field!(Self, wavelength),
+            [0.01, 0.5],
+            "Wavelength",
+            "Length of hair between two bends.",
+        )
+        .unit(Unit::METRES_AS_CM),
         Setting::number(
             field!(Self, apart),
             [0.0, 1.0],
             "Within locks",
-            "How much hair of one lock differs. Higher values open locks.",
+            "How much strands of one lock differ. Higher values open the locks.",
         )
         .unit(Unit::FRACTION),
     ];

@@ -35,7 +35,7 @@ impl Settings for Part {
             field!(Self, position),
             [-0.08, 0.08],
             "Position",
-            "Place of the parting. Above 0 it is on the wearer's left.",
+            "Position of the parting. Positive values are on the wearer's left.",
         )
         .unit(Unit::METRES_AS_MM),
         Setting::number(
@@ -49,14 +49,14 @@ impl Settings for Part {
             field!(Self, length),
             [0.01, 0.5],
             "Length",
-            "Length of hair from the root that is combed.",
+            "Length from the root over which hair is combed.",
         )
         .unit(Unit::METRES_AS_CM),
         Setting::number(
             field!(Self, amount),
             [0.0, 1.0],
             "Amount",
-            "How far hair turns away from the parting.",
+            "Angle by which hair turns away from the parting.",
         )
         .unit(Unit::FRACTION),
     ];

@@ -26,7 +26,7 @@ impl Operate for Scissors {
     const KIND: Kind = Kind {
         id: "scissors",
         label: "Scissors",
-        text: "What was cut off with the scissors in the image.",
+        text: "Cuts made with the scissors in the image.",
         subject: Subject::Shape,
     };
 

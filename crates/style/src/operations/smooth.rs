@@ -1,4 +1,4 @@
-//! Smooths bends of hair, and differences between neighbouring locks.
+//! Smooths bends in the hair and differences between neighbouring locks.
 
 use crate::guides::{GuideShape, Lengths, reshape, shape_of};
 use lovelock_base::field;
@@ -16,7 +16,7 @@ const COMBED: f32 = 0.2;
 /// Passes of the smoothing along hair.
 const PASSES: usize = 8;
 
-/// Smooths bends of hair, and differences between neighbouring locks.
+/// Smooths bends in the hair and differences between neighbouring locks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smooth {
     /// How much bends along the hair are smoothed, as a fraction.
@@ -37,14 +37,14 @@ impl Settings for Smooth {
             field!(Self, along),
             [0.0, 1.0],
             "Bends",
-            "How much bends along the hair are smoothed.",
+            "How strongly bends along the hair are smoothed.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, between),
             [0.0, 1.0],
             "Between locks",
-            "How much hair takes the course of the hair around it.",
+            "How strongly hair aligns with its neighbours.",
         )
         .unit(Unit::FRACTION),
     ];
@@ -54,7 +54,7 @@ impl Operate for Smooth {
     const KIND: Kind = Kind {
         id: "smooth",
         label: "Smooth",
-        text: "Smooths bends of hair, and differences between neighbouring locks.",
+        text: "Smooths bends in the hair and differences between neighbouring locks.",
         subject: Subject::Shape,
     };
 

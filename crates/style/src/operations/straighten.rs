@@ -1,4 +1,4 @@
-//! Straightens hair below where it leaves the head.
+//! Straightens hair beyond the point where it leaves the head.
 
 use glam::Vec3;
 use lovelock_base::field;
@@ -9,7 +9,7 @@ use crate::Scope;
 use crate::guides::{Lengths, reshape, turn_links};
 use crate::operate::{Kind, Operate, Subject};
 
-/// Straightens hair below where it leaves the head.
+/// Straightens hair beyond the point where it leaves the head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Straighten {
     /// How straight hair becomes, as a fraction.
@@ -42,7 +42,7 @@ impl Operate for Straighten {
     const KIND: Kind = Kind {
         id: "straighten",
         label: "Straighten",
-        text: "Straightens hair below where it leaves the head.",
+        text: "Straightens hair beyond the point where it leaves the head.",
         subject: Subject::Shape,
     };
 

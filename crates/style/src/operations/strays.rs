@@ -12,7 +12,7 @@ use crate::strands::displace;
 /// Moves a share of the strands out of their lock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strays {
-    /// Share of the strands that leave their lock.
+    /// Share of strands that leave their lock.
     pub share: f32,
     /// Greatest distance of their tips from where they were, metres.
     pub reach: f32,
@@ -26,15 +26,15 @@ impl Default for Strays {
 
 impl Settings for Strays {
     const TABLE: &'static [Setting<Self>] = &[
+        Setting::number(field!(Self, share), [0.0, 1.0], "Share", "Share of strands that leave their lock.")
+            .unit(Unit::FRACTION),
         Setting::number(
-            field!(Self, share),
-            [0.0, 1.0],
-            "Share",
-            "Share of the strands that leave their lock.",
+            field!(Self, reach),
+            [0.0, 0.1],
+            "Reach",
+            "Largest distance between a stray tip and its lock.",
         )
-        .unit(Unit::FRACTION),
-        Setting::number(field!(Self, reach), [0.0, 0.1], "Reach", "Greatest distance by which tips move.")
-            .unit(Unit::METRES_AS_MM),
+        .unit(Unit::METRES_AS_MM),
     ];
 }
 
@@ -42,7 +42,7 @@ impl Operate for Strays {
     const KIND: Kind = Kind {
         id: "strays",
         label: "Strays",
-        text: "Lets some strands leave their lock.",
+        text: "Lets some strands stray from their lock.",
         subject: Subject::Strands,
     };
 

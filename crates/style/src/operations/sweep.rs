@@ -41,16 +41,21 @@ impl Settings for Sweep {
             field!(Self, elevation),
             [-1.57, 1.57],
             "Elevation",
-            "How far the direction rises. Below 0° it falls.",
+            "Angle of the direction above the horizontal. Negative values point down.",
         )
         .unit(Unit::RADIANS),
-        Setting::number(field!(Self, amount), [0.0, 1.0], "Amount", "How far hair turns to the direction.")
-            .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, amount),
+            [0.0, 1.0],
+            "Amount",
+            "How far hair turns toward the direction.",
+        )
+        .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, length),
             [0.01, 1.5],
             "Length",
-            "Length of hair from the root that is combed.",
+            "Length from the root over which hair is combed.",
         )
         .unit(Unit::METRES_AS_CM),
     ];

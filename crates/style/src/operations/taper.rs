@@ -8,7 +8,7 @@ use crate::Scope;
 use crate::operate::{Kind, Operate, Subject};
 use crate::strands::widen;
 
-/// Thins strands toward the tip.
+/// Makes strands thinner toward the tip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taper {
     /// Fraction of the strand over which it thins.
@@ -29,11 +29,16 @@ impl Settings for Taper {
             field!(Self, fraction),
             [0.0, 1.0],
             "Fraction",
-            "Fraction of the strand, from the tip, over which it thins.",
+            "Part of the strand, measured from the tip, that becomes thinner.",
         )
         .unit(Unit::FRACTION),
-        Setting::number(field!(Self, tip), [0.0, 1.0], "Tip", "Factor on the width at the tip.")
-            .unit(Unit::FRACTION),
+        Setting::number(
+            field!(Self, tip),
+            [0.0, 1.0],
+            "Tip",
+            "Width at the tip, relative to the untapered strand.",
+        )
+        .unit(Unit::FRACTION),
     ];
 }
 
@@ -41,7 +46,7 @@ impl Operate for Taper {
     const KIND: Kind = Kind {
         id: "taper",
         label: "Taper",
-        text: "Thins strands toward the tip.",
+        text: "Makes strands thinner toward the tip.",
         subject: Subject::Strands,
     };
 

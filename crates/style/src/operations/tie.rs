@@ -9,7 +9,7 @@ impl Operate for HairTie {
     const KIND: Kind = Kind {
         id: "tie",
         label: "Tie",
-        text: "Gathers hair into a ponytail or a bun. Hair that an earlier tie holds stays there.",
+        text: "Gathers hair into a ponytail or a bun. Hair that an earlier tie gathers stays in it.",
         subject: Subject::Shape,
     };
 

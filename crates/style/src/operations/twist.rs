@@ -1,4 +1,4 @@
-//! Twists locks about their middle.
+//! Twists locks around their centre line.
 
 use crate::guides::{Lengths, reshape, wisp_means};
 use glam::{Quat, Vec3};
@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 use crate::Scope;
 use crate::operate::{Kind, Operate, Subject};
 
-/// Twists locks about their middle.
+/// Twists locks around their centre line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Twist {
     /// Turns from the root to the tip.
@@ -36,7 +36,7 @@ impl Operate for Twist {
     const KIND: Kind = Kind {
         id: "twist",
         label: "Twist",
-        text: "Twists locks about their middle.",
+        text: "Twists locks around their centre line.",
         subject: Subject::Shape,
     };
 

@@ -41,14 +41,14 @@ impl Settings for Wave {
             field!(Self, turn),
             [-1.6, 1.6],
             "Turn",
-            "Angle of the waves about the hair: 0° swings along the head, 90° away from it.",
+            "Plane of the waves: at 0° they run along the head, at 90° away from it.",
         )
         .unit(Unit::RADIANS),
         Setting::number(
             field!(Self, variation),
             [0.0, 1.0],
             "Variation",
-            "How much waves differ between locks. 0 % sets them all alike, as with tongs.",
+            "How much waves differ between locks. At 0 % all locks wave alike, as after crimping irons.",
         )
         .unit(Unit::FRACTION),
     ];
@@ -58,7 +58,7 @@ impl Operate for Wave {
     const KIND: Kind = Kind {
         id: "wave",
         label: "Wave",
-        text: "Swings whole locks sideways in waves, which move with the hair.",
+        text: "Adds waves to whole locks. The waves move with the hair.",
         subject: Subject::Shape,
     };
 

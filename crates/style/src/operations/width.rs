@@ -22,9 +22,13 @@ impl Default for Width {
 }
 
 impl Settings for Width {
-    const TABLE: &'static [Setting<Self>] =
-        &[Setting::number(field!(Self, factor), [0.1, 3.0], "Factor", "Factor on the width of strands.")
-            .unit(Unit::FRACTION)];
+    const TABLE: &'static [Setting<Self>] = &[Setting::number(
+        field!(Self, factor),
+        [0.1, 3.0],
+        "Factor",
+        "Width of strands relative to the present one.",
+    )
+    .unit(Unit::FRACTION)];
 }
 
 impl Operate for Width {

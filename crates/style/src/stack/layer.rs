@@ -18,7 +18,7 @@ pub struct Layer {
     pub on: bool,
     /// How much it acts: 1 wholly, more than that where the operation can.
     pub weight: f32,
-    /// Chooses among layers that differ only by chance.
+    /// Seed of the random numbers of the layer.
     pub seed: u32,
     /// The number of its group, if it is in one.
     pub group: Option<u32>,
@@ -73,12 +73,12 @@ impl Layer {
 
 impl Settings for Layer {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::switch(field!(Self, on), "On", "Whether the layer acts."),
+        Setting::switch(field!(Self, on), "On", "Switches the layer on or off."),
         Setting::number(
             field!(Self, weight),
             [0.0, 2.0],
             "Weight",
-            "How much the layer acts. 100 % is wholly, more exaggerates.",
+            "Strength of the layer. Above 100 % its effect is exaggerated.",
         )
         .unit(Unit::FRACTION)
         .soft([0.0, 1.0]),
@@ -86,7 +86,7 @@ impl Settings for Layer {
             field!(Self, seed),
             [0, u32::MAX as u64],
             "Seed",
-            "Chooses among layers that differ only by chance.",
+            "Seed of the random numbers of the layer.",
         )
         .soft([0.0, 999.0]),
     ];
@@ -141,12 +141,12 @@ impl Default for Group {
 
 impl Settings for Group {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::switch(field!(Self, on), "On", "Whether the layers of the group act."),
+        Setting::switch(field!(Self, on), "On", "Switches the layers of the group on or off."),
         Setting::number(
             field!(Self, weight),
             [0.0, 2.0],
             "Weight",
-            "Factor on the weights of the layers of the group.",
+            "Multiplies the weights of the layers in the group.",
         )
         .unit(Unit::FRACTION)
         .soft([0.0, 1.0]),

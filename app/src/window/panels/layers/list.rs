@@ -219,7 +219,7 @@ fn group_row(
     }) {
         row::name(ui, columns.name, RichText::new(&group.name).strong());
     }
-    let weight = ("Group weight", "Factor on the weights of the layers of the group.");
+    let weight = ("Group weight", "Multiplies the weights of the layers in the group.");
     row::weight(ui, columns.weight, &mut group.weight, weight);
     let heard = *solo_group == Some(id);
     if row::solo(ui, columns.solo, heard, "Shows the layers of this group alone.") {

@@ -293,7 +293,7 @@ fn groups_are_renamed_folded_heard_alone_and_removed() {
     click_at(&mut harness, solos[1]);
     assert_eq!((stack(&harness).solo_group, stack(&harness).solo), (Some(group), None));
     click_at(&mut harness, solos[0]);
-    assert_eq!(stack(&harness).solo_group, None, "one thing is heard alone");
+    assert_eq!(stack(&harness).solo_group, None, "one layer or group is soloed");
     // A layer is dragged into the group and the group over the first layer.
     let grips: Vec<_> = harness.get_all_by_label(GRIP).map(|node| node.rect()).collect();
     drag(&mut harness, grips[3].center(), grips[1].center_bottom());

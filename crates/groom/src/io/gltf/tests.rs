@@ -174,7 +174,7 @@ fn contradictions_are_refused() {
         (&strip, "/accessors/0/componentType", json!(1), "component type 1"),
         (&strip, "/bufferViews/0/byteLength", json!(161), "as many as fit into its 161 bytes"),
         (&strip, "/bufferViews/0/byteStride", json!(1 << 20), "as many as fit into its 160 bytes"),
-        (&strip, "/buffers/0/byteLength", json!(161), "buffer 0 with 160 bytes, wanted 161"),
+        (&strip, "/buffers/0/byteLength", json!(161), "buffer 0 with 160 bytes; must be 161"),
         (&lines, "/accessors/0/count", json!(6), "the index 6"),
         (&strip, "/nodes", json!([]), "no lines"),
     ] {

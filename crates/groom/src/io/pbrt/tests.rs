@@ -98,9 +98,9 @@ fn other_files_are_included_once_each_way() {
 #[test]
 fn broken_scenes_are_refused_in_one_line() {
     for (text, found) in [
-        ("Shape \"sphere\"", "found no curve, wanted a directive `Shape \"curve\"`"),
+        ("Shape \"sphere\"", "found no curve; must be a directive `Shape \"curve\"`"),
         ("Shape \"curve\" \"point3 P\" [ 0 0 0 ]", "found 1 curves, none"),
-        ("Translate 1 two 3", "byte 12: found `two`, wanted three numbers after Translate"),
+        ("Translate 1 two 3", "byte 12: found `two`; must be three numbers after Translate"),
         ("Transform [ 1 0 0 0 ]", "wanted sixteen numbers"),
         ("Shape curve", "the kind of a shape in quotes"),
         ("Shape \"curve\" \"point3 P\" [ 0 0 0", "truncated"),

@@ -65,7 +65,7 @@ impl FromStr for LockScene {
     fn from_str(id: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|scene| scene.id() == id).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|scene| scene.id()).collect();
-            format!("unknown scene `{id}`: expected one of {}", known.join(", "))
+            format!("unknown scene `{id}`: must be one of {}", known.join(", "))
         })
     }
 }

@@ -21,7 +21,7 @@ impl Settings for DeepOpacityMapsSettings {
         Setting::choice::<LayerGrowth>(
             field!(Self, growth),
             "Layer growth",
-            "Thickness of the layers: all alike, or thinner where light falls off fastest.",
+            "Thickness of the layers: equal, or thinner where light falls off fastest.",
         ),
         Setting::number(
             field!(Self, depth_share),

@@ -34,14 +34,12 @@ impl Settings for VoxelMapSettings {
         Setting::choice::<VoxelFilter>(
             field!(Self, filter),
             "Filter",
-            "How a point reads the cells around it. As printed, shadows are displaced by half a \
-             cell.",
+            "How a point reads the cells around it. As published, shadows are displaced by half a cell.",
         ),
         Setting::choice::<VoxelDeposit>(
             field!(Self, deposit),
             "Density",
-            "What strands add to the cells: the optical depth of their length, or one per point as \
-             printed, which makes the brightness depend on the resolution.",
+            "What strands add to the cells: the optical depth of their length, or one per point as published. Then the brightness depends on the resolution.",
         ),
         Setting::number(
             field!(Self, point_extinction),

@@ -31,9 +31,9 @@ impl Settings for Dye {
         Setting::color(
             field!(Self, color),
             "Dye",
-            "Colour of the dye, as a head of hair with this dye looks in white light.",
+            "Colour of the dye: how a head of hair with it looks in white light.",
         ),
-        Setting::number(field!(Self, amount), [0.0, 1.0], "Amount", "How much of the dye the hair takes.")
+        Setting::number(field!(Self, amount), [0.0, 1.0], "Amount", "How strongly the dye colours the hair.")
             .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, bleach),

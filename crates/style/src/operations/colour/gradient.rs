@@ -73,47 +73,47 @@ impl Settings for Gradient {
         Setting::choice::<GradientPigment>(
             field!(Self, pigment),
             "Tips",
-            "Whether the tips have a natural colour or a dye.",
+            "Kind of colour at the tips: natural or dyed.",
         ),
         Setting::number(
             field!(Self, eumelanin),
             [0.0, 8.0],
             "Eumelanin",
-            "Brown and black pigment of tips of a natural colour.",
+            "Brown and black pigment at the tips, for a natural colour.",
         ),
         Setting::number(
             field!(Self, pheomelanin),
             [0.0, 8.0],
             "Pheomelanin",
-            "Red pigment of tips of a natural colour.",
+            "Red pigment at the tips, for a natural colour.",
         ),
         Setting::color(field!(Self, color), "Dye", "Colour of dyed tips."),
         Setting::number(
             field!(Self, start),
             [0.0, 1.0],
             "Start",
-            "Where the other colour begins, from the root.",
+            "Distance from the root at which the blend begins, as a fraction of the strand.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, length),
             [0.0, 1.0],
             "Length",
-            "Over how much of the hair one colour goes over into the other.",
+            "Length of the blend between the colours.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, variation),
             [0.0, 1.0],
             "Variation",
-            "How much the beginning differs from lock to lock. At 0 % it is one line around the head.",
+            "How much the start of the blend varies between locks. At 0 % it is one line around the head.",
         )
         .unit(Unit::FRACTION),
         Setting::count(
             field!(Self, locks),
             [1, 16],
             "Locks per wisp",
-            "Into how many locks a wisp is divided. More are finer.",
+            "Number of locks per wisp. More locks are finer.",
         ),
     ];
 }
@@ -125,7 +125,7 @@ impl Operate for Gradient {
     const KIND: Kind = Kind {
         id: "gradient",
         label: "Gradient",
-        text: "Goes over into another colour toward the tips: ombré and balayage.",
+        text: "Blends into another colour toward the tips: ombré and balayage.",
         subject: Subject::Colour,
     };
 

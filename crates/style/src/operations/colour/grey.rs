@@ -37,7 +37,7 @@ impl Settings for Grey {
             field!(Self, left),
             [0.0, 1.0],
             "Pigment left",
-            "How much pigment grey strands keep. White hair has hardly any.",
+            "Pigment that remains in grey strands. White hair has almost none.",
         )
         .unit(Unit::FRACTION),
     ];
@@ -50,7 +50,7 @@ impl Operate for Grey {
     const KIND: Kind = Kind {
         id: "grey",
         label: "Grey",
-        text: "Takes the pigment from a share of the strands, scattered or where the mask is.",
+        text: "Removes pigment from a share of the strands, scattered over the head or within the mask.",
         subject: Subject::Colour,
     };
 

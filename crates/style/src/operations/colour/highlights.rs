@@ -55,47 +55,47 @@ impl Settings for Highlights {
             field!(Self, strands),
             [0.0, 1.0],
             "Strands",
-            "Share of the strands of those locks. Low values are fine and soft, 100 % takes whole locks.",
+            "Share of strands that are lightened within those locks. Low values look fine and soft; 100 % lightens whole locks.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, lightening),
             [0.0, 1.0],
             "Lightening",
-            "How much less pigment lightened hair has.",
+            "How much pigment lightening removes.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, toning),
             [0.0, 1.0],
             "Toning",
-            "How far the toner replaces what lightening has left.",
+            "How strongly the toner colours the lightened hair.",
         )
         .unit(Unit::FRACTION),
         Setting::color(
             field!(Self, toner),
             "Toner",
-            "Colour of the toner, as a head of hair of it looks in white light.",
+            "Colour of the toner: how a head of hair with it looks in white light.",
         ),
         Setting::number(
             field!(Self, start),
             [0.0, 1.0],
             "Start",
-            "Where lightening begins, from the root.",
+            "Distance from the root at which lightening begins, as a fraction of the strand.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, fade),
             [0.0, 1.0],
             "Fade",
-            "Over how much of the hair lightening sets in. Low values look freshly done, high ones grown out.",
+            "Length of the transition into the lightened part. Low values look freshly done, high ones grown out.",
         )
         .unit(Unit::FRACTION),
         Setting::count(
             field!(Self, locks),
             [1, 16],
             "Locks per wisp",
-            "Into how many locks a wisp is divided. More are finer.",
+            "Number of locks per wisp. More locks are finer.",
         ),
     ];
 }

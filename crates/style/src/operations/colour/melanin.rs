@@ -44,7 +44,7 @@ impl Operate for Melanin {
     const KIND: Kind = Kind {
         id: "melanin",
         label: "Natural colour",
-        text: "Gives hair another natural colour, by its two pigments.",
+        text: "Gives hair another natural colour through its two pigments.",
         subject: Subject::Colour,
     };
 

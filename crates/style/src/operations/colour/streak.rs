@@ -51,21 +51,21 @@ impl Settings for Streak {
             field!(Self, amount),
             [0.0, 1.0],
             "Amount",
-            "How much of the colour the streak takes. At 0 % it is only bleached.",
+            "How strongly the streak is dyed. At 0 % it is only bleached.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, bleach),
             [0.0, 1.0],
             "Bleach first",
-            "How much of the colour below is bleached away.",
+            "How much of the colour underneath is bleached out.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, sideways),
             [-1.0, 1.0],
             "Sideways",
-            "Where the streak is, as a fraction of half the head: 100 % is the wearer's left side.",
+            "Sideways position as a fraction of half the head: 100 % is the wearer's left side.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -79,14 +79,14 @@ impl Settings for Streak {
             field!(Self, back),
             [-1.5, 1.0],
             "Back end",
-            "How far back the streak reaches: 100 % is the face and -100 % the back of the head.",
+            "How far back the streak reaches: 100 % ends at the face, -100 % at the back of the head.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
             field!(Self, ragged),
             [0.0, 1.0],
             "Ragged sides",
-            "Over how much of its width strands of both colours mix at the sides.",
+            "Part of the width over which strands of both colours mix at the edges.",
         )
         .unit(Unit::FRACTION),
     ];

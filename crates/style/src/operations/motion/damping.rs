@@ -1,4 +1,4 @@
-//! Lets hair come to rest sooner or later than the simulation's settings say.
+//! Makes hair come to rest sooner or later than the Simulation settings do.
 
 use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
@@ -8,7 +8,7 @@ use crate::Scope;
 use crate::motion::scale;
 use crate::operate::{Kind, Operate, Subject};
 
-/// Lets hair come to rest sooner or later than the simulation's settings say.
+/// Makes hair come to rest sooner or later than the Simulation settings do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damping {
     /// Factor on the damping of bending and on the settling.
@@ -26,7 +26,7 @@ impl Settings for Damping {
         field!(Self, factor),
         [0.0, 8.0],
         "Factor",
-        "Factor on the damping of bending and on the settling. Higher values stop hair sooner, lower ones let it sway on.",
+        "Multiplies bend damping and settling. Higher values stop hair sooner, lower ones let it keep swaying.",
     )
     .unit(Unit::TIMES)
     .soft([0.0, 4.0])];
@@ -36,7 +36,7 @@ impl Operate for Damping {
     const KIND: Kind = Kind {
         id: "damping",
         label: "Damping",
-        text: "Lets hair come to rest sooner or later than the simulation's settings say.",
+        text: "Makes hair come to rest sooner or later than the Simulation settings do.",
         subject: Subject::Motion,
     };
 

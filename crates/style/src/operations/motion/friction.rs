@@ -1,4 +1,4 @@
-//! Makes hair cling to the body more or less than the simulation's settings say.
+//! Makes hair cling to the body more or less than the Simulation settings do.
 
 use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
@@ -8,7 +8,7 @@ use crate::Scope;
 use crate::motion::scale;
 use crate::operate::{Kind, Operate, Subject};
 
-/// Makes hair cling to the body more or less than the simulation's settings say.
+/// Makes hair cling to the body more or less than the Simulation settings do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// Factor on the friction with the body.
@@ -26,7 +26,7 @@ impl Settings for Friction {
         field!(Self, factor),
         [0.0, 8.0],
         "Factor",
-        "Factor on the friction with skin and clothes. Higher values let hair cling to the body, lower ones let it slide off.",
+        "Multiplies the friction with skin and clothes. With higher values hair clings to the body, with lower ones it slides off.",
     )
     .unit(Unit::TIMES)
     .soft([0.0, 4.0])];
@@ -36,7 +36,7 @@ impl Operate for Friction {
     const KIND: Kind = Kind {
         id: "friction",
         label: "Friction",
-        text: "Makes hair cling to the body more or less than the simulation's settings say.",
+        text: "Makes hair cling to the body more or less than the Simulation settings do.",
         subject: Subject::Motion,
     };
 

@@ -1,4 +1,4 @@
-//! Makes hair keep its place on the head more or less than the simulation's settings say.
+//! Makes hair keep its styled shape more or less than the Simulation settings do.
 
 use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
@@ -8,7 +8,7 @@ use crate::Scope;
 use crate::motion::scale;
 use crate::operate::{Kind, Operate, Subject};
 
-/// Makes hair keep its place on the head more or less than the simulation's settings say.
+/// Makes hair keep its styled shape more or less than the Simulation settings do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hold {
     /// Factor on the hold, as an angular frequency.
@@ -26,7 +26,7 @@ impl Settings for Hold {
         field!(Self, factor),
         [0.0, 8.0],
         "Factor",
-        "Factor on the hold. Higher values act like hair spray, lower ones let hair fly. What a tie holds keeps its hold.",
+        "Multiplies the hold. Higher values act like hair spray, lower ones let hair fly. Tied hair keeps its hold.",
     )
     .unit(Unit::TIMES)
     .soft([0.0, 4.0])];
@@ -36,7 +36,7 @@ impl Operate for Hold {
     const KIND: Kind = Kind {
         id: "hold",
         label: "Hold",
-        text: "Makes hair keep its place on the head more or less than the simulation's settings say.",
+        text: "Makes hair keep its styled shape more or less than the Simulation settings do.",
         subject: Subject::Motion,
     };
 

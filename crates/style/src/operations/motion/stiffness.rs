@@ -1,4 +1,4 @@
-//! Makes hair stiffer or softer than the simulation's settings say.
+//! Makes hair stiffer or softer than the Simulation settings do.
 
 use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
@@ -8,7 +8,7 @@ use crate::Scope;
 use crate::motion::scale;
 use crate::operate::{Kind, Operate, Subject};
 
-/// Makes hair stiffer or softer than the simulation's settings say.
+/// Makes hair stiffer or softer than the Simulation settings do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stiffness {
     /// Factor on the bending stiffness, as an angular frequency.
@@ -26,7 +26,7 @@ impl Settings for Stiffness {
         field!(Self, factor),
         [0.0, 8.0],
         "Factor",
-        "Factor on the stiffness. Higher values keep hair in its shape, lower ones let it swing.",
+        "Multiplies the stiffness. Higher values keep the shape of the hair, lower ones let it swing.",
     )
     .unit(Unit::TIMES)
     .soft([0.0, 4.0])];
@@ -36,7 +36,7 @@ impl Operate for Stiffness {
     const KIND: Kind = Kind {
         id: "stiffness",
         label: "Stiffness",
-        text: "Makes hair stiffer or softer than the simulation's settings say.",
+        text: "Makes hair stiffer or softer than the Simulation settings do.",
         subject: Subject::Motion,
     };
 
