@@ -2,12 +2,13 @@
 
 pub mod clock;
 pub mod direction_map;
-pub mod glb;
 pub mod memory;
 pub mod numbers;
 pub mod random;
 pub mod settings;
+pub mod simd;
 pub mod statistics;
 pub mod triangle;
 pub mod watch;
+mod whole_part;
 pub mod words;

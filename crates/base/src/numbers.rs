@@ -12,6 +12,13 @@ pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// Linear interpolation from `a` at 0 to `b` at 1. Always inlined, so that loops around it vectorise.
+#[expect(clippy::inline_always, reason = "a call would prevent vectorisation")]
+#[inline(always)]
+pub fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
 #[cfg(test)]
 mod tests {
     use super::{smoothstep, within};

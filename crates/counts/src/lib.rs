@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Quat, Vec3};
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use lovelock_groom::{
     GroomSettings, GuideFrame, HairLook, Hairstyle, PlainHead, Preset, Strands, grow, interpolate,
 };

@@ -9,6 +9,7 @@ mod buffers;
 mod container;
 pub mod document;
 mod error;
+pub mod glb;
 
 use std::path::Path;
 

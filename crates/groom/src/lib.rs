@@ -30,9 +30,6 @@ mod strand_bounds;
 mod strand_colours;
 mod strands;
 mod ties;
-mod whole_part;
-
-pub mod simd;
 
 pub use colours::{HAIR_COLOURS, HairColour};
 pub use frame::{WispCurve, reference_normal, transport, widest_radii};

@@ -3,7 +3,8 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec3;
-use lovelock_groom::{Strands, simd_versions};
+use lovelock_base::simd_versions;
+use lovelock_groom::Strands;
 use rayon::prelude::*;
 
 use crate::{LightFrame, ShadowInput};

@@ -2,7 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use lovelock_groom::simd::whole_part;
+use lovelock_base::simd::whole_part;
 
 /// Optical depth 1 in the 16-bit steps of a cell.
 pub(crate) const DEPTH_STEPS: f32 = 4096.0;

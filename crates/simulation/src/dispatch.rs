@@ -6,8 +6,8 @@
 
 use std::cell::RefCell;
 
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 
 use crate::block::{Block, Work};
 use crate::solver::{Plan, advance};

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{IVec3, Vec3};
 
 use cell::{Cell, Cells, Counts};
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use pieces::{Source, add_block};
 use rayon::prelude::*;
 pub(crate) use sample::GridStep;

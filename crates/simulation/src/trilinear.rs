@@ -1,6 +1,7 @@
 //! Trilinear interpolation between values at the eight corners of a cell, x fastest.
 
 use glam::Vec3;
+use lovelock_base::numbers::mix;
 
 /// Weights of the corners at the fractions `f` along the axes of the cell.
 #[inline(always)]
@@ -18,11 +19,6 @@ pub(crate) fn gradient(v: &[f32; 8], f: Vec3) -> Vec3 {
         square(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], f.x, f.z),
         square(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], f.x, f.y),
     )
-}
-
-#[inline(always)]
-fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }
 
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! Writes glTF 2.0 in its binary form: one skinned mesh, a skeleton and clips.
 
 use glam::{Quat, Vec3};
-use lovelock_base::glb::{
+use lovelock_gltf::glb::{
     self, ARRAY_BUFFER, Buffer, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_BYTE, UNSIGNED_SHORT,
 };
 use serde_json::{Value, json};

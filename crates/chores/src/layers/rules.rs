@@ -70,7 +70,7 @@ const ARROWS: [(&str, &[&str]); 27] = [
     ("brush", &["style", "groom", "base"]),
     ("style", &["groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
-    ("record", &["groom", "alembic", "base"]),
+    ("record", &["groom", "alembic", "gltf", "base"]),
     ("motion", &["gltf", "usd", "base"]),
     ("groom", &["appearance", "alembic", "gltf", "usd", "base"]),
     ("alembic", &[]),
@@ -82,9 +82,9 @@ const ARROWS: [(&str, &[&str]); 27] = [
     ("metrics", &["base"]),
     ("base", &[]),
     ("testkit", &["metrics", "base"]),
-    ("counts", &["render", "shadow", "simulation", "motion", "groom"]),
+    ("counts", &["render", "shadow", "simulation", "motion", "groom", "base"]),
     ("xtask", &[]),
-    ("chores", &["xtask", "metrics", "base"]),
+    ("chores", &["xtask", "metrics", "gltf", "base"]),
 ];
 
 /// Crates that any other may use for its tests.

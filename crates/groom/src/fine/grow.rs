@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::children::{FineStrands, MOST_POINTS};
 use super::order::place;
 use super::strand::FineStrand;
-use crate::simd::Width;
 use crate::{Strands, simd_versions};
+use lovelock_base::simd::Width;
 
 /// Points of strands that are computed by one task.
 const POINTS_PER_TASK: usize = 8192;

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use glam::{Affine3A, Quat, Vec3};
 
 use super::*;
-use crate::simd::Width;
 use crate::{GroomSettings, GuideFrame, Hairstyle, PlainHead, StrandSet, Strands, Wisp, grow, interpolate};
+use lovelock_base::simd::Width;
 
 fn small_style() -> Arc<Hairstyle> {
     let settings = GroomSettings { wisps: 30, strands_per_wisp: 23, ..GroomSettings::default() };

@@ -8,8 +8,8 @@ use std::hint::black_box;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::random::SplitMix64;
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@ pub mod fbx;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use lovelock_base::glb;
+use lovelock_gltf::glb;
 use lovelock_motion::{
     Character, MotionSettings, Pose, Skin, load_character_bytes, load_motion_bytes, pose_at, skin,
 };

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
-use lovelock_base::glb::{
+use lovelock_gltf::glb::{
     self, ARRAY_BUFFER, Buffer, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_INT, UNSIGNED_SHORT,
 };
 use serde_json::{Value, json};

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec3;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd_versions;
 
 use super::math::{exp2, max, mix, smoothstep, three};
 use super::tile::TILE;

@@ -4,8 +4,8 @@
 
 use glam::{Mat4, Vec3};
 use lovelock_base::memory::list_bytes;
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 use rayon::prelude::*;
 
 use super::math::{floor, index_of, max, min};

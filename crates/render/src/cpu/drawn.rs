@@ -1,7 +1,7 @@
 //! The strands of a picture on the CPU: the stored ones, or fine ones that are made from them.
 
+use lovelock_base::simd::Width;
 use lovelock_groom::fine::{FineStrands, ParentPoints, Portion, grow_fine};
-use lovelock_groom::simd::Width;
 use lovelock_groom::{Hairstyle, Strands};
 
 use crate::FrameInput;

@@ -7,6 +7,7 @@
 #![allow(clippy::inline_always)]
 
 pub(super) use lovelock_appearance::fibre::arithmetic::{clamp, exp, exp2, floor, smoothstep, three};
+pub(super) use lovelock_base::numbers::mix;
 
 /// Adding this to a number below 2^22 rounds it to an integer, which is then in the lowest bits.
 const ROUND: f32 = 12_582_912.0;
@@ -27,12 +28,6 @@ pub(super) fn max(a: f32, b: f32) -> f32 {
 #[inline(always)]
 pub(super) fn saturate(x: f32) -> f32 {
     clamp(x, 0.0, 1.0)
-}
-
-/// Linear interpolation from `a` at 0 to `b` at 1.
-#[inline(always)]
-pub(super) fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }
 
 /// The integer `x` as an index, for `x` from 0 to 2^22, without a saturating conversion.

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
-use lovelock_groom::simd::Width;
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 

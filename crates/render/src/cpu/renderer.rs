@@ -6,7 +6,6 @@ use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
 use lovelock_gpu::PassTime;
-use lovelock_groom::simd::Width;
 use lovelock_groom::{HairShading, Strands};
 use rayon::prelude::*;
 

@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{Scene, soft_wig, tuft_scene};
 use glam::Vec3;
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use lovelock_render::{Backend, Camera, CpuRenderer, Picture, ShadowMethod, Transparency};
 use lovelock_testkit::{Flip, flip};
 

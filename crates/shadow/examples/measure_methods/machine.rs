@@ -1,6 +1,6 @@
 //! The machine that times depend on.
 
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 
 /// The CPU, threads and vector width, as one line.
 pub(crate) fn line() -> String {

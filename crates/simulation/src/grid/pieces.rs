@@ -6,8 +6,8 @@
 #![allow(clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
-use lovelock_groom::simd::whole_part;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::whole_part;
+use lovelock_base::simd_versions;
 
 use super::cell::{Cells, NUMBERS};
 use super::direction::outer;

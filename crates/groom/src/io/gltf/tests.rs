@@ -84,7 +84,7 @@ fn many(primitives: usize, copies: bool) -> Vec<u8> {
         "buffers": [{ "byteLength": bytes.len() }],
     });
     let mut file =
-        lovelock_base::glb::head(document.to_string().into_bytes(), bytes.len() as u64).expect("a head");
+        lovelock_gltf::glb::head(document.to_string().into_bytes(), bytes.len() as u64).expect("a head");
     file.extend(bytes);
     file
 }

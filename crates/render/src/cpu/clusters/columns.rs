@@ -6,8 +6,8 @@
 use std::f32::consts::TAU;
 
 use glam::Vec2;
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 use lovelock_satf::{
     Cell, ClusterHair, ClusterSettings, ClusterShading, ClusterView, Database, LocalShadow, shadow,
 };

@@ -11,7 +11,7 @@ mod vertices;
 use std::sync::Arc;
 
 use lovelock_base::memory::list_bytes;
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use lovelock_groom::{Hairstyle, Strands, interpolate};
 use lovelock_satf::cache::shared;
 use lovelock_satf::{ClusterHair, ClusterSettings, ClusterShading, LocalShadow};

@@ -2,7 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
-use lovelock_groom::simd_versions;
+use lovelock_base::simd_versions;
 
 use super::sink::Sink;
 use crate::cpu::math::{max, min, saturate, three};

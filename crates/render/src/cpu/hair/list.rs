@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use lovelock_base::memory::list_bytes;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd_versions;
 
 use super::segment::{Span, SpanSink, each_span};
 use crate::cpu::math::{clamp, floor, three};

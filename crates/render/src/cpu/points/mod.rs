@@ -3,8 +3,9 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec4;
-use lovelock_groom::simd::Width;
-use lovelock_groom::{PigmentVariation, Strands, simd_versions};
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
+use lovelock_groom::{PigmentVariation, Strands};
 use rayon::prelude::*;
 
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};

@@ -1,6 +1,6 @@
 //! Shading of the visible body in a tile.
 
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use lovelock_motion::Body;
 
 use super::PlacedSurface;

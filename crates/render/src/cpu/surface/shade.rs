@@ -2,7 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
-use lovelock_groom::{HairLook, simd_versions};
+use lovelock_base::simd_versions;
+use lovelock_groom::HairLook;
 
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
 use crate::cpu::view::View;

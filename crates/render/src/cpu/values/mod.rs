@@ -5,7 +5,6 @@ mod pick;
 use glam::Vec3;
 use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
-use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
 use super::placed::{PlacedScene, TileScratch, copy_rows};

@@ -7,7 +7,7 @@ use lovelock_base::settings::Settings;
 use super::super::texels::{Fragment, SLICE, TexelFilter, TexelMap, TexelMethod};
 use super::{OccupancyMapsSettings, SLAB};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
-use lovelock_groom::simd::whole_part;
+use lovelock_base::simd::whole_part;
 
 /// The map of [`ShadowMethod::OccupancyMaps`].
 pub type OccupancyMaps = TexelMap<Occupancy>;

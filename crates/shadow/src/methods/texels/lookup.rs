@@ -6,8 +6,9 @@
 #![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop, clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
-use lovelock_groom::simd::whole_part;
-use lovelock_groom::simd_versions;
+use lovelock_base::numbers::mix;
+use lovelock_base::simd::whole_part;
+use lovelock_base::simd_versions;
 
 use super::fragments::Fragments;
 use super::frame::TexelFrame;
@@ -215,9 +216,4 @@ fn place_hash(p: [f32; 3]) -> [f32; 2] {
 #[inline(always)]
 fn floor(c: f32) -> i32 {
     whole_part(c + 2.0) - 2
-}
-
-#[inline(always)]
-fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }

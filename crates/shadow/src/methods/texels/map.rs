@@ -1,7 +1,7 @@
 //! The map of any method with a record for each texel.
 
 use glam::Vec3;
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use rayon::prelude::*;
 
 use super::TexelFilter;

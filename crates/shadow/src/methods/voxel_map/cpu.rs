@@ -1,8 +1,8 @@
 //! The voxel map on the CPU: the stages of a build, and parallel lookups.
 
 use glam::Vec3;
+use lovelock_base::simd::Width;
 use lovelock_groom::Strands;
-use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
 use super::deposit::{Deposit, deposit_simd};

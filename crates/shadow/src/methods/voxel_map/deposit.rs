@@ -6,8 +6,9 @@
 // No loop may branch.
 #![allow(unsafe_code, clippy::inline_always, clippy::needless_bitwise_bool, clippy::needless_range_loop)]
 
-use lovelock_groom::simd::whole_part;
-use lovelock_groom::{Strands, simd_versions};
+use lovelock_base::simd::whole_part;
+use lovelock_base::simd_versions;
+use lovelock_groom::Strands;
 
 use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;

@@ -3,8 +3,9 @@
 #![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop)]
 
 use glam::Vec3;
-use lovelock_groom::simd::whole_part;
-use lovelock_groom::simd_versions;
+use lovelock_base::numbers::mix;
+use lovelock_base::simd::whole_part;
+use lovelock_base::simd_versions;
 
 use super::lattice::Lattice;
 use super::layout::{Layout, TILE_CELLS};
@@ -202,11 +203,6 @@ fn filter<const AS_PRINTED: bool>(places: &Places, faces: &[[u32; BLOCK]; 4], ou
         let t = mix(near, far, places.across_y[lane]);
         *out = if t < 1.0 { t } else { 1.0 };
     }
-}
-
-#[inline(always)]
-fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }
 
 /// Transmittance of a whole column, from its last back face.

@@ -5,7 +5,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use lovelock_groom::simd::whole_part;
+use lovelock_base::simd::whole_part;
 
 /// The number of samples of a segment of `length` cells: neighbouring samples are at most half a cell apart.
 #[inline(always)]

@@ -6,8 +6,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 use rayon::prelude::*;
 
 use super::grid::{Grid, bits};

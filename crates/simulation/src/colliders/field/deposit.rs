@@ -4,8 +4,8 @@
 #![allow(unsafe_code)]
 
 use glam::{IVec3, Vec3};
-use lovelock_groom::simd::whole_part;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::whole_part;
+use lovelock_base::simd_versions;
 use lovelock_motion::FieldWeights;
 
 use super::cells::{CellGrid, NONE, UNCULLED_WIDTH, WIDEST};

@@ -24,7 +24,7 @@ mod weightings;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::simd::Width;
+use lovelock_base::simd::Width;
 use lovelock_motion::{BodyField, FIELD_JOINTS, FieldPose};
 
 use crate::lanes::{Lane, Lane3, at, put, splat3};

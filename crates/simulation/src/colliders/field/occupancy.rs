@@ -6,7 +6,7 @@
 //! further from the skin than hair can touch, for the whole step.
 
 use glam::{IVec3, UVec3, Vec3};
-use lovelock_groom::simd::{Width, whole_part};
+use lovelock_base::simd::{Width, whole_part};
 use lovelock_motion::BodyField;
 
 use super::cells::{CellGrid, NONE, UNCULLED_WIDTH, WIDEST, mark};

@@ -2,7 +2,7 @@
 //! moves with the head a point is at its rest position already.
 
 use glam::Vec3;
-use lovelock_groom::simd::whole_part;
+use lovelock_base::simd::whole_part;
 use lovelock_motion::FieldLattice;
 
 use super::MovingField;

@@ -3,8 +3,8 @@
 #![allow(unsafe_code)]
 
 use glam::Affine3A;
-use lovelock_groom::simd::Width;
-use lovelock_groom::simd_versions;
+use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 use lovelock_motion::{FIELD_JOINTS, FieldWeights};
 
 use super::affine::Affine;
