@@ -12,6 +12,7 @@
 //! Nothing here runs: scenes, simulations and threads are in `lovelock-session`.
 
 pub mod animation;
+pub mod document;
 pub mod error;
 pub mod files;
 pub mod history;

@@ -1,0 +1,101 @@
+use super::*;
+use crate::styles::shipped;
+use crate::tracks::{Key, Track};
+
+const STILL: Moment = Moment { secs: 1.0, playing: false, held: false, clock_secs: 0.0 };
+
+fn animated() -> Document {
+    let mut project = Project::default();
+    let keys = [(0.0, 1.0), (2.0, 3.0)].map(|(secs, value)| Key { secs, value: vec![value] });
+    project.timeline.tracks = vec![Track { keys: keys.into(), ..Track::new("camera/distance") }];
+    Document::new(project, None)
+}
+
+#[test]
+fn the_title_marks_unsaved_changes() {
+    let mut document = Document::new(Project::default(), None);
+    assert_eq!(document.title(), "untitled");
+    document.change("camera", |project| project.camera.distance = 3.0);
+    assert_eq!(document.title(), "● untitled");
+    document.mark_saved(Path::new("/a/my hair.ron"));
+    assert_eq!(document.title(), "my hair");
+}
+
+#[test]
+fn the_edits_of_a_gesture_are_one_step_and_a_change_is_its_own() {
+    let mut document = Document::new(Project::default(), None);
+    for distance in [2.5, 3.0] {
+        let project = Project::clone(document.project());
+        document.edit(
+            "camera",
+            Project { camera: crate::project::CameraSection { distance, ..project.camera }, ..project },
+        );
+    }
+    assert_eq!(document.history().undo_len(), 1);
+    assert!(document.change("camera", |project| project.camera.distance = 4.0));
+    assert!(document.change("camera", |project| project.camera.distance = 5.0));
+    assert!(!document.change("camera", |project| project.camera.distance = 5.0), "nothing changes");
+    assert_eq!(document.history().undo_len(), 3);
+    assert!(document.undo() && document.undo() && document.undo() && !document.undo());
+    assert_eq!(document.project().camera, Project::default().camera);
+}
+
+#[test]
+fn a_project_at_a_time_is_the_same_allocation_until_something_changes() {
+    let mut document = animated();
+    let at = document.at(1.0);
+    assert_eq!(at.camera.distance, 2.0);
+    assert!(Arc::ptr_eq(&at, &document.at(1.0)));
+    assert!(!Arc::ptr_eq(&at, &document.at(1.5)), "control: another time");
+    document.change("look", |project| project.look.grey = 0.5);
+    assert_eq!(document.at(1.0).look.grey, 0.5);
+    let mut still = Document::new(Project::default(), None);
+    assert!(Arc::ptr_eq(&still.at(1.0), &still.at(2.0)), "without tracks there is one project");
+}
+
+#[test]
+fn an_edit_of_a_value_with_a_track_sets_a_key() {
+    let mut document = animated();
+    let refused = document.change_seen(STILL, |project| project.camera.distance = 2.5);
+    assert_eq!(refused, None);
+    assert_eq!(document.at(1.0).camera.distance, 2.5);
+    assert_eq!(document.project().timeline.tracks[0].keys.len(), 3);
+    assert_eq!(document.history().undo_label(), Some("camera"));
+}
+
+#[test]
+fn a_tried_style_is_shown_and_not_applied() {
+    let mut document = animated();
+    let before = Arc::clone(document.project());
+    let style = &shipped::by_id("curly").expect("shipped").style;
+    let tried = document.shown(1.0, Some(("curly", style, StyleParts::ALL)));
+    assert!(document.is_preview() && Arc::ptr_eq(document.project(), &before));
+    assert!(tried.project.hair != before.hair && tried.drawn.camera.distance == 2.0);
+    let again = document.shown(1.0, Some(("curly", style, StyleParts::ALL)));
+    assert!(Arc::ptr_eq(&tried.project, &again.project) && Arc::ptr_eq(&tried.drawn, &again.drawn));
+    let own = document.shown(1.0, None);
+    assert!(Arc::ptr_eq(&own.project, &before) && !document.is_preview());
+}
+
+#[test]
+fn a_morph_is_drawn_with_its_colours_by_one_allocation() {
+    let mut project = Project::default();
+    project.start_morph(&shipped::by_id("curly").expect("shipped").style);
+    project.hair.morph.amount = 0.5;
+    let mut document = Document::new(project, None);
+    let shown = document.shown(0.0, None);
+    assert!(shown.drawn.look != document.project().look, "the colours between the styles");
+    assert!(Arc::ptr_eq(&shown.drawn, &document.shown(0.0, None).drawn));
+}
+
+#[test]
+fn another_project_has_no_steps_back_and_numbers_its_gestures_on() {
+    let mut document = animated();
+    document.overdub_mut().set_armed(true);
+    document.change("look", |project| project.look.grey = 0.5);
+    let gesture = document.gesture();
+    document.replace(Project::default(), Some("/a/b.lovelock".into()));
+    assert!(document.gesture() > gesture && document.overdub().is_armed());
+    assert!(!document.undo() && !document.is_modified());
+    assert_eq!(document.path(), Some(Path::new("/a/b.lovelock")));
+}
