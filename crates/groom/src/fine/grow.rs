@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use super::children::{FineStrands, MOST_POINTS};
 use super::order::place;
 use super::strand::FineStrand;
-use crate::{Strands, simd_versions};
+use crate::Strands;
 use lovelock_base::simd::Width;
+use lovelock_base::simd_versions;
 
 /// Points of strands that are computed by one task.
 const POINTS_PER_TASK: usize = 8192;
