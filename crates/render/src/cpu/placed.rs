@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_base::memory::list_bytes;
+use lovelock_base::simd::Width;
 use lovelock_groom::Strands;
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;

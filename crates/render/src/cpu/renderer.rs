@@ -5,6 +5,7 @@ mod inspect;
 use glam::Vec4;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
+use lovelock_base::simd::Width;
 use lovelock_gpu::PassTime;
 use lovelock_groom::{HairShading, Strands};
 use rayon::prelude::*;

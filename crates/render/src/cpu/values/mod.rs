@@ -4,6 +4,7 @@ mod pick;
 
 use glam::Vec3;
 use lovelock_base::memory::list_bytes;
+use lovelock_base::simd::Width;
 use lovelock_groom::Strands;
 use rayon::prelude::*;
 
