@@ -157,6 +157,7 @@ impl Window {
             Command::Record => self.open_path_dialog(Purpose::Film),
             Command::SavePicture => self.open_path_dialog(Purpose::Picture),
             Command::ExportCurves => self.open_path_dialog(Purpose::Curves),
+            Command::ExportReport => self.open_report_dialog(),
             Command::PickSound => self.open_path_dialog(Purpose::Sound),
             Command::FrameHair => self.frame_hair(ctx),
             Command::ToggleFollow => self.change_seen(ctx, |project| {
@@ -341,6 +342,7 @@ impl Window {
             }
             Purpose::ExportStyle => self.export_style(path)?,
             Purpose::SaveStrokes => self.save_strokes(path)?,
+            Purpose::Report => self.export_report(path, ctx),
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return Ok(Used::Done) };

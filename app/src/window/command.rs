@@ -57,6 +57,8 @@ pub enum Command {
     SavePicture,
     /// Exports hair as animated curves, with the body, for other programs.
     ExportCurves,
+    /// Compares shadow methods and writes a report.
+    ExportReport,
     /// Picks the sound beside the dance.
     PickSound,
     /// Moves the camera until the hair fills the image.

@@ -16,6 +16,7 @@ impl Window {
         self.dialog.is_some()
             || self.pending.is_some()
             || self.keys_shown
+            || self.compare.reporting.is_open()
             || self.palette.is_open()
             || keys::are_held(ctx)
     }
@@ -64,6 +65,7 @@ impl Window {
             self.keys_shown = !modal.should_close();
         }
         self.about(ctx);
+        self.report_dialog(ctx);
         self.confirm_loss(ctx);
     }
 
@@ -97,6 +99,7 @@ impl Window {
             }
             Purpose::SaveStrokes => folder.join("hair").with_extension(lovelock_brush::StrokeFile::EXTENSION),
             Purpose::Picture => folder.join("hair.png"),
+            Purpose::Report => folder.join("out").join("report"),
         };
         let recent = self.layout.files.iter().chain(&self.layout.recent).cloned();
         let dialog = PathDialog::new(purpose, &suggestion).own(self.project_path.clone()).recent(recent);
@@ -118,6 +121,10 @@ impl Window {
             | Purpose::ExportStyle
             | Purpose::SaveStrokes
             | Purpose::Picture => dialog,
+            Purpose::Report => dialog.about(
+                "report.html opens in a browser. A report in the same folder is replaced, with the images that it names."
+                    .to_owned(),
+            ),
         });
     }
 

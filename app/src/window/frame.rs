@@ -43,6 +43,7 @@ impl Window {
         let said = self.compare.update(self.session.live());
         self.warn(said);
         self.report_saved();
+        self.report_exported();
         // The database is read or made when clusters are first drawn.
         if !self.record.is_noted
             && let Some((_, note)) = lovelock_satf::cache::ready()
@@ -353,6 +354,13 @@ impl Window {
                 let tip = panels::recording::CANCEL;
                 if progress_overlay(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
                     self.recorder.cancel();
+                }
+                row += 1;
+            }
+            if let Some((fraction, text)) = self.compare.reporting.progress() {
+                let tip = "Stops the report. The methods that are finished stay in it.";
+                if progress_overlay(ui, rect, row, fraction, &format!("Report · {text}"), tip) {
+                    self.compare.reporting.cancel();
                 }
                 row += 1;
             }

@@ -235,6 +235,7 @@ fn part_of(command: Command) -> u8 {
         | Command::Record
         | Command::SavePicture
         | Command::ExportCurves
+        | Command::ExportReport
         | Command::PickSound
         | Command::AddMarker
         | Command::MarkIn

@@ -113,12 +113,19 @@ impl Window {
     pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
         let (mut recording, mut picks_light, mut picks_sound) = (None, false, false);
         let axes = camera_control::axes(&project.camera);
+        let pane = self.begin_pane(project);
+        let compares = pane.is_some();
         Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 section(ui, "Shadow", true, |ui| {
-                    let bytes = self.session.painted.as_ref().map_or(0, |painted| painted.stats.shadow_bytes);
+                    let painted = self.session.painted.as_ref().map(|painted| painted.stats.shadow_bytes);
+                    let bytes = match &pane {
+                        Some(pane) => self.pane_choice(ui, pane.pane(), project),
+                        None => painted,
+                    };
                     let default = project.hair.groom.look;
-                    panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), bytes);
+                    let look = (&mut project.look, &default);
+                    panels::shadow::ui(ui, &mut project.shadow, look, bytes, compares);
                 });
                 let problems = self.problems(&[Place::Surroundings]);
                 let (_, clicked) = section_with(ui, "Light", true, &problems, |ui| {
@@ -129,10 +136,10 @@ impl Window {
                 self.tell_again(problems, clicked);
                 section(ui, "Look", false, |ui| {
                     let default = project.hair.groom.look;
-                    panels::look::hair(ui, &mut project.look, &default, &mut project.picture);
+                    panels::look::hair(ui, &mut project.look, &default, &mut project.picture, compares);
                 });
                 section(ui, "Picture", false, |ui| {
-                    panels::look::picture(ui, &mut project.picture);
+                    panels::look::picture(ui, &mut project.picture, compares);
                     if project.picture.draw != HairDrawing::Strands {
                         section(ui, "Record of the database", false, |ui| {
                             panels::records::ui(ui, &mut self.record);
@@ -156,7 +163,6 @@ impl Window {
                 self.viewport.film = unfolded.map(|()| [width, height]);
                 section(ui, "Health", true, |ui| self.health_panel(ui, project));
                 // The panes have their own statistics; the single image is not rendered beside them.
-                let compares = self.layout.compare.shown;
                 section(ui, "Statistics", true, |ui| {
                     if compares {
                         super::control::note(ui, "Of the single image, before the comparison was opened.");
@@ -171,6 +177,9 @@ impl Window {
                 });
             });
         });
+        if let Some(pane) = pane {
+            pane.end(project);
+        }
         if picks_light {
             self.open_path_dialog(Purpose::Surroundings);
         }

@@ -86,10 +86,10 @@ impl Viewport {
         self.shown.forget();
     }
 
-    /// A line of text in a corner of the image.
-    pub(crate) fn caption(ui: &Ui, rect: Rect, align: Align2, text: &str, color: Color32) {
+    /// A line of text in a corner of the image. Returns its place.
+    pub(crate) fn caption(ui: &Ui, rect: Rect, align: Align2, text: &str, color: Color32) -> Rect {
         if text.is_empty() {
-            return;
+            return Rect::NOTHING;
         }
         let at = match align {
             Align2::LEFT_BOTTOM => rect.left_bottom() + Vec2::new(10.0, -8.0),
@@ -102,6 +102,7 @@ impl Viewport {
         let place = align.anchor_size(at, galley.size());
         painter.rect_filled(place.expand(4.0), 4.0, theme::PAGE.gamma_multiply(0.6));
         painter.galley(place.min, galley, color);
+        place
     }
 }
 

@@ -7,7 +7,7 @@ use lovelock_brush::{BrushSettings, Tool};
 
 use super::{Brushes, Kept};
 use crate::window::control::HoverTooltip;
-use crate::window::control::{curve, note, restore_all, section, settings};
+use crate::window::control::{context_popup, curve, note, restore_all, section, settings};
 
 /// What the panel requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,9 +115,7 @@ impl Brushes {
         if !self.on {
             return;
         }
-        let config = egui::containers::menu::MenuConfig::new()
-            .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
-        egui::Popup::context_menu(response).close_behavior(config.close_behavior).show(|ui| {
+        context_popup(response, |ui| {
             ui.set_width(260.0);
             ui.label(RichText::new(self.tool.names().1).strong());
             tool_settings(ui, self.tool, kept);

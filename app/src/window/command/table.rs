@@ -205,6 +205,14 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
+            C::ExportReport,
+            "export-report",
+            "Export report…",
+            "Compares shadow methods at one instant and writes a report with errors, times and images to a folder.",
+            &[],
+            G::File,
+        ),
+        entry(
             C::PickSound,
             "pick-sound",
             "Sound…",

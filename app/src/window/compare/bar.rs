@@ -20,6 +20,8 @@ pub(super) enum ToolbarAction {
     Save,
     /// Record the dance as a film of the panes.
     Film,
+    /// Write a report of any number of methods.
+    Report,
     /// Show the whole images again.
     WholePicture,
     /// Close the comparison.
@@ -95,6 +97,7 @@ pub(super) fn ui(
         let mut button =
             |ui: &mut Ui, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: ToolbarAction| {
                 let response = ui.add_enabled(enabled, egui::Button::new(icon)).hover_tooltip(tip);
+                let response = response.disabled_hover_tooltip(FULL);
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
                 if response.clicked() {
                     action = Some(what);
@@ -125,10 +128,22 @@ pub(super) fn ui(
             true,
             ToolbarAction::Film,
         );
+        button(
+            ui,
+            icons::ICON_SUMMARIZE,
+            "Export report",
+            "Compares any number of methods and writes a report with errors, times and images.",
+            true,
+            ToolbarAction::Report,
+        );
         button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, ToolbarAction::Close);
     });
     action
 }
+
+/// Why no pane can be added.
+const FULL: &str = "There are six panes, the most. Remove one first, choose another method in the title bar of a pane, or compare any \
+                    number of methods in a report (Export report…).";
 
 /// The two panes of the wipe.
 fn pair(ui: &mut Ui, layout: &mut CompareLayout, project: &Project) {

@@ -276,7 +276,11 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
             ],
         );
     }
-    note(ui, "Medians of the last images, measured while everything else runs.");
+    note(
+        ui,
+        "Medians of the last images, measured while everything else runs. Maps that are kept while nothing moves count with the time that \
+         they took when they were made. Error: RMSE of transmittance from Exact.",
+    );
 }
 
 #[cfg(test)]

@@ -9,7 +9,9 @@ mod layout;
 mod legend;
 mod page;
 mod probe_plot;
+mod report;
 mod save;
+mod selected;
 mod texture;
 mod zoom;
 
@@ -18,7 +20,7 @@ pub(crate) use layout::CompareLayout;
 use std::sync::Arc;
 
 use costs::Costs;
-use egui::{CentralPanel, Frame, Key, Panel, Popup, Rect, Ui};
+use egui::{CentralPanel, Frame, Key, Panel, Rect, Ui};
 use lovelock_panes::live::Live;
 use lovelock_panes::probe::{LiveProbe, ProbePlace};
 use lovelock_panes::request::{LivePane, LiveRequest};
@@ -26,12 +28,15 @@ use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_project::project::{CompareSection, Contender};
 use lovelock_session::snapshot::FrameSnapshot;
+use report::Reporting;
 use save::Saving;
+use selected::PaneEdit;
 use texture::PaneTextures;
 use zoom::Zoom;
 
 use super::Window;
 use super::command::Command;
+use super::control::is_any_open;
 
 /// The state of the comparison, and its last request.
 #[derive(Default)]
@@ -50,11 +55,17 @@ pub(crate) struct Compare {
     wanted: [u32; 2],
     /// Size of the page that the panes share, points.
     page: egui::Vec2,
+    /// Height of the panes' title bars, points.
+    bar: f32,
+    /// The pane that the panels edit.
+    selected: usize,
     /// Whether the line of the wipe is being dragged.
     splitting: bool,
     /// Whether a menu was open when the pointer was pressed: the click then only closes it.
     menu_open: bool,
     saving: Vec<Saving>,
+    /// The report that is being written, and the dialog for the next one.
+    pub(super) reporting: Reporting,
     sent: Option<LiveRequest>,
 }
 
@@ -185,11 +196,33 @@ fn next_pane(project: &Project) -> Contender {
 }
 
 impl Window {
+    /// Puts the settings of the selected pane in place of the project's while panes are shown, so that the panels edit the pane.
+    pub(super) fn begin_pane(&self, project: &mut Project) -> Option<PaneEdit> {
+        let shown = self.layout.compare.shown && !self.layout.wall.shown;
+        let pane = shown.then(|| self.edited_pane(project))?;
+        PaneEdit::begin(project, pane)
+    }
+
+    /// The pane that the panels edit.
+    fn edited_pane(&self, project: &Project) -> usize {
+        selected::of(&self.layout.compare, self.compare.selected, project.compare.panes.len())
+    }
+
+    /// Shows the choice of the pane that the panels edit. Returns the memory of its shadow maps, if it is drawn.
+    pub(super) fn pane_choice(&mut self, ui: &mut Ui, pane: usize, project: &Project) -> Option<u64> {
+        let visible = self.layout.compare.visible(project.compare.panes.len());
+        if let Some(chosen) = selected::choice(ui, pane, &visible) {
+            self.compare.selected = chosen;
+        }
+        let drawn = self.compare.panes.get(pane).and_then(Option::as_ref)?;
+        drawn.problem.is_none().then_some(drawn.shadow_bytes)
+    }
+
     /// Shows the panes in place of the image.
     pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) {
         let ctx = ui.ctx().clone();
         // Must be read before this pass closes the menu.
-        let open = Popup::is_any_open(&ctx);
+        let open = is_any_open(&ctx);
         if ctx.input(|input| input.pointer.any_pressed()) {
             self.compare.menu_open = open;
         }
@@ -206,10 +239,12 @@ impl Window {
                     let next = next_pane(project);
                     project.compare.panes.push(next);
                     project.compare.panes.truncate(CompareSection::MOST_PANES);
+                    self.compare.selected = project.compare.panes.len() - 1;
                 }
                 Some(bar::ToolbarAction::WholePicture) => self.compare.zoom = Zoom::default(),
                 Some(bar::ToolbarAction::Save) => command = Some(Command::SavePicture),
                 Some(bar::ToolbarAction::Film) => film = true,
+                Some(bar::ToolbarAction::Report) => command = Some(Command::ExportReport),
                 Some(bar::ToolbarAction::Close) => command = Some(Command::Compare),
                 None => {}
             }
@@ -225,7 +260,7 @@ impl Window {
             self.compare.page = page.size();
             self.panes(ui, page, project);
             // Below the title bars of the panes, whose buttons stay clickable.
-            self.running(ui, page.with_min_y(page.top() + header::HEIGHT));
+            self.running(ui, page.with_min_y(page.top() + self.compare.bar));
         });
         if film {
             command = Some(Command::Record);
@@ -279,15 +314,30 @@ impl Window {
             self.grid(ui, page, project, flicked)
         };
         let panes = &mut project.compare.panes;
+        let selected = &mut self.compare.selected;
         match asked {
             Some(header::PaneAction::Use(index)) => {
                 if let Some(pane) = panes.get(index).cloned() {
-                    *project = pane.applied_to(project);
+                    let used = pane.applied_to(project);
+                    if used == *project {
+                        let said = format!("The project has the settings of pane {} already.", index + 1);
+                        self.notices.push(super::notices::Kind::Warning, said);
+                    }
+                    *project = used;
                 }
             }
-            Some(header::PaneAction::Swap(index)) if index + 1 < panes.len() => panes.swap(index, index + 1),
+            Some(header::PaneAction::Swap(index)) if index + 1 < panes.len() => {
+                panes.swap(index, index + 1);
+                // The selection follows its pane.
+                if *selected == index {
+                    *selected = index + 1;
+                } else if *selected == index + 1 {
+                    *selected = index;
+                }
+            }
             Some(header::PaneAction::Remove(index)) if panes.len() > 1 && index < panes.len() => {
                 panes.remove(index);
+                *selected -= usize::from(*selected > index);
             }
             Some(header::PaneAction::Swap(_) | header::PaneAction::Remove(_)) | None => {}
         }

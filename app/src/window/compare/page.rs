@@ -9,6 +9,7 @@ use lovelock_project::Project;
 
 use super::costs::Way;
 use super::{Window, grid, header};
+use crate::window::control::HoverTooltip;
 use crate::window::viewport::{self, Viewport};
 use crate::window::{camera_control, theme};
 
@@ -30,12 +31,14 @@ impl Window {
         let count = project.compare.panes.len();
         let mut asked = None;
         for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
+            self.compare.bar = header::height(cell.width());
             asked = self.header(ui, cell, index, project).or(asked);
             let mut place = cell;
-            place.min.y += header::HEIGHT;
+            place.min.y += self.compare.bar;
             if index == 0 {
                 self.want(ui, place, count);
             }
+            self.select(ui, cell, index);
             let response = self.steer(ui, place, index, project);
             let [first, second] = self.layout.compare.pair_of(count);
             let other = if index == second { first } else { second };
@@ -47,8 +50,21 @@ impl Window {
             let shape = ui.painter();
             let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
             shape.rect_stroke(place, 0.0, Stroke::new(1.0, edge), StrokeKind::Inside);
+            if index == self.edited_pane(project) {
+                frame(ui, cell);
+            }
         }
         asked
+    }
+
+    /// Selects the pane in which the pointer is pressed.
+    fn select(&mut self, ui: &Ui, cell: Rect, index: usize) {
+        let pressed = ui.input(|input| input.pointer.any_pressed().then(|| input.pointer.interact_pos()));
+        let pressed = pressed.flatten().filter(|at| cell.contains(*at));
+        // Not through a list or a dialog.
+        if pressed.is_some_and(|at| ui.ctx().layer_id_at(at) == Some(ui.layer_id())) {
+            self.compare.selected = index;
+        }
     }
 
     /// Two panes, divided by a line.
@@ -61,17 +77,22 @@ impl Window {
     ) -> Option<header::PaneAction> {
         let mut pair = self.layout.compare.pair_of(project.compare.panes.len());
         let half = 0.5 * page.width();
+        self.compare.bar = header::height(half);
         let mut asked = None;
         for (side, index) in pair.into_iter().enumerate() {
             let left = page.left() + half * side as f32;
             let line = Rect::from_min_size(pos2(left, page.top()), vec2(half, page.height()));
             asked = self.header(ui, line, index, project).or(asked);
+            self.select(ui, line, index);
+            if index == self.edited_pane(project) {
+                frame(ui, line.with_max_y(line.top() + self.compare.bar));
+            }
             if pair[0] == pair[1] {
                 break;
             }
         }
         let mut place = page;
-        place.min.y += header::HEIGHT;
+        place.min.y += self.compare.bar;
         self.want(ui, place, 2);
         if flicked {
             pair.reverse();
@@ -139,7 +160,7 @@ impl Window {
     ) -> Option<header::PaneAction> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
-        let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));
+        let line = Rect::from_min_size(cell.min, vec2(cell.width(), self.compare.bar));
         ui.painter().rect_filled(line, 0.0, theme::PANEL);
         let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
         header::ui(ui, line, (index, panes), pane, drawn)
@@ -216,7 +237,14 @@ impl Window {
         if let Some(age) = age_label(newest - pane.time_secs) {
             said = format!("{said} · {age}");
         }
-        Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
+        let line = Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
+        let response = ui.interact(
+            line,
+            Id::unique(("figures", index, place.min.x.to_bits(), place.min.y.to_bits())),
+            Sense::hover(),
+        );
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &said));
+        response.hover_tooltip(pane.figures_text());
     }
 
     /// The name of the pane whose image is visible, in a corner.
@@ -248,6 +276,11 @@ impl Window {
             painter.line_segment([at + side * 7.0, at + side * 11.0], Stroke::new(1.5, theme::ACCENT));
         }
     }
+}
+
+/// The frame of the pane that the panels edit.
+fn frame(ui: &Ui, cell: Rect) {
+    ui.painter().rect_stroke(cell, 0.0, Stroke::new(2.0, theme::ACCENT), StrokeKind::Inside);
 }
 
 /// The age of a pane as text.

@@ -5,11 +5,22 @@ use egui_plot::{GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, Plo
 use lovelock_panes::probe::{LiveProbe, ProbedHair};
 use lovelock_project::Project;
 
+use crate::window::control::HoverTooltip;
 use crate::window::control::{axis_number, note};
 use crate::window::theme;
 
 /// Height of a pane's row of marks, as a fraction of the range of transmittance.
 const ROW: f64 = 0.075;
+
+/// The name of the exact step function.
+const UNFILTERED: &str = "one texel, unfiltered";
+
+const OF_METHOD: &str = "The transmittance that the pane's method returns at the hair. Methods filter between neighbouring texels or cells, \
+                         as their setting Filter says, so that light does not jump at their edges. This also holds for Exact.";
+
+const OF_TEXEL: &str = "The thin line: the transmittance behind all fragments of hair in the one texel of Exact that contains the hair, \
+                        without filter. Exact itself returns the mean of this and of the neighbouring texels where its filter is linear, \
+                        which is why the two numbers differ.";
 
 /// The plot, or a note on what is missing. `asked` says whether a hair was clicked.
 pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: &Project, panes: &[usize]) {
@@ -34,10 +45,12 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         for (index, curve) in &curves {
             let method = project.compare.panes.get(*index).map_or("", |pane| pane.shadow.method.label());
             let color = theme::PLOT[index % theme::PLOT.len()];
-            ui.label(RichText::new(format!("{method} {:.3}", curve.value)).small().color(color));
+            ui.label(RichText::new(format!("{method} {:.3}", curve.value)).small().color(color))
+                .hover_tooltip(OF_METHOD);
         }
         if let Some(value) = exact_at_the_point(hair) {
-            ui.label(RichText::new(format!("every fragment {value:.3}")).small().color(theme::BRIGHT));
+            let text = format!("{UNFILTERED} {value:.3}");
+            ui.label(RichText::new(text).small().color(theme::BRIGHT)).hover_tooltip(OF_TEXEL);
         }
     });
     let rows = curves.iter().filter(|(_, curve)| !curve.marks.is_empty()).count();
@@ -77,7 +90,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
             );
             let steps = staircase(&hair.steps, hair.range);
             if !steps.is_empty() {
-                let line = Line::new("every fragment", steps).color(theme::BRIGHT).width(1.2);
+                let line = Line::new(UNFILTERED, steps).color(theme::BRIGHT).width(1.2);
                 // Steps are drawn as edges, not as the two sides of a band.
                 plot.line(line.style(LineStyle::Solid).allow_band(false));
             }

@@ -23,6 +23,9 @@ const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 
 const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
 
+/// What a pane of a comparison has for itself, beside what hair is drawn as.
+const OF_PANE: [&str; 2] = ["transparency", "backend"];
+
 /// How hair is divided into clusters.
 const DIVISION: [&str; 6] = ["layers", "core", "around", "along", "macro_tolerance", "curls"];
 
@@ -31,16 +34,23 @@ const PUBLISHED: [&str; 3] = ["diffuse", "primary", "secondary"];
 
 const BACKGROUND: [&str; 3] = ["ground", "background_top", "background_bottom"];
 
-/// The controls of the hair's look; `default` is that of the style. `picture` has the number of strands.
-pub(crate) fn hair(ui: &mut Ui, look: &mut HairLook, default: &HairLook, picture: &mut PictureSettings) {
+/// The controls of the hair's look; `default` is that of the style. `picture` has the number of strands. `compares` says that panes are
+/// shown.
+pub(crate) fn hair(
+    ui: &mut Ui,
+    look: &mut HairLook,
+    default: &HairLook,
+    picture: &mut PictureSettings,
+    compares: bool,
+) {
     swatches(ui, look);
     section(ui, "Pigment", true, |ui| settings(ui, &PIGMENT, look, default));
     section(ui, "Lightened locks", false, |ui| settings(ui, &LIGHTENED, look, default));
     section(ui, "Dye", false, |ui| settings(ui, &DYE, look, default));
     section(ui, "Fibre", true, |ui| fibre(ui, look, default));
     section(ui, "Strands", false, |ui| {
-        let none = picture.draw == HairDrawing::Clusters;
-        unless(ui, none.then_some(NO_STRANDS), |ui| strands(ui, picture));
+        let none = (picture.draw == HairDrawing::Clusters).then_some(NO_STRANDS);
+        unless(ui, compares.then_some(STORED_STRANDS).or(none), |ui| strands(ui, picture));
         settings(ui, &WIDTH, look, default);
     });
 }
@@ -71,6 +81,10 @@ fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
 /// Why the number of strands has no effect.
 const NO_STRANDS: &str = "Clusters are drawn in place of strands.";
 
+/// Why the number of strands has no effect on panes.
+const STORED_STRANDS: &str =
+    "Panes draw the strands that the hairstyle stores, at which errors are measured.";
+
 /// How many strands are drawn.
 fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
     let default = PictureSettings::default();
@@ -82,14 +96,20 @@ fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
     }
 }
 
-/// The controls of the image.
-pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings) {
+/// The controls of the image. `compares` says that a pane is edited, which shares the rest with the others.
+pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings, compares: bool) {
     let default = PictureSettings::default();
     setting(ui, "draw", picture, &default);
+    if compares {
+        settings(ui, &OF_PANE, picture, &default);
+        super::shadow::shared(ui);
+    }
     if picture.draw == HairDrawing::Auto {
         setting(ui, "cluster_size", picture, &default);
     }
-    settings(ui, &PICTURE, picture, &default);
+    let own = |name: &&str| !compares || !OF_PANE.contains(name);
+    let rest: Vec<&str> = PICTURE.into_iter().filter(own).collect();
+    settings(ui, &rest, picture, &default);
     if picture.draw != HairDrawing::Strands {
         section(ui, "Clusters", true, |ui| clusters(ui, picture));
     }

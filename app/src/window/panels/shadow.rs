@@ -6,19 +6,35 @@ use lovelock_render::{MapExtent, ShadowMethod, ShadowSettings, VoxelDeposit, Vox
 
 use crate::window::control::{all_settings, note, section, setting, settings};
 
-/// The controls of `shadow`; `memory_bytes` is the size of the maps of the last frame.
+/// The controls of `shadow`; `memory_bytes` is the size of the maps of the last frame, if there is one. `compares` says that `shadow` is
+/// that of a pane and the rest is shared.
 pub(crate) fn ui(
     ui: &mut Ui,
     shadow: &mut ShadowSettings,
     (look, default_look): (&mut HairLook, &HairLook),
-    memory_bytes: u64,
+    memory_bytes: Option<u64>,
+    compares: bool,
 ) {
     let default = ShadowSettings::default();
     setting(ui, "method", shadow, &default);
     note(ui, shadow.method.description());
-    setting(ui, "extinction_scale", look, default_look);
+    if !compares {
+        setting(ui, "extinction_scale", look, default_look);
+    }
     of_method(ui, shadow);
-    note(ui, format!("{:.1} MiB for the maps of all lights", memory_bytes as f64 / (1024.0 * 1024.0)));
+    if let Some(bytes) = memory_bytes {
+        note(ui, format!("{:.1} MiB for the maps of all lights", bytes as f64 / (1024.0 * 1024.0)));
+    }
+    if compares {
+        shared(ui);
+        setting(ui, "extinction_scale", look, default_look);
+    }
+}
+
+/// The heading of settings that all panes share.
+pub(crate) fn shared(ui: &mut Ui) {
+    ui.add_space(4.0);
+    ui.label(egui::RichText::new("Shared by all panes").strong());
 }
 
 /// The controls of the method in use: every setting of its table.

@@ -41,6 +41,8 @@ pub(crate) enum Purpose {
     SaveStrokes,
     /// Saving the image in the viewport.
     Picture,
+    /// Writing the report of a comparison to a folder.
+    Report,
 }
 
 /// What happens to the file that is there already.
@@ -72,6 +74,7 @@ impl Purpose {
             Self::ExportStyle => "Export the style",
             Self::SaveStrokes => "Save the strokes of the brushes",
             Self::Picture => "Save the image",
+            Self::Report => "Export the report to a folder",
         }
     }
 
@@ -84,6 +87,7 @@ impl Purpose {
             }
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
             Self::Resume => "Resume recording",
+            Self::Report => "Export report",
         }
     }
 
@@ -97,7 +101,7 @@ impl Purpose {
 
     /// Whether the path is that of a folder.
     pub(super) fn is_folder(self) -> bool {
-        matches!(self, Self::Sequence | Self::Resume)
+        matches!(self, Self::Sequence | Self::Resume | Self::Report)
     }
 
     /// The extension that is added if none is given.
@@ -110,7 +114,8 @@ impl Purpose {
             | Self::Surroundings
             | Self::Sound
             | Self::Sequence
-            | Self::Resume => None,
+            | Self::Resume
+            | Self::Report => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Preview => Some("apng"),
@@ -137,7 +142,7 @@ impl Purpose {
             }
             Self::Surroundings => ("Surroundings", FileKind::Surroundings.extensions()),
             Self::Sound => ("Sound", FileKind::Sound.extensions()),
-            Self::Sequence | Self::Resume => ("Folder", Vec::new()),
+            Self::Sequence | Self::Resume | Self::Report => ("Folder", Vec::new()),
             Self::SaveProject => ("Project", vec![PROJECT_EXTENSION]),
             Self::Film => ("Film", vec!["mp4"]),
             Self::Preview => ("Preview", vec!["apng"]),
@@ -160,6 +165,7 @@ impl Purpose {
             _ if self.opens() || self == Self::Resume => Replaces::Nothing,
             Self::Sequence if path.join(lovelock_record::MANIFEST_NAME).exists() => Replaces::Tells,
             Self::Sequence => Replaces::Nothing,
+            Self::Report if !path.join("report.json").exists() => Replaces::Nothing,
             _ if !path.exists() => Replaces::Nothing,
             Self::SaveProject if own.is_some_and(|own| is_same(own, path)) => Replaces::Nothing,
             Self::SaveProject | Self::ExportStyle | Self::SaveStrokes => Replaces::Asks,
@@ -177,6 +183,7 @@ impl Purpose {
             Self::Sequence => "images",
             Self::Preview => "preview",
             Self::Picture => "image",
+            Self::Report => "report",
             _ => "file",
         }
     }

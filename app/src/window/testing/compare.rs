@@ -245,3 +245,86 @@ fn a_click_that_closes_a_menu_does_not_probe() {
     go(&mut harness);
     assert_eq!(of(&harness).compare.probed_and_asked()[1], 1);
 }
+
+#[test]
+fn the_right_panel_edits_the_pane_that_is_selected() {
+    let mut harness = comparing();
+    let before = project(&harness);
+    let image = control(&harness, Role::Image, "Pane 2").rect();
+    // The swatch in its title bar.
+    super::click_at(&mut harness, image.left_top() + egui::vec2(11.0, -13.0));
+    assert!(super::is_on(&control(&harness, Role::RadioButton, "Edit pane 2")));
+    control(&harness, Role::ComboBox, "Method").click();
+    go(&mut harness);
+    control(&harness, Role::Button, ShadowMethod::OpacityMaps.label()).click();
+    go(&mut harness);
+    let after = project(&harness);
+    assert_eq!(after.compare.panes[1].shadow.method, ShadowMethod::OpacityMaps);
+    assert_eq!((&after.shadow, &after.picture), (&before.shadow, &before.picture), "not the project's own");
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    wait(&mut harness, "the pane", |window| drawn(window, 4));
+    go(&mut harness);
+    let shown = super::texts(&harness);
+    let said = |text: &str| shown.iter().any(|(said, ..)| said.contains(text));
+    assert!(said("Shared by all panes") && said("MiB for the maps") && !said("0.0 MiB for the maps"));
+    // The panel selects panes as well, and without panes it edits the project.
+    control(&harness, Role::RadioButton, "Edit pane 4").click();
+    go(&mut harness);
+    assert!(super::is_on(&control(&harness, Role::RadioButton, "Edit pane 4")));
+    key(&mut harness, Modifiers::NONE, Key::C);
+    assert!(harness.query_by_role_and_label(Role::RadioButton, "Edit pane 4").is_none());
+}
+
+#[test]
+fn a_tick_that_changes_nothing_says_so() {
+    let mut harness = comparing();
+    let said = |harness: &Whole| {
+        super::texts(harness).iter().any(|(text, ..)| text.contains("has the settings of pane 3 already"))
+    };
+    press_button(&mut harness, "Use pane 3");
+    assert!(!said(&harness));
+    press_button(&mut harness, "Use pane 3");
+    assert!(said(&harness));
+    assert_eq!(of(&harness).history.undo_len(), 1, "no step that changes nothing");
+}
+
+#[test]
+fn a_report_is_written_in_the_background_with_its_options() {
+    let mut harness = window();
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    let dir = tempfile::tempdir().expect("a folder");
+    let open = |harness: &mut Whole| {
+        of_mut(harness).open_report_dialog();
+        go(harness);
+    };
+    open(&mut harness);
+    press_button(&mut harness, "Clear");
+    assert!(harness.query_by_label("Choose a method.").is_some());
+    for method in [ShadowMethod::None, ShadowMethod::VoxelMap] {
+        control(&harness, Role::CheckBox, method.label()).click();
+        go(&mut harness);
+    }
+    let options = of_mut(&mut harness).compare.reporting.options.as_mut().expect("options");
+    assert_eq!(options.methods, [ShadowMethod::None, ShadowMethod::VoxelMap]);
+    (options.size, options.backends) = ([64, 64], vec![lovelock_render::Backend::Cpu]);
+    press_button(&mut harness, "Choose folder…");
+    let out = dir.path().join("a report");
+    super::whole::answer(&mut harness, &out);
+    assert!(of(&harness).compare.reporting.is_running());
+    wait(&mut harness, "the report", |window| !window.compare.reporting.is_running());
+    let json = std::fs::read_to_string(out.join("report.json")).expect("a report");
+    let report: lovelock_study::report::CompareReport = serde_json::from_str(&json).expect("JSON");
+    let ids: Vec<_> = report.methods.iter().map(|method| method.id.as_str()).collect();
+    assert_eq!((ids, report.complete, report.scene.width), (vec!["none", "voxel-map"], true, 64));
+    assert!(super::texts(&harness).iter().any(|(text, ..)| text.contains("report.html")));
+
+    // The options stay for the next one, which is stopped.
+    open(&mut harness);
+    assert!(super::is_on(&control(&harness, Role::CheckBox, ShadowMethod::VoxelMap.label())));
+    press_button(&mut harness, "All");
+    press_button(&mut harness, "Choose folder…");
+    super::whole::answer(&mut harness, &dir.path().join("stopped"));
+    of_mut(&mut harness).compare.reporting.cancel();
+    wait(&mut harness, "the end", |window| !window.compare.reporting.is_running());
+    assert!(super::texts(&harness).iter().any(|(text, ..)| text.contains("stopped")));
+}

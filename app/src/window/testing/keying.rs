@@ -30,7 +30,7 @@ fn desk() -> Harness<'static, Shown<State>> {
             let axes = [Vec3::X, Vec3::Y, Vec3::Z];
             panels::light::ui(ui, &mut project.lights, &mut 0, axes);
             let default = project.hair.groom.look;
-            panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), 0);
+            panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), Some(0), false);
             let default = project.hair.shipped_groom();
             control::setting(ui, "length", &mut project.hair.groom, &default);
         });

@@ -131,6 +131,18 @@ pub(crate) fn click_at<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.run_steps(6);
 }
 
+/// Chooses an entry of a list in a popup with the pointer, and checks that the popup stays open.
+pub(crate) fn choose_in_popup<S>(harness: &mut Harness<'_, S>, list: &str, entry: &str) {
+    let at = control(harness, Role::ComboBox, list).rect().center();
+    click_at(harness, at);
+    let at = control(harness, Role::Button, entry).rect().center();
+    click_at(harness, at);
+    assert!(
+        harness.query_by_role_and_label(Role::ComboBox, list).is_some(),
+        "the list {list} closed the popup around it"
+    );
+}
+
 /// A double-click.
 pub(crate) fn double_click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.hover_at(at);
@@ -209,6 +221,20 @@ fn collect(shape: &Shape, found: &mut Vec<(String, Rect, Color32)>) {
         }
         _ => {}
     }
+}
+
+/// The texts on the screen that are cut because there is no room for them.
+pub(crate) fn cut_texts<S>(harness: &Harness<'_, S>) -> Vec<String> {
+    fn collect(shape: &Shape, found: &mut Vec<String>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, found)),
+            Shape::Text(text) if text.galley.elided => found.push(text.galley.text().to_owned()),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    harness.output().shapes.iter().for_each(|clipped| collect(&clipped.shape, &mut found));
+    found
 }
 
 /// Whether a text on the screen has the colour that marks a changed value.

@@ -1,12 +1,11 @@
 //! The menu of the clip's lane: clip, trim, tempo and loop.
 
-use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
+use egui::{Rect, RichText, Ui, UiBuilder};
 use lovelock_project::project::{MotionSection, MotionSource};
 
 use super::{Edited, TimelineRequest, View};
 use crate::window::control::HoverTooltip;
-use crate::window::control::settings;
+use crate::window::control::{popup, settings};
 use crate::window::theme;
 
 /// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
@@ -18,11 +17,11 @@ pub(super) fn menu(
 ) -> Option<TimelineRequest> {
     let mut request = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
     ui.scope_builder(UiBuilder::new().id_salt("clip").max_rect(place).layout(middle), |ui| {
         ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
-        let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+        let response = ui.add(button);
+        popup(&response, |ui| {
             ui.set_width(270.0);
             request = contents(ui, view, edited);
         });

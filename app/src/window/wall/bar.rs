@@ -7,7 +7,7 @@ use lovelock_project::variants::{Family, Locks, label_of, varied};
 
 use super::WallLayout;
 use super::rounds::Rounds;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, popup};
 use crate::window::theme;
 
 /// What the toolbar asks for.
@@ -66,9 +66,9 @@ pub(super) fn ui(
                 toggle(&mut layout.locks.families, family);
             }
         }
-        ui.menu_button("Keep", |ui| single_locks(ui, &mut layout.locks, project))
-            .response
-            .hover_tooltip("Locks single settings.");
+        let more = ui.button("Keep");
+        popup(&more, |ui| single_locks(ui, &mut layout.locks, project));
+        more.hover_tooltip("Locks single settings.");
         ui.separator();
         if let Some(ms) = ms {
             let rate =

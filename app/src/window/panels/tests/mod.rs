@@ -152,7 +152,7 @@ pub(super) const PANELS: [(&str, Show); 14] = [
     }),
     ("Shadow", |ui, b| {
         let default = b.project.hair.groom.look;
-        super::shadow::ui(ui, &mut b.project.shadow, (&mut b.project.look, &default), 1 << 21);
+        super::shadow::ui(ui, &mut b.project.shadow, (&mut b.project.look, &default), Some(1 << 21), false);
     }),
     ("Light", |ui, b| {
         super::light::ui(ui, &mut b.project.lights, &mut b.selected_light, [Vec3::X, Vec3::Y, Vec3::Z]);
@@ -160,9 +160,9 @@ pub(super) const PANELS: [(&str, Show); 14] = [
     }),
     ("Look", |ui, b| {
         let default = b.project.hair.groom.look;
-        super::look::hair(ui, &mut b.project.look, &default, &mut b.project.picture);
+        super::look::hair(ui, &mut b.project.look, &default, &mut b.project.picture, false);
     }),
-    ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture)),
+    ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture, false)),
     ("Sound", |ui, b| {
         super::sound::ui(ui, &mut b.project, Some(&b.sound), 8.0);
     }),
