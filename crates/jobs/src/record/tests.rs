@@ -208,8 +208,8 @@ fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
         .map(|(secs, value)| lovelock_project::tracks::Key { secs, value: vec![value] });
     let track = lovelock_project::tracks::Track {
         target: "look/eumelanin".to_owned(),
-        muted: false,
         keys: keys.into(),
+        ..lovelock_project::tracks::Track::default()
     };
     tracked.timeline.tracks = vec![track];
     let mut draw = |project: &lovelock_project::Project,

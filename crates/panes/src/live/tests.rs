@@ -380,9 +380,7 @@ fn panes_that_rest_keep_nothing_and_are_drawn_again() {
     let snapshots = Arc::strong_count(&rig.snapshot);
     let pane = Arc::downgrade(&rig.pane(1));
     rig.live.rest();
-    while rig.live.busy().load(Ordering::Relaxed) {
-        rig.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
-    }
+    wait_until("the rest", || !rig.live.busy().load(Ordering::Relaxed));
     assert_eq!(rig.live.held_bytes(), 0);
     assert!(rig.live.pane(0).is_some_and(|slot| slot.latest().is_none()) && pane.strong_count() == 0);
     assert!(Arc::strong_count(&rig.snapshot) < snapshots, "the instant of the panes is not kept");

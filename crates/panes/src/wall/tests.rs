@@ -1,6 +1,6 @@
 use lovelock_project::variants::{Locks, vary};
 use lovelock_render::{Backend, Picture};
-use lovelock_testkit::wait::wait_for;
+use lovelock_testkit::wait::{wait_for, wait_until};
 
 use super::thread::Instant;
 use super::*;
@@ -119,11 +119,7 @@ fn a_wall_that_rests_keeps_nothing_and_is_drawn_again() {
     let held = wall.held_bytes();
     assert!(held > 1_000_000, "{held} bytes of two simulations and renderers");
     wall.rest();
-    let watch = Stopwatch::start();
-    while wall.busy().load(std::sync::atomic::Ordering::Relaxed) {
-        assert!(watch.secs() < 60.0, "the wall does not rest");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    wait_until("the rest", || !wall.busy().load(std::sync::atomic::Ordering::Relaxed));
     assert_eq!(wall.held_bytes(), 0);
     assert!(wall.cells.iter().all(|cell| cell.latest().is_none()), "no images");
     assert_eq!(Arc::strong_count(&variants[1]), 1, "nobody has the variant any more");

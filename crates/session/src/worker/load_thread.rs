@@ -115,6 +115,7 @@ impl LoadThread {
             requests: Arc::new((Mutex::new(requests), Condvar::new())),
             cancelled: Arc::default(),
             progress: Arc::default(),
+            layers: Held::default(),
             thread: None,
         }
     }
