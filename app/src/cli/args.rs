@@ -28,6 +28,9 @@ pub(crate) struct Arguments {
     /// Save a screenshot of the window as a PNG file and exit.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
+    /// Replace a file of the screenshot's name even if it is no image.
+    #[arg(long, requires = "screenshot")]
+    pub(crate) force: bool,
     /// Open the window with the comparison of the project's panes, like key C.
     #[arg(long)]
     pub(crate) panes: bool,
@@ -240,6 +243,9 @@ pub(crate) struct Compare {
     /// Leave out swim, banding, the turning light and the stray hair, and time fewer draws.
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Replace files named report.html, report.csv and report.json that this program did not make. Its own are always replaced.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// Shadow methods; all of them if empty.
@@ -268,6 +274,9 @@ pub(crate) struct Bench {
     /// File for the numbers as comma-separated values; for reference scenes their folder.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace a file of that name that this program did not make. Its own are always replaced.
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
     /// Strands of reference scenes, 100 to 120000, the wider the fewer; 12000 if none is given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=120_000))]
     pub(crate) strands: Option<u32>,
@@ -346,8 +355,8 @@ pub(crate) struct Presets {
     /// Hairstyles side by side in the sheet.
     #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) columns: Option<u32>,
-    /// Replace the sheet even if it is no image.
-    #[arg(long, requires = "sheet")]
+    /// Replace a file of the name of the sheet or of a thumbnail even if it is no image.
+    #[arg(long)]
     pub(crate) force: bool,
     /// Write the thumbnails of the window's browser into this folder, ID.jpg each; those of the program are in assets/styles.
     #[arg(long, value_name = "DIR", conflicts_with = "sheet")]
@@ -448,6 +457,9 @@ pub(crate) struct SatfBuild {
     /// The file.
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// Replace the file even if it is no database.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]

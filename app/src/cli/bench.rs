@@ -11,6 +11,7 @@ use lovelock_render::Backend;
 
 use super::args::{Bench, BenchTarget};
 use super::output::Output;
+use super::replace::{self, Holds, Replaced};
 use super::source::apply;
 
 /// Measures the scenes and prints the numbers.
@@ -51,6 +52,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
             return Err(ProjectError::input(out, message));
         }
     }
+    let replaced = task.out.as_ref().map(|out| replace::check(out, Holds::BENCH, task.force)).transpose()?;
     let baseline = task.baseline.as_deref().map(Baseline::read).transpose()?;
     if let (Some(file), Some(baseline)) = (&task.baseline, &baseline)
         && !request.scenes.iter().any(|scene| baseline.has_scene(scene.id()))
@@ -71,6 +73,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     if let Some(out) = &task.out {
         write_whole(out, report.csv().as_bytes())?;
     }
+    replaced.iter().for_each(Replaced::tell);
     output.result(&report, || report.to_string())
 }
 
@@ -117,6 +120,7 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
     if out.is_file() {
         return Err(ProjectError::input(out, format!("{}: found a file; must be a folder", out.display())));
     }
+    let replaced = replace::check_in(out, ["scenes.json".to_owned()], Holds::SCENES, task.force)?;
     let request = ReferenceRequest {
         scenes,
         out: out.clone(),
@@ -134,5 +138,6 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
         eprintln!("rendering {what}");
         ControlFlow::Continue(())
     })?;
+    replaced.tell();
     output.result(&report, || format!("{} scenes in {}", report.scenes.len(), out.display()))
 }

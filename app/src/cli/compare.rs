@@ -9,11 +9,14 @@ use lovelock_study::report::{CompareReport, MethodReport};
 
 use super::args::Compare;
 use super::output::Output;
+use super::replace::{self, Holds};
 use super::source::Source;
 
 /// Compares methods and writes a report.
 pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
     let one = task.frame.map(one_frame).transpose()?;
+    let files = ["report.html", "report.csv", "report.json"].map(str::to_owned);
+    let replaced = replace::check_in(&task.out, files, Holds::REPORT, task.force)?;
     let mut scene = Source::open(&task.source)?;
     let request = CompareRequest {
         out: task.out.clone(),
@@ -38,6 +41,7 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
     };
     let report =
         scene.watched(|project, progress| lovelock_study::batch::compare(project, &request, progress))?;
+    replaced.tell();
     output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
 }
 

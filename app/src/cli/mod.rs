@@ -19,9 +19,11 @@ mod style;
 use std::process::ExitCode;
 
 use clap::Parser;
+use lovelock_project::error::ProjectError;
 
 pub(crate) use args::{Arguments, Assignment, Task};
 use output::Output;
+use replace::{Holds, Replaced};
 pub(crate) use source::apply;
 
 /// Runs the command, or opens the window if there is none.
@@ -47,11 +49,7 @@ pub(crate) fn run() -> ExitCode {
     }
     let opens_window = arguments.task.is_none();
     let result = match arguments.task {
-        None => {
-            let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
-            let shows = crate::window::Shows { panes: arguments.panes, mask: arguments.mask };
-            crate::window::open(arguments.project.as_deref(), &arguments.set, shows, screenshot)
-        }
+        None => open_window(arguments),
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Compare(task)) => compare::run(&task, output),
         Some(Task::Bench(task)) => bench::run(&task, output),
@@ -72,6 +70,17 @@ pub(crate) fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => output.fail(&error),
     }
+}
+
+/// Opens the window.
+fn open_window(arguments: Arguments) -> Result<(), ProjectError> {
+    let image = arguments.screenshot.as_deref();
+    let replaced = image.map(|out| replace::check(out, Holds::IMAGE, arguments.force)).transpose()?;
+    let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
+    let shows = crate::window::Shows { panes: arguments.panes, mask: arguments.mask };
+    crate::window::open(arguments.project.as_deref(), &arguments.set, shows, screenshot)?;
+    replaced.iter().for_each(Replaced::tell);
+    Ok(())
 }
 
 /// The message of clap in one line.

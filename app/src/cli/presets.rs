@@ -14,6 +14,7 @@ use lovelock_session::progress::Progress;
 use super::args::Presets;
 use super::bar::Bar;
 use super::output::Output;
+use super::replace::{self, Holds};
 use super::source::apply;
 
 /// Size of a picture of the sheet if none is given, pixels.
@@ -27,12 +28,15 @@ pub(crate) fn run(task: &Presets, output: Output) -> Result<(), ProjectError> {
         (task.preset.iter().map(|name| style_named(name)).collect::<Result<_, _>>()?, Vec::new())
     };
     if let Some(path) = &task.sheet {
-        let replaced = super::replace::check(path, super::replace::Holds::IMAGE, task.force)?;
+        let replaced = replace::check(path, Holds::IMAGE, task.force)?;
         draw_sheet(task, &styles, path)?;
         replaced.tell();
     }
     if let Some(folder) = &task.thumbnails {
+        let names = styles.iter().map(thumbnail_name);
+        let replaced = replace::check_in(folder, names, Holds::THUMBNAIL, task.force)?;
         draw_thumbnails(&styles, folder)?;
+        replaced.tell();
     }
     let rows = styles.iter().map(|listed| {
         let drawn = task.thumbnails.as_ref().map(|folder| folder.join(thumbnail_name(listed)));

@@ -27,6 +27,17 @@ impl Holds {
     pub(super) const RECORDING: Self = Self::Made(&[b"Lovelock", b"acTL"]);
     /// A single image.
     pub(super) const IMAGE: Self = Self::Made(&[b"\x89PNG\r\n\x1a\n"]);
+    /// A small image of a hairstyle.
+    pub(super) const THUMBNAIL: Self = Self::Made(&[b"\xff\xd8\xff"]);
+    /// A table of times.
+    pub(super) const BENCH: Self = Self::Made(&[b"scene,backend,adapter,shadow,"]);
+    /// The list of the scenes of a path tracer.
+    pub(super) const SCENES: Self = Self::Made(&[b"\"strands_file\""]);
+    /// The page, the table and the numbers of a comparison.
+    pub(super) const REPORT: Self =
+        Self::Made(&[b"Shadow methods compared", b"name,method,draw,transparency,", b"\"swim_frames\""]);
+    /// The database of hair clusters.
+    pub(super) const DATABASE: Self = Self::Made(&[&lovelock_satf::file::MAGIC]);
 }
 
 /// What is said when the work is done: that something was replaced.
@@ -81,6 +92,23 @@ pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, 
     Ok(Replaced(Some(format!("{name}: {what} of before"))))
 }
 
+/// As [`check`], of files in a folder.
+///
+/// # Errors
+/// As [`check`].
+pub(super) fn check_in(
+    folder: &Path,
+    names: impl IntoIterator<Item = String>,
+    holds: Holds,
+    force: bool,
+) -> Result<Replaced, ProjectError> {
+    let mut is_there = false;
+    for name in names {
+        is_there |= check(&folder.join(name), holds, force)?.0.is_some();
+    }
+    Ok(Replaced(is_there.then(|| format!("{}: replaced the files of before", folder.display()))))
+}
+
 /// Whether a folder holds images that are named as frames, or a sequence.
 fn has_frames(folder: &Path) -> bool {
     let Ok(entries) = std::fs::read_dir(folder) else { return false };
@@ -128,6 +156,20 @@ mod tests {
         std::fs::write(&path, b"....hdlr....Lovelock\0").expect("a file");
         assert!(check(&path, Holds::RECORDING, false).is_ok());
         assert!(check(&path, Holds::Work("a take"), false).is_err(), "whoever made it");
+    }
+
+    #[test]
+    fn one_file_of_others_in_a_folder_is_enough_to_refuse() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let names = || ["report.html", "report.csv"].map(str::to_owned);
+        let found = |force| check_in(dir.path(), names(), Holds::REPORT, force).map(|Replaced(said)| said);
+        assert_eq!(found(false).expect("nothing is there"), None);
+        let page = "<title>Shadow methods compared: a</title>";
+        std::fs::write(dir.path().join("report.html"), page).expect("a file");
+        assert!(found(false).expect("our own").is_some());
+        std::fs::write(dir.path().join("report.csv"), "date,amount\n").expect("a file");
+        assert!(found(false).expect_err("refused").to_string().contains("report.csv"));
+        assert!(found(true).is_ok());
     }
 
     #[test]

@@ -9,6 +9,7 @@ use lovelock_project::error::ProjectError;
 
 use super::args::{Satf, SatfTask};
 use super::output::Output;
+use super::replace::{self, Holds};
 
 /// Resolution of the progress bar.
 const TICKS: f32 = 1000.0;
@@ -16,6 +17,7 @@ const TICKS: f32 = 1000.0;
 /// Makes the database of hair clusters.
 pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
     let SatfTask::Build(task) = &task.task;
+    let replaced = replace::check(&task.out, Holds::DATABASE, task.force)?;
     let bar = std::io::stderr().is_terminal().then(|| {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -31,6 +33,7 @@ pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
         bar.finish_and_clear();
     }
     let report = report?;
+    replaced.tell();
     output.result(&report, || {
         let megabytes = report.bytes as f64 / 1e6;
         format!("{}: {megabytes:.2} MB in {:.2} s, checksum {}", report.file, report.seconds, report.checksum)

@@ -111,8 +111,21 @@ fn a_window_without_a_display_is_an_error() {
 #[test]
 fn files_that_hold_work_or_are_not_ours_are_kept_without_force() {
     let dir = tempfile::tempdir().expect("a folder");
-    std::fs::create_dir(dir.path().join("frames")).expect("a folder");
-    let mine = ["x.take", "film.mp4", "hair.tfx", "sheet.png", "frames/frame_000001.png", "c.usda"];
+    for folder in ["frames", "report", "small"] {
+        std::fs::create_dir(dir.path().join(folder)).expect("a folder");
+    }
+    let mine = [
+        "x.take",
+        "film.mp4",
+        "hair.tfx",
+        "sheet.png",
+        "frames/frame_000001.png",
+        "c.usda",
+        "report/report.csv",
+        "small/bob.jpg",
+        "times.csv",
+        "db.bin",
+    ];
     for name in mine {
         std::fs::write(dir.path().join(name), b"mine").expect("a file");
     }
@@ -124,6 +137,11 @@ fn files_that_hold_work_or_are_not_ours_are_kept_without_force() {
         &["record", "-o", "c.usda"],
         &["convert", "in.hair", "hair.tfx"],
         &["presets", "--preset", "bob", "--sheet", "sheet.png"],
+        &["presets", "--preset", "bob", "--thumbnails", "small"],
+        &["compare", "-o", "report"],
+        &["bench", "-o", "times.csv"],
+        &["satf", "build", "-o", "db.bin"],
+        &["--screenshot", "sheet.png"],
     ] {
         let line = run(dir.path(), args.iter().copied()).refused(2).to_owned();
         let out = args.last().expect("an output");

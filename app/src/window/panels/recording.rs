@@ -152,13 +152,13 @@ pub(crate) fn bytes_in_words(bytes: f64) -> String {
     if number < 9.95 { format!("{number:.1} {name}") } else { format!("{number:.0} {name}") }
 }
 
-/// Bits per pixel of a film of the default hair of 1280 × 720 pixels. Other films differ by up to a factor of two.
+/// Bits per pixel of a film. Measured are 0.038, 0.073, 0.12 and 0.22: six frames of the default hair of 640 × 360 pixels.
 fn bits_per_pixel(quality: FilmQuality) -> f64 {
     match quality {
-        FilmQuality::Draft => 0.06,
-        FilmQuality::Good => 0.12,
-        FilmQuality::High => 0.25,
-        FilmQuality::Best => 0.5,
+        FilmQuality::Draft => 0.04,
+        FilmQuality::Good => 0.07,
+        FilmQuality::High => 0.12,
+        FilmQuality::Best => 0.22,
     }
 }
 

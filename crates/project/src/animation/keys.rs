@@ -6,8 +6,11 @@ use crate::tracks::{Key, Track};
 
 impl Project {
     /// Sets the key of `target` at a time of the timeline, in seconds, to these numbers ([`key_numbers`](super::key_numbers)), and makes
-    /// the track if there is none. Returns whether there was room for it.
+    /// the track if there is none. Returns whether there was room for it; there is none at a time that is not finite.
     pub fn set_key(&mut self, target: &str, secs: f64, value: Vec<f64>) -> bool {
+        if !secs.is_finite() {
+            return false;
+        }
         let held = is_held(self, target);
         let tracks = &mut self.timeline.tracks;
         if let Some(track) = tracks.iter_mut().find(|track| track.target == target) {

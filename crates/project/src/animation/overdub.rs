@@ -149,8 +149,9 @@ impl Overdub {
                 }
             } else if self.only.as_ref() == Some(&target) && !now.playing {
                 // The first key of the control that is recorded alone.
-                edited.set_key(&target, now.secs, value);
-                keep.push(target);
+                if edited.set_key(&target, now.secs, value) {
+                    keep.push(target);
+                }
             } else if is_tracked {
                 let label = Track::new(target).label_in(&edited.hair.stack);
                 self.refused.get_or_insert(label);
