@@ -243,7 +243,7 @@ mod tests {
         use crate::tracks::{Key, Track};
 
         let keys: Vec<Key> = (0..2000_i32).map(|k| Key { secs: f64::from(k), value: vec![0.0; 3] }).collect();
-        let long = Track { target: "look/eumelanin".to_owned(), muted: false, keys };
+        let long = Track { keys, ..Track::new("look/eumelanin") };
         let with = |distance: f32, tracks: usize| {
             let mut project = at(distance);
             project.timeline.tracks = vec![long.clone(); tracks];
