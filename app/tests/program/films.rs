@@ -114,13 +114,22 @@ fn a_second_recording_to_the_same_output_is_rejected() {
         let more = [out, "--frames", "0..24", "--size", "96x64"];
         let part = ["one/frame_000000.png", "one.mp4.partial"].map(|name| dir.path().join(name));
         // The first stands still until the second has answered. If it ends before it is stopped, it starts again.
+        let output = dir.path().join(out);
         let mut first = wait_for("a recording that is stopped before its end", || {
+            // What a recording has left that ended before it was stopped.
+            let _ = std::fs::remove_dir_all(&output);
+            let _ = std::fs::remove_file(&output);
             let mut first = begun(dir.path(), &more);
             wait_until("its output", || {
                 part[usize::from(out == "one.mp4")].exists() || first.try_wait().expect("its state").is_some()
             });
             signal(&first, "-STOP");
-            (!dir.path().join(finished).exists()).then_some(first)
+            if dir.path().join(finished).exists() {
+                let _ = first.kill();
+                first.wait().expect("gone");
+                return None;
+            }
+            Some(first)
         });
         let second = run(dir.path(), RECORD.iter().chain(&more));
         signal(&first, "-CONT");

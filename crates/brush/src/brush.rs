@@ -189,6 +189,9 @@ impl Brush {
         }
         self.before.iter_mut().for_each(Vec::clear);
         let changed: Vec<usize> = (0..changed.len()).filter(|guide| changed[*guide]).collect();
+        for guide in &changed {
+            self.touched[*guide] = true;
+        }
         self.put_back(frame, &seen, changed.iter().filter(|_| at_once));
         changed
     }

@@ -16,7 +16,7 @@ pub struct History {
     future: Vec<Step>,
     /// The gesture that made the newest step, as long as it may continue.
     gesture: Option<GestureId>,
-    /// The redo steps that the gesture has discarded: it brings them back if it ends at its start value.
+    /// The redo steps that the newest step has discarded: they come back with it if it is taken back.
     discarded: Vec<Step>,
     /// The project on disk, for the mark of unsaved changes.
     saved: Arc<Project>,
@@ -131,17 +131,19 @@ impl History {
         let after = std::mem::replace(&mut self.present, step.project);
         let bytes = after.bytes_beside(&self.present);
         self.future.push(Step { label: step.label, project: after, bytes });
-        self.gesture = None;
+        (self.gesture, self.discarded) = (None, Vec::new());
         Some(&self.present)
     }
 
-    /// Takes back the newest step if it was made on `before`, as if it had never been: it cannot be redone. Returns whether it was.
+    /// Takes back the newest step if it was made on `before`, as if it had never been: it cannot be redone, and the redo steps that it
+    /// discarded are there again. Returns whether it was.
     pub fn take_back(&mut self, before: &Arc<Project>) -> bool {
         let Some(step) = self.past.pop_back_if(|step| Arc::ptr_eq(&step.project, before)) else {
             return false;
         };
         self.present = step.project;
         self.gesture = None;
+        self.future = std::mem::take(&mut self.discarded);
         true
     }
 
@@ -315,6 +317,25 @@ mod tests {
         assert_eq!(history.redo_label(), Some("Distance"));
         history.edit("Distance", Some(10), at(5.0));
         assert!(history.redo().is_none());
+    }
+
+    #[test]
+    fn a_step_that_is_taken_back_leaves_undo_and_redo_as_they_were() {
+        let mut history = History::new(at(1.0));
+        history.edit("Distance", None, at(2.0));
+        history.undo();
+        let before = Arc::clone(history.project());
+        history.edit("file", None, at(9.0));
+        assert!(history.take_back(&before) && !history.take_back(&before));
+        assert_eq!((history.undo_len(), history.redo_len()), (0, 1));
+        assert_eq!(history.redo().map(|p| p.camera.distance), Some(2.0));
+        // What was undone after the step had been made on it, and goes with it.
+        history.undo();
+        history.edit("file", None, at(9.0));
+        history.edit("Distance", None, at(4.0));
+        history.undo();
+        assert!(history.take_back(&before));
+        assert_eq!((history.undo_len(), history.redo_len()), (0, 0));
     }
 
     #[test]

@@ -12,8 +12,8 @@ const PRINTED: usize = 10;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Times {
     tests: Vec<(String, f64)>,
-    /// How many times as long everything took because of other work on the machine, at least 1: what the tests could have had of all cores,
-    /// divided by what they had.
+    /// The time of all cores while the tests ran, divided by what the tests had of it, at least 1: other work on the machine makes it larger,
+    /// and so do cores that had nothing to do.
     pub(crate) crowding: f64,
 }
 
@@ -31,9 +31,9 @@ impl Times {
         }
         let _ = writeln!(
             text,
-            "The slowest of {} tests, beside other work of {:.1}:",
+            "The slowest of {} tests, which had {:.0} % of the time of all cores:",
             self.tests.len(),
-            self.crowding
+            100.0 / self.crowding.max(1.0)
         );
         for (name, secs) in self.sorted().into_iter().take(PRINTED) {
             let _ = writeln!(text, "{secs:>8.1} s  {name}");
@@ -41,7 +41,7 @@ impl Times {
         text
     }
 
-    /// The tests that took too long, without what other work on the machine took from them.
+    /// The tests that took too long, even if they had had all cores.
     pub(crate) fn too_slow(&self) -> Vec<String> {
         let slow = self.sorted().into_iter().map(|(name, secs)| (name, secs / self.crowding.max(1.0)));
         slow.take_while(|(_, secs)| *secs > MOST_SECS)

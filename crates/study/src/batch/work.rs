@@ -227,13 +227,13 @@ impl Work<'_> {
         if snapshots.len() < 2 {
             return Ok(None);
         }
+        let by_frame = || "ground truth of every frame".to_owned();
+        part(by_frame(), true)?;
         let points = report.scene.points as usize;
         if let Err(refused) = fits("pop and flicker", snapshots.len() as u64, points, truths.0.len()) {
             report.notes.push(refused);
             return Ok(None);
         }
-        let by_frame = || "ground truth of every frame".to_owned();
-        part(by_frame(), true)?;
         let check_cancel = || part(by_frame(), false);
         let frames = (report.frames[0], snapshots);
         Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, check_cancel)

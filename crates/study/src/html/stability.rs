@@ -22,13 +22,17 @@ pub(super) fn section(report: &CompareReport, groups: &[Group<'_>], names: &Name
         "several frames; here there is one (see <code>--frames</code>).".into()
     };
     let steps = |of: fn(&MethodReport) -> Option<ChangeReport>| report.methods.iter().find_map(of);
-    let mut items = vec![
-        format!(
+    let mut items = Vec::new();
+    // A quick comparison shifts no map.
+    if !report.swim_frames.is_empty() {
+        items.push(format!(
             "<b>Map shifted</b> (swim): the map is shifted by less than a texel, six times, {}",
             shifted(report)
-        ),
-        format!("<b>Frame to frame</b> (pop, flicker): the change from one frame to the next of {frames}"),
-    ];
+        ));
+    }
+    items.push(format!(
+        "<b>Frame to frame</b> (pop, flicker): the change from one frame to the next of {frames}"
+    ));
     if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.light_sweep) {
         items.push(format!(
             "<b>Light turned</b>: the first light turns sideways by 0.1° a step, {steps} times, and nothing else moves; {} \
@@ -57,7 +61,6 @@ fn shifted(report: &CompareReport) -> String {
     let shifted = &report.swim_frames;
     let named = || shifted.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     match shifted.len() as u64 {
-        0 => String::new(),
         1 => format!("in frame {} alone.", named()),
         count if count == end - first => format!("in each of the {count} frames."),
         count => format!("in {count} of the {} frames, evenly spaced: {}.", end - first, named()),
