@@ -6,7 +6,7 @@ use lovelock_project::error::Place;
 use lovelock_project::project::RecordingSection;
 use lovelock_render::HairDrawing;
 
-use super::control::{section, section_with};
+use super::control::{enter_pane, leave_pane, section, section_with};
 use super::path_dialog::Purpose;
 use super::{Window, camera_control, panels};
 
@@ -115,6 +115,9 @@ impl Window {
         let axes = camera_control::axes(&project.camera);
         let pane = self.begin_pane(project);
         let compares = pane.is_some();
+        if let Some(pane) = &pane {
+            enter_pane(ctx, pane.pane());
+        }
         Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 section(ui, "Shadow", true, |ui| {
@@ -178,6 +181,7 @@ impl Window {
             });
         });
         if let Some(pane) = pane {
+            leave_pane(ctx);
             pane.end(project);
         }
         if picks_light {

@@ -19,9 +19,9 @@ pub(in crate::window) struct PaneEdit {
 impl PaneEdit {
     /// Puts the settings of a pane in place of the project's; `None` if there is no such pane.
     pub(in crate::window) fn begin(project: &mut Project, pane: usize) -> Option<Self> {
-        let edited = project.compare.panes.get(pane)?.applied_to(project);
+        let edited = project.compare.panes.get(pane)?.clone();
         let edit = Self { pane, own: Contender::of(project), shading: project.look.shading };
-        *project = edited;
+        edited.apply_to(project);
         project.look.shading = project.compare.shading;
         Some(edit)
     }
@@ -36,7 +36,7 @@ impl PaneEdit {
         project.compare.shading = project.look.shading;
         project.look.shading = self.shading;
         let Contender { shadow, draw, transparency, backend, .. } = Contender::of(project);
-        *project = self.own.applied_to(project);
+        self.own.apply_to(project);
         if let Some(pane) = project.compare.panes.get_mut(self.pane) {
             (pane.shadow, pane.draw, pane.transparency, pane.backend) = (shadow, draw, transparency, backend);
         }

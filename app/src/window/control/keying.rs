@@ -113,8 +113,33 @@ pub(crate) fn begin(ctx: &Context, keying_of: Keying) {
 pub(crate) fn end(ctx: &Context) -> Vec<KeyRequest> {
     ctx.data_mut(|data| {
         data.remove::<Arc<Keying>>(keying());
+        data.remove::<EditedPane>(keying());
         data.remove_temp::<Vec<KeyRequest>>(keying()).unwrap_or_default()
     })
+}
+
+/// The pane of a comparison whose settings are in place of the project's.
+#[derive(Clone, Copy)]
+struct EditedPane(usize);
+
+/// From now on the settings of a pane are in place of the project's: their rows set no keys, which would be the project's.
+pub(crate) fn enter_pane(ctx: &Context, pane: usize) {
+    ctx.data_mut(|data| data.insert_temp(keying(), EditedPane(pane)));
+}
+
+/// Ends what [`enter_pane`] began.
+pub(crate) fn leave_pane(ctx: &Context) {
+    ctx.data_mut(|data| data.remove::<EditedPane>(keying()));
+}
+
+/// The path of a setting while those of a pane are in place of the project's.
+fn path_in_pane(path: String, EditedPane(pane): EditedPane) -> String {
+    match path.strip_prefix("picture.").unwrap_or(&path) {
+        "look.shading" => "compare.shading".to_owned(),
+        name @ ("draw" | "transparency" | "backend") => format!("compare.panes.{pane}.{name}"),
+        name if name.starts_with("shadow.") => format!("compare.panes.{pane}.{name}"),
+        _ => path,
+    }
 }
 
 /// The setting that the next rows change.
@@ -135,6 +160,11 @@ pub(crate) fn of_setting<R>(
 ) -> R {
     let known: Option<Arc<Keying>> = ui.data(|data| data.get_temp(keying()));
     let path = known.and_then(|known| known.path(part, info));
+    let pane: Option<EditedPane> = ui.data(|data| data.get_temp(keying()));
+    let path = path.map(|path| match pane {
+        Some(pane) => path_in_pane(path, pane),
+        None => path,
+    });
     if let Some(path) = path {
         ui.data_mut(|data| data.insert_temp(keying(), RowSetting { path, info, value }));
     }
@@ -178,6 +208,20 @@ impl KeyedRow {
         let RowSetting { path, info, value } = &self.setting;
         let numbers = is_keyable(path).then(|| key_numbers(info, *value))?;
         Some(numbers).filter(|numbers| !numbers.is_empty())
+    }
+
+    /// Why the setting has no keys; `None` if it may have them.
+    fn why_not(&self) -> Option<&'static str> {
+        if self.numbers().is_some() {
+            return None;
+        }
+        Some(match self.setting.path.split('.').next().unwrap_or_default() {
+            "compare" => "Panes do not follow the timeline. Close the comparison to set keys of the project.",
+            "hair" | "body" => {
+                "This setting cannot follow the timeline: a change loads or grows the hair again."
+            }
+            _ => "This setting cannot follow the timeline: it holds for all of it.",
+        })
     }
 
     fn ask(&self, ui: &Ui, request: KeyRequest) {
@@ -257,8 +301,7 @@ fn menu(ui: &Ui, whole: Rect, name: &Response, row: Option<&KeyedRow>, differs: 
         .at_pointer_fixed()
         .show(|ui| {
             if let Some(row) = row {
-                let none = "This setting cannot follow the timeline: a change loads or grows the hair again.";
-                let why_not = row.numbers().is_none().then_some(none);
+                let why_not = row.why_not();
                 if entry(ui, "Add key", why_not) {
                     row.add(ui);
                 }
@@ -282,4 +325,32 @@ fn menu(ui: &Ui, whole: Rect, name: &Response, row: Option<&KeyedRow>, differs: 
             }
         });
     reset
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_base::settings::find;
+
+    use super::*;
+
+    #[test]
+    fn settings_of_a_pane_are_not_those_of_the_project() {
+        let project = Project::default();
+        let path = |path: &str| path_in_pane(path.to_owned(), EditedPane(1));
+        for (own, of_pane) in [
+            ("shadow.method", "compare.panes.1.shadow.method"),
+            ("picture.draw", "compare.panes.1.draw"),
+            ("picture.transparency", "compare.panes.1.transparency"),
+            ("picture.backend", "compare.panes.1.backend"),
+            ("look.shading", "compare.shading"),
+        ] {
+            assert_eq!(path(own), of_pane);
+            assert!(find(&project, own).is_some() && find(&project, of_pane).is_some(), "{of_pane}");
+            assert!(is_keyable(own) && !is_keyable(of_pane), "{of_pane}");
+        }
+        for shared in ["lights.0.intensity", "look.extinction_scale", "picture.exposure_stops"] {
+            assert_eq!(path(shared), shared);
+            assert!(find(&project, shared).is_some(), "{shared}");
+        }
+    }
 }

@@ -12,7 +12,9 @@ mod tooltip;
 use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
-pub(crate) use keying::{KeyRequest, Keying, begin as begin_keying, end as end_keying, of_setting};
+pub(crate) use keying::{
+    KeyRequest, Keying, begin as begin_keying, end as end_keying, enter_pane, leave_pane, of_setting,
+};
 pub(crate) use number::{Limits, Number, is_escaped, typed};
 pub(crate) use plot_axis::axis_number;
 pub(crate) use popup::{context_popup, is_any_open, popup};

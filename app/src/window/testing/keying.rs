@@ -20,10 +20,18 @@ struct State {
 
 /// The panels of light and shadow and the lengths of the hair, as the window shows them.
 fn desk() -> Harness<'static, Shown<State>> {
+    desk_of(None)
+}
+
+/// The same while the panels edit a pane of a comparison.
+fn desk_of(pane: Option<usize>) -> Harness<'static, Shown<State>> {
     let state = State { project: Project::default(), secs: 1.0, asked: Vec::new() };
-    let mut harness = screen(state, |ui, state: &mut State| {
+    let mut harness = screen(state, move |ui, state: &mut State| {
         let keying = Keying::of(&state.project, state.secs, std::iter::empty::<&str>());
         control::begin_keying(ui.ctx(), keying);
+        if let Some(pane) = pane {
+            control::enter_pane(ui.ctx(), pane);
+        }
         // As in a section of the window, beside whose rows the diamonds are.
         ui.indent("section", |ui| {
             let project = &mut state.project;
@@ -164,4 +172,19 @@ fn settings_that_grow_the_hair_have_no_keys_and_say_why() {
     control(&harness, Role::Button, "Copy setting's name").click();
     harness.run_ok();
     assert_eq!(keys(&harness), []);
+}
+
+#[test]
+fn settings_of_a_pane_have_no_keys_and_those_that_all_share_do() {
+    let mut harness = desk_of(Some(1));
+    let at = control(&harness, Role::ComboBox, "Method").rect().center();
+    harness.hover_at(at);
+    harness.run_ok();
+    assert!(harness.query_by_role_and_label(Role::Button, "Add key of Method").is_none());
+    right_click(&mut harness, at);
+    assert!(control(&harness, Role::Button, "Add key").accesskit_node().is_disabled());
+    control(&harness, Role::Button, "Copy setting's name").click();
+    harness.run_ok();
+    choose(&mut harness, (Role::Slider, "Intensity"), "Add key");
+    assert_eq!(keys(&harness), [("lights/0/intensity".to_owned(), 1)]);
 }

@@ -41,11 +41,16 @@ impl Contender {
     /// The project with these settings.
     pub fn applied_to(&self, project: &Project) -> Project {
         let mut project = project.clone();
+        self.apply_to(&mut project);
+        project
+    }
+
+    /// Gives a project these settings. Everything else stays where it is in memory.
+    pub fn apply_to(&self, project: &mut Project) {
         project.shadow = self.shadow;
         project.picture.draw = self.draw;
         project.picture.transparency = self.transparency;
         project.picture.backend = self.backend;
-        project
     }
 
     /// The main settings of the method: the size of its map, and the number of samples along the light.
