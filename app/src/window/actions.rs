@@ -351,7 +351,7 @@ impl Window {
                 recording::write_png(path, picture.width, picture.height, &picture.rgba)
                     .map_err(|error| error.to_string())?;
                 let what = format!("Saved {}, {width} × {height} pixels", path.display());
-                self.notices.push(notices::Kind::Done, what);
+                self.notices.push_written(what, path.to_owned());
             }
             Purpose::Open
             | Purpose::Beside
@@ -378,12 +378,13 @@ impl Window {
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Pending::New => {
-                self.overdub.let_go();
+                self.let_go_of_controls();
                 self.cancel_strokes();
                 // They were opened for the project that goes.
                 self.openings.cancel();
                 self.framing = None;
                 self.trials.clear();
+                self.told.clear();
                 self.history = lovelock_project::history::History::new(Project::default());
                 self.rest_all();
                 self.project_path = None;

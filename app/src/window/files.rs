@@ -230,10 +230,11 @@ impl Window {
         let mut access = self.session.access().clone();
         access.set_project(Some(path));
         let (project, problems) = load_project_with(path, &mut access).map_err(|error| error.to_string())?;
-        self.overdub.let_go();
+        self.let_go_of_controls();
         self.cancel_strokes();
         self.framing = None;
         self.trials.clear();
+        self.told.clear();
         self.history = lovelock_project::history::History::new(project);
         self.rest_all();
         self.project_path = Some(path.to_owned());

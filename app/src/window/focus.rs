@@ -6,6 +6,7 @@ use egui::{
     StrokeKind, Ui,
 };
 
+use super::control::is_any_open;
 use super::{keys, theme};
 
 /// A part of the window that Tab does not leave, in the order in which F6 visits them.
@@ -163,7 +164,8 @@ impl Focus {
             layers.filter(|layer| matches!(layer.order, Order::Middle | Order::Foreground)).collect()
         });
         above.sort_unstable_by_key(|layer| (layer.order, layer.id.value()));
-        if !Popup::is_any_open(ctx) {
+        // Tab stays in an open popup.
+        if !is_any_open(ctx) {
             for layer in above {
                 self.controls[Area::Page as usize].extend(focusable(ctx, layer, 0));
             }

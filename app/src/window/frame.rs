@@ -6,6 +6,7 @@ use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, 
 use lovelock_base::settings::Info;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
+use lovelock_project::tracks::Track;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
@@ -278,6 +279,7 @@ impl Window {
             thumbs: self.thumbnails.shown(),
             writing: timeline::Writing {
                 armed: self.overdub.is_armed(),
+                only: self.overdub.only().map(|target| Track::new(target).label_in(&project.hair.stack)),
                 targets: self.overdub.writes().map(str::to_owned).collect(),
             },
             sound: project.sound.file.as_ref().map(|file| timeline::SoundLane {

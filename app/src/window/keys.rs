@@ -93,10 +93,11 @@ fn popup_of(button: Id) -> Id {
 impl MenuKeys {
     /// Opens the menu whose letter was pressed with Alt. Comes before the menu bar.
     pub(crate) fn begin_pass(&mut self, ctx: &egui::Context) {
-        if ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+        // The menu bar of this pass lists them again.
+        let menus = std::mem::take(&mut self.menus);
+        if are_held(ctx) {
             return;
         }
-        let menus = std::mem::take(&mut self.menus);
         let open = menus.iter().position(|(_, button)| Popup::is_id_open(ctx, popup_of(*button)));
         let mut wanted = None;
         for (at, (letter, _)) in menus.iter().enumerate() {

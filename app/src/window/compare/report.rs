@@ -288,7 +288,7 @@ impl Window {
                 } else {
                     format!("The report was stopped: what is finished is in {}", page.display())
                 };
-                self.notices.push(notices::Kind::Done, said);
+                self.notices.push_written(said, page);
             }
             Some(Err(_)) if self.compare.reporting.is_cancelled => {
                 self.notices.push(notices::Kind::Done, "The report was stopped before anything was written.");

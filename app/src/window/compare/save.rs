@@ -10,7 +10,7 @@ use lovelock_record as recording;
 
 use super::costs::Way;
 use super::{Compare, grid, header};
-use crate::window::{Window, notices};
+use crate::window::Window;
 
 /// An image that is being written.
 pub(super) struct Saving {
@@ -79,7 +79,7 @@ impl Window {
     pub(in crate::window) fn report_saved(&mut self) {
         while let Some(saved) = self.compare.saved() {
             match saved {
-                Ok(path) => self.notices.push(notices::Kind::Done, format!("Saved {}", path.display())),
+                Ok(path) => self.notices.push_written(format!("Saved {}", path.display()), path),
                 Err(why) => self.fail(why),
             }
         }

@@ -60,6 +60,8 @@ pub(crate) struct PathDialog {
     folder: Folder,
     /// The row of the list that the keys have chosen.
     chosen: Option<usize>,
+    /// The row that was clicked last.
+    clicked: Option<folder::Entry>,
     stage: Stage,
     /// Why the path was refused.
     error: Option<String>,
@@ -103,6 +105,7 @@ impl PathDialog {
             recent: Vec::new(),
             folder: Folder::default(),
             chosen: None,
+            clicked: None,
             stage: Stage::Types,
             error: None,
             browsed: None,
@@ -185,11 +188,16 @@ impl PathDialog {
             ui.add_enabled_ui(types, |ui| {
                 entered = self.field(ui, &rows);
                 self.target(ui);
-                if let Some(chosen) = list::show(ui, &rows, self.chosen, &self.folder) {
-                    if chosen.is_twice && !chosen.entry.is_folder {
-                        entered = true;
+                if let Some(list::Chosen { entry, is_twice }) =
+                    list::show(ui, &rows, self.chosen, &self.folder)
+                {
+                    // The first click has changed the rows: the second one means the row of the first.
+                    if let Some(first) = self.clicked.take().filter(|_| is_twice) {
+                        entered |= !first.is_folder;
+                    } else {
+                        self.take(&entry);
+                        self.clicked = Some(entry);
                     }
-                    self.take(&chosen.entry);
                 }
             });
             ui.allocate_ui_with_layout(vec2(WIDTH, SAID), Layout::top_down(Align::Min), |ui| {
@@ -225,7 +233,9 @@ impl PathDialog {
             if pressed(ui, Key::ArrowUp) {
                 self.chosen = self.chosen.and_then(|at| at.checked_sub(1));
             }
-            if pressed(ui, Key::Tab) && !self.complete(rows) {
+            if ui.input_mut(|input| input.consume_key(Modifiers::SHIFT, Key::Tab)) {
+                ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Previous));
+            } else if pressed(ui, Key::Tab) && !self.complete(rows) {
                 ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
             }
             entered = pressed(ui, Key::Enter);
@@ -510,10 +520,12 @@ impl PathDialog {
             return !is_done;
         }
         let common = folder::common_start(&found);
-        let longer = common.chars().count() > prefix.chars().count();
+        // The text may mean a folder by another name: `~` and `.` do.
+        let kept = self.typed.trim().strip_suffix(prefix.as_str()).unwrap_or_default().to_owned();
+        let is_whole = kept.len() + prefix.len() == self.typed.trim().len();
+        let longer = is_whole && common.chars().count() > prefix.chars().count();
         if longer {
-            let kept = self.typed.trim().len() - prefix.len();
-            self.typed = format!("{}{common}", &self.typed.trim()[..kept]);
+            self.typed = format!("{kept}{common}");
             let end = self.typed.chars().count();
             self.select = Some([end, end]);
         }

@@ -143,6 +143,8 @@ pub(crate) struct Recorded {
 pub(crate) struct Writing {
     /// Whether moved controls are recorded from now on.
     pub(crate) armed: bool,
+    /// The name of the control that is recorded alone, if one is.
+    pub(crate) only: Option<String>,
     /// Targets of the tracks that are being recorded.
     pub(crate) targets: Vec<String>,
 }

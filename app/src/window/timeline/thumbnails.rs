@@ -124,7 +124,10 @@ impl Thumbnails {
         self.of = Some(Arc::clone(project));
         // The next images may show it too, or a mask in false colours.
         let painted = painted.filter(|painted| {
-            painted.mask.is_none() && (has_looks_of_its_own(project) || !looks(project, &painted.project))
+            painted.mask.is_none()
+                && (Arc::ptr_eq(project, &painted.project)
+                    || has_looks_of_its_own(project)
+                    || !looks(project, &painted.project))
         });
         let duration = if duration_secs.is_finite() { duration_secs.max(1e-3) } else { 1e-3 };
         let slots = slots(zoom, duration, width);

@@ -12,6 +12,9 @@ use crate::window::theme;
 const RATES: [(f64, &str); 6] =
     [(0.1, "1/10 ×"), (0.25, "1/4 ×"), (0.5, "1/2 ×"), (1.0, "1 ×"), (1.5, "1 1/2 ×"), (2.0, "2 ×")];
 
+/// The longest name of the control that is recorded alone, characters.
+const LONGEST_NAME: usize = 24;
+
 pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> {
     let mut request = None;
     let play = if view.playing { icons::ICON_PAUSE } else { icons::ICON_PLAY_ARROW };
@@ -36,6 +39,11 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> 
     }
     if toggle(ui, view.writing.armed, icons::ICON_TIMELINE, Command::WriteTracks.info()) {
         request = Some(TimelineRequest::Run(Command::WriteTracks));
+    }
+    if let Some(only) = &view.writing.only {
+        let name: String = only.chars().take(LONGEST_NAME).collect();
+        ui.label(RichText::new(name).small().color(theme::RECORDING))
+            .hover_tooltip(format!("{only} alone is recorded (W ends it)."));
     }
     request = rate(ui, view.rate).or(request);
     ui.monospace(format!("{:6.2} s", view.time_secs));
