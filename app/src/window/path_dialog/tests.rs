@@ -72,3 +72,28 @@ fn a_folder_that_is_entered_keeps_the_name_that_is_saved() {
     assert_eq!(opens.typed, "/b c/");
     assert_eq!(opens.place(), (PathBuf::from("/b c/"), String::new()));
 }
+
+#[test]
+fn a_text_that_means_a_folder_by_another_name_is_not_completed_beyond_it() {
+    let above = tempfile::tempdir().expect("a folder");
+    for name in ["output-1", "output-2"] {
+        std::fs::create_dir(above.path().join(name)).expect("a folder");
+    }
+    // The folder that is suggested does not exist yet.
+    let suggestion = above.path().join("out").join("dance.mp4");
+    let mut dialog = PathDialog::new(Purpose::Film, &suggestion);
+    let ctx = egui::Context::default();
+    let mut complete = |typed: &str| {
+        (dialog.typed, dialog.is_edited, dialog.chosen) = (typed.to_owned(), true, None);
+        let (at, _) = dialog.place();
+        dialog.folder.show(&at, Purpose::Film, &ctx);
+        while dialog.folder.is_reading() {
+            dialog.folder.show(&at, Purpose::Film, &ctx);
+        }
+        assert!(dialog.complete(&[]));
+        (dialog.typed.clone(), dialog.chosen)
+    };
+    assert_eq!(complete("."), (".".to_owned(), Some(0)));
+    let whole = above.path().join("out").display().to_string();
+    assert_eq!(complete(&whole), (format!("{whole}put-"), None));
+}

@@ -7,7 +7,7 @@ use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::{Shown, screen_of};
+use super::{Shown, double_click, screen_of};
 use crate::window::palette::{Found, Palette};
 use crate::window::path_dialog::{Answer, PathDialog, Purpose};
 
@@ -195,6 +195,24 @@ fn the_list_is_used_by_the_keyboard() {
     harness.key_press(Key::Enter);
     harness.run();
     let wanted = folder.path().join("hair/curly-2.take");
+    assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::Beside, wanted)));
+}
+
+#[test]
+fn a_double_click_means_the_row_of_its_first_click() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["a.take", "b.take", "c.take"] {
+        std::fs::write(folder.path().join(name), b"x").expect("a file");
+    }
+    let mut harness = dialog(Purpose::Beside, &folder.path().join(""));
+    until_listed(&mut harness, "a.take");
+    harness.event(Event::Text("c".to_owned()));
+    harness.run();
+    assert!(harness.query_by_label("a.take").is_none());
+    // The first click fills the field, and then the folder above is the first row.
+    let at = harness.get_by_label("c.take").rect().center();
+    double_click(&mut harness, at);
+    let wanted = folder.path().join("c.take");
     assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::Beside, wanted)));
 }
 
