@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::route::{Ring, SPARE, STEP};
-use super::{CAUGHT, Gathered};
+use super::{CAUGHT, Gathered, HairTie};
 use crate::frame::{reference_normal, transport};
 use crate::polyline::{Reach, next_at, sample};
 use crate::{Guides, Hairstyle, Obstacle};
@@ -28,6 +28,14 @@ pub(super) fn length(guides: &Guides, guide: usize) -> f32 {
     (1..guides.points_per_guide).map(|i| guides.point(guide, i).distance(guides.point(guide, i - 1))).sum()
 }
 
+/// The height above the skin of hair that has come `arc` metres from its root, with the fraction `layer` of the gathered hair below
+/// it, metres.
+pub(super) fn height(tie: &HairTie, layer: f32, arc: f32) -> f32 {
+    let thick = THICKNESS[1] + (THICKNESS[0] - THICKNESS[1]) * tie.tightness;
+    let rises = 1.0 - (-arc / 0.05).exp();
+    (SKIN + thick * layer * rises).min(0.6 * arc + 0.0005)
+}
+
 /// Lays the guides of a wisp; `None` where one of them cannot reach beyond the ring.
 pub(super) fn wisp(
     style: &Hairstyle,
@@ -42,11 +50,7 @@ pub(super) fn wisp(
     let root = (roots[0] + roots[1] + roots[2]) / 3.0;
     let [a, b] = ring.across;
     let through = ring.centre + (a * caught.disc[0] + b * caught.disc[1]) * ring.tie.radius;
-    let thick = THICKNESS[1] + (THICKNESS[0] - THICKNESS[1]) * ring.tie.tightness;
-    let height = |arc: f32| {
-        let rises = 1.0 - (-arc / 0.05).exp();
-        (SKIN + thick * caught.layer * rises).min(0.6 * arc + 0.0005)
-    };
+    let height = |arc: f32| height(&ring.tie, caught.layer, arc);
     let mut way = Ring::over_head(obstacle, middle, root, through, &height);
     let to_ring = way.len() - 1;
     let arc: f32 = way.windows(2).map(|p| p[0].distance(p[1])).sum();
@@ -119,16 +123,9 @@ fn along(
         let link = guides.point(guide, i).distance(guides.point(guide, i - 1));
         at = next_at(target, at, from, link, Reach { beyond: link / STEP + 2.0, step: 0.5 });
         direction = (sample(target, at) - from).normalize_or(direction);
-        let mut p = from + direction * link;
         let margin = 0.0015_f32.min(0.3 * link * i as f32);
-        for _ in 0..8 {
-            let (distance, n) = obstacle.distance(p);
-            if distance >= margin || link <= 0.0 {
-                break;
-            }
-            direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
-            p = from + direction * link;
-        }
+        let (p, turned) = outside(from, direction, link, margin, obstacle);
+        direction = turned;
         // Nothing beyond the last point could be held.
         if at >= ring as f32 && passed.is_none() && i + 1 < points {
             passed = Some(i);
@@ -136,4 +133,25 @@ fn along(
         out.push(p);
     }
     Some((out, passed?))
+}
+
+/// The end of a link from `from` along `direction`, which is turned until that end is `margin` outside `obstacle`, and the direction
+/// that the link has then.
+pub(super) fn outside(
+    from: Vec3,
+    mut direction: Vec3,
+    link: f32,
+    margin: f32,
+    obstacle: &dyn Obstacle,
+) -> (Vec3, Vec3) {
+    let mut p = from + direction * link;
+    for _ in 0..8 {
+        let (distance, n) = obstacle.distance(p);
+        if distance >= margin || link <= 0.0 {
+            break;
+        }
+        direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
+        p = from + direction * link;
+    }
+    (p, direction)
 }

@@ -4,12 +4,14 @@
 //! 2. [`route`]: the path of each wisp's middle over the head to the ring, pulled tight around the skull, and beyond
 //!    the ring as a tail or wound up as a bun.
 //! 3. [`lay`]: the wisp's guides along that path, outside the body, with unchanged link lengths.
-//! 4. [`offsets`]: the strands' offsets, flattened before the ring.
+//! 4. [`left_out`]: wisps that are too short for the ring, which lie on the head.
+//! 5. [`offsets`]: the strands' offsets, flattened before the ring.
 //!
 //! [`Hairstyle::held`] tells the simulator which points the tie holds, and [`Hairstyle::ropes`] which hair stays
 //! together beyond it.
 
 mod lay;
+mod left_out;
 mod offsets;
 mod route;
 mod settings;
@@ -21,6 +23,7 @@ pub use settings::{HairTie, TieKind, TieReach};
 
 use crate::frame::widest_radii;
 use crate::{Bounded, Hairstyle, Obstacle, Rope, Wisp};
+use left_out::LeftOut;
 use route::Ring;
 
 /// How firmly a tie holds the hair inside it, 1/s: an acceleration of 300 m/s^2 moves the hair by 0.02 mm.
@@ -41,8 +44,9 @@ struct Gathered {
 }
 
 /// `style` with its hair gathered by `ties` into ponytails or buns at rest, with the same number of guides and points
-/// and the same lengths. A wisp goes to the first tie that includes it and that all its guides can reach; the other
-/// wisps stay as they are. Only the first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
+/// and the same lengths. A wisp goes to the first tie that includes it and that all its guides can reach. One that is too
+/// short for the ties that include it lies on the head where the hair around it is gathered; the other wisps stay as they
+/// are. Only the first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
 #[must_use]
 pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hairstyle {
     tied_where(style, ties, obstacle, |_| true)
@@ -73,7 +77,7 @@ pub fn tied_where(
     let ears = middle.z - 0.1 * half.z;
     // From below the middle, the shortest path over the head crosses its top.
     let middle = middle - Vec3::Y * (0.5 * half.y);
-    let gathered = gather(style, &rings, ears, includes);
+    let (gathered, mut left) = gather(style, &rings, ears, includes);
 
     let laid: Vec<Option<lay::Laid>> = gathered
         .par_iter()
@@ -84,7 +88,10 @@ pub fn tied_where(
     let first_rope = out.ropes.len();
     out.ropes.extend(rings.iter().map(|ring| Rope { tightness: ring.tie.tightness, ..Rope::default() }));
     for (of, laid) in gathered.iter().zip(laid) {
-        let Some(laid) = laid else { continue };
+        let Some(laid) = laid else {
+            left.push(LeftOut { wisp: of.wisp, ring: of.ring });
+            continue;
+        };
         let tie = &rings[of.ring].tie;
         let taut = TAUT_HOLD[0] + (TAUT_HOLD[1] - TAUT_HOLD[0]) * tie.tightness;
         for (n, &guide) in style.wisps[of.wisp].guides.iter().enumerate() {
@@ -107,6 +114,20 @@ pub fn tied_where(
         }
         caught.push((of, laid));
     }
+    let is_tied = |wisp: &Wisp| {
+        let first = wisp.guides[0] as usize * points;
+        out.held[first..first + points].iter().any(|hold| *hold >= 0.0)
+    };
+    let is_tied: Vec<bool> = style.wisps.iter().map(is_tied).collect();
+    let lain = left_out::lain(style, &left, &is_tied, &rings, obstacle);
+    for (wisp, guides) in &lain {
+        for (&guide, of_guide) in style.wisps[*wisp].guides.iter().zip(guides) {
+            let first = guide as usize * points;
+            for (i, p) in of_guide.iter().enumerate() {
+                (out.guides.x[first + i], out.guides.y[first + i], out.guides.z[first + i]) = (p.x, p.y, p.z);
+            }
+        }
+    }
     out.ropes.retain(|rope| !rope.guides.is_empty());
     // The larger limit, so that strands neither narrow at once when a tie is made, nor at rest in a wide bun.
     if !out.widest.is_empty() {
@@ -114,13 +135,16 @@ pub fn tied_where(
             *widest = widest.max(tied);
         }
     }
-    let moved: Vec<(usize, Vec<Vec3>)> = caught
+    let first_of =
+        |wisp: usize| style.strands.first_point[style.wisps[wisp].first_strand as usize] as usize;
+    let of_caught = caught.par_iter().map(|(of, laid)| {
+        let tie = &rings[of.ring].tie;
+        (first_of(of.wisp), offsets::of_wisp(style, &out, of.wisp, laid, tie, obstacle))
+    });
+    let of_lain = lain
         .par_iter()
-        .map(|(of, laid)| {
-            let first = style.strands.first_point[style.wisps[of.wisp].first_strand as usize] as usize;
-            (first, offsets::of_wisp(style, &out, of.wisp, laid, &rings[of.ring].tie, obstacle))
-        })
-        .collect();
+        .map(|(wisp, _)| (first_of(*wisp), offsets::of_left_out(style, &out, *wisp, obstacle)));
+    let moved: Vec<(usize, Vec<Vec3>)> = of_caught.chain(of_lain).collect();
     for (first, offsets) in moved {
         for (k, offset) in offsets.into_iter().enumerate() {
             let set = &mut out.strands;
@@ -133,10 +157,14 @@ pub fn tied_where(
 }
 
 /// The ring of each wisp and its position in that ring: hair from far away lies around hair from nearby, on the side
-/// that it comes from.
-fn gather(style: &Hairstyle, rings: &[Ring], ears: f32, includes: impl Fn(Vec3) -> bool) -> Vec<Gathered> {
-    let root_of =
-        |wisp: &Wisp| wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
+/// that it comes from. Also the wisps that rings include and that are too short for them.
+fn gather(
+    style: &Hairstyle,
+    rings: &[Ring],
+    ears: f32,
+    includes: impl Fn(Vec3) -> bool,
+) -> (Vec<Gathered>, Vec<LeftOut>) {
+    let root_of = |wisp: &Wisp| root_of(style, wisp);
     let mut out = Vec::new();
     let held = |wisp: &Wisp| {
         let first = wisp.guides[0] as usize * style.guides.points_per_guide;
@@ -147,6 +175,7 @@ fn gather(style: &Hairstyle, rings: &[Ring], ears: f32, includes: impl Fn(Vec3) 
     };
     let mut taken: Vec<bool> =
         style.wisps.iter().map(|wisp| held(wisp) || !includes(root_of(wisp))).collect();
+    let mut short: Vec<Option<usize>> = vec![None; style.wisps.len()];
     for (r, ring) in rings.iter().enumerate() {
         let mut of_ring: Vec<(f32, usize, Vec3)> = Vec::new();
         for (w, wisp) in style.wisps.iter().enumerate() {
@@ -159,6 +188,8 @@ fn gather(style: &Hairstyle, rings: &[Ring], ears: f32, includes: impl Fn(Vec3) 
                 wisp.guides.iter().map(|&g| lay::length(&style.guides, g as usize)).fold(f32::MAX, f32::min);
             if shortest > straight + CAUGHT {
                 of_ring.push((straight, w, root));
+            } else {
+                short[w].get_or_insert(r);
             }
         }
         of_ring.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -174,7 +205,14 @@ fn gather(style: &Hairstyle, rings: &[Ring], ears: f32, includes: impl Fn(Vec3) 
             out.push(Gathered { wisp: w, ring: r, disc, layer });
         }
     }
-    out
+    let left = short.into_iter().enumerate().filter(|(w, _)| !taken[*w]);
+    let left = left.filter_map(|(wisp, ring)| Some(LeftOut { wisp, ring: ring? })).collect();
+    (out, left)
+}
+
+/// The middle of the roots of a wisp's guides, head space.
+fn root_of(style: &Hairstyle, wisp: &Wisp) -> Vec3 {
+    wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0
 }
 
 #[cfg(test)]

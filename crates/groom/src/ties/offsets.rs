@@ -1,8 +1,8 @@
 //! The offsets of a tied wisp's strands: flattened before the ring.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
-use super::lay::Laid;
+use super::lay::{self, Laid};
 use super::{HairTie, TieKind};
 use crate::{Hairstyle, Obstacle, WispCurve};
 
@@ -51,6 +51,48 @@ pub(super) fn of_wisp(
                 + new.frame(u) * (offset(i) * share(tie, taut, u, ring, link));
             // Beyond the ring, hair hangs free of the head; before it, hair lies on the skin.
             if u < ring + 1.0 && i > first {
+                for _ in 0..2 {
+                    let (distance, n) = obstacle.distance(point);
+                    point += n * (SKIN.min(0.3 * arc) - distance).max(0.0);
+                }
+            }
+            out.push(new.offset_to(weights, u, point));
+        }
+    }
+    out
+}
+
+/// The offsets of all points of the strands of a wisp that is left out, in its new frame: each strand keeps its place beside the
+/// guides, outside the body.
+pub(super) fn of_left_out(
+    before: &Hairstyle,
+    after: &Hairstyle,
+    wisp: usize,
+    obstacle: &dyn Obstacle,
+) -> Vec<Vec3> {
+    let (set, wisp) = (&before.strands, &before.wisps[wisp]);
+    let old = WispCurve::at_rest(&before.guides, wisp);
+    let new = WispCurve::at_rest(&after.guides, wisp);
+    let links = (before.guides.points_per_guide - 1) as f32;
+    let link = lay::length(&before.guides, wisp.guides[0] as usize) / links;
+    let mut out = Vec::new();
+    for strand in wisp.first_strand as usize..(wisp.first_strand + wisp.strand_count) as usize {
+        let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
+        let (weights, first) = (set.weights[strand], range.start);
+        let offset =
+            |i: usize| Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
+        let turned = |i: usize| {
+            let u = set.guide_param[i];
+            let (from, to) = (old.frame(u), new.frame(u));
+            new.blend(weights, u) + Quat::from_rotation_arc(from.z_axis, to.z_axis) * (from * offset(i))
+        };
+        // Roots stay where they are.
+        let from_root = old.point(weights, set.guide_param[first], offset(first)) - turned(first);
+        for i in range {
+            let u = set.guide_param[i];
+            let arc = u * link;
+            let mut point = turned(i) + from_root * (1.0 - arc / ROOT_JOIN).max(0.0).powi(2);
+            if i > first {
                 for _ in 0..2 {
                     let (distance, n) = obstacle.distance(point);
                     point += n * (SKIN.min(0.3 * arc) - distance).max(0.0);

@@ -112,7 +112,8 @@ fn reach_selects_what_is_gathered_and_the_rest_stays() {
     let half = tied(&style, &[half], &PlainHead);
     let count = |s: &Hairstyle| (0..s.guides.count()).filter(|g| s.held[g * n + 1] >= 0.0).count();
     assert!(count(&half) > 30 && count(&half) < count(&all) - 30, "{} of {}", count(&half), count(&all));
-    for g in (0..style.guides.count()).filter(|g| half.held[g * n + 1] < 0.0) {
+    // What even a tie of all hair leaves out is too short.
+    for g in (0..style.guides.count()).filter(|g| half.held[g * n + 1] < 0.0 && all.held[g * n + 1] >= 0.0) {
         assert_eq!(style.guides.point(g, n - 1), half.guides.point(g, n - 1));
     }
     let none = HairTie {
@@ -224,4 +225,93 @@ fn a_tie_is_placed_on_any_head() {
     assert!(tie.axis.dot(n) > 0.9 && tie.at.z < -0.06 && tie.at.y > 0.12, "{tie:?}");
     let nowhere = HairTie::on(&Scalp::default(), Vec3::NEG_Z, TieKind::Bun);
     assert_eq!(nowhere, HairTie { kind: TieKind::Bun, ..HairTie::default() });
+}
+
+/// Whether a guide is where it was, and the strands of its wisp are.
+fn is_unchanged(wisp: &crate::Wisp, [before, after]: [&Hairstyle; 2]) -> bool {
+    let n = before.guides.points_per_guide;
+    let (a, b) = (&before.strands, &after.strands);
+    let first = wisp.first_strand as usize;
+    let last = first + wisp.strand_count as usize;
+    let of_strands = a.first_point[first] as usize..a.first_point[last] as usize;
+    let same_guide = |g: usize| (0..n).all(|i| before.guides.point(g, i) == after.guides.point(g, i));
+    wisp.guides.iter().all(|&g| same_guide(g as usize))
+        && a.offset_normal[of_strands.clone()] == b.offset_normal[of_strands.clone()]
+        && a.offset_binormal[of_strands.clone()] == b.offset_binormal[of_strands.clone()]
+        && a.offset_tangent[of_strands.clone()] == b.offset_tangent[of_strands]
+}
+
+#[test]
+fn hair_that_is_too_short_for_a_tie_lies_on_the_head() {
+    let settings = GroomSettings { strands_per_wisp: 4, ..GroomSettings::preset(Preset::Smooth) };
+    let style = grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("it grows");
+    let after = tied(&style, &[HairTie::default()], &PlainHead);
+    after.check().expect("sound");
+    let n = style.guides.points_per_guide;
+    let is_held = |wisp: &crate::Wisp| after.held[wisp.guides[0] as usize * n + 1] >= 0.0;
+    let moved: Vec<&crate::Wisp> = style
+        .wisps
+        .iter()
+        .filter(|wisp| !is_held(wisp) && !is_unchanged(wisp, [&style, &after]))
+        .collect();
+    assert!(moved.len() >= 6, "only {} wisps are left out", moved.len());
+    // Mean and 95th percentile of the distance from the head, millimetres.
+    let off = |style: &Hairstyle| {
+        let guides = moved.iter().flat_map(|wisp| wisp.guides);
+        let points = guides.flat_map(|g| (1..n).map(move |i| (g as usize, i)));
+        let mut off: Vec<f32> =
+            points.map(|(g, i)| 1e3 * PlainHead.distance(style.guides.point(g, i)).0).collect();
+        off.sort_by(f32::total_cmp);
+        (off.iter().sum::<f32>() / off.len() as f32, off[off.len() * 19 / 20])
+    };
+    // The control: hair that keeps the shape of the fuller style.
+    let (before, now) = (off(&style), off(&after));
+    assert!(before.0 > 12.0 && before.1 > 25.0, "{before:?}");
+    assert!(now.0 < 0.75 * before.0 && now.1 < 0.75 * before.1, "{before:?} became {now:?}");
+    for (a, b) in lengths(&after).into_iter().zip(lengths(&style)) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
+    }
+    for wisp in moved {
+        for g in wisp.guides.map(|g| g as usize) {
+            assert_eq!(after.guides.point(g, 0), style.guides.point(g, 0));
+            let links: Vec<Vec3> =
+                (1..n).map(|i| after.guides.point(g, i) - after.guides.point(g, i - 1)).collect();
+            let sharpest = links.windows(2).map(|pair| pair[0].angle_between(pair[1])).fold(0.0, f32::max);
+            assert!(sharpest < 1.5, "guide {g} is folded: {sharpest}");
+        }
+        let curves = [&style, &after].map(|style| crate::WispCurve::at_rest(&style.guides, wisp));
+        for s in wisp.first_strand..wisp.first_strand + wisp.strand_count {
+            let i = style.strands.first_point[s as usize] as usize;
+            let root = |curve: &crate::WispCurve, set: &crate::StrandSet| {
+                let o = Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
+                curve.point(set.weights[s as usize], set.guide_param[i], o)
+            };
+            let moves = root(&curves[0], &style.strands).distance(root(&curves[1], &after.strands));
+            assert!(moves < 1e-5, "a strand of guide {} leaves its root by {moves}", wisp.guides[0]);
+        }
+    }
+}
+
+#[test]
+fn a_tie_that_leaves_nothing_out_moves_no_other_hair() {
+    let style = long();
+    let n = style.guides.points_per_guide;
+    let near = HairTie {
+        reach: TieReach::InSphere,
+        sphere_at_ring: true,
+        sphere_radius: 0.06,
+        ..HairTie::default()
+    };
+    let after = tied(&style, &[near], &PlainHead);
+    let is_held = |wisp: &&crate::Wisp| after.held[wisp.guides[0] as usize * n + 1] >= 0.0;
+    let (held, others): (Vec<&crate::Wisp>, Vec<&crate::Wisp>) = style.wisps.iter().partition(is_held);
+    assert!(held.len() > 3 && others.len() > 30, "{} and {}", held.len(), others.len());
+    assert!(others.iter().all(|wisp| is_unchanged(wisp, [&style, &after])));
+    // Nor does a tie that gathers nothing, whose hair has lost nothing that it lay on.
+    let short = GroomSettings { wisps: 60, strands_per_wisp: 4, length: 0.05, ..GroomSettings::default() };
+    let short = grow(&short, &PlainHead.scalp(32), &PlainHead).expect("it grows");
+    let far = HairTie { at: Vec3::new(0.0, 0.3, -0.3), ..HairTie::default() };
+    let after = tied(&short, &[far], &PlainHead);
+    assert!(after.held.iter().all(|hold| *hold < 0.0), "control: nothing is gathered");
+    assert!(short.wisps.iter().all(|wisp| is_unchanged(wisp, [&short, &after])));
 }
