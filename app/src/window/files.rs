@@ -88,6 +88,7 @@ impl Window {
     /// The dialog that asked for a file stays open if it cannot be used.
     pub(super) fn take_opened(&mut self) {
         while self.pending.is_none()
+            && self.after_saving.is_none()
             && let Some(Opened { path, aim, found }) = self.openings.next()
         {
             let dialog = self.dialog.take_if(|dialog| dialog.waiting() == Some(path.as_path()));
