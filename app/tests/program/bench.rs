@@ -127,7 +127,7 @@ fn wrong_requests_are_rejected_before_any_work() {
         (&["bench", "wig"], "voxel-map, occupancy-order or reference"),
         (&["bench", "--baseline", "none.json"], "none.json"),
         (&["bench", "--frames", "0"], "1..=1000"),
-        (&["bench", "--backend", "magic"], "expected auto, gpu or cpu"),
+        (&["bench", "--backend", "magic"], "must be auto, gpu or cpu"),
         (&["bench", "--shadow", "magic"], "occupancy-maps"),
         (&["bench", "--transparency", "magic"], "occupancy-order"),
         (&["bench", "--draw", "magic"], "clusters"),

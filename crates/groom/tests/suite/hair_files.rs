@@ -62,7 +62,7 @@ fn tressfx_offsets_are_tested() {
     bytes[12..16].copy_from_slice(&100_u32.to_le_bytes());
     assert!(refusal(&bytes).contains("byte 12: found positions at byte 100"));
     bytes[12..16].copy_from_slice(&100_000_u32.to_le_bytes());
-    assert!(refusal(&bytes).contains("wanted a place inside the file"));
+    assert!(refusal(&bytes).contains("; must be a place inside the file"));
     bytes[12..16].copy_from_slice(&161_u32.to_le_bytes());
     assert!(refusal(&bytes).contains("byte 161: found a file of 400 bytes; must be 401 bytes or more"));
     // Texture coordinates past the end are harmless, because they are not needed.
@@ -121,9 +121,9 @@ fn other_files_are_refused() {
     // 5.0 and 2.9 are unknown versions.
     assert!(
         refusal(&tressfx(5.0, 1, 4))
-            .contains("wanted `HAIR` (Yuksel), a version from 3.0 to 4.9 as a float (TressFX), `#usda`")
+            .contains("; must be `HAIR` (Yuksel), a version from 3.0 to 4.9 as a float (TressFX), `#usda`")
     );
-    assert!(refusal(&tressfx(2.9, 1, 4)).contains("wanted"));
+    assert!(refusal(&tressfx(2.9, 1, 4)).contains("; must be"));
     let missing = load_hair(std::path::Path::new("no/such/file.hair")).expect_err("no such file");
     assert!(missing.to_string().starts_with("no/such/file.hair: cannot be read: "));
 }

@@ -215,7 +215,7 @@ fn a_database_of_hair_clusters_is_described() {
     assert!(error.to_string().contains("a ü.bin") && error.exit_code() == 2, "{error}");
     // A file that only begins alike is none.
     std::fs::write(&path, b"LVLKSA").expect("written");
-    assert!(info(&path).is_err_and(|error| error.to_string().contains("not a file that is known here")));
+    assert!(info(&path).is_err_and(|error| error.to_string().contains("found an unknown kind of file")));
 }
 
 #[test]

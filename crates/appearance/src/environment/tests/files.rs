@@ -169,7 +169,7 @@ fn exr_infinities_are_counted() {
 fn exr_without_colours_is_refused_by_its_channels() {
     let one = FlatSamples::F32(vec![1.0; 32]);
     let message = refusal("depth.exr", &layer(Vec2(0, 0), &[("Y", one.clone()), ("Z", one)], whole()));
-    assert!(message.contains("has the channels Y, Z, wanted"), "{message}");
+    assert!(message.contains("has the channels Y, Z; must"), "{message}");
 }
 
 #[test]

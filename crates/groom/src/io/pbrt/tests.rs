@@ -101,7 +101,7 @@ fn broken_scenes_are_refused_in_one_line() {
         ("Shape \"sphere\"", "found no curve; must be a directive `Shape \"curve\"`"),
         ("Shape \"curve\" \"point3 P\" [ 0 0 0 ]", "found 1 curves, none"),
         ("Translate 1 two 3", "byte 12: found `two`; must be three numbers after Translate"),
-        ("Transform [ 1 0 0 0 ]", "wanted sixteen numbers"),
+        ("Transform [ 1 0 0 0 ]", "must be sixteen numbers"),
         ("Shape curve", "the kind of a shape in quotes"),
         ("Shape \"curve\" \"point3 P\" [ 0 0 0", "truncated"),
         ("Shape \"curve", "ends inside a string"),
