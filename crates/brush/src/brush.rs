@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::carry::CarriedGuide;
 use crate::chain::{evened, lay, lengths};
-use crate::fall::{clearances, fallen};
+use crate::fall::{fallen, lifts};
 use crate::settings::{BrushMirror, BrushSettings};
 use crate::stroke::{Dab, Resampler, StrokeSample, mirror};
 use crate::tool::Tool;
@@ -49,8 +49,8 @@ pub struct Brush {
     way: Vec<Vec3>,
     grab: Vec<Grab>,
     neighbours: Vec<Vec<u32>>,
-    /// How far the points of each guide were from the body when a comb touched it first, metres; empty for the others.
-    before: Vec<Vec<f32>>,
+    /// How far a comb has lifted the points of each guide off the body so far, metres; empty for the others.
+    lifted: Vec<Vec<f32>>,
 }
 
 impl Brush {
@@ -85,7 +85,7 @@ impl Brush {
             locks: Wisps::of(rest),
             edits: edits.of_roots(&roots),
             touched: vec![false; count],
-            before: vec![Vec::new(); count],
+            lifted: vec![Vec::new(); count],
             frozen,
             resampler: Resampler::default(),
             way: Vec::new(),
@@ -171,10 +171,10 @@ impl Brush {
         };
         let mut seen = GuideFrame::at_rest(&frame.guides, head_from_world, 0.0).guides;
         let combed: Vec<usize> =
-            (0..self.before.len()).filter(|guide| !self.before[*guide].is_empty()).collect();
+            (0..self.lifted.len()).filter(|guide| !self.lifted[*guide].is_empty()).collect();
         let fall = |guide: &usize| {
             let points = hand_input(&seen, *guide, 1.0)?;
-            let fallen = fallen(&points, &self.before[*guide], down, falls, around.obstacle)?;
+            let fallen = fallen(&points, &self.lifted[*guide], down, falls, around.obstacle)?;
             let mut carried = self.carried(*guide, points)?;
             carried.move_to(&fallen, 1.0)?;
             changed_guide(carried)
@@ -187,7 +187,7 @@ impl Brush {
         if self.settings.mirror == BrushMirror::Same {
             self.mirror(&mut seen, &mut changed);
         }
-        self.before.iter_mut().for_each(Vec::clear);
+        self.lifted.iter_mut().for_each(Vec::clear);
         let changed: Vec<usize> = (0..changed.len()).filter(|guide| changed[*guide]).collect();
         for guide in &changed {
             self.touched[*guide] = true;
@@ -246,22 +246,26 @@ impl Brush {
             grab: &self.grab,
             obstacle: around.obstacle,
         };
-        let changes: Vec<(usize, Outcome)> = touched
+        let changes: Vec<(usize, Outcome, Vec<f32>)> = touched
             .par_iter()
             .filter_map(|touched| {
                 let change = stamp.change(touched)?;
-                Some((touched.guide, self.outcome(touched, change, around.obstacle)?))
+                let outcome = self.outcome(touched, change, around.obstacle)?;
+                let lifts = match &outcome {
+                    Outcome::Guide(now) if self.tool == Tool::Comb => {
+                        lifts([&touched.points, &now.seen], around.obstacle)
+                    }
+                    _ => Vec::new(),
+                };
+                Some((touched.guide, outcome, lifts))
             })
             .collect();
-        if self.tool == Tool::Comb {
-            for touched in &touched {
-                let before = &mut self.before[touched.guide];
-                if before.is_empty() {
-                    *before = clearances(&touched.points, around.obstacle);
-                }
+        for (guide, outcome, lifts) in changes {
+            let lifted = &mut self.lifted[guide];
+            lifted.resize(lifted.len().max(lifts.len()), 0.0);
+            for (sum, lift) in lifted.iter_mut().zip(lifts) {
+                *sum += lift;
             }
-        }
-        for (guide, outcome) in changes {
             match outcome {
                 Outcome::Guide(carried) => self.keep(seen, *carried, changed),
                 Outcome::Removed(removed) => self.each_of_wisp(guide, |brush, guide| {

@@ -16,30 +16,31 @@ const LIFTED: [f32; 2] = [0.01, 0.04];
 /// Hair may lie on other hair up to this far from the body, metres.
 const LIES: f32 = 0.025;
 
-/// How far each point is from the body, metres.
-pub(crate) fn clearances(points: &[Vec3], obstacle: &dyn Obstacle) -> Vec<f32> {
-    points.iter().map(|p| Bounded(obstacle).distance(*p).0).collect()
+/// How much farther from the body each point is after a change than before it, metres.
+pub(crate) fn lifts([before, after]: [&[Vec3]; 2], obstacle: &dyn Obstacle) -> Vec<f32> {
+    let distance = |p: &Vec3| Bounded(obstacle).distance(*p).0;
+    before.iter().zip(after).map(|(before, after)| distance(after) - distance(before)).collect()
 }
 
 /// A guide after the links that a stroke has lifted off the body have turned toward `down`, a unit vector, until they lie on it again or hang.
-/// `before` is how far its points were from the body before the stroke, metres; `amount` is 1 for hair that nothing holds, and 0 for hair
-/// that stays. `None` if nothing falls.
+/// `lifts` is how far the stroke has lifted its points, metres, without what their own motion did; `amount` is 1 for hair that nothing
+/// holds, and 0 for hair that stays. `None` if nothing falls.
 pub(crate) fn fallen(
     points: &[Vec3],
-    before: &[f32],
+    lifts: &[f32],
     down: Vec3,
     amount: f32,
     obstacle: &dyn Obstacle,
 ) -> Option<Vec<Vec3>> {
     let links = lengths(points);
+    let distance = |p: &Vec3| Bounded(obstacle).distance(*p).0;
+    let lift = |i: usize| lifts.get(i).or(lifts.last()).copied().unwrap_or(0.0);
+    let free: Vec<f32> = points.iter().enumerate().map(|(i, p)| (distance(p) - lift(i)).max(LIES)).collect();
     let mut now = points.to_vec();
     let mut falls = false;
     for _ in 0..STEPS {
-        let lifted = |(i, p): (usize, &Vec3)| {
-            let free = before.get(i).or(before.last()).map_or(LIES, |before| before.max(LIES));
-            smoothstep(LIFTED[0], LIFTED[1], Bounded(obstacle).distance(*p).0 - free)
-        };
-        let lifted: Vec<f32> = now.iter().enumerate().map(lifted).collect();
+        let lifted = |(p, free): (&Vec3, &f32)| smoothstep(LIFTED[0], LIFTED[1], distance(p) - free);
+        let lifted: Vec<f32> = now.iter().zip(&free).map(lifted).collect();
         let mut turns = false;
         let turned = |(i, way): (usize, Vec3)| {
             let angle = way.angle_between(down) * PART * amount * lifted[i + 1];
@@ -54,4 +55,19 @@ pub(crate) fn fallen(
         now = lay(&now, &along(now[0], &ways, &links), &links, obstacle);
     }
     falls.then_some(now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lovelock_groom::NoObstacle;
+
+    #[test]
+    fn only_what_a_comb_has_lifted_falls() {
+        let points: Vec<Vec3> = (0..10_u8).map(|i| Vec3::X * (0.01 * f32::from(i))).collect();
+        let fall = |lift: f32| fallen(&points, &[lift; 10], Vec3::NEG_Y, 1.0, &NoObstacle);
+        assert!(fall(0.0).is_none(), "hair that its own motion has lifted");
+        let hanging = fall(0.1).expect("it falls");
+        assert!((hanging[9] - hanging[0]).normalize_or_zero().y < -0.9, "{hanging:?}");
+    }
 }
