@@ -10,7 +10,8 @@ use crate::window::keys;
 
 /// Carries out the keys that were pressed while the list has them.
 pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
-    let taken = ui.ctx().text_edit_focused() || crate::window::keys::are_held(ui.ctx());
+    // Delete at a point of a curve, or an arrow key at a slider, is meant for that control.
+    let taken = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
     if !view.has_keys || !ui.is_enabled() || taken || view.renamed.is_some() {
         return;
     }
