@@ -334,6 +334,8 @@ impl Window {
                 let pictures = purpose != Purpose::Curves;
                 if pictures {
                     recording::OutputKind::of(path).map_err(|error| error.to_string())?;
+                } else if recording::CurveFormat::of(path).is_none() {
+                    return Err(format!("{}: must end in .usdc, .usd, .usda, .glb or .abc", path.display()));
                 }
                 let access = self.session.access().clone();
                 let panes = (self.layout.compare.shown && pictures).then(|| self.layout.compare.sheet());

@@ -131,6 +131,9 @@ impl Window {
             .zip(pair)
             .zip([(Align2::LEFT_TOP, Align2::LEFT_BOTTOM), (Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM)])
         {
+            if !near && !self.compare.splitting {
+                self.select(ui, part, index);
+            }
             ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
                 ui.set_clip_rect(part.intersect(ui.clip_rect()));
                 self.pane(ui, place, index, project, bottom);
