@@ -2,11 +2,11 @@
 
 use egui::accesskit::{Action, ActionRequest, TreeId};
 use egui::{
-    Context, CornerRadius, Event, FocusDirection, Id, Key, LayerId, Modifiers, Order, Popup, Rect, Stroke,
+    Context, CornerRadius, Event, FocusDirection, Id, Key, LayerId, Modifiers, Order, Rect, Stroke,
     StrokeKind, Ui,
 };
 
-use super::control::is_any_open;
+use super::control::{close_popups, is_any_open};
 use super::{keys, theme};
 
 /// A part of the window that Tab does not leave, in the order in which F6 visits them.
@@ -119,7 +119,7 @@ impl Focus {
 
     /// Goes to the next area that holds a control.
     fn go_round(&mut self, ctx: &Context, forward: bool) {
-        Popup::close_all(ctx);
+        close_popups(ctx);
         let count = Area::ALL.len();
         let step = if forward { 1 } else { count - 1 };
         for distance in 1..=count {

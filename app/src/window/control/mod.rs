@@ -17,7 +17,7 @@ pub(crate) use keying::{
 };
 pub(crate) use number::{Limits, Number, is_escaped, typed};
 pub(crate) use plot_axis::axis_number;
-pub(crate) use popup::{context_popup, is_any_open, popup};
+pub(crate) use popup::{close_all as close_popups, context_popup, is_any_open, popup};
 pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
 pub(crate) use setting::{all_settings, entry, setting, settings};
 pub(crate) use tooltip::{HoverTooltip, keep_free_area};

@@ -31,6 +31,18 @@ pub(crate) fn is_any_open(ctx: &Context) -> bool {
     Popup::is_any_open(ctx) || shown.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
+/// Closes every popup, menu and list. Comes before they are shown.
+pub(crate) fn close_all(ctx: &Context) {
+    Popup::close_all(ctx);
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| data.insert_temp(last_closed(), pass));
+}
+
+/// Where the last pass that closed all popups is stored.
+fn last_closed() -> Id {
+    Id::unique("popups of controls closed")
+}
+
 /// Where the last pass that showed a popup is stored.
 fn last_shown() -> Id {
     Id::unique("popup of controls shown")
@@ -46,7 +58,8 @@ fn show<R>(
     let id = response.id.with("popup of controls");
     let pass = ctx.cumulative_pass_nr();
     let mut state: State = ctx.data(|data| data.get_temp(id)).unwrap_or_default();
-    state.open &= state.pass + 1 >= pass;
+    let closed: Option<u64> = ctx.data(|data| data.get_temp(last_closed()));
+    state.open &= state.pass + 1 >= pass && closed != Some(pass);
     state.open ^= toggled;
     if opened_at.is_some() {
         (state.open, state.at) = (true, opened_at);
@@ -186,6 +199,24 @@ mod tests {
             harness.run_steps(2);
             assert!(!is_any_open(&harness.ctx));
             press(&mut harness, "Settings");
+        }
+    }
+
+    #[test]
+    fn popups_are_closed_from_outside() {
+        let mut harness = screen_of(egui::vec2(700.0, 700.0), Bench::default(), |ui, bench: &mut Bench| {
+            if ui.input(|input| input.key_pressed(Key::F6)) {
+                close_all(ui.ctx());
+            }
+            let button = ui.button("Settings");
+            popup(&button, |ui| contents(ui, bench));
+        });
+        for _ in 0..2 {
+            press(&mut harness, "Settings");
+            assert!(is_open(&harness));
+            harness.key_press(Key::F6);
+            harness.run();
+            assert!(!is_open(&harness));
         }
     }
 
