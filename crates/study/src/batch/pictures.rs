@@ -20,6 +20,7 @@ impl ReferencePictures {
     pub(super) fn of(&self, backend: Backend) -> Option<&Picture> {
         self.0.iter().find(|(known, _)| *known == backend).map(|(_, picture)| picture)
     }
+
     /// The difference of the GPU's from the CPU's; `None` without both.
     ///
     /// # Errors
