@@ -17,10 +17,8 @@ use super::viewport::{self, Viewport};
 use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
 use crate::window::control::HoverTooltip;
 
-/// Shorter pre-rolls show no progress bar, seconds.
-const SHOW_SETTLING_SECS: f64 = 0.15;
-/// Shorter loads show no progress bar, such as hair that grows while a slider is dragged, seconds.
-const SHOW_LOADING_SECS: f64 = 0.5;
+/// Files and sounds that are read faster show no progress bar, seconds.
+const SHOW_READING_SECS: f64 = 0.15;
 
 impl Window {
     /// One pass.
@@ -366,17 +364,12 @@ impl Window {
                 }
                 row += 1;
             }
-            let loading = self.session.worker().load_progress();
-            // The simulation waits for a take, so its progress is shown at once.
-            let opens_take = self.history.project().take.file.is_some();
-            let patience_secs = if opens_take { 0.0 } else { SHOW_LOADING_SECS };
-            let left = loading.as_ref().map_or(0.0, |loading| patience_secs - loading.taken_secs);
-            // Once the bar is visible it stays, also through the loads that follow.
-            self.session.load_is_seen = loading.is_some() && (self.session.load_is_seen || left <= 0.0);
-            if !self.session.load_is_seen && left > 0.0 {
-                ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
+            let dragged = ui.input(|input| input.pointer.any_down());
+            let ([loads, settles], again) = self.session.follow_work(dragged);
+            if let Some(after) = again {
+                ui.request_repaint_after(after);
             }
-            if let Some(progress) = loading.filter(|_| self.session.load_is_seen) {
+            if let Some(progress) = self.session.worker().load_progress().filter(|_| loads) {
                 let tip = "Stops loading. The scene stays unchanged.";
                 if progress_overlay(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
@@ -385,7 +378,7 @@ impl Window {
                 row += 1;
             }
             if let Some((name, taken_secs)) = self.openings.running() {
-                let left = SHOW_LOADING_SECS - taken_secs;
+                let left = SHOW_READING_SECS - taken_secs;
                 if left > 0.0 {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
@@ -397,7 +390,7 @@ impl Window {
                 }
             }
             if let Some(loading) = self.soundtrack.loading()
-                && loading.taken_secs > SHOW_LOADING_SECS
+                && loading.taken_secs > SHOW_READING_SECS
             {
                 let tip = "Stops reading the sound. The dance is silent.";
                 if progress_overlay(ui, rect, row, loading.fraction, "Reading the sound", tip) {
@@ -405,9 +398,7 @@ impl Window {
                 }
                 row += 1;
             }
-            if let Some(settling) = self.session.worker().settling()
-                && settling.taken_secs > SHOW_SETTLING_SECS
-            {
+            if let Some(settling) = self.session.worker().settling().filter(|_| settles) {
                 let tip = "Continues immediately, with hair that has not settled.";
                 let fraction = settling.done as f32 / settling.total.max(1) as f32;
                 let text = format!("Settling the hair at {:.2} s", settling.to_secs);

@@ -45,6 +45,7 @@ mod tools;
 mod trial;
 mod viewport;
 mod wall;
+mod work;
 
 use lovelock_base::words::counted;
 use std::path::{Path, PathBuf};

@@ -20,6 +20,7 @@ use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
 use super::panels::{body, hair, surroundings};
+use super::work::{SHOW_WORK, Work};
 
 /// Number of frames in the plot of stage times.
 const PLOTTED_FRAMES: usize = 240;
@@ -77,8 +78,10 @@ pub(crate) struct Session {
     display_hz: f64,
     /// Whether a take plays backwards.
     pub(crate) backwards: bool,
-    /// Whether the progress of a load is shown.
-    pub(crate) load_is_seen: bool,
+    /// Whether the progress of a load or of settling is shown.
+    work_is_seen: bool,
+    /// Since when something has been asked for that may have to be loaded or settled; `None` once all is done.
+    working: Option<Stopwatch>,
     pub(crate) view: ViewOptions,
     pub(crate) draw_error: Option<String>,
     /// Messages that have not been shown yet.
@@ -144,7 +147,8 @@ impl Session {
             rate: 1.0,
             display_hz: 0.0,
             backwards: false,
-            load_is_seen: false,
+            work_is_seen: false,
+            working: None,
             view: ViewOptions::default(),
             draw_error: None,
             done: Vec::new(),
@@ -306,8 +310,8 @@ impl Session {
     }
 
     /// Sends changes on: the project to the simulation, and the frame to the render thread, with the project `seen` at the current
-    /// time. Images have the size `size`, or less while something moves: see [`ViewOptions`]; they show `mask`, if any. Returns after which time
-    /// it must be called again even if nothing happens.
+    /// time. Images have the size `size`, or less while something moves: see [`ViewOptions`]; they show `mask`, if any. Returns after which
+    /// time it must be called again even if nothing happens: soon after a change, so that what it begins is seen.
     pub(crate) fn send(
         &mut self,
         project: &Arc<Project>,
@@ -315,13 +319,26 @@ impl Session {
         size: [u32; 2],
         mask: Option<&Arc<ShownMask>>,
     ) -> Option<Duration> {
-        if !Arc::ptr_eq(project, &self.simulated) {
+        let changed = !Arc::ptr_eq(project, &self.simulated);
+        if changed {
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
+            self.working.get_or_insert_with(Stopwatch::start);
         }
         if self.backwards && project.take.file.is_none() {
             self.set_backwards(false);
         }
+        let again = self.draw(seen, size, mask);
+        again.into_iter().chain(changed.then_some(SHOW_WORK)).min()
+    }
+
+    /// Sends the frame to the render thread: see [`Session::send`].
+    fn draw(
+        &mut self,
+        seen: &Arc<Project>,
+        size: [u32; 2],
+        mask: Option<&Arc<ShownMask>>,
+    ) -> Option<Duration> {
         let frame = self.frame.as_ref()?;
         if size[0] == 0 || size[1] == 0 {
             return None;
@@ -363,6 +380,29 @@ impl Session {
             self.drawn = Some(request);
         }
         (automatic && !still && !self.playing).then(|| AT_REST.saturating_sub(self.same_since.elapsed()))
+    }
+
+    /// Whether the progress of loading and of settling is shown now, and after which time the window must be painted again for it.
+    /// Progress that is shown stays until all is done.
+    pub(crate) fn follow_work(&mut self, dragged: bool) -> ([bool; 2], Option<Duration>) {
+        let secs = Duration::from_secs_f64;
+        let work = Work {
+            loading: self.worker.load_progress().map(|load| secs(load.taken_secs)),
+            settling: self.worker.settling().map(|settling| secs(settling.taken_secs)),
+            unknown: self.worker.has_changes(),
+            // The simulation waits for a take.
+            at_once: self.simulated.take.file.is_some(),
+            dragged,
+            asked: self.working.as_ref().map_or(Duration::ZERO, Stopwatch::elapsed),
+        };
+        if work.is_done() {
+            self.working = None;
+        } else {
+            self.working.get_or_insert_with(Stopwatch::start);
+        }
+        let (shown, again) = work.shown(self.work_is_seen);
+        self.work_is_seen = shown.contains(&true) || (self.work_is_seen && !work.is_done());
+        (shown, again)
     }
 
     /// Loads again although the project has not changed, because a file was picked that it could not read before.

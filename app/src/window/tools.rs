@@ -117,6 +117,10 @@ impl Window {
             let why = "Scissors cannot cut during a morph. End it, or choose Become.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         }
+        if overlay::scissors::is_too_short(line) {
+            let why = "The line is too short to cut. Drag it across the hair.";
+            return self.notices.push(notices::Kind::Warning, why.to_owned());
+        }
         let before = &project.hair.cut;
         let cut = overlay::scissors::cut(view, &painted.snapshot, line).map(|cut| before.and(&cut));
         match cut.filter(|cut| cut != before) {

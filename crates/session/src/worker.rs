@@ -288,7 +288,13 @@ impl Worker {
         self.loader.progress()
     }
 
-    /// Whether a load is running or waiting, also one that has no progress yet.
+    /// Whether a change of the project, or what was loaded for one, waits for the simulation: whether it loads or settles something is
+    /// not known yet.
+    pub fn has_changes(&self) -> bool {
+        self.mailbox.has_changes()
+    }
+
+    /// Whether a load is running or waiting.
     pub fn is_loading(&self) -> bool {
         self.loader.is_busy()
     }

@@ -8,7 +8,7 @@ use lovelock_session::snapshot::FrameSnapshot;
 use super::View;
 use crate::window::theme;
 
-/// The shortest line that cuts, points.
+/// The shortest line that cuts, points: less is a click of a hand that is not quite still.
 const SHORTEST: f32 = 12.0;
 
 /// The line that is being drawn.
@@ -38,10 +38,15 @@ impl Scissors {
         painter.line_segment([from, to], Stroke::new(1.5, theme::WRONG));
         if response.drag_stopped() {
             self.from = None;
-            return ((to - from).length() >= SHORTEST).then_some([from, to]);
+            return Some([from, to]);
         }
         None
     }
+}
+
+/// Whether a line is too short to be meant.
+pub(crate) fn is_too_short([from, to]: [Pos2; 2]) -> bool {
+    (to - from).length() < SHORTEST
 }
 
 /// The cut that a line on the screen makes in the hair of `snapshot`: hair is cut where it first crosses the plane through the eye

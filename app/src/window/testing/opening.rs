@@ -149,7 +149,7 @@ fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
         harness.step();
         harness.query_all_by_label_contains("Opening slow.usda").next().is_some()
     });
-    assert!(watch.secs() >= 0.4 && !is_idle(of(&harness)));
+    assert!(watch.secs() >= 0.1 && !is_idle(of(&harness)));
     harness.get_by_role_and_label(Role::Button, "Cancel: Opening slow.usda").click();
     go(&mut harness);
     assert!(is_idle(of(&harness)) && harness.query_by_label_contains("Opening").is_none());

@@ -79,7 +79,7 @@ impl HairKey {
         }
         let path = stamp.path.clone();
         let read =
-            control.read("reading the hair", [0.5, 0.7], move |watch| load_hair_watched(&path, watch))?;
+            control.read("reading the hair", [0.5, 0.6], move |watch| load_hair_watched(&path, watch))?;
         Ok(read
             .map(|file| *cache = Some((stamp.clone(), Arc::new(file))))
             .map_err(|error| Problem::not_loaded(Place::Hair, error)))

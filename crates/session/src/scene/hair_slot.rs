@@ -37,7 +37,7 @@ impl HairSlot {
         self.cut_and_ties.bytes() + self.layers.bytes()
     }
 
-    /// Loads the hair of a section. Hair that cannot be loaded is replaced by that of the last call, or by a grown one, with a problem.
+    /// Loads the hair of a section, which is the part `from` to `to` of the load. Hair that cannot be loaded is replaced by that of the last call, or by a grown one, with a problem.
     ///
     /// # Errors
     /// If the load is cancelled.
@@ -48,12 +48,15 @@ impl HairSlot {
         scalp: &Arc<ScalpPart>,
         problems: &mut Vec<Problem>,
         control: &mut LoadControl<'_>,
+        [from, to]: [f32; 2],
     ) -> Result<LoadedHair, ProjectError> {
         if section.file.is_none() {
             self.file = None;
         }
         let hair = self.part(section, access, scalp, problems, control)?;
+        control.at("cutting and tying the hair", from + 0.6 * (to - from))?;
         let tied = self.cut_and_ties.apply(&hair.style, &section.cut_and_ties(), scalp.obstacle.clone());
+        control.at("applying the layers", from + 0.8 * (to - from))?;
         let styled = self.layers.apply(&tied.style, &section.stack, scalp.obstacle.clone());
         let other_hair = tied.skipped.into_iter().chain(styled.skipped).map(|layer| {
             format!(

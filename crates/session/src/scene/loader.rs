@@ -94,11 +94,13 @@ impl SceneLoader {
         let motion = self.motion(&project, access, &body, &mut problems, control)?;
         control.at("creating the hair", 0.5)?;
         let scalp = self.scalp(&body, &project.body.scalp);
-        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems, control)?;
+        let hair_done = if project.hair.morph.to.is_some() { 0.68 } else { 0.85 };
+        let hair = self.hair.load(&project.hair, access, &scalp, &mut problems, control, [0.5, hair_done])?;
         let obstacle: Arc<dyn Obstacle + Send> = scalp.obstacle.clone();
         let morph = match &project.hair.morph.to {
             Some(to) => {
-                let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control)?.style;
+                let part = [hair_done, 0.85];
+                let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control, part)?.style;
                 Some(MorphSource { to, amount: project.hair.morph.amount })
             }
             None => {

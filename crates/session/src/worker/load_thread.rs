@@ -53,6 +53,8 @@ type Progress = Mutex<Option<(String, f32, Stopwatch)>>;
 struct Requests {
     request: Option<(Arc<Project>, Access)>,
     begun: Option<(Arc<Project>, Access)>,
+    /// Whether a request was cancelled before it began, which the thread still has to tell.
+    dropped: bool,
     stop: bool,
 }
 
@@ -129,16 +131,29 @@ impl LoadThread {
             self.cancelled.store(true, Ordering::Relaxed);
         }
         requests.request = Some((project, access));
+        // From now on there is something to wait for, however soon it begins.
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.get_or_insert_with(|| ("loading".to_owned(), 0.0, Stopwatch::start()));
         changed.notify_one();
+    }
+
+    /// Ends the progress of a load whose result is in use, unless another load runs or waits.
+    pub(super) fn arrived(&self) {
+        let requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if requests.request.is_none() && requests.begun.is_none() {
+            *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
     }
 
     /// Cancels the current load; the scene is unchanged.
     pub(super) fn cancel(&self) {
         {
             let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
-            requests.request = None;
+            let was_waiting = requests.request.take().is_some();
+            requests.dropped |= was_waiting && requests.begun.is_none();
             self.cancelled.store(true, Ordering::Relaxed);
         }
+        self.requests.1.notify_one();
         // Clear the progress at once, although the thread may need a moment to stop.
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
@@ -196,12 +211,16 @@ impl LoadState {
             let replaced = {
                 let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
                 requests.begun = None;
-                requests.request.is_some()
+                let replaced = requests.request.is_some();
+                // Successive loads are shown as one, and a result until it is in use.
+                let is_used = matches!(loaded, Ok(Ok(_))) && !self.cancelled.load(Ordering::Relaxed);
+                let since = if replaced { Stopwatch::start() } else { self.since() };
+                let placing = ("placing the hair".to_owned(), 1.0, since);
+                *self.progress.lock().unwrap_or_else(PoisonError::into_inner) =
+                    (replaced || is_used).then_some(placing);
+                replaced
             };
-            // Successive loads are shown as one.
-            if !replaced {
-                self.show(None);
-            }
+            self.outbox.wake();
             match loaded {
                 Ok(Ok((loaded, problems))) => {
                     let scene = Arc::clone(loaded.scene());
@@ -232,6 +251,12 @@ impl LoadState {
             if requests.stop {
                 return None;
             }
+            if std::mem::take(&mut requests.dropped) {
+                drop(requests);
+                self.outbox.send(Event::LoadCancelled);
+                requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
+                continue;
+            }
             if let Some(request) = requests.request.take() {
                 // Under the lock, so that a later cancel applies to this request.
                 self.cancelled.store(false, Ordering::Relaxed);
@@ -248,8 +273,8 @@ impl LoadState {
         project: &Arc<Project>,
         access: &Access,
     ) -> Result<(Loaded, Vec<Problem>), ProjectError> {
-        let since = Stopwatch::start();
-        let mut progress = |what: &str, fraction: f32| self.show(Some((what.to_owned(), fraction, since)));
+        let since = self.since();
+        let mut progress = |what: &str, fraction: f32| self.show(what, fraction, since);
         let mut untaken = None;
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
@@ -285,18 +310,58 @@ impl LoadState {
         Ok((Loaded::Scene(scene, Arc::clone(project)), problems))
     }
 
-    fn show(&self, progress: Option<(String, f32, Stopwatch)>) {
-        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+    /// Since when the load was asked for.
+    fn since(&self) -> Stopwatch {
+        let progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.as_ref().map_or_else(Stopwatch::start, |(.., since)| *since)
+    }
+
+    fn show(&self, what: &str, fraction: f32, since: Stopwatch) {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some((what.to_owned(), fraction, since));
         self.outbox.wake();
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::mpsc::channel;
+
     use lovelock_project::files::FileRef;
     use lovelock_project::project::{BodySource, HairSource, MotionSource};
+    use lovelock_testkit::wait::wait_for;
 
     use super::*;
+    use crate::testing::small_project;
+
+    #[test]
+    fn a_load_has_progress_from_the_request_until_its_result_is_in_use() {
+        let (outbox, _events) = Outbox::new(Arc::new(|| ()));
+        let (to, results) = channel();
+        let loader = LoadThread::start(outbox, move |loaded| drop(to.send(loaded))).expect("a thread");
+        assert_eq!(loader.progress(), None);
+        let mut project = small_project();
+        for tie in [false, true] {
+            if tie {
+                project.hair.ties.push(lovelock_groom::HairTie::default());
+            }
+            loader.request(Arc::new(project.clone()), Access::new());
+            // Whether or not the thread has begun it, or is done with it.
+            assert!(loader.progress().is_some(), "{tie}");
+            let _result = wait_for("a result", || results.try_recv().ok());
+            let progress = loader.progress().expect("nobody uses the result yet");
+            assert_eq!(progress.fraction.to_bits(), 1.0_f32.to_bits(), "{progress:?}");
+            loader.arrived();
+            assert_eq!(loader.progress(), None, "{tie}");
+        }
+        // A load that is cancelled has none.
+        project.hair.ties.clear();
+        loader.request(Arc::new(project), Access::new());
+        loader.cancel();
+        wait_for("its end", || (!loader.is_busy()).then_some(()));
+        loader.arrived();
+        assert_eq!(loader.progress(), None);
+    }
 
     #[test]
     fn loads_of_other_files_are_cancelled_and_loads_of_changes_are_not() {

@@ -124,6 +124,12 @@ impl Mailbox {
         changed.notify_one();
     }
 
+    /// Whether a project or the result of a load waits to be taken.
+    pub(super) fn has_changes(&self) -> bool {
+        let requests = self.shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+        requests.project.is_some() || requests.loaded.is_some()
+    }
+
     /// Takes all requests. Waits for one for at most `timeout`, or without limit if there is none.
     pub(super) fn take(&self, timeout: Option<Duration>) -> Requests {
         let (requests, changed) = &*self.shared;
@@ -154,8 +160,12 @@ mod tests {
             mailbox.post(|requests| requests.seek_secs = Some(f64::from(i)));
             mailbox.post(|requests| requests.steps += 1);
         }
+        assert!(!mailbox.has_changes());
+        mailbox.post(|requests| requests.project = Some((Arc::default(), Access::new())));
+        assert!(mailbox.has_changes());
         let requests = mailbox.take(None);
         assert_eq!((requests.seek_secs, requests.steps), (Some(999.0), 1000));
+        assert!(!mailbox.has_changes());
         assert!(mailbox.take(Some(Duration::ZERO)).is_empty());
     }
 }

@@ -193,6 +193,7 @@ impl SimulationThread {
         let mut changed = loaded.is_some();
         if let Some(loaded) = loaded {
             self.set_loaded(loaded);
+            self.loader.arrived();
         }
         if let Some(rate) = rate {
             self.playback.set_rate(rate);
@@ -380,6 +381,7 @@ impl SimulationThread {
     /// After a panic the engine may be in the middle of a step, so it restarts with the same scene.
     fn recover(&mut self, panic: &(dyn Any + Send)) {
         self.outbox.panicked("simulation", panic);
+        self.loader.arrived();
         self.panics += 1;
         let played = self.take.take().is_some();
         (self.preroll, self.settling_pending) = (None, false);
