@@ -200,7 +200,7 @@ impl Window {
         self.session.pick(path);
         let before = Arc::clone(self.history.project());
         self.change("take", |project| *project = made(project));
-        self.trials.push(Trial::new(Place::Take, path, before));
+        self.trials.push(Trial::new(Place::Take, path, before).saved_in(self.project_path.clone()));
         let project = self.history.project().clone();
         self.session.reload(&project);
     }

@@ -17,12 +17,19 @@ pub(super) struct Trial {
     file: PathBuf,
     /// The project without it.
     before: Arc<Project>,
+    /// The file of that project, if it has one that the project with the file does not have.
+    saved_in: Option<PathBuf>,
 }
 
 impl Trial {
     pub(super) fn new(place: Place, file: &Path, before: Arc<Project>) -> Self {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-        Self { place, file, before }
+        Self { place, file, before, saved_in: None }
+    }
+
+    /// Sets the file of the project before, which is the window's again when the trial is taken back.
+    pub(super) fn saved_in(self, saved_in: Option<PathBuf>) -> Self {
+        Self { saved_in, ..self }
     }
 
     fn is_in(&self, project: &Project) -> bool {
@@ -121,6 +128,10 @@ impl Window {
         while let Some(at) = self.trials.iter().rposition(&ends) {
             let trial = self.trials.remove(at);
             trial.undo(&mut self.history);
+            if self.project_path.is_none() && trial.saved_in.is_some() {
+                self.project_path.clone_from(&trial.saved_in);
+                self.session.set_project_path(self.project_path.as_ref());
+            }
             places.push(trial.place);
         }
         places

@@ -1,18 +1,22 @@
 //! Files that are opened in the whole window: what they are is found out on a thread.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::UpAxis;
+use lovelock_project::error::Place;
 use lovelock_project::project::{BodySource, CameraSection, HairSource};
 use lovelock_testkit::wait::wait_until;
 
 use super::whole::{CTRL, go, key, of, project, wait, window};
 use crate::window::Window;
+use crate::window::session::LoadEnd;
+use crate::window::trial::Trial;
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
 fn write_curves(path: &Path, grows: bool) {
@@ -227,11 +231,26 @@ fn a_broken_file_that_was_changed_after_it_was_opened_leaves_the_change() {
     let mut harness = window();
     let before = project(&harness);
     let window = harness.state_mut().state.as_mut().expect("a window");
-    window.open_part(lovelock_project::error::Place::Hair, &path, |project| project.set_hair_file(&path));
+    window.open_part(Place::Hair, &path, |project| project.set_hair_file(&path));
     window.change("camera", |project| project.camera.distance *= 0.5);
     let distance = project(&harness).camera.distance;
     wait(&mut harness, "the error", |window| window.trials.is_empty());
     let after = project(&harness);
     assert_eq!((after.hair.source, &after.hair.file), (HairSource::Grown, &before.hair.file));
     assert!((after.camera.distance - distance).abs() < 1e-6);
+}
+
+#[test]
+fn a_take_that_is_not_loaded_gives_the_project_its_file_back() {
+    let mut harness = window();
+    wait(&mut harness, "the scene", |window| !window.session.worker().is_loading());
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    let (before, path) = (Arc::clone(window.history.project()), Path::new("/missing/dance.take"));
+    let saved = Some(PathBuf::from("/missing/hair.lovelock"));
+    window.change("take", |project| project.set_take(path));
+    window.trials.push(Trial::new(Place::Take, path, Arc::clone(&before)).saved_in(saved.clone()));
+    window.session.load_ends.push(LoadEnd::Nothing);
+    window.take_load_ends();
+    assert!(window.trials.is_empty() && Arc::ptr_eq(window.history.project(), &before));
+    assert_eq!(window.project_path, saved);
 }
