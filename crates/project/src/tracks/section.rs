@@ -108,7 +108,10 @@ impl Track {
     /// The key at a time, within half a step of the simulation.
     pub fn key_at(&self, secs: f64) -> Option<&Key> {
         let off = |key: &&Key| (key.secs - secs).abs();
-        self.keys.iter().filter(|key| off(key) <= Self::AT_SECS).min_by(|a, b| off(a).total_cmp(&off(b)))
+        // Asked for every track at each pass of the window.
+        let from = self.keys.partition_point(|key| key.secs < secs - Self::AT_SECS);
+        let near = self.keys.iter().skip(from).take_while(|key| key.secs <= secs + Self::AT_SECS);
+        near.filter(|key| off(key) <= Self::AT_SECS).min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     /// Adds a key and replaces keys closer than [`Track::NEAREST_SECS`].
