@@ -273,7 +273,7 @@ impl Window {
                 self.compare.reporting.is_cancelled = false;
                 self.compare.reporting.running = Some((job, out.to_owned()));
             }
-            Err(error) => self.warn([error.to_string()]),
+            Err(error) => self.fail(error.to_string()),
         }
     }
 
