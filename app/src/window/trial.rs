@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem};
+use lovelock_project::error::{Place, Problem, ProblemKind};
 use lovelock_project::history::History;
 
 use super::Window;
@@ -79,6 +79,12 @@ impl Window {
 
     fn judge(&mut self, project: &Project, problems: &[Problem]) {
         let known = std::mem::take(&mut self.told);
+        // Such as a tie that gathers nothing: what was just done to the hair has no effect.
+        let is_vain =
+            |problem: &&Problem| problem.place == Place::Hair && problem.kind == ProblemKind::Ignored;
+        let vain: Vec<&Problem> = problems.iter().filter(is_vain).collect();
+        let new = vain.iter().filter(|problem| !known.contains(problem));
+        self.warn(new.map(|problem| problem.message.clone()));
         let failures = problems.iter().filter(|problem| problem.is_failure());
         for problem in failures.clone().filter(|problem| !known.contains(problem)) {
             if self.starting {
@@ -87,7 +93,7 @@ impl Window {
             self.fail(&problem.message);
         }
         self.starting = false;
-        self.told = failures.cloned().collect();
+        self.told = failures.chain(vain).cloned().collect();
         let undone = self.take_back(|trial| trial.refused(project, problems, &known));
         // The same file is reported again if it is opened again.
         self.told.retain(|problem| !undone.contains(&problem.place));

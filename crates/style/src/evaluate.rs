@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lovelock_groom::{Hairstyle, Obstacle};
 
-use crate::{HeadBox, Layer, Scope, StyleStack};
+use crate::{HeadBox, Layer, Operation, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
 ///
@@ -32,6 +32,8 @@ struct Step {
     /// The memory of the hairstyle; 0 for the base.
     bytes: u64,
     fits: bool,
+    /// Whether it is a tie that acts and gathers nothing.
+    gathers_nothing: bool,
 }
 
 /// The result of a stack.
@@ -41,6 +43,8 @@ pub struct Styled {
     pub style: Arc<Hairstyle>,
     /// The names of the layers that were skipped because they were made for another hairstyle.
     pub skipped: Vec<String>,
+    /// The positions in the stack of ties that act and gather no hair.
+    pub idle_ties: Vec<usize>,
 }
 
 /// The hairstyle after one layer; `None` if the layer changes nothing.
@@ -135,16 +139,25 @@ impl StyleCache {
             let after = if fits { compute(layer, factor, before) } else { None };
             let unchanged = self.steps.last().map_or(0, |step| step.bytes);
             let bytes = after.as_ref().map_or(unchanged, Hairstyle::bytes);
+            let gathers_nothing = matches!(layer.operation, Operation::HairTie(_))
+                && after.as_ref().is_some_and(|after| held_points(after) == held_points(before));
             let style = Some(after.map_or_else(|| Arc::clone(before), Arc::new));
-            self.steps.push(Step { layer: layer.clone(), factor, style, bytes, fits });
+            self.steps.push(Step { layer: layer.clone(), factor, style, bytes, fits, gathers_nothing });
             self.trim();
         }
+        let idle_ties = (0..self.steps.len()).filter(|step| self.steps[*step].gathers_nothing).collect();
         let skipped = self.steps.iter().filter(|step| !step.fits && step.layer.on);
         Styled {
             style: Arc::clone(self.steps.last().and_then(|step| step.style.as_ref()).unwrap_or(base)),
             skipped: skipped.map(|step| step.layer.label().to_owned()).collect(),
+            idle_ties,
         }
     }
+}
+
+/// How many guide points ties hold.
+fn held_points(style: &Hairstyle) -> usize {
+    style.held.iter().filter(|hold| **hold >= 0.0).count()
 }
 
 impl std::fmt::Debug for StyleCache {

@@ -106,6 +106,13 @@ fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
     let corner = control(&harness, Role::Image, "Viewport").rect().left_bottom() + egui::vec2(30.0, -40.0);
     drag_over(&mut harness, corner, corner + egui::vec2(25.0, 0.0));
     assert_eq!(project(&harness), cut);
+    let says = |harness: &Harness<'_, Shown<Option<Window>>>, what: &str| {
+        super::texts(harness).iter().any(|(text, ..)| text.contains(what))
+    };
+    assert!(!says(&harness, "too short to cut"));
+    drag_over(&mut harness, corner, corner + egui::vec2(10.0, 0.0));
+    assert_eq!(project(&harness), cut);
+    assert!(says(&harness, "too short to cut"));
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
     wait(&mut harness, "long hair", |window| points(window) == whole);

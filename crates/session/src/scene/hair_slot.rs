@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use lovelock_base::settings::Choices;
 use lovelock_groom::Hairstyle;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -63,11 +64,22 @@ impl HairSlot {
                 "\"{layer}\" was made for other hair and has no effect here; it returns with its hairstyle"
             )
         });
+        // The cut, if there is one, comes before the ties.
+        let first_tie = usize::from(!section.cut.is_empty());
+        let tie = |layer: usize| {
+            let number = layer.checked_sub(first_tie)?;
+            Some(format!("{} {}", section.ties.get(number)?.kind.names().1, number + 1))
+        };
+        let of_stack = |layer: usize| Some(section.stack.layers.get(layer)?.label().to_owned());
+        let idle = tied.idle_ties.into_iter().filter_map(tie);
+        let idle = idle.chain(styled.idle_ties.into_iter().filter_map(of_stack)).map(|tie| {
+            format!("\"{tie}\" gathers no hair: what it reaches is too short for it, or is in another tie")
+        });
         let other_version = section.stack.unknown().into_iter().map(|(layer, id)| {
             format!("the layer \"{layer}\" uses `{id}`, which this version does not know; it is kept and has no effect")
         });
         let ignored = |message| Problem::new(Place::Hair, ProblemKind::Ignored, message);
-        problems.extend(other_hair.chain(other_version).map(ignored));
+        problems.extend(other_hair.chain(idle).chain(other_version).map(ignored));
         Ok(LoadedHair { base: tied.style, style: styled.style, notes: hair.notes.clone() })
     }
 

@@ -49,6 +49,14 @@ fn a_tied_project_is_saved_loaded_and_untied() {
     project.hair.ties.clear();
     assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &loose.style));
 
+    // One that gathers nothing is said by the name that the window gives it.
+    let far = HairTie { at: Vec3::new(0.0, 0.6, -0.6), ..HairTie::default() };
+    project.hair.ties = vec![HairTie { kind: TieKind::Bun, ..HairTie::default() }, far];
+    let (_, problems) = loader.load_now(&project, &Access::new()).expect("a scene");
+    let is_it =
+        problems.len() == 1 && problems[0].place == Place::Hair && problems[0].kind == ProblemKind::Ignored;
+    assert!(is_it && problems[0].message.starts_with("\"Ponytail 2\" gathers no hair"), "{problems:?}");
+
     project.hair.ties = vec![HairTie { radius: -1.0, ..HairTie::default() }; 20];
     let (sane, problems) = project.sanitised();
     assert_eq!((sane.hair.ties.len(), sane.hair.ties[0].radius), (HairTie::MOST, 0.004));

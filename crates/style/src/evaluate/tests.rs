@@ -226,6 +226,23 @@ fn layers_of_other_hair_and_of_other_versions_are_skipped() {
 }
 
 #[test]
+fn ties_that_gather_nothing_are_found_each_time() {
+    let base = base();
+    let far = HairTie { at: Vec3::new(0.0, 0.6, -0.6), ..HairTie::default() };
+    // A layer without weight is not meant to act.
+    let idle = Layer { weight: 0.0, ..Layer::of(far) };
+    let mut stack = stack([tie(TieKind::Ponytail), Layer::of(far), idle, cut(&base, 0.9)]);
+    let mut cache = StyleCache::default();
+    let head: Arc<dyn Obstacle + Send> = Arc::new(PlainHead);
+    let (made, count) = counted(&mut cache, &base, &stack, &head);
+    assert_eq!((made.idle_ties, count), (vec![1], 4));
+    let (made, count) = counted(&mut cache, &base, &stack, &head);
+    assert_eq!((made.idle_ties, count), (vec![1], 0), "what is kept tells it too");
+    stack.layers.remove(1);
+    assert!(counted(&mut cache, &base, &stack, &head).0.idle_ties.is_empty(), "the ponytail gathers hair");
+}
+
+#[test]
 fn two_hundred_layers_leave_sound_hair() {
     let base = base();
     let layers = (0..200).map(|i| {
