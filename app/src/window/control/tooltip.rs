@@ -1,5 +1,6 @@
 //! Tooltips: beside what they explain, after the pointer has rested, and never while one of its buttons is down.
 
+use egui::accesskit::Role;
 use egui::{Context, Id, Order, Rect, RectAlign, Response, Tooltip, Ui, WidgetText};
 
 /// Tooltips of a widget that leave the controls around it visible. They replace egui's own, which open below the widget and stay
@@ -13,7 +14,9 @@ pub(crate) trait HoverTooltip: Sized {
 
 impl HoverTooltip for Response {
     fn hover_tooltip(self, text: impl Into<WidgetText>) -> Self {
-        show(&self, self.rect, Tooltip::for_enabled, text.into());
+        let text = text.into();
+        describe(&self, text.text());
+        show(&self, self.rect, Tooltip::for_enabled, text);
         self
     }
 
@@ -23,10 +26,30 @@ impl HoverTooltip for Response {
     }
 }
 
+/// Gives a widget the text of its tooltip as the description for screen readers, and as its name if it has none, as egui's own tooltips
+/// do.
+fn describe(response: &Response, text: &str) {
+    if !response.ctx.has_accesskit_node(response.id) {
+        return;
+    }
+    response.ctx.accesskit_node_builder(response.id, |node| {
+        if node.description().is_none() {
+            node.set_description(text);
+        }
+        let has_name = node.role() == Role::Label
+            || !node.labelled_by().is_empty()
+            || node.label().is_some_and(|label| !label.is_empty());
+        if !has_name {
+            node.set_label(text);
+        }
+    });
+}
+
 /// Shows `text` beside `whole`, of which `response` is a part, whether the part is enabled or not.
 pub(super) fn beside(response: &Response, whole: Rect, text: &str) {
     let of: fn(&Response) -> Tooltip<'static> =
         if response.enabled() { Tooltip::for_enabled } else { Tooltip::for_disabled };
+    describe(response, text);
     show(response, whole, of, text.into());
 }
 

@@ -116,9 +116,8 @@ fn path(
         let down = Vec3::NEG_Y;
         let pull = down - n * (down.dot(n) * (1.0 - free)).min(0.0);
         // Below jaw and chin there is nothing to lie on.
-        let lies = smoothstep(0.0, 0.01, above)
-            * smoothstep(NEAR[1], NEAR[0], above)
-            * smoothstep(-0.9, -0.5, n.y);
+        let lies =
+            smoothstep(0.0, 0.01, above) * smoothstep(NEAR[1], NEAR[0], above) * smoothstep(-0.9, -0.5, n.y);
         let wish = flat * combed + pull * (1.05 - combed) + direction * 0.35 - n * (0.8 * lies);
         let wish = wish.normalize_or(direction);
         direction = direction.lerp(wish, 1.0 - (-link / BEND).exp()).normalize_or(wish);

@@ -135,8 +135,7 @@ pub fn tied_where(
             *widest = widest.max(tied);
         }
     }
-    let first_of =
-        |wisp: usize| style.strands.first_point[style.wisps[wisp].first_strand as usize] as usize;
+    let first_of = |wisp: usize| style.strands.first_point[style.wisps[wisp].first_strand as usize] as usize;
     let of_caught = caught.par_iter().map(|(of, laid)| {
         let tie = &rings[of.ring].tie;
         (first_of(of.wisp), offsets::of_wisp(style, &out, of.wisp, laid, tie, obstacle))

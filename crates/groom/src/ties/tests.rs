@@ -249,11 +249,8 @@ fn hair_that_is_too_short_for_a_tie_lies_on_the_head() {
     after.check().expect("sound");
     let n = style.guides.points_per_guide;
     let is_held = |wisp: &crate::Wisp| after.held[wisp.guides[0] as usize * n + 1] >= 0.0;
-    let moved: Vec<&crate::Wisp> = style
-        .wisps
-        .iter()
-        .filter(|wisp| !is_held(wisp) && !is_unchanged(wisp, [&style, &after]))
-        .collect();
+    let moved: Vec<&crate::Wisp> =
+        style.wisps.iter().filter(|wisp| !is_held(wisp) && !is_unchanged(wisp, [&style, &after])).collect();
     assert!(moved.len() >= 6, "only {} wisps are left out", moved.len());
     // Mean and 95th percentile of the distance from the head, millimetres.
     let off = |style: &Hairstyle| {
