@@ -135,13 +135,16 @@ mod tests {
     }
 
     fn bench() -> Harness<'static, Shown<Bench>> {
-        screen_of(egui::vec2(700.0, 700.0), Bench::default(), |ui, bench: &mut Bench| {
+        let harness = screen_of(egui::vec2(700.0, 700.0), Bench::default(), |ui, bench: &mut Bench| {
             let button = ui.button("Settings");
             popup(&button, |ui| contents(ui, bench));
             ui.add_space(300.0);
             let area = ui.button("An area of the image");
             context_popup(&area, |ui| contents(ui, bench));
-        })
+        });
+        // The copy button of egui's colour picker has no glyph in egui's fonts.
+        harness.ctx.set_missing_glyph_policy(egui::MissingGlyphPolicy::Tofu);
+        harness
     }
 
     fn press(harness: &mut Harness<'_, Shown<Bench>>, name: &str) {

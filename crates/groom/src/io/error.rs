@@ -26,7 +26,7 @@ pub enum HairFileError {
         wanted: String,
     },
     /// The file is valid, but none of its strands can be drawn.
-    #[error("{name}: no strand left to draw ({reason}); must have a strand of two or more points")]
+    #[error("{name}: no strand left to draw ({reason}); must have a strand of two points or more")]
     NothingToDraw {
         /// The file.
         name: String,

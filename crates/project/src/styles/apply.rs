@@ -45,7 +45,7 @@ impl Project {
                 (self.hair.file, self.hair.import) = (old.file, old.import);
             }
             (self.hair.moves, self.hair.grows) = (None, None);
-            let is_own = shipped::by_id(&self.hair.style).is_none();
+            let is_own = self.hair.shipped().is_none();
             if is_own && style.simulation != self.hair.simulation() {
                 self.hair.moves = Some(style.simulation);
             }
