@@ -82,6 +82,8 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
         if *tool == Tool::Freeze {
             assert!(of(&harness).brushes.has_frozen(), "{name}");
+            let redo = of(&harness).history.redo_len();
+            assert!(redo > 0, "the tool before can be done again");
             // A stroke on frozen hair is no undo step, and says so.
             control(&harness, egui::accesskit::Role::RadioButton, Tool::Comb.names().1).click();
             go(&mut harness);
@@ -90,11 +92,7 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
             assert!(harness.query_by_label_contains("changes no hair").is_some());
             assert_eq!(project(&harness), before, "what is frozen is no part of the project");
             assert_eq!(of(&harness).history.undo_len(), steps);
-            assert_eq!(
-                of(&harness).history.redo_label(),
-                Some("remove"),
-                "the tool before can be done again"
-            );
+            assert_eq!(of(&harness).history.redo_len(), redo, "what was undone can still be done again");
             harness.state_mut().state.as_mut().expect("a window").session.worker().thaw();
             continue;
         }

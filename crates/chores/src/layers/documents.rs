@@ -23,7 +23,8 @@ pub(crate) fn dead_paths(root: &Path) -> anyhow::Result<Vec<String>> {
 }
 
 fn is_document(file: &str) -> bool {
-    file == "README.md" || (file.starts_with("docs/") && file.ends_with(".md"))
+    file == "README.md"
+        || (file.starts_with("docs/") && Path::new(file).extension().is_some_and(|end| end == "md"))
 }
 
 /// Adds the files below a folder, by their path from the root with `/`.
@@ -66,7 +67,7 @@ fn dead_in(document: &str, text: &str, files: &BTreeSet<String>) -> Vec<String> 
 }
 
 fn is_source(path: &str) -> bool {
-    let ends = [".rs", ".wgsl"].iter().any(|end| path.ends_with(end));
+    let ends = Path::new(path).extension().is_some_and(|end| end == "rs" || end == "wgsl");
     ends && path.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c))
 }
 

@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(file.first_point, [0, 3, 7]);
         assert_eq!(file.strand(0), [Vec3::ZERO, Vec3::Y, 2.0 * Vec3::Y]);
         assert_eq!(file.strand(1)[3], Vec3::new(1.0, 3.0, 0.0));
-        assert!(file.notes.iter().any(|note| note.contains("1 faces")) && file.colours.is_none());
+        assert!(file.notes.iter().any(|note| note.contains("1 face")) && file.colours.is_none());
     }
 
     #[test]

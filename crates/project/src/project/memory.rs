@@ -1,6 +1,7 @@
 //! The memory of a project beside another one, with which it shares what brushes did.
 
 use lovelock_base::memory::list_bytes;
+use lovelock_style::hand::HandEdits;
 use lovelock_style::{Layer, Operation};
 
 use super::{HairSection, Project};
@@ -43,7 +44,7 @@ fn of_hair(hair: &HairSection, other: &Project) -> u64 {
 fn layer_bytes(layer: &Layer, before: Option<&Layer>) -> u64 {
     let hand = match (&layer.operation, before.map(|before| &before.operation)) {
         (Operation::Hand(hand), Some(Operation::Hand(before))) => hand.edits.bytes_beside(&before.edits),
-        (Operation::Hand(hand), _) => hand.edits.bytes_beside(&Default::default()),
+        (Operation::Hand(hand), _) => hand.edits.bytes_beside(&HandEdits::default()),
         _ => 0,
     };
     let maps = layer.mask.parts.iter().enumerate().map(|(k, part)| {

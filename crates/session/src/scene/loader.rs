@@ -97,16 +97,13 @@ impl SceneLoader {
         let hair_done = if project.hair.morph.to.is_some() { 0.68 } else { 0.85 };
         let hair = self.hair.load(&project.hair, access, &scalp, &mut problems, control, [0.5, hair_done])?;
         let obstacle: Arc<dyn Obstacle + Send> = scalp.obstacle.clone();
-        let morph = match &project.hair.morph.to {
-            Some(to) => {
-                let part = [hair_done, 0.85];
-                let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control, part)?.style;
-                Some(MorphSource { to, amount: project.hair.morph.amount })
-            }
-            None => {
-                self.other_hair = HairSlot::default();
-                None
-            }
+        let morph = if let Some(to) = &project.hair.morph.to {
+            let part = [hair_done, 0.85];
+            let to = self.other_hair.load(&to.hair, access, &scalp, &mut problems, control, part)?.style;
+            Some(MorphSource { to, amount: project.hair.morph.amount })
+        } else {
+            self.other_hair = HairSlot::default();
+            None
         };
         let styled = self.morph.of(&hair.style, morph.as_ref(), None, &*obstacle);
         let stack = project.hair.stack.clone();

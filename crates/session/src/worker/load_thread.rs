@@ -325,7 +325,7 @@ impl LoadState {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::channel;
+    use std::sync::mpsc::sync_channel;
 
     use lovelock_project::files::FileRef;
     use lovelock_project::project::{BodySource, HairSource, MotionSource};
@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn a_load_has_progress_from_the_request_until_its_result_is_in_use() {
         let (outbox, _events) = Outbox::new(Arc::new(|| ()));
-        let (to, results) = channel();
+        let (to, results) = sync_channel(16);
         let loader = LoadThread::start(outbox, move |loaded| drop(to.send(loaded))).expect("a thread");
         assert_eq!(loader.progress(), None);
         let mut project = small_project();

@@ -197,7 +197,7 @@ fn guides_are_left_out_where_they_stand_for_other_curves() {
     let hair = guides(&[1, 0, 0, 0]);
     assert_eq!((hair.strands(), hair.points[0]), (1, Vec3::X));
     assert_eq!(hair.thickness.as_deref(), Some(&[0.3, 0.4, 0.5][..]));
-    assert!(hair.notes[0].contains("1 guides"), "{:?}", hair.notes);
+    assert!(hair.notes[0].contains("1 guide "), "{:?}", hair.notes);
     assert_eq!(guides(&[1, 0, 1, 0]).strands(), 2, "guides alone are hair");
     assert_eq!(guides(&[1, 0]).strands(), 2, "one value for all");
     assert_eq!(guides(&[0, 0, 0, 0]).strands(), 2);
