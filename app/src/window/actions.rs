@@ -420,15 +420,14 @@ impl Window {
         let (save, lose, stay) = modal.inner;
         if save {
             self.pending = None;
-            match self.project_path.clone() {
-                Some(path) => match self.save_to(&path) {
+            if let Some(path) = self.project_path.clone() {
+                match self.save_to(&path) {
                     Ok(()) => self.go_on(pending, ctx),
                     Err(error) => self.fail(error),
-                },
-                None => {
-                    self.open_path_dialog(Purpose::SaveProject);
-                    self.after_saving = Some(pending);
                 }
+            } else {
+                self.open_path_dialog(Purpose::SaveProject);
+                self.after_saving = Some(pending);
             }
         } else if lose {
             self.pending = None;

@@ -59,7 +59,7 @@ impl Focus {
             };
             ctx.input_mut(|input| input.events.push(Event::AccessKitActionRequest(request)));
         }
-        let focused = ctx.memory(|memory| memory.focused());
+        let focused = ctx.memory(egui::Memory::focused);
         let holder = Area::ALL
             .into_iter()
             .find(|area| focused.is_some_and(|id| self.controls[*area as usize].contains(&id)));
@@ -130,12 +130,11 @@ impl Focus {
             }
             self.area = area;
             let known = self.last[area as usize].filter(|id| controls.contains(id));
-            match known.or_else(|| controls.first().copied()) {
-                Some(id) => self.give(ctx, id),
-                None => {
-                    ctx.memory_mut(|memory| memory.stop_text_input());
-                    self.is_marked = true;
-                }
+            if let Some(id) = known.or_else(|| controls.first().copied()) {
+                self.give(ctx, id);
+            } else {
+                ctx.memory_mut(egui::Memory::stop_text_input);
+                self.is_marked = true;
             }
             return;
         }
@@ -170,7 +169,7 @@ impl Focus {
                 self.controls[Area::Page as usize].extend(focusable(ctx, layer, 0));
             }
         }
-        let focused = ctx.memory(|memory| memory.focused());
+        let focused = ctx.memory(egui::Memory::focused);
         let moved = focused != self.seen;
         self.seen = focused;
         if !self.is_marked {

@@ -84,7 +84,7 @@ impl Window {
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
-        let keying = Keying::of(&project, self.now_secs(), self.overdub.writes());
+        let keying = Keying::of(&project, self.now_secs(), &self.overdub.writes());
         control::begin_keying(&ctx, keying);
         let begin = Focus::begin_area(ui);
         let playback = self.timeline(ui, &mut project);

@@ -138,6 +138,10 @@ struct Seen {
 }
 
 /// The window and its state.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a dialog or an overlay that is open or not, beside the others"
+)]
 pub(crate) struct Window {
     history: History,
     project_path: Option<PathBuf>,
@@ -420,9 +424,8 @@ impl Window {
             Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take plays."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
             Command::ShowMask => because(self.layers.selected.is_none(), NO_LAYER),
-            Command::PaintMask if self.layers.painting => None,
-            Command::PaintMask if takes => Some(TAKE_PLAYS),
-            Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::PaintMask if takes && !self.layers.painting => Some(TAKE_PLAYS),
+            Command::PaintMask => because(!self.layers.painting && self.layers.selected.is_none(), NO_LAYER),
             Command::BrushSmaller | Command::BrushLarger => {
                 because(!(self.layers.painting || self.brushes.on), "No brush is in use.")
             }

@@ -40,7 +40,7 @@ pub(crate) fn fit(typed: &str, name: &str, others: &[&str]) -> Option<Fit> {
     }
     let others: Vec<String> = others.iter().map(|text| text.to_lowercase()).collect();
     let is_found = |word: &&str| name.contains(word) || others.iter().any(|text| word_begins(text, word));
-    words.iter().all(|word| is_found(&word)).then_some(Fit::Texts)
+    words.iter().all(is_found).then_some(Fit::Texts)
 }
 
 /// Whether a word of `text` begins with `part`.

@@ -66,7 +66,7 @@ impl Keying {
     pub(crate) fn of<'a>(
         project: &Project,
         secs: f64,
-        writes: impl Iterator<Item = &'a str> + Clone,
+        writes: &(impl Iterator<Item = &'a str> + Clone),
     ) -> Self {
         let mut parts = Vec::new();
         collect(project, String::new(), &mut parts);
@@ -84,7 +84,7 @@ impl Keying {
         // The first part of a struct has the address of the struct.
         let is_it = |known: &&Info| known.name == info.name && known.text == info.text;
         let mut there = self.parts.iter().filter(|known| known.address == address);
-        let part = there.find(|known| known.infos.iter().any(|known| is_it(known)))?;
+        let part = there.find(|known| known.infos.iter().any(&is_it))?;
         Some(format!("{}{}", part.path, info.name))
     }
 }
@@ -224,18 +224,18 @@ impl KeyedRow {
         })
     }
 
-    fn ask(&self, ui: &Ui, request: KeyRequest) {
+    fn ask(ui: &Ui, request: KeyRequest) {
         ui.data_mut(|data| data.get_temp_mut_or_default::<Vec<KeyRequest>>(keying()).push(request));
     }
 
     fn add(&self, ui: &Ui) {
         if let Some(value) = self.numbers() {
-            self.ask(ui, KeyRequest::Add { target: self.target.clone(), value });
+            Self::ask(ui, KeyRequest::Add { target: self.target.clone(), value });
         }
     }
 
     fn remove(&self, ui: &Ui) {
-        self.ask(ui, KeyRequest::Remove { target: self.target.clone() });
+        Self::ask(ui, KeyRequest::Remove { target: self.target.clone() });
     }
 
     /// The diamond to the left of the label: filled at a key, outlined where there are keys at other times, and faint under the
@@ -310,7 +310,7 @@ fn menu(ui: &Ui, whole: Rect, name: &Response, row: Option<&KeyedRow>, differs: 
                 }
                 if entry(ui, "Record this", why_not) {
                     let (target, label) = (row.target.clone(), row.label);
-                    row.ask(ui, KeyRequest::Record { target, label });
+                    KeyedRow::ask(ui, KeyRequest::Record { target, label });
                 }
                 ui.separator();
             }

@@ -299,32 +299,27 @@ fn line(ui: &mut Ui, spans: &[Span], size: Option<f32>) -> Option<String> {
             }
         };
         for span in spans {
-            match span.link.as_ref().filter(|link| pages::leads(link)) {
-                Some(to) => {
-                    flush(ui, &mut job);
-                    let text = RichText::new(&span.text).size(size).color(theme::ACCENT);
-                    let response = ui.add(Label::new(text).wrap().sense(Sense::click()));
-                    let name = span.text.clone();
-                    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Link, true, &name));
-                    let response = response.on_hover_cursor(egui::CursorIcon::PointingHand);
-                    if response.hover_tooltip(to).clicked() {
-                        link = Some(to.clone());
-                    }
+            if let Some(to) = span.link.as_ref().filter(|link| pages::leads(link)) {
+                flush(ui, &mut job);
+                let text = RichText::new(&span.text).size(size).color(theme::ACCENT);
+                let response = ui.add(Label::new(text).wrap().sense(Sense::click()));
+                let name = span.text.clone();
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Link, true, &name));
+                let response = response.on_hover_cursor(egui::CursorIcon::PointingHand);
+                if response.hover_tooltip(to).clicked() {
+                    link = Some(to.clone());
                 }
-                None => {
-                    let family = if span.is_code { FontFamily::Monospace } else { FontFamily::Proportional };
-                    let font = FontId::new(if span.is_code { size - 1.0 } else { size }, family);
-                    let color = if span.is_strong || span.is_emphasis || size > 13.0 {
-                        theme::BRIGHT
-                    } else {
-                        ui.visuals().text_color()
-                    };
-                    let format = egui::TextFormat {
-                        italics: span.is_emphasis,
-                        ..egui::TextFormat::simple(font, color)
-                    };
-                    job.append(&span.text, 0.0, format);
-                }
+            } else {
+                let family = if span.is_code { FontFamily::Monospace } else { FontFamily::Proportional };
+                let font = FontId::new(if span.is_code { size - 1.0 } else { size }, family);
+                let color = if span.is_strong || span.is_emphasis || size > 13.0 {
+                    theme::BRIGHT
+                } else {
+                    ui.visuals().text_color()
+                };
+                let format =
+                    egui::TextFormat { italics: span.is_emphasis, ..egui::TextFormat::simple(font, color) };
+                job.append(&span.text, 0.0, format);
             }
         }
         flush(ui, &mut job);

@@ -55,7 +55,7 @@ impl WhatIsThis {
             self.had_names = ctx.viewport(|viewport| viewport.this_pass.accesskit_state.is_some());
             ctx.enable_accesskit();
             // The entry of the menu that starts this is no control to ask about.
-            let focused = ctx.memory(|memory| memory.focused());
+            let focused = ctx.memory(egui::Memory::focused);
             self.focused = focused.filter(|id| {
                 let layer = ctx.viewport(|viewport| viewport.prev_pass.widgets.order(*id));
                 layer.is_some_and(|(layer, _)| layer.order == Order::Background)

@@ -9,6 +9,7 @@ use lovelock_style::{HeadBox, Mask};
 use super::View;
 use super::head::Head;
 use crate::window::brushes::SeenHair;
+use crate::window::theme;
 
 /// Values that differ by less look the same.
 const SAME: f32 = 0.02;
@@ -48,8 +49,7 @@ pub(crate) fn changed(
 fn color_of(mask: &ShownMask, value: f32) -> Color32 {
     let [low, high] = mask.scale.range;
     let place = ((value - low) / (high - low)).clamp(0.0, 1.0) * 255.0;
-    let [r, g, b] = mask.scale.colors[place.round() as usize].map(|v| (f32::from(v) * LIGHT) as u8);
-    Color32::from_rgb(r, g, b)
+    theme::from_srgb(mask.scale.colors[place.round() as usize].map(|v| (f32::from(v) * LIGHT) as u8))
 }
 
 /// The triangles of the scalp that no hair hides and whose colour is new.

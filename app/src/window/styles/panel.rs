@@ -168,7 +168,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
 
 /// Moves the focus through the pictures by the arrow keys, and to them from the search field.
 fn arrows(ui: &Ui, browser: &mut Browser, picked: Picked) {
-    let focused = ui.memory(|memory| memory.focused());
+    let focused = ui.memory(egui::Memory::focused);
     let at = browser.tiles.iter().position(|id| Some(*id) == focused);
     let next = match at {
         None if picked.down => Some(0),

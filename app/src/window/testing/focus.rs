@@ -70,11 +70,11 @@ fn press(harness: &mut Harness<'_, Shown<Page>>, modifiers: Modifiers, key: Key)
 
 /// The name of the control with the focus; empty for the image.
 fn focused(harness: &Harness<'_, Shown<Page>>) -> String {
-    let node = harness.query_all_by(|node| node.is_focused()).find(|node| {
-        use egui_kittest::kittest::NodeT;
-        node.accesskit_node().label().is_some_and(|label| !label.is_empty())
-    });
     use egui_kittest::kittest::NodeT;
+    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is not general enough")]
+    let node = harness
+        .query_all_by(|node| node.is_focused())
+        .find(|node| node.accesskit_node().label().is_some_and(|label| !label.is_empty()));
     node.and_then(|node| node.accesskit_node().label()).unwrap_or_default()
 }
 

@@ -27,7 +27,7 @@ fn desk() -> Harness<'static, Shown<State>> {
 fn desk_of(pane: Option<usize>) -> Harness<'static, Shown<State>> {
     let state = State { project: Project::default(), secs: 1.0, asked: Vec::new() };
     let mut harness = screen(state, move |ui, state: &mut State| {
-        let keying = Keying::of(&state.project, state.secs, std::iter::empty::<&str>());
+        let keying = Keying::of(&state.project, state.secs, &std::iter::empty::<&str>());
         control::begin_keying(ui.ctx(), keying);
         if let Some(pane) = pane {
             control::enter_pane(ui.ctx(), pane);

@@ -338,13 +338,17 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     // The keys come in the same pass as the one that opens the dialog, and after its text is refused.
     harness.key_press_modifiers(CTRL, Key::O);
     let letters = [Key::N, Key::C, Key::X, Key::W, Key::R, Key::H, Key::Space];
-    letters.iter().for_each(|letter| harness.key_press(*letter));
+    for letter in letters {
+        harness.key_press(letter);
+    }
     go(&mut harness);
     harness.event(Event::Text("/no such folder/nxwr.take".to_owned()));
     harness.key_press(Key::Enter);
     go(&mut harness);
     assert!(harness.query_by_label_contains("found no such file").is_some());
-    letters.iter().for_each(|letter| harness.key_press(*letter));
+    for letter in letters {
+        harness.key_press(letter);
+    }
     go(&mut harness);
     assert!(of(&harness).dialog.is_some() && of(&harness).session.playing);
     assert_eq!(state(&harness), before);

@@ -116,8 +116,8 @@ fn a_wall_that_rests_keeps_nothing_and_is_drawn_again() {
     let variants = [Arc::clone(&project), Arc::new(vary(&project, 1, 1.0, &Locks::default()))];
     let wall = Wall::start(WindowDevice::default(), || {}).expect("a thread");
     let before = drawn(&wall, request(&project, &variants, 0.0));
-    let held = wall.held_bytes();
-    assert!(held > 1_000_000, "{held} bytes of two simulations and renderers");
+    // Counted after the images are handed over.
+    wait_until("what two simulations and renderers hold", || wall.held_bytes() > 1_000_000);
     wall.rest();
     wait_until("the rest", || !wall.busy().load(std::sync::atomic::Ordering::Relaxed));
     assert_eq!(wall.held_bytes(), 0);

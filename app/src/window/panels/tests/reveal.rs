@@ -42,6 +42,7 @@ fn a_setting_is_unfolded_scrolled_to_and_focused() {
         assert!(before == 0 || path.ends_with("length"), "{label} is folded before");
         show(&mut harness, path);
         assert!(harness.state().state.1.is_empty(), "{path}: {:?}", harness.state().state.1);
+        #[expect(clippy::redundant_closure_for_method_calls, reason = "the method is not general enough")]
         let focused = harness.query_all_by(|node| node.is_focused()).find(|node| node.rect().is_positive());
         let rect = focused.unwrap_or_else(|| panic!("{path}: nothing is focused")).rect();
         assert!(rect.top() >= 0.0 && rect.bottom() <= 500.0, "{path}: {rect}");
