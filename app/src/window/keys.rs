@@ -301,7 +301,8 @@ pub(crate) fn list(ui: &mut Ui) {
             ui.vertical(|ui| {
                 for (title, rows) in groups {
                     ui.label(RichText::new(title).strong());
-                    egui::Grid::new(("keys", title)).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+                    let grid = egui::Grid::new(("keys", title)).num_columns(2).spacing([16.0, 0.0]);
+                    grid.min_row_height(0.0).show(ui, |ui| {
                         for (keys, what, tip) in rows {
                             ui.label(RichText::new(keys).monospace().size(11.0).color(theme::ACCENT));
                             let what = ui.label(what);

@@ -57,13 +57,15 @@ impl Number {
         row(ui, self.label, &self.tip, differs, value, default, |ui, value| {
             let limits = Limits::of(ui, self.label, self.typed.map(|v| v * factor), (suffix, decimals));
             let dragged = ui.input(|input| input.pointer.any_down());
+            let opens_menu = is_secondary(ui);
             ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
             let [low, high] = limits.range;
             Slider::from_get_set(range.clone(), |new| {
                 // The slider rounds to what it shows; that alone is no change.
                 let shown = 0.5 * 0.1_f64.powi(decimals as i32);
                 let old = *value * factor;
-                if let Some(new) = new.filter(|new| new.is_finite() && (new - old).abs() > shown) {
+                let is_new = |new: &f64| new.is_finite() && !opens_menu && (new - old).abs() > shown;
+                if let Some(new) = new.filter(is_new) {
                     // More can be typed than dragged.
                     let new =
                         if dragged { new.clamp(range.start().min(old), range.end().max(old)) } else { new };
@@ -145,10 +147,11 @@ pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
         let range = [least, counts.hard[1]].map(|bound| bound as f64 * factor);
         let limits = Limits::of(ui, info.label, range, (suffix, decimals));
         let dragged = ui.input(|input| input.pointer.any_down());
+        let opens_menu = is_secondary(ui);
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
         let [low, high] = counts.soft.map(|bound| bound as f64 * factor);
         let slider = Slider::from_get_set(low..=high, |new| {
-            if let Some(new) = new.filter(|new| new.is_finite()) {
+            if let Some(new) = new.filter(|new| new.is_finite() && !opens_menu) {
                 let old = *value as f64 * factor;
                 // More can be typed than dragged.
                 let new = if dragged { new.clamp(low.min(old), high.max(old)) } else { new };
@@ -165,6 +168,13 @@ pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
             .clamping(SliderClamping::Never)
             .update_while_editing(false)
             .ui(ui)
+    })
+}
+
+/// Whether the right button, which opens the menu of a control, is or was just held. egui's sliders follow every button.
+fn is_secondary(ui: &Ui) -> bool {
+    ui.input(|input| {
+        input.pointer.secondary_down() || input.pointer.button_released(egui::PointerButton::Secondary)
     })
 }
 
