@@ -161,8 +161,8 @@ impl Reader {
     }
 
     fn text(&mut self, text: &str, is_code: bool) {
-        // The fonts of the window have no arrow.
-        let text = &*text.replace('→', "to");
+        // The fonts of the window have no arrows.
+        let text = &*text.replace('→', "->").replace('←', "<-");
         if let Some(code) = &mut self.code {
             code.push_str(text);
             return;

@@ -220,7 +220,9 @@ fn a_broken_file_leaves_the_project_and_its_error_stays() {
         assert_eq!(of(&harness).history.redo_len(), 0, "it cannot be redone");
     }
     assert_eq!(of(&harness).notices.errors().len(), 2);
-    assert!(of(&harness).session.problems.iter().all(|problem| !problem.is_failure()));
+    wait(&mut harness, "the project of before without problems", |window| {
+        window.session.problems.iter().all(|problem| !problem.is_failure())
+    });
 }
 
 #[test]
