@@ -71,7 +71,10 @@ fn the_transport_row_is_whole_with_any_number_of_tracks() {
                 let tracks = shown_tracks(&harness);
                 assert!(tracks.len() >= rows.min(1), "{what}: no track is visible");
                 let ruler = control(&harness, Role::Slider, "Time").rect();
-                assert!(tracks.iter().all(|lane| lane.top() >= ruler.bottom()), "{what}: {tracks:?}");
+                assert!(
+                    tracks.iter().all(|lane| lane.top() >= ruler.bottom()),
+                    "{what}: {tracks:?} {ruler:?}"
+                );
                 if size == SMALL && rows <= 2 {
                     let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
                     assert!(
