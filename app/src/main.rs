@@ -6,17 +6,22 @@ mod window;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+
 fn main() -> ExitCode {
     without_display_messages();
     // Messages of graphics drivers while adapters are probed, and of readers of sound while a format is guessed, are not errors of this program.
     let quiet = "error,wgpu=off,wgpu_core=off,wgpu_hal=off,naga=off,symphonia=off";
-    tracing_subscriber::fmt()
-        .with_env_filter(
-            tracing_subscriber::EnvFilter::try_from_env("LOVELOCK_LOG")
-                .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(quiet)),
+    let asked = std::env::var("LOVELOCK_LOG").ok().and_then(|asked| asked.parse::<Targets>().ok());
+    tracing_subscriber::registry()
+        .with(
+            tracing_subscriber::fmt::layer()
+                .with_ansi(std::io::stderr().is_terminal())
+                .with_writer(std::io::stderr),
         )
-        .with_ansi(std::io::stderr().is_terminal())
-        .with_writer(std::io::stderr)
+        .with(asked.unwrap_or_else(|| quiet.parse().expect("the levels are written above")))
         .init();
     lovelock_session::threads::name_workers();
     cli::run()

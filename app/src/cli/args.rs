@@ -182,7 +182,7 @@ pub(crate) struct Record {
     pub(crate) transparent: bool,
     /// Samples per frame for motion blur while the shutter is open, 1 (no blur) to 64.
     #[arg(long, value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..=i64::from(RecordingSection::MOST_SUBFRAMES)))]
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(RecordingSection::MAX_SUBFRAMES)))]
     pub(crate) motion_blur: Option<u32>,
     /// Shutter angle for motion blur in degrees, centred on the frame; 360 is the whole frame.
     #[arg(long, value_name = "DEGREES", value_parser = degrees)]

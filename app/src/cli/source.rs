@@ -152,7 +152,7 @@ impl Source {
 
     /// Adds a pane per take beside the project; returns the layout of the panes.
     pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, ProjectError> {
-        let most = CompareSection::MOST_PANES - 1;
+        let most = CompareSection::MAX_PANES - 1;
         if takes.len() > most {
             let found = takes.len();
             return Err(ProjectError::option(format!(

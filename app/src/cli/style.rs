@@ -13,7 +13,7 @@ use super::replace::{self, Holds};
 use super::source::Source;
 
 /// The latest start of strokes on the dance, seconds.
-const MOST_SECS: f64 = 3600.0;
+const MAX_SECS: f64 = 3600.0;
 
 /// Plays recorded strokes on the hair of a project and writes the project with them.
 pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> {
@@ -27,9 +27,9 @@ pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> 
     let film_replaced =
         task.film.as_ref().map(|film| replace::check(film, Holds::RECORDING, task.force)).transpose()?;
     let source = Source::open(&task.source)?;
-    if let Some(secs) = task.on_dance.filter(|secs| !(secs.is_finite() && (0.0..=MOST_SECS).contains(secs))) {
+    if let Some(secs) = task.on_dance.filter(|secs| !(secs.is_finite() && (0.0..=MAX_SECS).contains(secs))) {
         return Err(ProjectError::option(format!(
-            "--on-dance: found {secs}; must be 0 to {MOST_SECS} seconds"
+            "--on-dance: found {secs}; must be 0 to {MAX_SECS} seconds"
         )));
     }
     let mut film = task.film.as_deref().map(|out| StrokeFilm::create(out, &source.project)).transpose()?;

@@ -266,7 +266,7 @@ impl Window {
         let secs = self.now_secs();
         self.change("marker", |project| {
             let markers = &mut project.timeline.markers;
-            if markers.len() < TimelineSection::MOST_MARKERS {
+            if markers.len() < TimelineSection::MAX_MARKERS {
                 markers.push(Marker { secs, name: format!("{}", markers.len() + 1) });
             }
         });

@@ -57,7 +57,7 @@ impl Display {
 }
 
 /// How often the window is opened again, a second apart, before the program gives up.
-const MOST_TRIES: u32 = 10;
+const MAX_TRIES: u32 = 10;
 
 /// Opens the window that `make` makes, and again with another graphics device after the one in use was lost, with everything on it.
 /// Returns when the user closes it.
@@ -91,7 +91,7 @@ pub(super) fn run(
             Ok(()) if kept.borrow().is_none() => return Ok(()),
             Ok(()) => tries = 0,
             // A driver that is being replaced has no device for a moment.
-            Err(error) if kept.borrow().is_some() && tries < MOST_TRIES => {
+            Err(error) if kept.borrow().is_some() && tries < MAX_TRIES => {
                 tracing::warn!(%error, "the window could not be opened again");
                 tries += 1;
                 std::thread::sleep(Duration::from_secs(1));

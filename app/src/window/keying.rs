@@ -21,7 +21,7 @@ impl Window {
         match request {
             KeyRequest::Add { target, value } => {
                 if !project.set_key(&target, secs, value) {
-                    let (tracks, keys) = (Track::MOST, Track::MOST_KEYS);
+                    let (tracks, keys) = (Track::MAX, Track::MAX_KEYS);
                     self.warn([format!(
                         "There is no room for another key: a project has at most {tracks} tracks of {keys} keys."
                     )]);

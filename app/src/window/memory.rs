@@ -73,13 +73,13 @@ impl Window {
                 "Layers",
                 "Hairstyles between two layers, so that a change evaluates only the layers after it. Beyond the limit the first ones go.",
                 worker.layer_bytes(),
-                SceneLoader::MOST_LAYER_BYTES,
+                SceneLoader::MAX_LAYER_BYTES,
             ),
             (
                 "Undo steps",
                 "Projects that undo and redo return to. Beyond the limit the oldest steps go.",
                 self.history.bytes(),
-                History::MOST_BYTES,
+                History::MAX_BYTES,
             ),
             (
                 "Take",
@@ -91,7 +91,7 @@ impl Window {
                 "Thumbnails",
                 "Images along the timeline. Beyond the limit the oldest go.",
                 self.thumbnails.bytes(),
-                Thumbnails::MOST_BYTES,
+                Thumbnails::MAX_BYTES,
             ),
         ];
         for (name, tip, bytes, most) in caches {

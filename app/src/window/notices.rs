@@ -13,9 +13,9 @@ use crate::window::control::HoverTooltip;
 const STAYS_SECS: f64 = 6.0;
 const READING_SECS: f64 = 0.06;
 /// The most messages that are shown. Of those that disappear by themselves the oldest are removed first; errors wait.
-const MOST: usize = 5;
+const MAX: usize = 5;
 /// The most errors that wait to be read.
-const MOST_WAITING: usize = 100;
+const MAX_WAITING: usize = 100;
 /// Distance from the corner of the image, points.
 const MARGIN: f32 = 12.0;
 /// Width of the longest line, points.
@@ -74,7 +74,7 @@ impl Notices {
     fn add(&mut self, kind: Kind, text: impl Into<String>, written: Option<PathBuf>) {
         let text = text.into();
         self.list.retain(|notice| notice.text != text);
-        let most = if kind == Kind::Failed { MOST_WAITING } else { MOST };
+        let most = if kind == Kind::Failed { MAX_WAITING } else { MAX };
         if self.list.len() >= most {
             let passing = self.list.iter().position(|notice| notice.kind != Kind::Failed);
             match passing {
@@ -150,7 +150,7 @@ impl Notices {
     fn visible(&self) -> Vec<u64> {
         let is_error = |notice: &&Notice| notice.kind == Kind::Failed;
         let passing = self.list.iter().filter(|notice| !is_error(notice));
-        let room = MOST.saturating_sub(passing.clone().count()).max(1);
+        let room = MAX.saturating_sub(passing.clone().count()).max(1);
         let errors = self.list.iter().filter(is_error).take(room);
         errors.chain(passing).map(|notice| notice.id).collect()
     }

@@ -9,9 +9,9 @@
 /// `as` would compile to one or two branches per number, because it saturates at the integers' limits.
 #[inline(always)]
 pub fn whole_part(c: f32) -> i32 {
-    const MOST: f32 = (1 << 26) as f32;
+    const MAX: f32 = (1 << 26) as f32;
     let c = if c > 0.0 { c } else { 0.0 };
-    let c = if c < MOST { c } else { MOST };
+    let c = if c < MAX { c } else { MAX };
     // SAFETY: `c` is a number between 0 and 2^26: the comparison above turns NaN into 0.
     unsafe { c.to_int_unchecked() }
 }

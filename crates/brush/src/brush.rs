@@ -20,7 +20,7 @@ use crate::touch::{TouchedGuide, Wisps, touched};
 /// How far a link may be stretched or compressed at a dab, as factors.
 const STRETCH: [f32; 2] = [0.8, 1.25];
 /// The most points of the way of a brush that tools use.
-const MOST_WAY: usize = 512;
+const MAX_WAY: usize = 512;
 
 /// What is around the hair at one instant.
 #[derive(Clone, Copy)]
@@ -117,7 +117,7 @@ impl Brush {
         let mut seen = GuideFrame::at_rest(&frame.guides, head_from_world, 0.0).guides;
         let mut changed = vec![false; self.touched.len()];
         for dab in dabs {
-            if self.way.len() < MOST_WAY {
+            if self.way.len() < MAX_WAY {
                 self.way.push(dab.centre);
             }
             self.dab(&dab, &mut seen, around, &mut changed);

@@ -7,7 +7,7 @@ use lovelock_style::hand::{smallest_turn, turned_toward};
 /// Clearance between the body and guides that had more of it before, metres.
 const CLEAR: f32 = 0.003;
 /// Links turn from one to the next by this angle at most, radians, unless they did before.
-const MOST_BEND: f32 = 0.6;
+const MAX_BEND: f32 = 0.6;
 /// Weights of the turns of the links around a link: binomial, so that a change to alternate sides cancels out.
 const EVENED: [f32; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
@@ -30,7 +30,7 @@ pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: 
         let mut along = (targets[i + 1] - from).normalize_or(old.normalize_or(Vec3::NEG_Y));
         if let Some(last) = last {
             let bend = (before[i] - before[i - 1]).angle_between(old);
-            let most = if bend.is_finite() { bend.max(MOST_BEND) } else { MOST_BEND };
+            let most = if bend.is_finite() { bend.max(MAX_BEND) } else { MAX_BEND };
             if last.angle_between(along) > most {
                 along = turned_toward(last, along, most);
             }
@@ -127,7 +127,7 @@ mod tests {
             assert!((link - 0.01).abs() < 1e-6, "{link}");
         }
         for pair in directions(&after).windows(2) {
-            assert!(pair[0].angle_between(pair[1]) < MOST_BEND + 1e-3);
+            assert!(pair[0].angle_between(pair[1]) < MAX_BEND + 1e-3);
         }
     }
 

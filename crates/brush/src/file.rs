@@ -35,9 +35,9 @@ impl StrokeFile {
     /// The version that this program writes.
     pub const VERSION: u32 = 1;
     /// The most strokes.
-    pub const MOST_STROKES: usize = 10_000;
+    pub const MAX_STROKES: usize = 10_000;
     /// The most samples of a stroke.
-    pub const MOST_SAMPLES: usize = 100_000;
+    pub const MAX_SAMPLES: usize = 100_000;
     /// The longest text, bytes.
     pub const LONGEST: usize = 1 << 30;
 
@@ -74,13 +74,13 @@ impl StrokeFile {
             return Err(format!("strokes: found version {}; must be {}", self.version, Self::VERSION));
         }
         let count = self.strokes.len();
-        if count > Self::MOST_STROKES {
-            return Err(format!("strokes: found {count} strokes; must be at most {}", Self::MOST_STROKES));
+        if count > Self::MAX_STROKES {
+            return Err(format!("strokes: found {count} strokes; must be at most {}", Self::MAX_STROKES));
         }
         for (i, stroke) in self.strokes.iter().enumerate() {
             let count = stroke.samples.len();
-            if count > Self::MOST_SAMPLES {
-                let most = Self::MOST_SAMPLES;
+            if count > Self::MAX_SAMPLES {
+                let most = Self::MAX_SAMPLES;
                 return Err(format!("stroke {i}: found {count} samples; must be at most {most}"));
             }
             if let Some(bad) = stroke.samples.iter().position(|sample| !sample.is_finite()) {
@@ -143,9 +143,9 @@ mod tests {
             let error = StrokeFile::from_text(&bad).expect_err("an error");
             assert!(error.starts_with(found), "{error}");
         }
-        let many = StrokeFile::new(vec![stroke(StrokeFile::MOST_SAMPLES + 1)]);
+        let many = StrokeFile::new(vec![stroke(StrokeFile::MAX_SAMPLES + 1)]);
         assert!(many.to_text().expect_err("an error").contains("must be at most 100000"));
-        let many = StrokeFile::new(vec![RecordedStroke::default(); StrokeFile::MOST_STROKES + 1]);
+        let many = StrokeFile::new(vec![RecordedStroke::default(); StrokeFile::MAX_STROKES + 1]);
         assert!(many.to_text().expect_err("an error").contains("must be at most 10000"));
         assert!(StrokeFile::from_text("").is_err());
     }

@@ -8,7 +8,7 @@ const SPACING: f32 = 0.2;
 /// The least distance between two dabs, metres.
 const LEAST_SPACING: f32 = 0.001;
 /// The most dabs of one movement; a longer one spreads them.
-const MOST_DABS: f32 = 128.0;
+const MAX_DABS: f32 = 128.0;
 
 /// The brush at one instant of a stroke, world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -117,7 +117,7 @@ impl Resampler {
         };
         let Some(last) = self.last.replace(now) else { return vec![dab(&now, Vec3::ZERO, true)] };
         let length = now.drag.length();
-        let spacing = (SPACING * radius).max(LEAST_SPACING).max(length / MOST_DABS);
+        let spacing = (SPACING * radius).max(LEAST_SPACING).max(length / MAX_DABS);
         let mut out = Vec::new();
         let mut done = 0.0;
         while length > 0.0 && self.travelled + length - done >= spacing {

@@ -58,12 +58,7 @@ struct Driven {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     system::prepare()?;
     system::prepare_screen()?;
-    let program = if let Some(program) = &arguments.program {
-        program.clone()
-    } else {
-        tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
-        tool::target().join("release/lovelock")
-    };
+    let program = arguments.program.clone().unwrap_or_else(tool::program);
     let mut driven = Driven::start(&program, arguments.seed)?;
     let page = Duration::from_secs(arguments.secs);
     driven.rest("one image", page)?;

@@ -13,7 +13,7 @@ use crate::GltfError;
 use crate::document::{Buffer, Document};
 
 /// Largest total size of buffers that is read, bytes.
-const MOST_BYTES: u64 = 1 << 33;
+const MAX_BYTES: u64 = 1 << 33;
 
 /// The bytes of all buffers of a file.
 #[derive(Debug)]
@@ -43,9 +43,9 @@ impl<'a> Buffers<'a> {
                 return Err(GltfError::malformed(file, place, found, wanted));
             }
             total += bytes.len() as u64;
-            if total > MOST_BYTES {
+            if total > MAX_BYTES {
                 let found = format!("{total} bytes of buffers");
-                return Err(GltfError::malformed(file, place, found, format!("{MOST_BYTES} at most")));
+                return Err(GltfError::malformed(file, place, found, format!("{MAX_BYTES} at most")));
             }
             buffers.push(bytes);
         }
@@ -85,7 +85,7 @@ fn fetch<'a>(
     let path = resolve(file, uri, folder)?;
     let read = |source| GltfError::Read { file: format!("{file}: {place}: {}", path.display()), source };
     let mut bytes = Vec::new();
-    let limit = buffer.byte_length.min(MOST_BYTES);
+    let limit = buffer.byte_length.min(MAX_BYTES);
     std::fs::File::open(&path).map_err(read)?.take(limit).read_to_end(&mut bytes).map_err(read)?;
     Ok(Cow::Owned(bytes))
 }

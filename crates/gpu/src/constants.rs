@@ -1,7 +1,7 @@
 //! Uniform buffers with the constants of a pass, reused from frame to frame.
 
 /// The most buffers that are kept. More passes in one frame get buffers of their own, which are not kept.
-const MOST_KEPT: usize = 256;
+const MAX_KEPT: usize = 256;
 
 /// Buffers in the order in which a frame asks for them: the same pass gets the same buffer in each frame, so its bind group
 /// stays valid too.
@@ -27,7 +27,7 @@ impl ConstantPool {
     pub fn take(&mut self, bytes: &[u8], make: impl FnOnce() -> wgpu::Buffer) -> (wgpu::Buffer, bool) {
         let place = self.next;
         self.next += 1;
-        if place >= MOST_KEPT {
+        if place >= MAX_KEPT {
             return (make(), true);
         }
         match self.kept.get_mut(place) {

@@ -9,7 +9,7 @@ use crate::{Gpu, GpuError, ShaderSource, shader};
 pub const THREADS: u32 = 64;
 
 /// The most workgroups along one axis of a dispatch that WebGPU allows.
-const MOST_GROUPS: u32 = 65_535;
+const MAX_GROUPS: u32 = 65_535;
 
 /// The name and the value of an `override` of a shader.
 ///
@@ -33,7 +33,7 @@ pub struct Kernel {
 /// A bind group that was not used in this many frames is dropped: it keeps its buffers and textures alive.
 const KEPT_FRAMES: u64 = 2;
 /// The most bind groups that are kept.
-const MOST_KEPT: usize = 64;
+const MAX_KEPT: usize = 64;
 
 /// The bind groups of the last frames, with the resources that they bind.
 #[derive(Debug)]
@@ -157,7 +157,7 @@ impl Kernel {
             bound.last = now;
             return bound.group.clone();
         }
-        if groups.kept.len() >= MOST_KEPT {
+        if groups.kept.len() >= MAX_KEPT {
             groups.kept.clear();
         }
         let entries: Vec<_> = wanted()
@@ -198,7 +198,7 @@ impl Kernel {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, group, &[]);
             // The fewest rows that are possible, all of one length, leave the fewest surplus threads.
-            let rows = groups.div_ceil(MOST_GROUPS);
+            let rows = groups.div_ceil(MAX_GROUPS);
             pass.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
         }
     }

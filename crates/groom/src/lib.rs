@@ -55,7 +55,7 @@ pub use plain_head::PlainHead;
 pub use presets::Preset;
 pub use scalp::{Scalp, ScalpError, ScalpPoint};
 pub use scalp_index::ScalpIndex;
-pub use settings::{GroomSettings, MOST_POINTS};
+pub use settings::{GroomSettings, MAX_POINTS};
 pub use strand_bounds::StrandBounds;
 pub use strand_colours::{COLOUR_SAMPLES, ColourSamples, StrandColour, StrandColours, colour_along};
 pub use strands::Strands;

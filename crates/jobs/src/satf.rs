@@ -14,7 +14,7 @@ use lovelock_satf::layout::{ANGLES, SECTORS, TEXELS};
 use serde::Serialize;
 
 /// The largest file that is read as a database, bytes. A database has 2.3 MB.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// The result, as `satf build --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,8 +88,8 @@ impl DatabaseInfo {
         let refuse =
             |error: &dyn std::fmt::Display| ProjectError::input(path, format!("{}: {error}", path.display()));
         let length = fs::metadata(path).map_err(|error| refuse(&error))?.len();
-        if length > MOST_BYTES {
-            let message = format!("found {} MiB; must be at most {} MiB", length >> 20, MOST_BYTES >> 20);
+        if length > MAX_BYTES {
+            let message = format!("found {} MiB; must be at most {} MiB", length >> 20, MAX_BYTES >> 20);
             return Err(refuse(&message));
         }
         let bytes = fs::read(path).map_err(|error| refuse(&error))?;

@@ -30,7 +30,7 @@ pub struct Sheet {
     /// Whether times and errors are written under the panes. Times differ between runs.
     pub figures: bool,
     /// The colour of each pane's mark, sRGB.
-    pub colors: [[u8; 3]; CompareSection::MOST_PANES],
+    pub colors: [[u8; 3]; CompareSection::MAX_PANES],
 }
 
 /// A pane to compose: its number, the pane, and its time in milliseconds.
@@ -265,7 +265,7 @@ mod tests {
             wipe,
             view: LiveView::default(),
             figures: true,
-            colors: [[9, 9, 9]; CompareSection::MOST_PANES],
+            colors: [[9, 9, 9]; CompareSection::MAX_PANES],
         }
     }
 

@@ -37,7 +37,7 @@ impl History {
     /// Number of steps kept by default. A project is a few kilobytes, and shares what brushes did with the step before.
     pub const LIMIT: usize = 1200;
     /// The most memory of all steps, bytes: a project with long tracks has megabytes. The newest step is always kept.
-    pub const MOST_BYTES: u64 = 256 << 20;
+    pub const MAX_BYTES: u64 = 256 << 20;
 
     /// A project without undo steps.
     pub fn new(project: Project) -> Self {
@@ -55,7 +55,7 @@ impl History {
             gesture: None,
             discarded: Vec::new(),
             limit: limit.max(1),
-            most_bytes: Self::MOST_BYTES,
+            most_bytes: Self::MAX_BYTES,
         }
     }
 

@@ -14,7 +14,7 @@ use lovelock_base::random::SplitMix64;
 const SIDE: usize = 64;
 
 /// Largest amplitude of luma noise in codes. Draft films would need more, and it would be visible.
-const MOST_CODES: f64 = 4.0;
+const MAX_CODES: f64 = 4.0;
 
 /// Noise for the three planes of a film.
 pub(crate) struct Dither {
@@ -29,7 +29,7 @@ impl Dither {
     pub(crate) fn for_quantiser(qp: u8) -> Self {
         let step = 0.625 * f64::exp2(f64::from(qp) / 6.0);
         Self {
-            luma: Tile::new(1, (step / 3.0).min(MOST_CODES)),
+            luma: Tile::new(1, (step / 3.0).min(MAX_CODES)),
             blue: Tile::new(2, 1.0),
             red: Tile::new(3, 1.0),
         }

@@ -46,7 +46,7 @@ pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
 pub use join::join_sequences;
 pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, ManifestSound, read_manifest};
-pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
+pub use preview::{MAX_PREVIEW_FRAMES, MAX_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{
@@ -56,7 +56,7 @@ pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use sound::{SOUND_RATE, SoundSource};
 pub use still::{jpeg_within, read_jpeg, write_png};
 pub use take::{
-    AssetState, CACHE_BYTES, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION,
-    TAKE_VERSION, TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader,
-    TakeReport, TakeWriter, hairstyle_fingerprint, mix_guides,
+    AssetState, CACHE_BYTES, MAX_ERROR_M, MAX_GUIDE_POINTS, MAX_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION,
+    TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport,
+    TakeWriter, hairstyle_fingerprint, mix_guides,
 };

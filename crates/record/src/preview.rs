@@ -9,21 +9,21 @@ use crate::partial::{PartialFile, create_parent, open_file};
 use crate::{FrameRate, RecordError};
 
 /// The largest side in pixels. A browser holds all frames of a preview in memory.
-pub const MOST_PREVIEW_SIDE: u32 = 2048;
+pub const MAX_PREVIEW_SIDE: u32 = 2048;
 
 /// The most frames: a minute and a half at 24 frames per second.
-pub const MOST_PREVIEW_FRAMES: u64 = 2160;
+pub const MAX_PREVIEW_FRAMES: u64 = 2160;
 
 /// Settings of a preview.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PreviewSettings {
-    /// Width in pixels, 1 to [`MOST_PREVIEW_SIDE`].
+    /// Width in pixels, 1 to [`MAX_PREVIEW_SIDE`].
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
     /// Frames per second, 1 to 240.
     pub fps: f64,
-    /// Number of frames, 1 to [`MOST_PREVIEW_FRAMES`]. The file stores it before the first frame.
+    /// Number of frames, 1 to [`MAX_PREVIEW_FRAMES`]. The file stores it before the first frame.
     pub frames: u64,
     /// Whether the alpha channel is kept (not premultiplied).
     pub alpha: bool,
@@ -36,14 +36,14 @@ impl PreviewSettings {
     /// [`RecordError::Request`] with what was found and what is valid.
     pub fn check(&self) -> Result<FrameRate, RecordError> {
         let Self { width, height, fps, frames, .. } = *self;
-        if width.min(height) == 0 || width.max(height) > MOST_PREVIEW_SIDE {
+        if width.min(height) == 0 || width.max(height) > MAX_PREVIEW_SIDE {
             return Err(RecordError::request(format!(
-                "a preview of {width}x{height} pixels: each side must be 1 to {MOST_PREVIEW_SIDE}"
+                "a preview of {width}x{height} pixels: each side must be 1 to {MAX_PREVIEW_SIDE}"
             )));
         }
-        if frames == 0 || frames > MOST_PREVIEW_FRAMES {
+        if frames == 0 || frames > MAX_PREVIEW_FRAMES {
             return Err(RecordError::request(format!(
-                "a preview of {frames} frames: must have 1 to {MOST_PREVIEW_FRAMES}; a film (.mp4) can have any number"
+                "a preview of {frames} frames: must have 1 to {MAX_PREVIEW_FRAMES}; a film (.mp4) can have any number"
             )));
         }
         FrameRate::from_fps(fps)
@@ -262,10 +262,10 @@ mod tests {
     fn invalid_sizes_and_lengths_are_refused() {
         for wrong in [
             PreviewSettings { width: 0, ..settings(1) },
-            PreviewSettings { height: MOST_PREVIEW_SIDE + 1, ..settings(1) },
+            PreviewSettings { height: MAX_PREVIEW_SIDE + 1, ..settings(1) },
             PreviewSettings { fps: 0.0, ..settings(1) },
             settings(0),
-            settings(MOST_PREVIEW_FRAMES + 1),
+            settings(MAX_PREVIEW_FRAMES + 1),
         ] {
             assert!(wrong.check().is_err_and(|error| error.is_request()), "{wrong:?}");
         }

@@ -30,7 +30,7 @@ const HEAD_DEPTH: f32 = 200.0;
 /// Optical depth of a crossed fibre for the light on skin.
 const SKIN_RATE: f32 = 0.35;
 /// The most given strands that are spread; of more, every second, third … one is.
-const MOST_STRANDS: usize = 4000;
+const MAX_STRANDS: usize = 4000;
 /// The eye's cosine for which light is lost on its way through hair.
 const USUAL_COSINE: f32 = 0.9;
 
@@ -308,7 +308,7 @@ impl<'a> HairPoints<'a> {
                 Self { axes: [&guides.x, &guides.y, &guides.z], lines }
             }
             (None, HairPose::Strands(strands)) => {
-                let every = strands.count().div_ceil(MOST_STRANDS).max(1);
+                let every = strands.count().div_ceil(MAX_STRANDS).max(1);
                 let known = strands.x.len().min(strands.y.len()).min(strands.z.len());
                 let ends = strands.first_point.windows(2).step_by(every);
                 let of = ends.map(|ends| ends[0] as usize..ends[1] as usize);

@@ -13,7 +13,7 @@ pub enum RenderError {
     #[error(
         "an image of {width}x{height} pixels is out of range: each side must be 1 to {limit}, and both together at \
          most {} million pixels",
-        crate::MOST_PIXELS / 1_000_000
+        crate::MAX_PIXELS / 1_000_000
     )]
     Size {
         /// The width that was given, pixels.

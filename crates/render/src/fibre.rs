@@ -18,8 +18,8 @@ pub(crate) const FACING_FIBRES: f32 = 0.6;
 
 /// Sine of the largest inclination at which a strand is seen, 70 degrees, and its cosine. Fibres that are seen end on reflect like mirrors,
 /// one in a hundred of a lock: at the few points of a strand, that looks like frost.
-pub(crate) const MOST_INCLINED: f32 = 0.939_692_6;
-/// See [`MOST_INCLINED`].
+pub(crate) const MAX_INCLINED: f32 = 0.939_692_6;
+/// See [`MAX_INCLINED`].
 pub(crate) const LEAST_COSINE: f32 = 0.342_020_15;
 
 /// The smallest transmittance that maps tell from none: half of a step of 8 bits.

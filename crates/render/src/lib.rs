@@ -38,7 +38,7 @@ pub use color_scale::ColorScale;
 pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{ClusterStats, FrameInput, FrameStats, HairPose};
-pub use gpu::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
+pub use gpu::{Finished, GpuRenderer, MAX_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
 pub use hair_drawing::HairDrawing;
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
@@ -52,7 +52,7 @@ pub use lovelock_shadow::{
     LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind, RayStructure, ShadowError,
     ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter,
 };
-pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings, check_size};
+pub use picture::{MAX_PIXELS, MAX_SIDE, Picture, PictureSettings, check_size};
 pub use renderer::Renderer;
 pub use strand_count::StrandCount;
 pub use transparency::Transparency;

@@ -9,24 +9,24 @@ use serde::{Deserialize, Serialize};
 use crate::{Backend, HairDrawing, RenderError, StrandCount, Transparency};
 
 /// The longest side of a picture, pixels.
-pub const MOST_SIDE: u32 = 8192;
+pub const MAX_SIDE: u32 = 8192;
 
 /// The most pixels of a picture: 8192 by 4320, a little more than 8K video.
-pub const MOST_PIXELS: u64 = 8192 * 4320;
+pub const MAX_PIXELS: u64 = 8192 * 4320;
 
 /// Returns an error for sizes that no backend supports.
 ///
 /// # Errors
 /// The size with the limit.
 pub fn check_size(width: u32, height: u32) -> Result<(), RenderError> {
-    check_size_for(width, height, MOST_SIDE)
+    check_size_for(width, height, MAX_SIDE)
 }
 
 /// Returns an error for sizes out of range. `limit` is the longest side that the backend supports.
 pub(crate) fn check_size_for(width: u32, height: u32, limit: u32) -> Result<(), RenderError> {
-    let limit = limit.min(MOST_SIDE);
+    let limit = limit.min(MAX_SIDE);
     let fits = (1..=limit).contains(&width) && (1..=limit).contains(&height);
-    if fits && u64::from(width) * u64::from(height) <= MOST_PIXELS {
+    if fits && u64::from(width) * u64::from(height) <= MAX_PIXELS {
         Ok(())
     } else {
         Err(RenderError::Size { width, height, limit })

@@ -8,7 +8,7 @@ use lovelock_gpu::{Gpu, GpuError};
 
 use crate::{
     Backend, ColorScale, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image,
-    Layers, MOST_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
+    Layers, MAX_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -256,7 +256,7 @@ impl Renderer {
     /// Whether as many images of [`Renderer::image`] are in flight as may be.
     pub fn is_full(&self) -> bool {
         // On a software adapter the frames would only wait for each other.
-        let most = if self.is_software() { 1 } else { MOST_IN_FLIGHT };
+        let most = if self.is_software() { 1 } else { MAX_IN_FLIGHT };
         self.in_flight() >= most
     }
 

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 pub(crate) const ROUNDS: usize = 12;
 
 /// Neighbours of a vertex that count, so that sums fit 16 bits.
-const MOST_NEIGHBOURS: usize = 32;
+const MAX_NEIGHBOURS: usize = 32;
 
 /// Vertices per task.
 const PIECE: usize = 2048;
@@ -138,7 +138,7 @@ fn neighbours(mesh: &Mesh) -> (Vec<u32>, Vec<u32>) {
     for &of in &same {
         first.push(list.len() as u32);
         let start = edges.partition_point(|edge| edge[0] < of);
-        let own = edges[start..].iter().take_while(|edge| edge[0] == of).take(MOST_NEIGHBOURS);
+        let own = edges[start..].iter().take_while(|edge| edge[0] == of).take(MAX_NEIGHBOURS);
         list.extend(own.map(|edge| edge[1]));
     }
     first.push(list.len() as u32);

@@ -7,7 +7,7 @@ use crate::{FrameInput, HairPose, StrandCount};
 /// The fewest and the most strands that are drawn by their size.
 const FEWEST: f32 = 3_000.0;
 /// See [`FEWEST`].
-pub(crate) const MOST: f32 = 120_000.0;
+pub(crate) const MAX: f32 = 120_000.0;
 /// The head's centre above its joint, metres.
 const HEAD_HEIGHT: f32 = 0.1;
 /// A camera inside the hair sees it from this far, metres.
@@ -41,7 +41,7 @@ pub(crate) fn portion_of(
         return None;
     }
     let look = input.look;
-    let most = ((most / points_per_strand.max(2) as u64) as f32).min(MOST);
+    let most = ((most / points_per_strand.max(2) as u64) as f32).min(MAX);
     if picture.strands == StrandCount::Fixed {
         return Some(Portion::of_all(picture.strand_number.clamp(1.0, most.max(1.0)) as usize));
     }
@@ -50,8 +50,8 @@ pub(crate) fn portion_of(
     let scale = input.camera.pixels_per_metre_at_one_metre(height) / distance;
     let covered = look.diameter * look.real_hairs;
     let wanted = covered * scale / target * picture.strand_detail.clamp(0.1, 10.0);
-    let wanted = if wanted.is_finite() { wanted } else { MOST };
+    let wanted = if wanted.is_finite() { wanted } else { MAX };
     // No strand stands for less than a hair.
-    let wanted = wanted.clamp(FEWEST, MOST).min(look.real_hairs.max(1.0)).min(most);
+    let wanted = wanted.clamp(FEWEST, MAX).min(look.real_hairs.max(1.0)).min(most);
     Some(Portion::fading(wanted, most as usize))
 }

@@ -208,10 +208,10 @@ mod tests {
             ("UNPIGMENTED", lovelock_groom::UNPIGMENTED),
             ("PAINTED_FROM", lovelock_groom::PAINTED_FROM),
             ("SHORT_METRES", FineStrand::SHORT_METRES),
-            ("MOST_LIGHT", crate::light::MOST_LIGHT),
+            ("MAX_LIGHT", crate::light::MAX_LIGHT),
             ("OWN_FIBRES", fibre::OWN_FIBRES),
             ("FACING_FIBRES", fibre::FACING_FIBRES),
-            ("MOST_INCLINED", fibre::MOST_INCLINED),
+            ("MAX_INCLINED", fibre::MAX_INCLINED),
             ("LARGEST_SOURCE", fibre::LARGEST_SOURCE),
         ] {
             let begin = format!("const {name}: f32 = ");

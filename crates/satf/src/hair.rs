@@ -13,7 +13,7 @@ use crate::section::{Section, sections_of};
 use crate::settings::ClusterSettings;
 
 /// The most hair shell volumes of a hairstyle.
-const MOST_VOLUMES: usize = 400_000;
+const MAX_VOLUMES: usize = 400_000;
 
 /// Every wisp of a hairstyle as a layered generalised disk. Constant until hairstyle or settings change.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ impl ClusterHair {
     /// The clusters of `style`, whose sectors look as those of strands about `width` metres wide; see [`nominal_width`].
     pub fn new(style: &Arc<Hairstyle>, settings: &ClusterSettings, width: f32) -> Self {
         let wisps = style.wisps.iter().filter(|w| w.strand_count > 0).count();
-        let grid = settings.grid(wisps, mean_length(style), MOST_VOLUMES);
+        let grid = settings.grid(wisps, mean_length(style), MAX_VOLUMES);
         let core = settings.core.clamp(0.0, 0.9);
         let sections: Vec<Vec<Section>> = if style.check().is_ok() {
             style.wisps.par_iter().map(|wisp| sections_of(style, wisp, grid.along)).collect()

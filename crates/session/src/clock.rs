@@ -56,7 +56,7 @@ impl Pace {
 const DEFAULT_HZ: f64 = 1.0 / STEP_SECS;
 
 /// Highest refresh rate that is served, Hz.
-const MOST_HZ: f64 = 240.0;
+const MAX_HZ: f64 = 240.0;
 
 /// Playback in the window: converts elapsed time to whole simulation steps, and to images between steps.
 ///
@@ -129,7 +129,7 @@ impl Playback {
     pub fn set_display_hz(&mut self, hz: f64) {
         // Displays of 59.94 and of 60.02 Hz count as 60 Hz.
         let quicker = hz.is_finite() && hz > 1.02 * DEFAULT_HZ;
-        let picture_secs = 1.0 / if quicker { hz.min(MOST_HZ) } else { DEFAULT_HZ };
+        let picture_secs = 1.0 / if quicker { hz.min(MAX_HZ) } else { DEFAULT_HZ };
         if picture_secs.to_bits() != self.picture_secs.to_bits() {
             self.picture_secs = picture_secs;
             self.begin();

@@ -32,7 +32,7 @@ pub mod snapshot;
 pub mod stats;
 pub mod strokes;
 pub mod take;
-#[cfg(any(test, feature = "testing"))]
+// Always there: a feature for tests would build this crate, and all above it, twice.
 pub mod testing;
 pub mod threads;
 pub mod totals;

@@ -21,7 +21,7 @@ const TOO_QUICK: f64 = 0.25;
 /// Images are so much too slow that waiting for more of them would be seen.
 const MUCH_TOO_SLOW: f64 = 0.5;
 /// The largest change otherwise.
-const MOST_CHANGE: f64 = 1.08;
+const MAX_CHANGE: f64 = 1.08;
 /// Images between two changes.
 const PATIENCE: u32 = 8;
 
@@ -63,7 +63,7 @@ impl Resolution {
         }
         // Time grows with the number of pixels, which is the square of the scale, and less than that: part of it is the same for any size.
         let change = (-0.5 * self.slowness).exp();
-        let change = if at_once { change } else { change.clamp(1.0 / MOST_CHANGE, MOST_CHANGE) };
+        let change = if at_once { change } else { change.clamp(1.0 / MAX_CHANGE, MAX_CHANGE) };
         let scale = ((self.scale * change / STEP).round() * STEP).clamp(LEAST, 1.0);
         if scale.to_bits() != self.scale.to_bits() {
             *self = Self { scale, slowness: 0.0, images: 0 };
@@ -121,7 +121,7 @@ mod tests {
         let changes = all[100..].windows(2).filter(|pair| pair[0].to_bits() != pair[1].to_bits()).count();
         assert!(changes <= 4, "{changes} changes in ten seconds");
         let most = all[16..].windows(2).map(|pair| (pair[1] / pair[0]).ln().abs()).fold(0.0, f64::max);
-        assert!(most <= MOST_CHANGE.ln() + 2.0 * STEP, "{most}");
+        assert!(most <= MAX_CHANGE.ln() + 2.0 * STEP, "{most}");
         // Control: a much slower view is answered at once, a quicker one by steps.
         let slower = scales(&mut resolution, [10.0, 900.0], 0.0, 6);
         assert!(slower[5] < 0.7 * last, "{slower:?}");

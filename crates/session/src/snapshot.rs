@@ -92,7 +92,7 @@ pub(crate) struct SnapshotPool {
 
 impl SnapshotPool {
     /// Number of snapshots in use at a time: one that is published, and one or two that are being rendered.
-    const MOST: usize = 6;
+    const MAX: usize = 6;
 
     /// Fills an unused snapshot, or a new one, with an instant of `scene`, and returns it.
     pub(crate) fn make(
@@ -112,7 +112,7 @@ impl SnapshotPool {
             Some(inner) => fill(inner),
             None => unreachable!("the snapshot is new or not shared"),
         }
-        if self.given_out.len() < Self::MOST {
+        if self.given_out.len() < Self::MAX {
             self.given_out.push(Arc::clone(&snapshot));
         }
         snapshot

@@ -30,7 +30,7 @@ use crate::strokes::{StrokeReport, StrokeStart};
 use crate::take::TakeProgress;
 
 /// Maximum number of unread events; more are dropped and logged.
-const MOST_EVENTS: usize = 256;
+const MAX_EVENTS: usize = 256;
 
 /// Called from any thread when there is something new to show, so that the window repaints.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -94,7 +94,7 @@ pub(super) struct Outbox {
 impl Outbox {
     /// Also returns the receiver of the events.
     pub(super) fn new(wake: Wake) -> (Self, Receiver<Event>) {
-        let (events, received) = sync_channel(MOST_EVENTS);
+        let (events, received) = sync_channel(MAX_EVENTS);
         (Self { events, wake }, received)
     }
 
@@ -273,7 +273,7 @@ impl Worker {
     }
 
     /// The memory of the hairstyles that are kept between layers, bytes; at most
-    /// [`SceneLoader::MOST_LAYER_BYTES`](crate::scene::SceneLoader::MOST_LAYER_BYTES).
+    /// [`SceneLoader::MAX_LAYER_BYTES`](crate::scene::SceneLoader::MAX_LAYER_BYTES).
     pub fn layer_bytes(&self) -> u64 {
         self.loader.layer_bytes()
     }

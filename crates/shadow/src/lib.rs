@@ -18,7 +18,7 @@ mod ray;
 pub mod methods;
 
 pub use bounds::Bounds;
-pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converged};
+pub use converged::{CONVERGED_CHANGE, Converged, MAX_CONVERGED_SAMPLES, converged};
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport};
 pub use error::ShadowError;
 pub use gpu::{

@@ -35,8 +35,8 @@ const CELL: (f32, f32) = (0.012, 0.02);
 
 /// A deposited point represents at most this many cells along its guide (slightly more than two, so that two
 /// are not rounded down) and at most this many links.
-const MOST_CELLS: f32 = 2.1;
-const MOST_LINKS: usize = 8;
+const MAX_CELLS: f32 = 2.1;
+const MAX_LINKS: usize = 8;
 
 /// Smallest size of the grid relative to the extent of the hair at rest.
 const EXTENT: f32 = 1.1;
@@ -51,7 +51,7 @@ const MOMENTUM: f32 = 1.0 / 32.0;
 const FASTEST: f32 = 20.0;
 
 /// Largest displacement by repulsion per substep, as a fraction of a cell.
-const MOST_OF_A_CELL: f32 = 0.25;
+const MAX_SHARE_OF_A_CELL: f32 = 0.25;
 
 /// Largest number of tasks that deposit hair in parallel; each has its own cells, 7 MB.
 const TASKS: usize = 4;
@@ -124,7 +124,7 @@ impl DensityGrid {
         let lattice = Lattice {
             min,
             cell,
-            stride: ((MOST_CELLS * cell / link) as usize).min(MOST_LINKS).clamp(1, (points / 2).max(1)),
+            stride: ((MAX_CELLS * cell / link) as usize).min(MAX_LINKS).clamp(1, (points / 2).max(1)),
             units: FULL / total.max(1e-3),
         };
         let mut grid = Self {

@@ -8,7 +8,7 @@ use crate::{HeadBox, Layer, Operation, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
 ///
-/// Hairstyles that together take more than [`StyleCache::MOST_BYTES`] are not all kept: first those after the first layers go.
+/// Hairstyles that together take more than [`StyleCache::MAX_BYTES`] are not all kept: first those after the first layers go.
 #[derive(Clone)]
 pub struct StyleCache {
     start: Option<(Arc<Hairstyle>, Arc<dyn Obstacle + Send>)>,
@@ -18,7 +18,7 @@ pub struct StyleCache {
 
 impl Default for StyleCache {
     fn default() -> Self {
-        Self { start: None, steps: Vec::new(), most_bytes: Self::MOST_BYTES }
+        Self { start: None, steps: Vec::new(), most_bytes: Self::MAX_BYTES }
     }
 }
 
@@ -80,7 +80,7 @@ pub fn apply_layer(
 
 impl StyleCache {
     /// The most memory of the hairstyles after layers, bytes: those of seven layers of 100,000 strands of 30 points.
-    pub const MOST_BYTES: u64 = 512 << 20;
+    pub const MAX_BYTES: u64 = 512 << 20;
 
     /// The memory of the hairstyles that are kept after layers, bytes. A layer that changes nothing has that of the layer before.
     pub fn bytes(&self) -> u64 {

@@ -33,7 +33,7 @@ impl Default for Ramp {
 
 impl Ramp {
     /// The most points.
-    pub const MOST_POINTS: usize = 16;
+    pub const MAX_POINTS: usize = 16;
     /// The range of values.
     pub const RANGE: [f32; 2] = [0.0, 2.0];
 
@@ -124,7 +124,7 @@ impl Ramp {
             finite.map(|&[place, value]| [place.clamp(0.0, 1.0), value.clamp(low, high)]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         points.dedup_by(|b, a| b[0] - a[0] < 1e-3);
-        points.truncate(Self::MOST_POINTS);
+        points.truncate(Self::MAX_POINTS);
         if points.is_empty() {
             points.push([0.0, 1.0]);
         }
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(ramp.clamped().points, [[0.2, 0.0], [0.8, 2.0], [1.0, 0.5]]);
         assert_eq!(Ramp { points: Vec::new(), ..Ramp::default() }.clamped(), Ramp::constant(1.0));
         let many = Ramp { points: (0..100).map(|i| [i as f32 / 100.0, 1.0]).collect(), ..Ramp::default() };
-        assert_eq!(many.clamped().points.len(), Ramp::MOST_POINTS);
+        assert_eq!(many.clamped().points.len(), Ramp::MAX_POINTS);
         assert_eq!(Ramp { points: Vec::new(), ..Ramp::default() }.at(0.5), 1.0);
     }
 }

@@ -1,7 +1,7 @@
 //! Changing drawn strands: their offsets from the guides and the number of their points.
 
 use glam::Vec3;
-use lovelock_groom::{Hairstyle, MOST_POINTS, StrandSet};
+use lovelock_groom::{Hairstyle, MAX_POINTS, StrandSet};
 use rayon::prelude::*;
 
 use crate::Scope;
@@ -108,7 +108,7 @@ pub fn refine_where(style: &mut Hairstyle, of: impl Fn(usize) -> Option<(f32, f3
         let added = |(reach, (_, n)): (&u64, &(f32, u32))| reach * u64::from(n - 1);
         set.points() as u64 + reach.iter().zip(parts).map(added).sum::<u64>()
     };
-    while points(&parts) > u64::from(MOST_POINTS) && parts.iter().any(|(_, n)| *n > 1) {
+    while points(&parts) > u64::from(MAX_POINTS) && parts.iter().any(|(_, n)| *n > 1) {
         for (_, n) in &mut parts {
             *n = (*n - 1).max(1);
         }

@@ -4,7 +4,7 @@ use crate::Source;
 use crate::UsdError;
 
 /// The most paths, fields or specs of a crate.
-const MOST_ENTRIES: u64 = 1 << 24;
+const MAX_ENTRIES: u64 = 1 << 24;
 /// The highest compression ratio of LZ4.
 const BEST_RATIO: u64 = 255;
 
@@ -24,7 +24,7 @@ impl<'a> CrateBytes<'a> {
     pub(crate) fn counted(&mut self, at: u64) -> Result<(u64, u64), UsdError> {
         let count = self.u64(at)?;
         // Four compressed integers take at least one byte.
-        if count > MOST_ENTRIES || count / 4 > self.source.len().saturating_mul(BEST_RATIO) {
+        if count > MAX_ENTRIES || count / 4 > self.source.len().saturating_mul(BEST_RATIO) {
             return Err(self.at(
                 at,
                 format!("{count} entries"),

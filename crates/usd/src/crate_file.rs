@@ -25,7 +25,7 @@ const PRIM: u32 = 6;
 
 /// The most fields of a spec that are looked at. Specs may share one run of fields, so without a limit a small file could make
 /// every look-up long.
-const MOST_FIELDS: usize = 1024;
+const MAX_FIELDS: usize = 1024;
 
 /// A node of the path tree.
 #[derive(Clone, Copy)]
@@ -222,8 +222,7 @@ impl<'a> CrateLayer<'a> {
     /// The stored value of a field of a spec.
     fn field_of(&self, node: u32, name: &str) -> Option<u64> {
         let start = self.nodes.get(node as usize)?.fieldset as usize;
-        let run =
-            self.fieldsets.get(start..)?.iter().take(MOST_FIELDS).take_while(|&&field| field != NOTHING);
+        let run = self.fieldsets.get(start..)?.iter().take(MAX_FIELDS).take_while(|&&field| field != NOTHING);
         let mut fields = run.filter_map(|&field| self.fields.get(field as usize));
         fields
             .find(|(token, _)| self.values.tokens.get(*token).is_some_and(|token| token == name))

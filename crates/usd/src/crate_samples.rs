@@ -8,7 +8,7 @@ use crate::crate_value::CrateValues;
 use crate::value::Value;
 
 /// The most times that are kept: 64 MiB.
-const MOST_KEPT: usize = 8 << 20;
+const MAX_KEPT: usize = 8 << 20;
 
 /// Time samples by the value of their field.
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl CrateSamples {
             return Ok(Arc::clone(times));
         }
         let times: Arc<[f64]> = file.times(stored)?.into();
-        if self.kept + times.len() > MOST_KEPT {
+        if self.kept + times.len() > MAX_KEPT {
             (self.times, self.kept) = (HashMap::new(), 0);
         }
         self.kept += times.len();

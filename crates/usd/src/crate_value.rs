@@ -11,7 +11,7 @@ const IS_ARRAY: u64 = 1 << 63;
 const IS_INLINED: u64 = 1 << 62;
 const IS_COMPRESSED: u64 = 1 << 61;
 /// The most times of an attribute, if they are compressed.
-const MOST_TIMES: usize = 1 << 20;
+const MAX_TIMES: usize = 1 << 20;
 const PAYLOAD: u64 = (1 << 48) - 1;
 
 /// Value types by their numbers in a crate.
@@ -110,7 +110,7 @@ impl CrateValues<'_> {
             // Pixar writes a vector, the `openusd` library an array.
             kind::DOUBLE if value & (IS_ARRAY | IS_COMPRESSED) == IS_ARRAY => self.length(at)?,
             kind::DOUBLE if value & IS_ARRAY != 0 => {
-                let Some(Value::Floats(times)) = self.value(value, MOST_TIMES)? else {
+                let Some(Value::Floats(times)) = self.value(value, MAX_TIMES)? else {
                     return Ok(Vec::new());
                 };
                 return Ok(times.into_iter().map(f64::from).collect());

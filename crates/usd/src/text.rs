@@ -15,7 +15,7 @@ use crate::{Around, Layer, UsdError};
 /// The longest text; parsing needs several times as much memory.
 const LONGEST: usize = 512 << 20;
 /// The most statements. The library searches all names of a prim for each one that it adds.
-const MOST_STATEMENTS: usize = 100_000;
+const MAX_STATEMENTS: usize = 100_000;
 
 pub(crate) struct TextLayer {
     name: String,
@@ -105,10 +105,10 @@ fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
         if depth > DEEPEST {
             return Err((span.start, format!("more than {DEEPEST} nested brackets"), "less nesting"));
         }
-        if statements > MOST_STATEMENTS {
+        if statements > MAX_STATEMENTS {
             return Err((
                 span.start,
-                format!("more than {MOST_STATEMENTS} statements"),
+                format!("more than {MAX_STATEMENTS} statements"),
                 "fewer, or a .usdc file",
             ));
         }

@@ -8,7 +8,7 @@ use crate::{Layer, UsdError, Value};
 pub(crate) const DEEPEST: usize = 128;
 
 /// The most transform operations of one prim.
-const MOST_OPS: usize = 256;
+const MAX_OPS: usize = 256;
 
 /// Unit and axis of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,9 +75,8 @@ pub fn transform_times(layer: &mut dyn Layer, prim: usize) -> Result<Vec<f64>, U
     let mut at = Some(prim);
     for _ in 0..DEEPEST {
         let Some(prim) = at else { break };
-        let order =
-            layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
-        for op in order.iter().take(MOST_OPS) {
+        let order = layer.attribute(prim, "xformOpOrder", MAX_OPS)?.map_or_else(Vec::new, Value::into_tokens);
+        for op in order.iter().take(MAX_OPS) {
             times.extend(layer.sample_times(prim, op.strip_prefix("!invert!").unwrap_or(op))?);
         }
         at = layer.parent(prim);
@@ -90,9 +89,9 @@ pub fn transform_times(layer: &mut dyn Layer, prim: usize) -> Result<Vec<f64>, U
 /// # Errors
 /// As [`to_stage`].
 pub fn own_transform(layer: &mut dyn Layer, prim: usize) -> Result<(DMat4, bool), UsdError> {
-    let order = layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
+    let order = layer.attribute(prim, "xformOpOrder", MAX_OPS)?.map_or_else(Vec::new, Value::into_tokens);
     let (mut transform, mut resets) = (DMat4::IDENTITY, false);
-    for op in order.iter().take(MOST_OPS) {
+    for op in order.iter().take(MAX_OPS) {
         if op == "!resetXformStack!" {
             (transform, resets) = (DMat4::IDENTITY, true);
             continue;

@@ -1,5 +1,6 @@
 //! `cargo xtask ci`: every check, in the order in which they find faults.
 
+use crate::lints;
 use crate::testing::{self, Ran, Suite};
 use anyhow::ensure;
 use lovelock_xtask::system;
@@ -7,15 +8,16 @@ use lovelock_xtask::tool::{self, cargo, run as run_tool, timed};
 use std::process::Command;
 use std::time::Duration;
 
-/// Builds everything once, runs the tests, then interchange, browser, layers, format, clippy and documentation, all of them even after a fault.
+/// Builds everything once, with Clippy's lints, and runs the tests and all other checks, even after a fault.
 /// What each step took and the slowest tests come before the totals of the tests, which are the last line on standard output.
 pub(crate) fn run() -> anyhow::Result<()> {
+    if lints::run_checked(&["ci"])? {
+        return Ok(());
+    }
     system::prepare()?;
     let mut steps = Vec::new();
-    // The programs of one package alone would have other features of the same libraries, and nearly everything would be built twice.
-    let build = ["build", "--workspace", "--bins", "--tests"];
-    let (outcome, time) = timed(|| run_tool(&mut cargo(&build)));
-    steps.push(("build", outcome, time));
+    let (outcome, time) = timed(|| lints::build(cargo(testing::BUILD).arg("--examples")));
+    steps.push(("build and lint", outcome, time));
     let (tests, time) = timed(|| testing::tests(&Suite::default()));
     let ran = match tests {
         Ok(Ran { totals, times, outcome }) => {
@@ -27,7 +29,6 @@ pub(crate) fn run() -> anyhow::Result<()> {
             None
         }
     };
-    // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
         (
             "interchange",
@@ -36,12 +37,6 @@ pub(crate) fn run() -> anyhow::Result<()> {
         ("browser", || built_chore(&["browser"])),
         ("layers", || built_chore(&["layers"])),
         ("format", || run_tool(&mut cargo(&["fmt", "--all", "--check"]))),
-        ("clippy", || {
-            run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
-        }),
-        ("documentation", || {
-            run_tool(cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
-        }),
     ] {
         println!("== {name}");
         let (outcome, time) = timed(check);
@@ -62,11 +57,9 @@ pub(crate) fn run() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs one of the chores that the first step has built, with Lovelock as that step has built it.
+/// Runs one of the chores that the first step has built.
 fn built_chore(arguments: &[&str]) -> anyhow::Result<()> {
-    let built = tool::target().join("debug");
-    let mut chore = Command::new(built.join("lovelock-chores"));
-    run_tool(chore.args(arguments).env(tool::PROGRAM, built.join("lovelock")).current_dir(tool::root()))
+    run_tool(Command::new(tool::built("lovelock-chores")).args(arguments).current_dir(tool::root()))
 }
 
 /// A line a step: its name, its time, and how it went.
@@ -76,7 +69,7 @@ fn report(steps: &[(&str, anyhow::Result<()>, Duration)]) -> String {
             Ok(()) => "good".to_owned(),
             Err(error) => format!("FAILED: {error:#}"),
         };
-        format!("{name:<14}{:>8.1} s  {outcome}\n", time.as_secs_f64())
+        format!("{name:<15}{:>8.1} s  {outcome}\n", time.as_secs_f64())
     };
     steps.iter().map(line).collect()
 }
@@ -90,10 +83,9 @@ mod tests {
     fn every_step_has_its_line() {
         let steps = [
             ("test", Ok(()), Duration::from_millis(61_240)),
-            ("clippy", Err(anyhow::anyhow!("`cargo clippy` failed")), Duration::ZERO),
+            ("layers", Err(anyhow::anyhow!("`layers` failed")), Duration::ZERO),
         ];
-        let lines =
-            "test              61.2 s  good\nclippy             0.0 s  FAILED: `cargo clippy` failed\n";
+        let lines = "test               61.2 s  good\nlayers              0.0 s  FAILED: `layers` failed\n";
         assert_eq!(report(&steps), lines);
     }
 }

@@ -3,12 +3,14 @@
 use anyhow::{Context as _, ensure};
 use lovelock_xtask::tool;
 use std::fs;
+use std::process::Command;
 
 /// Documents with marked tables of settings.
 const PAGES: [&str; 2] = ["simulation.md", "shadow_methods.md"];
 
 /// Writes `docs/settings.md` and every marked table: what is between `<!-- settings: SECTION -->` and `<!-- end -->`.
 pub(crate) fn run() -> anyhow::Result<()> {
+    tool::build_programs()?;
     let docs = tool::root().join("docs");
     fs::write(docs.join("settings.md"), printed(None)?)?;
     for page in PAGES {
@@ -21,9 +23,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
 
 /// What the program prints of a section; the whole page without one.
 fn printed(section: Option<&str>) -> anyhow::Result<String> {
-    let mut command =
-        tool::cargo(&["run", "--quiet", "--package", "lovelock", "--", "settings", "--markdown"]);
-    let output = command.args(section).output()?;
+    let output = Command::new(tool::program()).args(["settings", "--markdown"]).args(section).output()?;
     ensure!(output.status.success(), "lovelock settings: {}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(String::from_utf8(output.stdout)?)
 }

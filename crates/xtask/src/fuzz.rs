@@ -53,7 +53,7 @@ pub(crate) fn run(wanted: &Wanted) -> anyhow::Result<()> {
 
 /// `cargo test` for all readers, without a choice of tests.
 fn tests_of_readers() -> Command {
-    let mut tests = cargo(&["test", "--no-fail-fast", "--lib", "--tests"]);
+    let mut tests = cargo(&["test", "--release", "--no-fail-fast", "--lib", "--tests"]);
     tests.args(READERS.iter().flat_map(|package| ["--package", package]));
     tests
 }

@@ -2,6 +2,7 @@
 
 use lovelock_xtask::{system, tool};
 use std::ffi::{OsStr, OsString};
+use std::process::Command;
 
 /// The film that is recorded if there is no display.
 const FILM: &str = "out/dance.mp4";
@@ -10,22 +11,16 @@ const FILM: &str = "out/dance.mp4";
 pub(crate) fn run(arguments: &[OsString]) -> anyhow::Result<()> {
     system::prepare()?;
     println!("Building Lovelock, optimised. The first time takes some minutes.");
-    tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
-    let manifest = tool::root().join("Cargo.toml");
-    let mut lovelock =
-        tool::cargo(&["run", "--quiet", "--release", "--package", "lovelock", "--manifest-path"]);
-    lovelock.arg(manifest).arg("--");
+    tool::build_programs()?;
+    let mut lovelock = Command::new(tool::program());
     if arguments.is_empty() && !has_display(cfg!(target_os = "linux"), |name| std::env::var_os(name)) {
         println!(
             "There is no display (neither DISPLAY nor WAYLAND_DISPLAY is set): recording the default dance to {FILM}."
         );
-        tool::run(lovelock.args(["record", "-o", FILM]))?;
+        tool::run(lovelock.args(["record", "-o", FILM]).current_dir(tool::root()))?;
         println!("The dance is in {}.", tool::root().join(FILM).display());
         return Ok(());
     }
-    // Paths in the arguments are relative to the user's folder, so the folder is not changed; cargo finds the workspace by the
-    // manifest's path.
-    lovelock.current_dir(std::env::current_dir()?);
     tool::run(lovelock.args(arguments))
 }
 

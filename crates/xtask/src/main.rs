@@ -7,6 +7,7 @@ mod ci;
 mod docs;
 mod fuzz;
 mod launch;
+mod lints;
 mod testing;
 mod times;
 mod totals;
@@ -14,7 +15,7 @@ mod totals;
 use clap::{Parser, Subcommand};
 use lovelock_xtask::tool;
 use std::ffi::OsString;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 use testing::Suite;
 
 /// Chores of Lovelock.
@@ -64,7 +65,7 @@ enum Chore {
         #[arg(long)]
         reader: Option<String>,
     },
-    /// Runs every check: tests, interchange (with Blender where it is installed), browser, layers, format, clippy, documentation
+    /// Runs every check: tests, interchange (with Blender where it is installed), browser, lints, documentation, layers, format
     Ci,
     /// Writes the tables of settings in the documents, as the program prints them
     Docs,
@@ -109,7 +110,23 @@ enum Chore {
 }
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().chore {
+    let arguments: Vec<_> = std::env::args_os().skip(1).collect();
+    let done = if lints::is_rustdoc(&arguments) {
+        lints::rustdoc(&arguments)
+    } else {
+        run(Arguments::parse().chore)
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(wanted: Chore) -> anyhow::Result<()> {
+    match wanted {
         Chore::Run { arguments } => launch::run(&arguments),
         Chore::Test { interchange, browser, long, .. } if interchange || browser => {
             let versions = if long { "every" } else { "one" };
@@ -140,17 +157,13 @@ fn main() -> ExitCode {
             "assets",
             preview.into_iter().flat_map(|folder| ["--preview".into(), folder.into_os_string()]),
         ),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("xtask: {error:#}");
-            ExitCode::FAILURE
-        }
     }
 }
 
 /// Builds `lovelock-chores` and runs one of its chores.
 fn chore(name: &str, arguments: impl IntoIterator<Item = OsString>) -> anyhow::Result<()> {
-    tool::run(tool::cargo(&["run", "--quiet", "--package", "lovelock-chores", "--", name]).args(arguments))
+    tool::build_programs()?;
+    tool::run(
+        Command::new(tool::built("lovelock-chores")).arg(name).args(arguments).current_dir(tool::root()),
+    )
 }

@@ -4,8 +4,7 @@ use crate::times::{Times, cpu_secs_of_children};
 use crate::totals::{Totals, without_colours};
 use anyhow::ensure;
 use lovelock_xtask::system;
-use lovelock_xtask::tool::{Stream, cargo, output_of, run as run_tool, timed, watch};
-use std::io::IsTerminal as _;
+use lovelock_xtask::tool::{Stream, cargo, run as run_tool, timed, watch};
 
 /// Tells tests which suite runs: `testkit::suite` reads it.
 const SUITE: &str = "LOVELOCK_SUITE";
@@ -41,9 +40,16 @@ pub(crate) fn run(suite: &Suite) -> anyhow::Result<()> {
     outcome
 }
 
+/// What builds the tests of all packages and the programs that they start. The programs of one package alone would have other features of
+/// the same libraries, and nearly everything would be built twice.
+pub(crate) const BUILD: &[&str] = &["build", "--release", "--workspace", "--bins", "--tests"];
+
 /// Builds the tests.
 pub(crate) fn build(suite: &Suite) -> anyhow::Result<()> {
-    run_tool(cargo(&["test", "--tests", "--no-run"]).args(scope(suite)))
+    match suite.package {
+        None => run_tool(&mut cargo(BUILD)),
+        Some(package) => run_tool(&mut cargo(&["test", "--release", "--tests", "--no-run", "-p", package])),
+    }
 }
 
 fn scope<'a>(suite: &Suite<'a>) -> Vec<&'a str> {
@@ -69,37 +75,27 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
     };
     let cpu_before = cpu_secs_of_children();
     let (ran, wall) = timed(|| {
-        if has_nextest() {
-            let colour = if std::io::stderr().is_terminal() { "always" } else { "never" };
-            let mut nextest = cargo(&["nextest", "run", "--no-fail-fast", "--color", colour]);
-            nextest.env(SUITE, suite).args(&scope).args(filter);
-            if !long {
-                nextest.args(["--filterset", &format!("not test(/{LONG_ONLY}/)")]);
-            }
-            watch(&mut nextest, Stream::Err, &mut see)
-        } else {
-            // Programs of the examples are only checked, by clippy.
-            let mut tests = cargo(&["test", "--tests", "--no-fail-fast"]);
-            tests.env(SUITE, suite).args(&scope);
-            if cfg!(unix) {
-                // The harness of a stable toolchain tells times only to those who ask so.
-                tests.args(["--config", r#"target.'cfg(unix)'.runner=["env", "RUSTC_BOOTSTRAP=1"]"#]);
-            }
-            tests.args(filter).arg("--");
-            if cfg!(unix) {
-                tests.args(["-Zunstable-options", "--report-time"]);
-            }
-            if !long {
-                tests.args(["--skip", LONG_ONLY]);
-            }
-            watch(&mut tests, Stream::Out, &mut see)
+        // One process for all tests of a program: each of its own would look for graphics drivers and read the same files again.
+        let mut tests = cargo(&["test", "--release", "--bins", "--tests", "--no-fail-fast"]);
+        tests.env(SUITE, suite).args(&scope);
+        if cfg!(unix) {
+            // The harness of a stable toolchain tells times only to those who ask so.
+            tests.args(["--config", r#"target.'cfg(unix)'.runner=["env", "RUSTC_BOOTSTRAP=1"]"#]);
         }
+        tests.args(filter).arg("--");
+        if cfg!(unix) {
+            tests.args(["-Zunstable-options", "--report-time"]);
+        }
+        if !long {
+            tests.args(["--skip", LONG_ONLY]);
+        }
+        watch(&mut tests, Stream::Out, &mut see)
     });
     good &= ran?;
     let cpu = cpu_before.zip(cpu_secs_of_children()).map(|(before, after)| after - before);
     // Without a library there are no examples in the documentation, and cargo objects.
     if package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
-        let mut examples = cargo(&["test", "--doc", "--no-fail-fast"]);
+        let mut examples = cargo(&["test", "--release", "--doc", "--no-fail-fast"]);
         good &= watch(examples.args(&scope).args(filter), Stream::Out, &mut see)?;
     }
     let cores = std::thread::available_parallelism().map_or(1.0, |cores| cores.get() as f64);
@@ -110,9 +106,4 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
         Ok(())
     })();
     Ok(Ran { totals, times, outcome })
-}
-
-fn has_nextest() -> bool {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-    output_of(&cargo, &["nextest", "--version"]).is_some()
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// The most that a test of the short suite should take on two cores without other work, seconds.
-const MOST_SECS: f64 = 5.0;
+const MAX_SECS: f64 = 5.0;
 
 /// How many tests are printed.
 const PRINTED: usize = 10;
@@ -18,7 +18,7 @@ pub(crate) struct Times {
 }
 
 impl Times {
-    /// Adds the test of a line of `cargo test` with times or of `cargo nextest run`.
+    /// Adds the test of a line of `cargo test` with times.
     pub(crate) fn see(&mut self, line: &str) {
         self.tests.extend(of_line(line));
     }
@@ -44,8 +44,8 @@ impl Times {
     /// The tests that took too long, even if they had had all cores.
     pub(crate) fn too_slow(&self) -> Vec<String> {
         let slow = self.sorted().into_iter().map(|(name, secs)| (name, secs / self.crowding.max(1.0)));
-        slow.take_while(|(_, secs)| *secs > MOST_SECS)
-            .map(|(name, secs)| format!("{name} took {secs:.1} s; should be at most {MOST_SECS} s"))
+        slow.take_while(|(_, secs)| *secs > MAX_SECS)
+            .map(|(name, secs)| format!("{name} took {secs:.1} s; should be at most {MAX_SECS} s"))
             .collect()
     }
 
@@ -58,18 +58,10 @@ impl Times {
 
 /// The name and the seconds of the test in a line without colours.
 fn of_line(line: &str) -> Option<(String, f64)> {
-    if let Some(test) = line.strip_prefix("test ") {
-        // test scene::tests::a_name ... ok <0.123s>
-        let (name, rest) = test.split_once(" ... ")?;
-        let secs = rest.trim_end().strip_suffix("s>")?.rsplit_once('<')?.1;
-        return Some((name.split(' ').next()?.to_owned(), secs.parse().ok()?));
-    }
-    // PASS [   0.123s] (1/9) a-crate scene::tests::a_name
-    let (state, rest) = line.trim_start().split_once(" [")?;
-    let (secs, rest) = rest.split_once("s]")?;
-    let name = rest.split_whitespace().next_back()?;
-    (state == "PASS").then_some(())?;
-    Some((name.to_owned(), secs.trim().parse().ok()?))
+    // test scene::tests::a_name ... ok <0.123s>
+    let (name, rest) = line.strip_prefix("test ")?.split_once(" ... ")?;
+    let secs = rest.trim_end().strip_suffix("s>")?.rsplit_once('<')?.1;
+    Some((name.split(' ').next()?.to_owned(), secs.parse().ok()?))
 }
 
 /// CPU time of the programs that this one has started and that have ended, seconds; `None` where the system does not tell.
@@ -86,11 +78,10 @@ mod tests {
     use super::{Times, cpu_secs_of_children, of_line};
 
     #[test]
-    fn times_are_found_in_both_kinds_of_lines() {
+    fn times_are_found_in_lines() {
         let found = |line| of_line(line).map(|(name, secs)| format!("{name} {secs}"));
         assert_eq!(found("test a::b ... ok <0.123s>\n").as_deref(), Some("a::b 0.123"));
         assert_eq!(found("test a - should panic ... ok <61.5s>").as_deref(), Some("a 61.5"));
-        assert_eq!(found("        PASS [   1.250s] (1/9) a-crate a::b").as_deref(), Some("a::b 1.25"));
         for other in [
             "test a::b ... ok",
             "test a ... ignored",

@@ -12,12 +12,27 @@ pub fn root() -> &'static Path {
     here.parent().and_then(Path::parent).unwrap_or(here)
 }
 
-/// Environment variable with the program of Lovelock that chores use instead of building one.
-pub const PROGRAM: &str = "LOVELOCK_PROGRAM";
-
 /// The folder with what cargo builds.
 pub fn target() -> PathBuf {
     root().join(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()))
+}
+
+/// A program of own code that has been built: Lovelock itself by [`program`], or another by its name.
+pub fn built(name: &str) -> PathBuf {
+    target().join("release").join(name)
+}
+
+/// Lovelock. It is built before a chore starts.
+pub fn program() -> PathBuf {
+    built("lovelock")
+}
+
+/// Builds Lovelock and the chores, optimised. Both at once, because their libraries have the same features as those of the tests.
+///
+/// # Errors
+/// If cargo fails.
+pub fn build_programs() -> anyhow::Result<()> {
+    run(&mut cargo(&["build", "--release", "--package", "lovelock", "--package", "lovelock-chores"]))
 }
 
 /// The cargo that runs this program, in the folder of the workspace.

@@ -11,7 +11,7 @@ use crate::window::theme;
 /// Points of a circle.
 const CIRCLE: u8 = 48;
 /// The most guides that light up.
-const MOST_LIT: usize = 240;
+const MAX_LIT: usize = 240;
 /// Places inside the circle whose guides light up must lie within this part of the radius along the view.
 const DEPTH: f32 = 1.0;
 
@@ -87,7 +87,7 @@ fn light_up(
         let inside = |i: usize| guides.point(guide, i).distance(place) < radius * DEPTH;
         let Some(first) = (1..guides.points_per_guide).find(|i| inside(*i)) else { continue };
         lit += 1;
-        if lit > MOST_LIT {
+        if lit > MAX_LIT {
             break;
         }
         let end = (first..guides.points_per_guide).take_while(|i| inside(*i)).last().unwrap_or(first);

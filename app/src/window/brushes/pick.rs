@@ -18,11 +18,11 @@ const NEAR_CELLS: f32 = 1.5;
 /// Side of a cell of the depths, points.
 const CELL: f32 = 2.5;
 /// The most cells to a side.
-const MOST_CELLS: f32 = 512.0;
+const MAX_CELLS: f32 = 512.0;
 /// The most strands whose depth is found.
-const MOST_STRANDS: usize = 3000;
+const MAX_STRANDS: usize = 3000;
 /// A body of more triangles hides no hair here: to find its depth would take longer than an image.
-const MOST_TRIANGLES: usize = 400_000;
+const MAX_TRIANGLES: usize = 400_000;
 /// A hit this far before another one hides it, metres.
 const BEFORE: f32 = 0.01;
 
@@ -125,7 +125,7 @@ impl SeenHair {
         self.grid = Grid::over(view);
         self.body.clear(self.grid);
         let triangles = &snapshot.scene.body.mesh.triangles;
-        if triangles.len() <= MOST_TRIANGLES {
+        if triangles.len() <= MAX_TRIANGLES {
             self.body.draw_body(self.grid, view, &snapshot.skin.positions, triangles);
         }
         self.hair.clear(self.grid);
@@ -135,7 +135,7 @@ impl SeenHair {
         }
         let style = &snapshot.scene.style;
         if self.thinned.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, style)) {
-            self.thinned = Some((Arc::clone(style), style.thinned(MOST_STRANDS)));
+            self.thinned = Some((Arc::clone(style), style.thinned(MAX_STRANDS)));
         }
         if let Some((_, thinned)) = &self.thinned {
             interpolate(thinned, &snapshot.guides, &mut self.strands);
@@ -153,7 +153,7 @@ fn number_of(values: &[f32]) -> u64 {
 impl Grid {
     fn over(view: View) -> Self {
         let size = view.place.size();
-        let cell = CELL.max(size.max_elem() / MOST_CELLS);
+        let cell = CELL.max(size.max_elem() / MAX_CELLS);
         let size = [size.x, size.y].map(|side| (side / cell).ceil().max(1.0) as usize);
         Self { origin: view.place.min, cell, size }
     }
@@ -195,7 +195,7 @@ impl Depths {
                 if let Some((to, far)) = here {
                     let (from, near) = before.unwrap_or((to, far));
                     // Long segments are those of hair that almost touches the camera.
-                    let steps = ((to - from).length() / grid.cell).ceil().clamp(1.0, MOST_CELLS);
+                    let steps = ((to - from).length() / grid.cell).ceil().clamp(1.0, MAX_CELLS);
                     for step in 0..=steps as u16 {
                         let t = f32::from(step) / steps;
                         self.put(grid.index(grid.place(from + (to - from) * t)), near + (far - near) * t);

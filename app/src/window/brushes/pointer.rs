@@ -14,7 +14,7 @@ use crate::window::overlay::head::Head;
 use crate::window::{Window, notices, theme};
 
 /// The most samples that a pass sends.
-const MOST_SAMPLES: usize = 512;
+const MAX_SAMPLES: usize = 512;
 
 /// A stroke of the pointer.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +115,7 @@ impl Window {
         if begins {
             samples.push(sample(held.place, Vec3::ZERO, &head_from_world, view, pressure, snapshot));
         }
-        for at in way.into_iter().take(MOST_SAMPLES) {
+        for at in way.into_iter().take(MAX_SAMPLES) {
             let before = head.world_from_head.transform_point3(held.place);
             let moved = view.at_depth_of(at, before);
             // Only what the pointer has moved: hair that dances past it is not combed by that.

@@ -17,7 +17,7 @@ use lovelock_style::{Layer, Operation};
 use crate::window::{Window, notices};
 
 /// The most samples of all strokes that can be saved: 100 MB, hours of painting.
-const MOST_SAMPLES: usize = 1 << 21;
+const MAX_SAMPLES: usize = 1 << 21;
 
 /// Strokes whose results have not all arrived.
 #[derive(Debug, Default)]
@@ -85,7 +85,7 @@ impl Window {
         let (edits, before) = (left.clone(), left.clone());
         let gesture = self.gestures.id();
         let added = if is_new { Some(gesture) } else { added };
-        if strokes.recorded.len() < StrokeFile::MOST_STROKES && strokes.samples < MOST_SAMPLES {
+        if strokes.recorded.len() < StrokeFile::MAX_STROKES && strokes.samples < MAX_SAMPLES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
         }
@@ -103,8 +103,8 @@ impl Window {
     ) {
         let strokes = &mut self.brushes.strokes;
         if let Some(stroke) = strokes.recorded.last_mut() {
-            let room = StrokeFile::MOST_SAMPLES.saturating_sub(stroke.samples.len());
-            let room = room.min(MOST_SAMPLES.saturating_sub(strokes.samples)).min(samples.len());
+            let room = StrokeFile::MAX_SAMPLES.saturating_sub(stroke.samples.len());
+            let room = room.min(MAX_SAMPLES.saturating_sub(strokes.samples)).min(samples.len());
             strokes.samples += room;
             for sample in samples.iter().take(room) {
                 // The time goes back where the dance starts again, and must not in a file.

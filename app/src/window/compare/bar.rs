@@ -103,7 +103,7 @@ pub(super) fn ui(
                     action = Some(what);
                 }
             };
-        let room = panes < CompareSection::MOST_PANES;
+        let room = panes < CompareSection::MAX_PANES;
         button(
             ui,
             icons::ICON_ADD,

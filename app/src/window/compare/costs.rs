@@ -14,8 +14,8 @@ use lovelock_session::render_thread::Adapter;
 /// Seconds that are plotted.
 pub(super) const PLOTTED_SECS: f64 = 12.0;
 /// Numbers of images per variant and of variants that are kept.
-const MOST_SAMPLES: usize = 720;
-const MOST_WAYS: usize = 60;
+const MAX_SAMPLES: usize = 720;
+const MAX_WAYS: usize = 60;
 
 /// Times of one image.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +108,7 @@ impl Costs {
         };
         let at_secs = self.clock.secs();
         // Old times are dropped; the last ones of a variant that is no longer rendered stay for its trail.
-        while way.samples.len() >= MOST_SAMPLES
+        while way.samples.len() >= MAX_SAMPLES
             || way.samples.front().is_some_and(|sample| sample.at_secs < at_secs - PLOTTED_SECS)
         {
             way.samples.pop_front();
@@ -118,7 +118,7 @@ impl Costs {
         if pane.error != LiveError::NotMeasured {
             way.error = pane.error.clone();
         }
-        if self.ways.len() == MOST_WAYS {
+        if self.ways.len() == MAX_WAYS {
             self.ways.remove(0);
         }
         self.ways.push(way);
@@ -229,7 +229,7 @@ pub(super) mod tests {
         for _ in 0..2000 {
             costs.push(&pane(5, 1.0, 0.1));
         }
-        assert!(costs.ways.len() <= MOST_WAYS);
-        assert!(costs.ways.iter().all(|way| way.samples.len() <= MOST_SAMPLES));
+        assert!(costs.ways.len() <= MAX_WAYS);
+        assert!(costs.ways.iter().all(|way| way.samples.len() <= MAX_SAMPLES));
     }
 }

@@ -41,8 +41,8 @@ use super::control::is_any_open;
 /// The state of the comparison, and its last request.
 #[derive(Default)]
 pub(crate) struct Compare {
-    panes: [Option<Arc<LivePane>>; CompareSection::MOST_PANES],
-    seen: [u64; CompareSection::MOST_PANES],
+    panes: [Option<Arc<LivePane>>; CompareSection::MAX_PANES],
+    seen: [u64; CompareSection::MAX_PANES],
     seen_notices: u64,
     seen_probe: u64,
     textures: PaneTextures,
@@ -238,7 +238,7 @@ impl Window {
                 Some(bar::ToolbarAction::Add) => {
                     let next = next_pane(project);
                     project.compare.panes.push(next);
-                    project.compare.panes.truncate(CompareSection::MOST_PANES);
+                    project.compare.panes.truncate(CompareSection::MAX_PANES);
                     self.compare.selected = project.compare.panes.len() - 1;
                 }
                 Some(bar::ToolbarAction::WholePicture) => self.compare.zoom = Zoom::default(),

@@ -12,7 +12,7 @@ const SHARP: f32 = 3.0;
 /// The images of the panes.
 #[derive(Default)]
 pub(super) struct PaneTextures {
-    held: [ShownImage; CompareSection::MOST_PANES],
+    held: [ShownImage; CompareSection::MAX_PANES],
 }
 
 impl PaneTextures {

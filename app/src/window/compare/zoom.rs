@@ -19,7 +19,7 @@ impl Default for Zoom {
 
 impl Zoom {
     /// The largest magnification, at which a pixel is as large as a button.
-    const MOST: f32 = 24.0;
+    const MAX: f32 = 24.0;
 
     /// Whether only a part is visible.
     pub(crate) fn is_on(&self) -> bool {
@@ -52,7 +52,7 @@ impl Zoom {
             return;
         }
         let fixed = self.at(place, at);
-        self.factor = (self.factor * by).clamp(1.0, Self::MOST);
+        self.factor = (self.factor * by).clamp(1.0, Self::MAX);
         self.shift(fixed - self.at(place, at));
     }
 

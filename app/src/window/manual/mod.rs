@@ -40,7 +40,7 @@ pub(crate) struct Manual {
 }
 
 /// Places that *Back* returns to.
-const MOST_BEFORE: usize = 100;
+const MAX_BEFORE: usize = 100;
 /// Size of the window when it is first opened, points.
 const SIZE: Vec2 = vec2(820.0, 560.0);
 
@@ -55,7 +55,7 @@ impl Manual {
     pub(crate) fn show_place(&mut self, place: Place) {
         if self.at != place {
             self.before.push(self.at);
-            if self.before.len() > MOST_BEFORE {
+            if self.before.len() > MAX_BEFORE {
                 self.before.remove(0);
             }
         }

@@ -88,7 +88,7 @@ fn markers(ui: &mut Ui, project: &mut Project, loaded: &Loaded, duration_secs: f
     let markers = &mut project.timeline.markers;
     for (i, secs) in times.into_iter().enumerate() {
         let known = markers.iter().any(|marker| (marker.secs - secs).abs() < 1e-3);
-        if !known && markers.len() < TimelineSection::MOST_MARKERS {
+        if !known && markers.len() < TimelineSection::MAX_MARKERS {
             markers.push(Marker { secs, name: format!("{}", i + 1) });
         }
     }

@@ -32,7 +32,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
         }
     });
     ui.horizontal_wrapped(|ui| {
-        let full = ties.len() >= HairTie::MOST;
+        let full = ties.len() >= HairTie::MAX;
         for (kind, words) in [
             (TieKind::Ponytail, "Gathers the hair at the back of the head and lets it hang."),
             (TieKind::Bun, "Gathers the hair on top of the head and winds it up."),

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 use super::purpose::Purpose;
 
 /// The most entries of a folder that are listed.
-const MOST: usize = 5000;
+const MAX: usize = 5000;
 
 /// A row of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,7 +77,7 @@ fn list(folder: &Path, purpose: Purpose) -> Vec<Entry> {
         let is_folder = path.is_dir();
         (is_folder || purpose.lists(&path)).then(|| Entry::new(path, is_folder))
     };
-    let mut found: Vec<Entry> = entries.filter_map(|found| entry(found.ok()?.path())).take(MOST).collect();
+    let mut found: Vec<Entry> = entries.filter_map(|found| entry(found.ok()?.path())).take(MAX).collect();
     found.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
     found
 }

@@ -1,7 +1,6 @@
 //! Brushes in the viewport of the whole window.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use lovelock_base::settings::Choices as _;
@@ -10,11 +9,8 @@ use lovelock_style::Operation;
 use lovelock_style::hand::HandEdits;
 
 use super::tools::{drag_over, view, with_picture};
-use super::whole::{CTRL, go, key, of, project, wait};
-use super::{Shown, control, press};
-use crate::window::Window;
-
-type Whole = Harness<'static, Shown<Option<Window>>>;
+use super::whole::{CTRL, Whole, go, key, of, project, wait};
+use super::{control, press};
 
 /// The window with brushes on, and the place of hair in the image.
 fn brushing() -> Option<(Whole, Pos2)> {

@@ -2,23 +2,19 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_panes::request::LiveError;
 use lovelock_panes::view::LiveShows;
 use lovelock_project::project::CompareSection;
 use lovelock_render::ShadowMethod;
 
-use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
-use super::{Shown, control, drag};
+use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window};
+use super::{control, drag};
 use crate::window::Window;
-
-type Whole = Harness<'static, Shown<Option<Window>>>;
 
 /// The window with all its panes drawn.
 fn comparing() -> Whole {
     let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::Space);
     key(&mut harness, Modifiers::NONE, Key::C);
     wait(&mut harness, "the panes", |window| drawn(window, 4));
     harness
@@ -83,7 +79,7 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     for _ in 0..2 {
         press_button(&mut harness, "Add pane");
     }
-    assert_eq!(methods(&harness).len(), CompareSection::MOST_PANES);
+    assert_eq!(methods(&harness).len(), CompareSection::MAX_PANES);
     wait(&mut harness, "six panes", |window| drawn(window, 6));
     for _ in 0..5 {
         key(&mut harness, CTRL, Key::Z);
@@ -291,7 +287,6 @@ fn a_tick_that_changes_nothing_says_so() {
 #[test]
 fn a_report_is_written_in_the_background_with_its_options() {
     let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::Space);
     let dir = tempfile::tempdir().expect("a folder");
     let open = |harness: &mut Whole| {
         of_mut(harness).open_report_dialog();

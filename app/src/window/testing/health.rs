@@ -9,7 +9,7 @@ use lovelock_session::scene::SceneLoader;
 use lovelock_session::totals::Totals;
 use lovelock_simulation::{BodyPart, InsidePoint, SimulationSettings};
 
-use super::whole::{go, of, press_button, project, wait, window};
+use super::whole::{go, of, playing_window, press_button, project, wait};
 use super::{control, screen, texts, tooltip_at};
 use crate::window::{Window, panels};
 
@@ -65,12 +65,12 @@ fn gauges_show_advice_and_places() {
     assert!(harness.query_by_label("No problems found.").is_some());
     harness.state_mut().state.0.clear();
     harness.run();
-    assert!(harness.query_by_label_contains("a take plays").is_some());
+    assert!(harness.query_by_label_contains("before the first step").is_some());
 }
 
 #[test]
 fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
-    let mut harness = window();
+    let mut harness = playing_window();
     wait(&mut harness, "hair that has moved", |window| {
         window.session.frame.as_ref().is_some_and(|frame| frame.totals.worst_stretch_at.is_some())
     });

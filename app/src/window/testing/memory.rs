@@ -9,7 +9,6 @@ use super::whole::{CTRL, key, of, press_button, project, wait, window};
 #[test]
 fn pages_give_back_what_they_held_when_they_are_left() {
     let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::Space);
     wait(&mut harness, "an image", |window| window.session.painter().held_bytes() > 0);
     for (page, what) in [(Key::C, "the panes"), (Key::N, "the wall")] {
         key(&mut harness, Modifiers::NONE, page);
@@ -35,7 +34,6 @@ fn pages_give_back_what_they_held_when_they_are_left() {
 fn a_new_project_drops_what_the_old_one_held() {
     for page in [None, Some(Key::C)] {
         let mut harness = window();
-        key(&mut harness, Modifiers::NONE, Key::Space);
         wait(&mut harness, "an image", |window| window.session.painted.is_some());
         if let Some(page) = page {
             key(&mut harness, Modifiers::NONE, page);

@@ -66,13 +66,16 @@ pub(crate) fn screen_of<'a, S: 'a>(
         )
 }
 
-/// Applies the fonts, colours and spacing of the window, and shows tooltips without delay.
+/// Applies the fonts, colours and spacing of the window, and shows tooltips without delay. Nothing is animated, so a control comes to rest in
+/// the pass after it has changed.
 pub(crate) fn dress(ctx: &egui::Context) {
     egui_material_icons::initialize(ctx);
     theme::apply(ctx);
     ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
         style.interaction.show_tooltips_only_when_still = false;
+        style.animation_time = 0.0;
+        style.scroll_animation = egui::style::ScrollAnimation::none();
     });
 }
 

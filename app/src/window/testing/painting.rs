@@ -1,21 +1,17 @@
 //! Painting masks in the viewport of the whole window, and showing them.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_style::operations::Lift;
 use lovelock_style::{HeadBox, Layer};
 
-use super::Shown;
 use super::tools::{drag_over, unfold, view, with_picture};
-use super::whole::{CTRL, go, key, of, project, wait};
+use super::whole::{CTRL, Whole, go, key, of, project, wait};
 use crate::window::brushes::SeenHair;
+use crate::window::overlay;
 use crate::window::overlay::head::Head;
-use crate::window::{Window, overlay};
-
-type Whole = Harness<'static, Shown<Option<Window>>>;
 
 /// The window with a layer that is selected, and its mask being painted.
 fn painting() -> Option<Whole> {
@@ -127,7 +123,8 @@ fn a_map_is_painted_into_a_layer_of_its_own() {
         go(harness);
     };
     start(&mut harness);
-    assert!(of(&harness).layers.painting && !of(&harness).brushes.on);
+    assert!(of(&harness).layers.painting, "a click on the map starts painting");
+    assert!(!of(&harness).brushes.on, "and ends the brush");
     let layers = project(&harness).hair.stack.layers.clone();
     assert_eq!(layers.iter().map(|layer| layer.operation.id()).collect::<Vec<_>>(), ["density"]);
     assert_eq!(mask_at(&harness, FOREHEAD), 0.0, "it acts nowhere yet");

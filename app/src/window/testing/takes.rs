@@ -2,12 +2,12 @@
 
 use egui::{Key, Modifiers};
 
-use super::whole::{CTRL, key, of, project, wait, window};
+use super::whole::{CTRL, key, of, playing_window, project, wait};
 use crate::window::Window;
 
 #[test]
 fn a_take_is_recorded_played_backwards_and_left() {
-    let mut harness = window();
+    let mut harness = playing_window();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("p.lovelock");
     harness.state_mut().state.as_mut().expect("a window").project_path = Some(path);

@@ -1,6 +1,6 @@
 //! Ties, scissors and colliders in the viewport of the whole window.
 
-use std::cell::Cell;
+use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
@@ -20,37 +20,27 @@ pub(super) fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> 
         window.session.painted.is_some() || window.session.draw_error.is_some()
     });
     of(&harness).session.painted.as_ref()?;
-    key(&mut harness, Modifiers::NONE, Key::Space);
-    // Goes to the start, so that the head has the same pose on fast and slow machines.
-    key(&mut harness, Modifiers::NONE, Key::Home);
-    // Frames in progress when playback is paused still arrive: the body stands still once the newest frame is drawn and no newer
-    // one follows.
-    let (last, calm) = (Cell::new(f64::NAN), Cell::new(0));
-    wait(&mut harness, "a body that stands", |window| {
-        let painted = window.session.painted.as_ref().map_or(f64::NAN, |painted| painted.snapshot.time_secs);
-        let newest = window.session.frame.as_ref().map(|frame| frame.time_secs);
-        let same = newest == Some(painted) && painted == 0.0 && last.replace(painted) == painted;
-        calm.set(if same { calm.get() + 1 } else { 0 });
-        calm.get() > CALM_PASSES
+    wait(&mut harness, "the image of settled hair", |window| {
+        let Some((painted, frame)) = window.session.painted.as_ref().zip(window.session.frame.as_ref())
+        else {
+            return false;
+        };
+        window.session.worker().settling().is_none() && Arc::ptr_eq(&painted.snapshot, frame)
     });
     Some(harness)
 }
-
-/// Number of passes of a few milliseconds without a new frame after which the body counts as standing still, even on a busy
-/// machine.
-const CALM_PASSES: u32 = 60;
 
 /// Opens a section of a panel.
 pub(super) fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
     into_view(harness, Role::DisclosureTriangle, title);
     control(harness, Role::DisclosureTriangle, title).click();
-    harness.run_steps(30);
+    harness.run_steps(4);
 }
 
 /// Scrolls a control of a panel into view.
 fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name: &str) {
     control(harness, role, name).scroll_to_me();
-    harness.run_steps(30);
+    harness.run_steps(4);
 }
 
 /// The projection of the current image.
@@ -154,7 +144,7 @@ fn colliders_are_shown_and_edited() {
     go(&mut harness);
     assert_eq!(project(&harness).body.colliders.shapes.len(), 1);
     wait(&mut harness, "the changed shape", |window| {
-        window.session.scene.as_ref().is_some_and(|now| !std::sync::Arc::ptr_eq(now, &scene))
+        window.session.scene.as_ref().is_some_and(|now| !Arc::ptr_eq(now, &scene))
     });
     let name = &scene.fitted[0].name;
     let met = of(&harness).session.scene.clone().expect("a scene");

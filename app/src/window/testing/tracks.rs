@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_testkit::wait::wait_until;
 
-use super::whole::{CTRL, key, of, project, wait, window};
+use super::whole::{CTRL, key, of, playing_window, project, wait};
 use super::{Shown, control, press};
 use crate::window::Window;
 
@@ -33,7 +33,7 @@ fn ride(harness: &mut Harness<'_, Shown<Option<Window>>>) {
 
 #[test]
 fn a_slider_moved_during_playback_becomes_a_track() {
-    let mut harness = window();
+    let mut harness = playing_window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let before = project(&harness);
     key(&mut harness, Modifiers::NONE, Key::W);
@@ -84,7 +84,7 @@ fn turn_wheel(harness: &mut Harness<'_, Shown<Option<Window>>>, points: f32) {
 
 #[test]
 fn turning_the_wheel_during_playback_is_one_recording_pass() {
-    let mut harness = window();
+    let mut harness = playing_window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let before = project(&harness);
     key(&mut harness, Modifiers::NONE, Key::W);
@@ -118,7 +118,7 @@ fn turning_the_wheel_during_playback_is_one_recording_pass() {
 
 #[test]
 fn commands_that_move_the_camera_are_edits_like_any_other() {
-    let mut harness = window();
+    let mut harness = playing_window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let mut tracked = (*project(&harness)).clone();
     tracked.camera.distance = 9.0;

@@ -4,20 +4,15 @@ use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_panes::wall::Wall;
 
-use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
-use super::{Shown, control};
-use crate::window::Window;
-
-type Whole = Harness<'static, Shown<Option<Window>>>;
+use super::control;
+use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window};
 
 /// The window with all variants drawn.
 fn wall() -> Whole {
     let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::Space);
     key(&mut harness, Modifiers::NONE, Key::N);
     wait(&mut harness, "the variants", |window| window.wall.has_pictures());
     harness

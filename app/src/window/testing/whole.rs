@@ -1,9 +1,7 @@
-//! The whole window, with simulation and rendering. It needs neither a display nor a graphics card; without an adapter it
-//! shows the reason that there is no image.
+//! The whole window, with simulation and rendering. It needs neither a display nor a graphics card.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
@@ -13,6 +11,7 @@ use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::{PROJECT_EXTENSION, load_project};
+use lovelock_render::Backend;
 use lovelock_testkit::wait::wait_until;
 
 use super::super::command::Command;
@@ -21,19 +20,37 @@ use super::{Shown, control, controls, drag, screen_of};
 use crate::window::actions::Opened;
 use crate::window::{Layout, Window};
 
+/// The window on an off-screen display.
+pub(super) type Whole = Harness<'static, Shown<Option<Window>>>;
+
 pub(super) const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
-/// The window with a project of few strands, after its scene is loaded.
-pub(super) fn window() -> Harness<'static, Shown<Option<Window>>> {
+/// The window with a project of few strands, after its scene is loaded, paused at the start of the dance. The processor draws small images:
+/// what the window does with an image does not depend on its size, and software drivers of a graphics card take seconds to start.
+pub(super) fn window() -> Whole {
+    window_of(Backend::Cpu, false)
+}
+
+/// [`window`] while the dance plays.
+pub(super) fn playing_window() -> Whole {
+    window_of(Backend::Cpu, true)
+}
+
+/// [`window`] with images of another backend, which plays or is paused.
+fn window_of(backend: Backend, playing: bool) -> Whole {
     let mut project = Project::default();
+    project.picture.backend = backend;
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
     project.shadow.voxel_map.resolution = 32;
     let mut opened = Some(Opened { project, ..Opened::default() });
     let mut harness = screen_of(vec2(1200.0, 900.0), None, move |ui, window: &mut Option<Window>| {
         let window = window.get_or_insert_with(|| {
-            Window::start(ui.ctx(), Layout::default(), opened.take().unwrap_or_default())
-                .expect("the threads start")
+            let layout = Layout { view_scale: 0.25, ..Layout::default() };
+            let opened = opened.take().unwrap_or_default();
+            let mut window = Window::start(ui.ctx(), layout, opened).expect("the threads start");
+            window.session.set_playing(playing);
+            window
         });
         window.pass(ui);
     });
@@ -149,7 +166,7 @@ fn changes_by_menu_and_key_can_be_undone() {
 
 #[test]
 fn keys_pause_playback_and_hide_the_panels() {
-    let mut harness = window();
+    let mut harness = playing_window();
     let names = |harness: &Harness<'_, _>| controls(harness, Role::Slider).len();
     assert!(of(&harness).session.playing && names(&harness) > 10);
     key(&mut harness, Modifiers::NONE, Key::Tab);
@@ -177,19 +194,13 @@ fn keys_pause_playback_and_hide_the_panels() {
 
 #[test]
 fn the_image_follows_the_timeline_and_the_hair_while_paused() {
-    let mut harness = window();
-    key(&mut harness, Modifiers::NONE, Key::Space);
-    // Playback has stopped when two consecutive frames are the same.
+    let mut harness = window_of(Backend::default(), false);
     let position = |window: &Window| window.session.frame.as_ref().map_or(-1.0, |frame| frame.position_secs);
     let drawn = |window: &Window| match (&window.session.drawn, &window.session.frame) {
         (Some(drawn), Some(frame)) => Arc::ptr_eq(&drawn.snapshot, frame),
         _ => false,
     };
-    wait(&mut harness, "the pause", |window| {
-        let before = position(window);
-        std::thread::sleep(Duration::from_millis(50));
-        window.session.worker().frame().is_some_and(|frame| frame.position_secs.to_bits() == before.to_bits())
-    });
+    wait(&mut harness, "an image", drawn);
     let step = |window: &Window| window.session.frame.as_ref().map(|frame| frame.step);
     let before = step(of(&harness));
     for to in [Key::End, Key::ArrowLeft, Key::Home] {
@@ -324,7 +335,7 @@ fn a_dropped_sound_plays_beside_the_dance_and_one_that_is_none_says_so() {
 
 #[test]
 fn a_dialog_holds_the_keyboard_until_it_is_answered() {
-    let mut harness = window();
+    let mut harness = playing_window();
     let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
         let window = of(harness);
         (

@@ -18,16 +18,16 @@ pub(super) fn menu(
     let mut request = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
-    ui.scope_builder(UiBuilder::new().id_salt("clip").max_rect(place).layout(middle), |ui| {
-        ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
-        let response = ui.add(button);
-        popup(&response, |ui| {
-            ui.set_width(270.0);
-            request = contents(ui, view, edited);
-        });
-        let response = response.hover_tooltip("Clip, trim, tempo and loop of the motion.");
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
+    // A child of its own leaves the cursor of the panel below the lanes, where the tracks begin.
+    let ui = &mut ui.new_child(UiBuilder::new().id_salt("clip").max_rect(place).layout(middle));
+    ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
+    let response = ui.add(button);
+    popup(&response, |ui| {
+        ui.set_width(270.0);
+        request = contents(ui, view, edited);
     });
+    let response = response.hover_tooltip("Clip, trim, tempo and loop of the motion.");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
     request
 }
 

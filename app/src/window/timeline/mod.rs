@@ -28,7 +28,7 @@ use super::theme;
 pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;
 
 /// The largest part of the height of the window that the timeline takes.
-const MOST_OF_WINDOW: f32 = 0.6;
+const MAX_SHARE_OF_WINDOW: f32 = 0.6;
 
 /// Height of the panel without tracks, points.
 fn fixed_height(has_sound: bool) -> f32 {
@@ -44,7 +44,7 @@ pub(crate) fn panel(
     edited: &mut Edited<'_>,
 ) -> Option<TimelineRequest> {
     let fixed = fixed_height(view.sound.is_some());
-    let most = MOST_OF_WINDOW * ui.ctx().content_rect().height() - fixed;
+    let most = MAX_SHARE_OF_WINDOW * ui.ctx().content_rect().height() - fixed;
     let rows = edited.tracks.len();
     let room = tracks::room(rows, *tracks_height, most);
     Panel::bottom("timeline")

@@ -19,7 +19,7 @@ pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Sound on the timeline"));
     if response.dragged_by(PointerButton::Primary) {
         let secs = scale.secs_of(response.drag_delta().x);
-        let most = SoundSection::MOST_OFFSET_SECS;
+        let most = SoundSection::MAX_OFFSET_SECS;
         section.offset_secs = (section.offset_secs + secs).clamp(-most, most);
     }
     let hot = response.hovered() || response.dragged();

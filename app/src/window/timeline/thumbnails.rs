@@ -22,7 +22,7 @@ const SIZE: [u32; 2] = [64, 36];
 /// Height of the lane, points.
 pub(super) const HEIGHT: f32 = SIZE[1] as f32 + 4.0;
 /// The most thumbnails that are kept.
-const MOST: usize = 256;
+const MAX: usize = 256;
 /// Thumbnails of a take are rendered when nothing has changed for this long, seconds.
 const STILL_SECS: f64 = 0.6;
 
@@ -81,7 +81,7 @@ impl Thumbnails {
     }
 
     /// The most memory of thumbnails, bytes.
-    pub(crate) const MOST_BYTES: u64 = MOST as u64 * Self::BYTES;
+    pub(crate) const MAX_BYTES: u64 = MAX as u64 * Self::BYTES;
     const BYTES: u64 = 4 * SIZE[0] as u64 * SIZE[1] as u64;
 
     /// The memory of the thumbnails, bytes.
@@ -186,7 +186,7 @@ impl Thumbnails {
         let mut shown = ShownImage::default();
         shown.set(ctx, &self.textures, "thumbnail", image, false);
         self.thumbs.retain(|thumb| (thumb.secs - secs).abs() > near_secs);
-        if self.thumbs.len() >= MOST {
+        if self.thumbs.len() >= MAX {
             self.thumbs.remove(0);
         }
         self.thumbs.push(Thumb { secs, image: shown });

@@ -13,7 +13,7 @@ use crate::window::theme;
 /// Height of a track, points.
 const TRACK: f32 = 30.0;
 /// The greatest height of all tracks unless the user sets one; more tracks scroll.
-const MOST: f32 = 124.0;
+const MAX: f32 = 124.0;
 /// Distance from a key within which the pointer grabs it, points.
 const REACH: f32 = 6.0;
 
@@ -21,7 +21,7 @@ const REACH: f32 = 6.0;
 /// more than all.
 pub(super) fn room(tracks: usize, wanted: Option<f32>, most: f32) -> f32 {
     let all = tracks as f32 * TRACK;
-    let wanted = wanted.filter(|height| height.is_finite()).unwrap_or(MOST);
+    let wanted = wanted.filter(|height| height.is_finite()).unwrap_or(MAX);
     wanted.min(most).max(TRACK).min(all)
 }
 

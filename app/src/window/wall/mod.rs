@@ -25,7 +25,7 @@ const COLUMNS: usize = 3;
 /// Room between cells, points.
 const GAP: f32 = 3.0;
 /// The most pixels of all cells together where the processor renders.
-const MOST_PIXELS: f32 = 640.0 * 480.0;
+const MAX_PIXELS: f32 = 640.0 * 480.0;
 
 /// What is stored between runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -167,8 +167,8 @@ impl Window {
             if index == 0 {
                 let points = ui.ctx().pixels_per_point();
                 let adapter = self.session.painter().adapter();
-                let most = viewport::most_pixels(adapter.as_deref()).min(MOST_PIXELS.max(page.area()));
-                let each = most.min(MOST_PIXELS * if is_card(adapter.as_deref()) { 8.0 } else { 1.0 })
+                let most = viewport::most_pixels(adapter.as_deref()).min(MAX_PIXELS.max(page.area()));
+                let each = most.min(MAX_PIXELS * if is_card(adapter.as_deref()) { 8.0 } else { 1.0 })
                     / Wall::CELLS as f32;
                 self.wall.wanted = viewport::size_for(place.size(), points, each, self.layout.view_scale);
             }

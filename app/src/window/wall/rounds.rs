@@ -9,7 +9,7 @@ use lovelock_project::variants::{Locks, vary};
 use super::{PRESENT, WallLayout};
 
 /// The most rounds that can be returned to.
-const MOST_ROUNDS: usize = 40;
+const MAX_ROUNDS: usize = 40;
 
 /// The variants of each round, with the present hairstyle in the middle.
 #[derive(Default)]
@@ -78,7 +78,7 @@ impl Rounds {
 
     fn remember(&mut self) {
         self.before.push((std::mem::take(&mut self.variants), self.seed));
-        if self.before.len() > MOST_ROUNDS {
+        if self.before.len() > MAX_ROUNDS {
             self.before.remove(0);
         }
         self.seed = self.seed.wrapping_add(1);

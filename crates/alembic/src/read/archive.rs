@@ -10,7 +10,7 @@ use crate::times::Times;
 const SLACK: u64 = 1 << 20;
 
 /// The most children of a group that lists objects or properties: memory for their addresses stays small.
-const MOST_CHILDREN: u64 = 1 << 24;
+const MAX_CHILDREN: u64 = 1 << 24;
 
 /// An open archive.
 #[derive(Debug)]
@@ -186,7 +186,7 @@ impl<'a> Archive<'a> {
     /// The addresses in a group.
     fn group(&mut self, group: u64) -> Result<Vec<u64>, AlembicError> {
         let count = self.source.group_len(group)?;
-        if count > MOST_CHILDREN {
+        if count > MAX_CHILDREN {
             return Err(AlembicError::malformed(group, format!("{count} children"), "16777216 at most"));
         }
         self.spend(group, 8 * count)?;

@@ -13,7 +13,7 @@ use super::{
 };
 
 /// Most fibres that are told apart between a point and a light.
-pub const MOST_FIBRES: f32 = 40.0;
+pub const MAX_FIBRES: f32 = 40.0;
 /// Largest variance of scattered light; a lobe that is wider is flat anyway.
 const WIDEST: f32 = 20.0;
 /// Backscattered light per radian of azimuth: `2 / pi` (Zinke et al. 2008, local multiple scattering). Their density factor of
@@ -172,7 +172,7 @@ impl PointScatter {
         light: &PointLight,
         strength: f32,
     ) -> [f32; 3] {
-        let n = clamp(light.fibres, 0.0, MOST_FIBRES);
+        let n = clamp(light.fibres, 0.0, MAX_FIBRES);
         let unhit = exp(-n);
 
         let reached = three(|c| exp(-n * (1.0 - self.forward[c])));

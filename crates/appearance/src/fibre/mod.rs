@@ -23,7 +23,7 @@ mod table;
 
 pub use azimuthal::{FibrePath, TrimmedLogistic};
 pub use longitudinal::{LongitudinalLobe, longitudinal, variances};
-pub use many::{FibreTables, MOST_FIBRES, PointLight, PointScatter};
+pub use many::{FibreTables, MAX_FIBRES, PointLight, PointScatter};
 pub use many_table::{ABSORPTIONS, ManyRow, ManyTable, backscattered, position};
 pub use parameters::Fibre;
 pub use quadrature::Quadrature;

@@ -40,10 +40,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
 fn compare(folder: &Path, report: &Path) -> anyhow::Result<()> {
     let project = folder.join("small.lovelock");
     fs::write(&project, include_str!("small.lovelock"))?;
-    let mut lovelock = match std::env::var_os(tool::PROGRAM) {
-        Some(program) => Command::new(program),
-        None => tool::cargo(&["run", "--quiet", "--package", "lovelock", "--"]),
-    };
+    let mut lovelock = Command::new(tool::program());
     lovelock.arg("compare").arg(&project).arg("-o").arg(report);
     lovelock.args(["--frames", "4..7", "--methods", "all", "--backend", "cpu", "--size", "240x180"]);
     tool::run(&mut lovelock)

@@ -12,7 +12,7 @@ use lovelock_xtask::{system, tool};
 use counts::{Counts, changes, of_output};
 
 /// The counts in the tree, from the root of the workspace.
-const FILE: &str = "crates/counts/counts.json";
+const FILE: &str = "crates/benchmarks/counts.json";
 
 /// The package of the program that runs the benchmarks under valgrind. Its version must be that of the library.
 const RUNNER: &str = "gungraun-runner";
@@ -32,7 +32,15 @@ pub(crate) fn run(write: bool) -> anyhow::Result<()> {
     if home.exists() {
         fs::remove_dir_all(&home).with_context(|| format!("could not empty {}", home.display()))?;
     }
-    let mut bench = tool::cargo(&["bench", "--package", "lovelock-counts", "--bench", "counts"]);
+    let mut bench = tool::cargo(&[
+        "bench",
+        "--package",
+        "lovelock-benchmarks",
+        "--features",
+        "gungraun",
+        "--bench",
+        "counts",
+    ]);
     bench.args(["--", "--output-format=json"]).env("GUNGRAUN_RUNNER", &runner).env("GUNGRAUN_HOME", &home);
     bench.stderr(std::process::Stdio::inherit());
     let output = bench.output().context("could not start cargo bench")?;

@@ -44,7 +44,7 @@ pub(crate) fn run(blender: Blender) -> anyhow::Result<()> {
     let python = environment(&folder.join("python"), &[&[PACKAGE][..], &BESIDE].concat())?;
     check_flip(&python, &folder)?;
     exr::run(&folder)?;
-    let lovelock = program::build()?;
+    let lovelock = tool::program();
     stage::check(&python, &folder, &lovelock)?;
     blender::check(&folder, &lovelock, blender)?;
     farm::check(&python, &folder, &lovelock)

@@ -1,27 +1,10 @@
-//! Building and running Lovelock.
+//! Running Lovelock.
 
 use anyhow::{Context as _, ensure};
 use lovelock_xtask::tool;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-
-/// Builds Lovelock, unless the environment names its program, and returns the path.
-pub(super) fn build() -> anyhow::Result<PathBuf> {
-    if let Some(program) = std::env::var_os(tool::PROGRAM) {
-        return Ok(program.into());
-    }
-    let mut cargo = tool::cargo(&["build", "--quiet", "--package", "lovelock", "--message-format", "json"]);
-    let output = cargo.stderr(Stdio::inherit()).output().context("could not start cargo")?;
-    ensure!(output.status.success(), "Lovelock could not be built");
-    let messages = String::from_utf8_lossy(&output.stdout);
-    let mut programs = messages.lines().filter_map(|line| {
-        let message: Value = serde_json::from_str(line).ok()?;
-        let is_program = message["target"]["name"] == "lovelock";
-        message["executable"].as_str().filter(|_| is_program).map(PathBuf::from)
-    });
-    programs.next_back().context("cargo named no program")
-}
 
 /// A command of Lovelock that prints JSON.
 pub(super) fn lovelock(program: &Path, command: &str) -> Command {

@@ -43,9 +43,8 @@ pub(crate) fn run(inputs: usize, beside: Option<&Path>) -> anyhow::Result<()> {
     }
     system::prepare()?;
     system::prepare_screen()?;
-    tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let folder = tool::root().join("target/latency");
-    let own = tool::target().join("release/lovelock");
+    let own = tool::program();
     for case in CASES {
         let rounds = if beside.is_some() { 2 } else { 1 };
         let mut times = [Vec::new(), Vec::new()];

@@ -76,7 +76,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     system::prepare_interchange()?;
     let below = tool::root().join("target/reference");
     let python = python::environment(&below.join("python"), &PACKAGES)?;
-    tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let out = arguments.out.clone().unwrap_or(below);
     let mut ours = Vec::new();
     for variant in &variants {
@@ -121,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 /// Runs our side.
 fn render_ours(arguments: &Arguments, variant: &Variant, folder: &Path) -> anyhow::Result<()> {
     let quick = if arguments.quick { "256x256" } else { "384x384" };
-    let mut lovelock = Command::new(tool::target().join("release/lovelock"));
+    let mut lovelock = Command::new(tool::program());
     lovelock.arg("bench").args(&arguments.scenes).arg("-o").arg(folder);
     lovelock.args(["--size", arguments.size.as_deref().unwrap_or(quick)]);
     if let Some(strands) = arguments.strands {

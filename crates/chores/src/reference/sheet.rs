@@ -8,7 +8,7 @@ use std::path::Path;
 /// Scenes side by side: the colours or lights of a hairstyle.
 const COLUMNS: usize = 6;
 /// The longest side of an image on the sheet, pixels.
-const MOST_SIDE: u32 = 200;
+const MAX_SIDE: u32 = 200;
 /// Around images and text, pixels.
 const GAP: usize = 4;
 const LINE: usize = 20;
@@ -36,7 +36,7 @@ impl Sheet {
 
     /// Adds a scene: our images, and the path tracer's.
     pub(super) fn add(&mut self, name: &str, ours: &[LinearImage], theirs: &LinearImage) {
-        let by = theirs.width.max(theirs.height).div_ceil(MOST_SIDE).max(1);
+        let by = theirs.width.max(theirs.height).div_ceil(MAX_SIDE).max(1);
         let small: Vec<LinearImage> = ours.iter().chain([theirs]).map(|image| image.shrunk(by)).collect();
         let side = small.last().map_or([0; 2], |image| [image.width, image.height]);
         let images = small.iter().map(LinearImage::shown).collect();

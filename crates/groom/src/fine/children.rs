@@ -14,7 +14,7 @@ use super::strand::FineStrand;
 use crate::{Guides, Hairstyle};
 
 /// The most points of a fine strand.
-pub(super) const MOST_POINTS: usize = 128;
+pub(super) const MAX_POINTS: usize = 128;
 /// Wisps of fewer strands take parents from neighbouring wisps.
 const FEW_STRANDS: u32 = 4;
 /// Neighbours are looked for among all strands only in hairstyles of at most so many.
@@ -218,7 +218,7 @@ impl FineStrands {
         self.neighbours.clear();
         let longest =
             source.first_point.windows(2).map(|ends| ends[1].saturating_sub(ends[0]) as usize).max();
-        self.points_per_strand = longest.unwrap_or(2).clamp(2, MOST_POINTS);
+        self.points_per_strand = longest.unwrap_or(2).clamp(2, MAX_POINTS);
         self.of = source;
     }
 }

@@ -5,7 +5,7 @@
 use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
-use super::children::{FineStrands, MOST_POINTS};
+use super::children::{FineStrands, MAX_POINTS};
 use super::order::place;
 use super::strand::FineStrand;
 use crate::Strands;
@@ -123,8 +123,8 @@ simd_versions! {
 #[inline(always)]
 fn grow_run(strands: &[FineStrand], points: usize, from: &[&[f32]; 3], mut out: [&mut [f32]; 3]) {
     let links = points - 1;
-    let mut share = [[0.0_f32; MOST_POINTS]; 2];
-    let mut mixed = [0.0_f32; MOST_POINTS];
+    let mut share = [[0.0_f32; MAX_POINTS]; 2];
+    let mut mixed = [0.0_f32; MAX_POINTS];
     for (s, strand) in strands.iter().enumerate() {
         let to = s * points..(s + 1) * points;
         let at = strand.parents.map(|parent| parent as usize * points);

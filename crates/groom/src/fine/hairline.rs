@@ -21,14 +21,14 @@ const LENGTHS: [f32; 2] = [0.005, 0.028];
 /// How far short hairs begin outside of their parent at most, as a weight on the way from each of its two neighbours.
 const OUTSIDE: f32 = 0.5;
 /// Hairstyles of more strands have the hairline that they were groomed with.
-const MOST_STRANDS: usize = 20_000;
+const MAX_STRANDS: usize = 20_000;
 
 /// Fewer roots nearby do not tell an edge from a gap between strands.
 const FEWEST_ROOTS: u32 = 6;
 
 /// How near each strand with one of these roots is to the edge of the hair: 0 inside, 1 at the edge.
 pub(super) fn edges_of(roots: &[Vec3]) -> Vec<f32> {
-    if roots.len() > MOST_STRANDS {
+    if roots.len() > MAX_STRANDS {
         return vec![0.0; roots.len()];
     }
     let cell = |p: Vec3| (p / AROUND).floor().to_array().map(|x| x as i32);

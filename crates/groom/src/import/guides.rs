@@ -10,9 +10,9 @@ use crate::Guides;
 const ORDINARY: f32 = 0.7;
 /// Distance between guides that have no strands of their own, metres.
 const APART: f32 = 0.0015;
-/// The links of a guide differ by no more than this fraction of their mean, if [`MOST_ROUNDS`] rounds are enough.
+/// The links of a guide differ by no more than this fraction of their mean, if [`MAX_ROUNDS`] rounds are enough.
 const UNEVEN: f32 = 1e-4;
-const MOST_ROUNDS: usize = 64;
+const MAX_ROUNDS: usize = 64;
 
 /// Three guides per wisp, in the order of the wisps, and the strand that each was made of.
 pub(super) fn choose(groom: &PlacedGroom, wisps: &[Vec<u32>], points_per_guide: usize) -> (Guides, Vec<u32>) {
@@ -102,7 +102,7 @@ fn triangle<'a>(strands: &[&'a [Vec3]]) -> [&'a [Vec3]; 3] {
 /// guide loses of its shape.
 fn equally_spaced(strand: &[Vec3], count: usize) -> Vec<Vec3> {
     let mut points = spaced_along(strand, count);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mean = length(&points) / (count - 1) as f32;
         if points.array_windows().all(|[a, b]| (a.distance(*b) - mean).abs() <= UNEVEN * mean) {
             break;

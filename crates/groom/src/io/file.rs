@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::units::UpAxis;
 
 /// The most points that a file may have by showing the same ones in several places.
-pub(super) const MOST_COPIED_POINTS: usize = 1 << 25;
+pub(super) const MAX_COPIED_POINTS: usize = 1 << 25;
 
 /// A box aligned with the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

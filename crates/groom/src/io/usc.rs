@@ -27,13 +27,13 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 /// Sizes of a point in the two dialects, bytes.
 const STRIDES: [u64; 2] = [12, 16];
 /// More strands or points of a strand than in any head of hair.
-const MOST_STRANDS: i32 = 1 << 24;
-const MOST_STRAND_POINTS: i32 = 1 << 16;
+const MAX_STRANDS: i32 = 1 << 24;
+const MAX_STRAND_POINTS: i32 = 1 << 16;
 
 fn may_begin(start: &[u8]) -> bool {
     let number = |at: usize| start.get(at..)?.first_chunk::<4>().map(|&four| i32::from_le_bytes(four));
-    number(0).is_some_and(|strands| (1..=MOST_STRANDS).contains(&strands))
-        && number(4).is_some_and(|points| (0..=MOST_STRAND_POINTS).contains(&points))
+    number(0).is_some_and(|strands| (1..=MAX_STRANDS).contains(&strands))
+        && number(4).is_some_and(|points| (0..=MAX_STRAND_POINTS).contains(&points))
 }
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {

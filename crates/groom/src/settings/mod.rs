@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::HairLook;
 
 /// The most points that clamped settings let a hairstyle have: about 300 MB with everything that draws it.
-pub const MOST_POINTS: u32 = 6_000_000;
+pub const MAX_POINTS: u32 = 6_000_000;
 
 /// How a hairstyle grows. Ranges are in its table of settings.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

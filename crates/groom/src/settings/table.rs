@@ -3,7 +3,7 @@
 use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
 
-use super::{GroomSettings, MOST_POINTS};
+use super::{GroomSettings, MAX_POINTS};
 
 impl Settings for GroomSettings {
     const TABLE: &'static [Setting<Self>] = &[
@@ -219,9 +219,9 @@ impl Settings for GroomSettings {
         .unit(Unit::FRACTION),
     ];
 
-    /// Limits the strands to [`MOST_POINTS`] points in all.
+    /// Limits the strands to [`MAX_POINTS`] points in all.
     fn reconcile(&mut self) {
-        let most = MOST_POINTS / (self.wisps * (self.segments_per_strand + 1));
+        let most = MAX_POINTS / (self.wisps * (self.segments_per_strand + 1));
         self.strands_per_wisp = self.strands_per_wisp.min(most);
         self.look = self.look.clamped();
     }

@@ -18,7 +18,7 @@ const OVERSHOOT: f32 = 1.25;
 /// How much too large the result may be, as a fraction of the guides' extent.
 const TOLERANCE: f32 = 0.03;
 /// The most links whose points are evaluated, so that hair that ends in one plane is not searched completely.
-const MOST_LINKS: usize = 256;
+const MAX_LINKS: usize = 256;
 /// Above this fraction, the whole link is bounded, which is faster.
 const NEARLY_WHOLE: f32 = 0.75;
 /// Values that are compared side by side.
@@ -191,7 +191,7 @@ impl Search<'_> {
         let mut curves: Vec<(u32, WispCurve)> = Vec::new();
         let mut looked_at = 0;
         while let Some(next) = candidates.pop() {
-            if next.at_most <= found + tolerance || looked_at >= MOST_LINKS {
+            if next.at_most <= found + tolerance || looked_at >= MAX_LINKS {
                 found = found.max(next.at_most);
                 break;
             }

@@ -46,7 +46,7 @@ struct Gathered {
 /// `style` with its hair gathered by `ties` into ponytails or buns at rest, with the same number of guides and points
 /// and the same lengths. A wisp goes to the first tie that includes it and that all its guides can reach. One that is too
 /// short for the ties that include it lies on the head where the hair around it is gathered; the other wisps stay as they
-/// are. Only the first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
+/// are. Only the first [`HairTie::MAX`] ties count. `obstacle` is the body without hair.
 #[must_use]
 pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hairstyle {
     tied_where(style, ties, obstacle, |_| true)
@@ -73,7 +73,7 @@ pub fn tied_where(
         return out;
     }
     let rings: Vec<Ring> =
-        ties.iter().take(HairTie::MOST).map(|tie| Ring::new(tie, obstacle, longest)).collect();
+        ties.iter().take(HairTie::MAX).map(|tie| Ring::new(tie, obstacle, longest)).collect();
     let ears = middle.z - 0.1 * half.z;
     // From below the middle, the shortest path over the head crosses its top.
     let middle = middle - Vec3::Y * (0.5 * half.y);

@@ -178,7 +178,7 @@ impl Settings for HairTie {
 
 impl HairTie {
     /// The most ties of one hairstyle.
-    pub const MOST: usize = 8;
+    pub const MAX: usize = 8;
 
     /// A ponytail at the back of an adult's head.
     pub const DEFAULT: Self = Self {

@@ -12,7 +12,7 @@ use super::report::{BenchReport, SceneReport};
 use super::yardstick::Yardstick;
 
 /// The largest file that is read as a baseline, bytes. A run of all scenes has 0.1 MB.
-const MOST_BYTES: u64 = 16 << 20;
+const MAX_BYTES: u64 = 16 << 20;
 
 /// An earlier run: the part of `lovelock bench --json` that is compared.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -64,12 +64,12 @@ impl Baseline {
         };
         let read = |file: &Path| -> std::io::Result<Vec<u8>> {
             let mut bytes = Vec::new();
-            std::fs::File::open(file)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+            std::fs::File::open(file)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
             Ok(bytes)
         };
         let bytes = read(file).map_err(|error| ProjectError::input(file, format!("{name}: {error}")))?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(refuse(format!("more than {} MiB", MOST_BYTES >> 20)));
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(refuse(format!("more than {} MiB", MAX_BYTES >> 20)));
         }
         let baseline: Self = serde_json::from_slice(&bytes).map_err(|error| refuse(error.to_string()))?;
         if !baseline.yardstick.is_usable() {

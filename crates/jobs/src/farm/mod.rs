@@ -26,7 +26,7 @@ pub const FARM_TEMPLATE: &str = "template.json";
 /// File name of the take that the job simulates.
 const TAKE: &str = "dance.take";
 /// Maximum number of tasks per step in the Open Job Description.
-const MOST_TASKS: u64 = 1024;
+const MAX_TASKS: u64 = 1024;
 
 /// What to render. `None` uses the project's value.
 #[derive(Clone, Debug, Default)]
@@ -119,11 +119,11 @@ pub fn farm(
     check_frames(&frames)?;
     dance.check(&frames)?;
     let count = frames.end - frames.start;
-    let least = count.div_ceil(MOST_TASKS);
+    let least = count.div_ceil(MAX_TASKS);
     let chunk = request.chunk.unwrap_or(10.max(least)).min(count);
     if chunk < least {
         return Err(ProjectError::option(format!(
-            "--chunk {chunk}: {} tasks for {count} frames, and a job has {MOST_TASKS} at most; must be {least} or more",
+            "--chunk {chunk}: {} tasks for {count} frames, and a job has {MAX_TASKS} at most; must be {least} or more",
             count.div_ceil(chunk)
         )));
     }

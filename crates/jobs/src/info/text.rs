@@ -7,7 +7,7 @@ use super::{Content, Info};
 use crate::satf::DatabaseInfo;
 
 /// Number of changes of a take's guides that are listed individually.
-const MOST_REGROWN: usize = 8;
+const MAX_REGROWN: usize = 8;
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -134,11 +134,11 @@ impl fmt::Display for Info {
                     format_args!("{} at {} a second, {:.2} s", take.frames, take.fps, take.duration_secs),
                 )?;
                 line(f, "guides", format_args!("{} of {} points", take.guides, take.points_per_guide))?;
-                for regrown in take.regrown.iter().take(MOST_REGROWN) {
+                for regrown in take.regrown.iter().take(MAX_REGROWN) {
                     let (guides, points) = (regrown.guides, regrown.points_per_guide);
                     line(f, "", format_args!("{guides} of {points} points from frame {}", regrown.frame))?;
                 }
-                if let Some(more @ 1..) = take.regrown.len().checked_sub(MOST_REGROWN) {
+                if let Some(more @ 1..) = take.regrown.len().checked_sub(MAX_REGROWN) {
                     line(f, "", format_args!("and {more} times more; --json has them all"))?;
                 }
                 line(f, "strands", take.strands)?;

@@ -42,9 +42,9 @@ const NAME: u32 = 24;
 /// Pixels between pictures.
 const GAP: u32 = 6;
 /// The most pixels along a side of the sheet.
-const MOST_SIDE: u32 = 32_768;
+const MAX_SIDE: u32 = 32_768;
 /// The most pixels of the sheet.
-const MOST_PIXELS: u64 = 200_000_000;
+const MAX_PIXELS: u64 = 200_000_000;
 const PAGE: [u8; 3] = [19, 20, 23];
 const INK: [u8; 3] = [236, 238, 242];
 const QUIET: [u8; 3] = [168, 172, 180];
@@ -139,11 +139,11 @@ impl Places {
         let rows = self.styles.div_ceil(self.columns).max(1);
         let [width, height] = [self.each[0].saturating_mul(self.columns), self.each[1].saturating_mul(rows)]
             .map(|side| side.saturating_add(GAP));
-        if width.max(height) > MOST_SIDE || u64::from(width) * u64::from(height) > MOST_PIXELS {
+        if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
             return Err(ProjectError::option(format!(
-                "--sheet: would have {width}x{height} pixels; must be at most {MOST_SIDE} a side and {} million in all: \
+                "--sheet: would have {width}x{height} pixels; must be at most {MAX_SIDE} a side and {} million in all: \
                  take a smaller --size or fewer styles",
-                MOST_PIXELS / 1_000_000
+                MAX_PIXELS / 1_000_000
             )));
         }
         Ok([width, height])

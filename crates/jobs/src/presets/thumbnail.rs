@@ -15,7 +15,7 @@ use super::portrait::{Portraits, Shot};
 /// Width and height, pixels.
 pub const SIZE: [u32; 2] = [160, 200];
 /// The most bytes of a file.
-pub const MOST_BYTES: usize = 12 * 1024;
+pub const MAX_BYTES: usize = 12 * 1024;
 
 /// The thumbnails in `assets/styles`, by the ids of their styles.
 static SHIPPED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/thumbnails.rs"));
@@ -37,7 +37,7 @@ pub fn draw(
     let pictures = portraits.draw(&Portraits::project_of(style), &[Shot::Framed], progress)?;
     let picture = pictures.first();
     picture
-        .and_then(|picture| jpeg_within(MOST_BYTES, picture.width, picture.height, &picture.rgba))
+        .and_then(|picture| jpeg_within(MAX_BYTES, picture.width, picture.height, &picture.rgba))
         .ok_or_else(|| ProjectError::work(format!("{}: its thumbnail could not be drawn", style.name)))
 }
 

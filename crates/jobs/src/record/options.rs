@@ -35,7 +35,7 @@ impl Options {
             label: request.label || of.label,
             quality: request.quality.unwrap_or(of.quality),
         };
-        let most = lovelock_project::project::RecordingSection::MOST_SUBFRAMES;
+        let most = lovelock_project::project::RecordingSection::MAX_SUBFRAMES;
         if !(1..=most).contains(&options.subframes) {
             let asked = options.subframes;
             return Err(ProjectError::option(format!(

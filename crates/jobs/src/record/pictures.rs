@@ -29,7 +29,7 @@ use super::request::RecordRequest;
 use super::sound::FilmSound;
 
 /// Maximum number of frames whose times are kept for medians.
-const MOST_TIMES: usize = 1 << 20;
+const MAX_TIMES: usize = 1 << 20;
 
 /// Records a project: simulates the pre-roll, then renders and writes the requested frames.
 ///
@@ -83,7 +83,7 @@ pub fn record(
     let mut begun = false;
     let mut drawn = Drawn::default();
     let total = frames.end - frames.start;
-    let mut tally = Tally::new((total as usize).min(MOST_TIMES));
+    let mut tally = Tally::new((total as usize).min(MAX_TIMES));
     let mut in_flight: Option<Begun> = None;
     for frame in frames.clone() {
         if sink.next_is_kept() {

@@ -37,7 +37,7 @@ pub struct RecordRequest {
     pub format: Option<SequenceFormat>,
     /// Whether the background is transparent even if the project has a background.
     pub transparent: bool,
-    /// Samples per frame, 1 to [`lovelock_project::project::RecordingSection::MOST_SUBFRAMES`].
+    /// Samples per frame, 1 to [`lovelock_project::project::RecordingSection::MAX_SUBFRAMES`].
     pub motion_blur: Option<u32>,
     /// Shutter angle, degrees of 360 per frame.
     pub shutter_degrees: Option<f32>,

@@ -8,7 +8,7 @@ use lovelock_groom::PigmentVariation;
 use lovelock_render::{DrawnHair, FrameInput};
 
 /// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
-const MOST_RADII: f32 = 200.0;
+const MAX_RADII: f32 = 200.0;
 
 /// The least radius in the file, as a fraction of the strand's largest. A curve of no width has no normal.
 const LEAST_TAPER: f32 = 0.02;
@@ -95,7 +95,7 @@ impl DrawnStrands {
         for pair in ends.windows(2) {
             let [(a, from), (b, to)] = [pair[0], pair[1]];
             let parts =
-                (a.distance(b) / (MOST_RADII * from.min(to)).max(f32::MIN_POSITIVE)).ceil().clamp(1.0, 1e3);
+                (a.distance(b) / (MAX_RADII * from.min(to)).max(f32::MIN_POSITIVE)).ceil().clamp(1.0, 1e3);
             for part in 0..parts as u32 {
                 let along = part as f32 / parts;
                 controls.push((a.lerp(b, along), from + (to - from) * along));
@@ -158,7 +158,7 @@ mod tests {
         let controls = long.controls(&(0..3));
         // 500 radii are three parts: 3 + 1 segments, 5 points, and one more at either end.
         assert_eq!(controls.len(), 7);
-        assert!(controls.windows(2).all(|pair| pair[0].0.distance(pair[1].0) <= MOST_RADII * 0.1 + 1e-3));
+        assert!(controls.windows(2).all(|pair| pair[0].0.distance(pair[1].0) <= MAX_RADII * 0.1 + 1e-3));
     }
 
     #[test]

@@ -9,10 +9,10 @@ use super::{
 };
 
 /// Largest number of coarse cells, and their number along the longest side: 20 mm for the reach of hair.
-const MOST_CELLS: f32 = 60_000.0;
+const MAX_CELLS: f32 = 60_000.0;
 const CELLS_ALONG: f32 = 85.0;
 /// Largest number of divided cells, 500 bytes each; surfaces that fill their volume get larger cells.
-const MOST_BRICKS: usize = 40_000;
+const MAX_BRICKS: usize = 40_000;
 
 /// Interpolated distances: about ten nanoseconds per query.
 #[derive(Clone, Debug)]
@@ -28,11 +28,11 @@ impl Grid {
     /// Measures the box from `low` to `high`, which must not be empty.
     pub(super) fn new(exact: &Exact, low: Vec3, high: Vec3) -> Self {
         let size = high - low;
-        let mut cell = (size.max_element() / CELLS_ALONG).max((size.element_product() / MOST_CELLS).cbrt());
+        let mut cell = (size.max_element() / CELLS_ALONG).max((size.element_product() / MAX_CELLS).cbrt());
         loop {
             let lattice = Lattice::new(exact, low, high, cell);
             let (numbers, near) = lattice.near();
-            if near.len() <= MOST_BRICKS {
+            if near.len() <= MAX_BRICKS {
                 let bricks = make_bricks(exact, &lattice, &numbers, &near);
                 return Self { lattice, inverse_cell: cell.recip(), numbers, bricks };
             }

@@ -11,7 +11,7 @@ use super::{inherited_target, tokens};
 use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
 
 /// Most values of one attribute over all times: about a gigabyte of memory.
-const MOST_VALUES: usize = 1 << 26;
+const MAX_VALUES: usize = 1 << 26;
 
 /// Reads the clips of a stage: one of all animations that skeletons are bound to, then one of each other animation.
 pub(super) fn read_clips(
@@ -144,9 +144,9 @@ impl<'a> Reader<'a> {
         make: &dyn Fn(Value) -> Vec<T>,
     ) -> Result<Option<Sampled<T>>, MotionError> {
         let codes = layer.sample_times(animation, name)?;
-        if codes.len().saturating_mul(lanes) > MOST_VALUES {
+        if codes.len().saturating_mul(lanes) > MAX_VALUES {
             let problem =
-                format!("{} samples of {lanes} {name}; at most {MOST_VALUES} values are read", codes.len());
+                format!("{} samples of {lanes} {name}; at most {MAX_VALUES} values are read", codes.len());
             return Err(MotionError::malformed(self.file, layer.path(animation), problem));
         }
         let (mut times, mut values) = (Vec::new(), Vec::with_capacity(codes.len() * lanes));

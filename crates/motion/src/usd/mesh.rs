@@ -6,7 +6,7 @@ use glam::{Affine3A, DMat4, Vec3};
 use lovelock_usd::{Layer, Value};
 
 use super::skeleton::{Figure, OneSkeleton};
-use super::{MOST_NAMES, affine, affine_of, inherited_target, tokens};
+use super::{MAX_NAMES, affine, affine_of, inherited_target, tokens};
 use crate::MotionError;
 use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 
@@ -312,7 +312,7 @@ impl Shaders {
                 }
             }
         }
-        let shown = layer.attribute(prim, "primvars:displayColor", MOST_NAMES)?;
+        let shown = layer.attribute(prim, "primvars:displayColor", MAX_NAMES)?;
         let shown = shown.map_or_else(Vec::new, Value::into_vectors);
         Ok(shown.first().copied().filter(|color| color.is_finite()).unwrap_or(CLAY))
     }

@@ -160,11 +160,11 @@ fn affine_of(matrix: &DMat4) -> Affine3A {
 
 /// The tokens of an attribute; empty if it is missing.
 fn tokens(layer: &mut dyn Layer, prim: usize, name: &str) -> Result<Vec<String>, UsdError> {
-    Ok(layer.attribute(prim, name, MOST_NAMES)?.map_or_else(Vec::new, Value::into_tokens))
+    Ok(layer.attribute(prim, name, MAX_NAMES)?.map_or_else(Vec::new, Value::into_tokens))
 }
 
 /// Most joints or shapes that one attribute may name.
-const MOST_NAMES: usize = 1 << 16;
+const MAX_NAMES: usize = 1 << 16;
 
 /// The first target of a relationship of a prim or of the nearest prim above it that has one.
 fn inherited_target(layer: &mut dyn Layer, prim: usize, name: &str) -> Result<Option<usize>, UsdError> {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{Affine3A, DMat4, Quat, Vec3};
 use lovelock_usd::{Layer, Value};
 
-use super::{MOST_NAMES, affine, affine_of, tokens};
+use super::{MAX_NAMES, affine, affine_of, tokens};
 use crate::{Joint, MotionError, Skeleton};
 
 /// One skeleton of a stage.
@@ -83,7 +83,7 @@ impl Figure {
         let refuse = |problem: String| MotionError::malformed(file, path_of_prim.clone(), problem);
         let paths = tokens(layer, prim, "joints")?;
         let mut matrices = |name: &str| -> Result<Vec<Affine3A>, MotionError> {
-            let value = layer.attribute(prim, name, MOST_NAMES)?.map_or_else(Vec::new, Value::into_matrices);
+            let value = layer.attribute(prim, name, MAX_NAMES)?.map_or_else(Vec::new, Value::into_matrices);
             Ok(value.iter().map(|rows| affine(rows).unwrap_or(Affine3A::IDENTITY)).collect())
         };
         let (bind, rest) = (matrices("bindTransforms")?, matrices("restTransforms")?);
@@ -94,9 +94,9 @@ impl Figure {
         }
         let index: HashMap<&str, usize> = paths.iter().enumerate().map(|(k, p)| (p.as_str(), k)).collect();
         let parents: Vec<Option<usize>> = paths.iter().map(|path| parent_of(path, &index)).collect();
-        let translations = layer.attribute(prim, "translations", MOST_NAMES)?;
+        let translations = layer.attribute(prim, "translations", MAX_NAMES)?;
         let translations = translations.map_or_else(Vec::new, Value::into_vectors);
-        let rotations = layer.attribute(prim, "rotations", MOST_NAMES)?;
+        let rotations = layer.attribute(prim, "rotations", MAX_NAMES)?;
         let rotations = rotations.map_or_else(Vec::new, Value::into_quaternions);
         let mut of_figure = vec![0; paths.len()];
         let mut worlds = vec![Affine3A::IDENTITY; paths.len()];

@@ -19,7 +19,7 @@ use skeleton::{BONES, CROWN, LEGS, TARGETS, UNIT_METRES, offset, place};
 use track::{Value, value};
 
 /// The longest motion: two hours.
-const MOST_FRAMES: u32 = 30 * 7200;
+const MAX_FRAMES: u32 = 30 * 7200;
 
 /// Whether a file begins like a VMD file.
 pub(crate) fn is_vmd(bytes: &[u8]) -> bool {
@@ -42,7 +42,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     };
     // A frame without keys has no bytes, so a small file could otherwise claim a huge number of transforms. A file of any
     // size may last 23 minutes.
-    let most = (bytes.len().max(1 << 20) / BONES.len()).min(MOST_FRAMES as usize);
+    let most = (bytes.len().max(1 << 20) / BONES.len()).min(MAX_FRAMES as usize);
     if last as usize >= most {
         let problem = format!("a key at frame {last}; must be before {most}, by the size of the file");
         return Err(MotionError::malformed(name, "the keys", problem));

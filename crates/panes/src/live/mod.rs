@@ -78,7 +78,7 @@ impl Live {
         self.held.bytes()
     }
 
-    /// The latest image of pane `index`; `None` past [`MOST_PANES`](lovelock_project::project::CompareSection::MOST_PANES).
+    /// The latest image of pane `index`; `None` past [`MAX_PANES`](lovelock_project::project::CompareSection::MAX_PANES).
     pub fn pane(&self, index: usize) -> Option<&Latest<LivePane>> {
         self.outputs.panes.get(index)
     }

@@ -7,7 +7,7 @@ use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
 use lovelock_session::window_device::WindowDevice;
 
 /// Number of consecutive device failures by a pane after which it is no longer rendered on the GPU.
-const MOST_FAILURES: u32 = 3;
+const MAX_FAILURES: u32 = 3;
 
 /// Opens a renderer on the chosen backend, on the window's device if that is one.
 pub(super) type Open = Box<dyn FnMut(Backend, Option<&Arc<Gpu>>) -> Result<Renderer, RenderError> + Send>;
@@ -55,7 +55,7 @@ impl Renderers {
         if self.failed[pane].0 != *contender {
             self.failed[pane] = (contender.clone(), 0);
         }
-        if choice == Backend::Gpu && self.failed[pane].1 >= MOST_FAILURES {
+        if choice == Backend::Gpu && self.failed[pane].1 >= MAX_FAILURES {
             let sentence =
                 "this pane made the graphics device fail repeatedly: change its settings to try again";
             return Err(GpuError::Input(sentence.to_owned()).into());
@@ -153,17 +153,17 @@ impl Renderers {
             return Broken { try_again: false, notice: None };
         };
         *failed = failed.saturating_add(1);
-        let notice = (*failed == MOST_FAILURES).then(|| {
+        let notice = (*failed == MAX_FAILURES).then(|| {
             let what = if contender.backend == Backend::Gpu {
                 format!("pane {} is no longer rendered there", pane + 1)
             } else {
                 self.auto = Some(Backend::Cpu);
                 "the processor renders these panes from now on if their settings allow it".to_owned()
             };
-            format!("The graphics card failed {MOST_FAILURES} times in a row: {what}.")
+            format!("The graphics card failed {MAX_FAILURES} times in a row: {what}.")
         });
         // Once more after the last failure, for the panes that lost the device because of this one.
-        Broken { try_again: *failed <= MOST_FAILURES, notice }
+        Broken { try_again: *failed <= MAX_FAILURES, notice }
     }
 
     /// Drops the renderers of removed panes.

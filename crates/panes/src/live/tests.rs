@@ -140,7 +140,7 @@ fn panes_use_the_extinction_of_the_hair() {
 fn a_failing_pane_says_why_and_the_others_are_rendered() {
     let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::VoxelMap]);
     rig.project.compare.panes[1].scale = 0.1;
-    let wide = LiveRequest { width: lovelock_render::MOST_SIDE + 8, ..rig.request(&[0, 1]) };
+    let wide = LiveRequest { width: lovelock_render::MAX_SIDE + 8, ..rig.request(&[0, 1]) };
     rig.draw(wide);
     let problem = rig.pane(0).problem.clone().expect("a sentence");
     assert!(problem.contains("8192") && !problem.contains('\n'), "{problem}");

@@ -16,7 +16,7 @@ use crate::request::{LivePane, LiveRequest};
 /// The results that the thread publishes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outputs {
-    pub(super) panes: [Latest<LivePane>; CompareSection::MOST_PANES],
+    pub(super) panes: [Latest<LivePane>; CompareSection::MAX_PANES],
     pub(super) probe: Latest<LiveProbe>,
     pub(super) notices: Latest<String>,
 }
@@ -87,7 +87,7 @@ impl Worker {
         let mut again = false;
         self.rounds.begin(request);
         let mut finished = Vec::new();
-        for &index in request.panes.iter().take(CompareSection::MOST_PANES) {
+        for &index in request.panes.iter().take(CompareSection::MAX_PANES) {
             let Some(slot) =
                 self.outputs.panes.get(index).filter(|_| index < request.project.compare.panes.len())
             else {

@@ -16,28 +16,28 @@ const STEP_SECS: f64 = 1.0 / 30.0;
 /// Hair that is further behind than this many steps moves with the head instead of being simulated.
 const LONGEST_WAY: i64 = 30;
 /// The most wisps of a variant: nine of them are simulated at once.
-const MOST_WISPS: u32 = 80;
+const MAX_WISPS: u32 = 80;
 /// The most strands that a variant stores; they cast its shadows.
-const MOST_STRANDS: u32 = 4_000;
+const MAX_STRANDS: u32 = 4_000;
 /// The most segments of a strand.
-const MOST_SEGMENTS: u32 = 20;
+const MAX_SEGMENTS: u32 = 20;
 /// The strands that are drawn.
 const DRAWN_STRANDS: f32 = 1_500.0;
 /// The most cells along each edge of the voxel map, whose shadow hardly depends on it.
-const MOST_VOXELS: u32 = 64;
+const MAX_VOXELS: u32 = 64;
 
 /// Gives a variant as much hair and as fine a shadow as its small image needs.
 pub(super) fn lighten(project: &mut Project) {
     project.picture.strands = StrandCount::Fixed;
     project.picture.strand_number = DRAWN_STRANDS;
     let map = &mut project.shadow.voxel_map;
-    map.resolution = map.resolution.min(MOST_VOXELS);
+    map.resolution = map.resolution.min(MAX_VOXELS);
     let groom = &mut project.hair.groom;
-    groom.wisps = groom.wisps.min(MOST_WISPS);
-    groom.segments_per_strand = groom.segments_per_strand.min(MOST_SEGMENTS);
-    groom.strands_per_wisp = groom.strands_per_wisp.min(MOST_STRANDS / groom.wisps.max(1));
+    groom.wisps = groom.wisps.min(MAX_WISPS);
+    groom.segments_per_strand = groom.segments_per_strand.min(MAX_SEGMENTS);
+    groom.strands_per_wisp = groom.strands_per_wisp.min(MAX_STRANDS / groom.wisps.max(1));
     let import = &mut project.hair.import;
-    import.wisps = if import.wisps == 0 { MOST_WISPS } else { import.wisps.min(MOST_WISPS) };
+    import.wisps = if import.wisps == 0 { MAX_WISPS } else { import.wisps.min(MAX_WISPS) };
 }
 
 /// A variant, its simulation and its renderer.

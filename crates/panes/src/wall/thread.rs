@@ -33,7 +33,7 @@ pub(super) struct Worker {
     held: Held,
 }
 
-/// The instant that the cells show. While time passes, it follows that of the requests by at most [`Instant::MOST_SECS`] a round, so that where
+/// The instant that the cells show. While time passes, it follows that of the requests by at most [`Instant::MAX_SECS`] a round, so that where
 /// rounds take longer the hair moves slowly instead of jumping.
 #[derive(Default)]
 pub(super) struct Instant {
@@ -44,7 +44,7 @@ pub(super) struct Instant {
 
 impl Instant {
     /// The most that a round simulates, seconds.
-    const MOST_SECS: f64 = 4.0 / 30.0;
+    const MAX_SECS: f64 = 4.0 / 30.0;
     /// A request that is further ahead of the last one than the clock is a jump, seconds.
     const JUMP_SECS: f64 = 0.5;
 
@@ -55,7 +55,7 @@ impl Instant {
         self.last = Some((wanted, Stopwatch::start()));
         self.shown_secs = match passed {
             Some((by, clock)) if request.playing && (0.0..clock + Self::JUMP_SECS).contains(&by) => {
-                (self.shown_secs + by.min(Self::MOST_SECS)).min(wanted)
+                (self.shown_secs + by.min(Self::MAX_SECS)).min(wanted)
             }
             _ => wanted,
         };

@@ -19,7 +19,7 @@ impl Project {
             return track.key_at(secs).is_some();
         }
         let track = Track { keys: vec![Key { secs: secs.max(0.0), value }], held, ..Track::new(target) };
-        match track.in_range().filter(|_| tracks.len() < Track::MOST) {
+        match track.in_range().filter(|_| tracks.len() < Track::MAX) {
             Some(track) => {
                 tracks.push(track);
                 true

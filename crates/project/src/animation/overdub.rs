@@ -14,9 +14,9 @@ const BACKWARDS_SECS: f64 = 0.5;
 const REST_SECS: f64 = 0.4;
 
 /// Number of new keys after which they are thinned during a recording pass: about forty seconds.
-const MOST_RAW: usize = Track::MOST_KEYS / 8;
+const MAX_RAW: usize = Track::MAX_KEYS / 8;
 /// Maximum number of written keys; beyond it they are thinned to half as many.
-const MOST_WRITTEN: usize = Track::MOST_KEYS / 2;
+const MAX_WRITTEN: usize = Track::MAX_KEYS / 2;
 
 /// The time of a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,7 +189,7 @@ fn drop_tracks_of_removed(before: &Project, edited: &mut Project) {
 /// Whether the project has a track for the target, or room for another track.
 fn has_room(project: &Project, target: &str) -> bool {
     let tracks = &project.timeline.tracks;
-    tracks.len() < Track::MOST || tracks.iter().any(|track| track.target == target)
+    tracks.len() < Track::MAX || tracks.iter().any(|track| track.target == target)
 }
 
 /// Unwraps an angle, so that it continues from the previous one without a jump of a full turn.
@@ -282,8 +282,8 @@ impl Touch {
             (self.from, self.to) = (self.last, self.last);
         }
         self.written.retain(|key| key.secs >= secs + Track::NEAREST_SECS);
-        if self.written.len() >= MOST_WRITTEN {
-            self.written = curve::thinned_to(&self.written, MOST_WRITTEN / 2);
+        if self.written.len() >= MAX_WRITTEN {
+            self.written = curve::thinned_to(&self.written, MAX_WRITTEN / 2);
         }
         self.settled = 0;
         self.written.insert(0, Key { secs, value: self.value.clone() });
@@ -293,12 +293,12 @@ impl Touch {
     /// Thins the written keys when there are many, so that a pass can last for minutes.
     fn make_room(&mut self) {
         self.settled = self.settled.min(self.written.len());
-        if self.written.len() - self.settled >= MOST_RAW {
+        if self.written.len() - self.settled >= MAX_RAW {
             self.written = self.thinned();
             self.settled = self.written.len();
         }
-        if self.written.len() >= MOST_WRITTEN {
-            self.written = curve::thinned_to(&self.written, MOST_WRITTEN / 2);
+        if self.written.len() >= MAX_WRITTEN {
+            self.written = curve::thinned_to(&self.written, MAX_WRITTEN / 2);
             self.settled = self.written.len();
         }
     }
@@ -343,7 +343,7 @@ impl Touch {
             keys.extend(edge(to + EDGE_SECS));
         }
         keys.extend(self.before.iter().filter(|key| key.secs > to + 1.5 * EDGE_SECS).cloned());
-        keys.truncate(Track::MOST_KEYS);
+        keys.truncate(Track::MAX_KEYS);
         keys
     }
 }

@@ -101,7 +101,7 @@ fn a_pass_of_minutes_is_written_to_its_end() {
     println!("{} keys, {off} off", track.keys.len());
     // 0.2 % of the range of 3.3 m; measured 0.0060 m.
     assert!(off < 0.002 * 3.3 + 1e-5, "{off}");
-    assert!(track.keys.len() < Track::MOST_KEYS / 2, "{}", track.keys.len());
+    assert!(track.keys.len() < Track::MAX_KEYS / 2, "{}", track.keys.len());
     assert!((distance(&project, 300.0) - 1.0).abs() < 1e-6, "after the pass the track is unchanged");
 
     // Noise that cannot be thinned: the end is still written, and the number of keys stays within its limit.
@@ -113,7 +113,7 @@ fn a_pass_of_minutes_is_written_to_its_end() {
     let project = ride(&mut overdub, still_camera(), [1.0, 201.0], &mut shaken);
     let track = &project.timeline.tracks[0];
     println!("{} keys of noise", track.keys.len());
-    assert!(track.keys.len() <= Track::MOST_KEYS / 2 + 8);
+    assert!(track.keys.len() <= Track::MAX_KEYS / 2 + 8);
     let late = track.keys.iter().filter(|key| (190.0..201.0).contains(&key.secs)).count();
     assert!(late > 100, "the end is written: {late} keys");
     assert_eq!(project.clamped().timeline, project.timeline, "reading it again changes nothing");

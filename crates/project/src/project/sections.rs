@@ -56,7 +56,7 @@ pub struct KeptScalp {
 
 impl BodySection {
     /// The most bodies whose scalps are kept.
-    pub const MOST_SCALPS: usize = 16;
+    pub const MAX_SCALPS: usize = 16;
 
     /// Switches to another body: to a file, or to the shipped dancer. The head joint is guessed again. The corrections of the scalp are
     /// kept for the body that they were made for, and those that the new body had before return.
@@ -71,7 +71,7 @@ impl BodySection {
             }
             if !left.scalp.is_automatic() {
                 self.other_scalps.push(left);
-                let surplus = self.other_scalps.len().saturating_sub(Self::MOST_SCALPS);
+                let surplus = self.other_scalps.len().saturating_sub(Self::MAX_SCALPS);
                 self.other_scalps.drain(..surplus);
             }
         }
@@ -171,7 +171,7 @@ pub struct HairSection {
     pub file: Option<FileRef>,
     /// How that file becomes a hairstyle.
     pub import: ImportSettings,
-    /// What gathers the hair, at most [`HairTie::MOST`].
+    /// What gathers the hair, at most [`HairTie::MAX`].
     pub ties: Vec<HairTie>,
     /// What is done to the hair after cutting and tying, layer by layer.
     pub stack: StyleStack,
@@ -390,7 +390,7 @@ impl RecordingSection {
     }
 
     /// The most samples per frame.
-    pub const MOST_SUBFRAMES: u32 = 64;
+    pub const MAX_SUBFRAMES: u32 = 64;
 }
 
 /// What surrounds the figure and gives it light from all directions.
@@ -423,9 +423,9 @@ pub struct Marker {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimelineSection {
-    /// Named times, at most [`TimelineSection::MOST_MARKERS`].
+    /// Named times, at most [`TimelineSection::MAX_MARKERS`].
     pub markers: Vec<Marker>,
-    /// Numbers of the project that follow the timeline, at most [`Track::MOST`].
+    /// Numbers of the project that follow the timeline, at most [`Track::MAX`].
     pub tracks: Vec<Track>,
     /// Simulated time, at least, from rest to an instant that is jumped to or recorded from, seconds, so that the hair has settled. 0
     /// shows the style at rest.
@@ -440,7 +440,7 @@ impl Default for TimelineSection {
 
 impl TimelineSection {
     /// The most markers.
-    pub const MOST_MARKERS: usize = 200;
+    pub const MAX_MARKERS: usize = 200;
     /// The longest name of a marker, characters.
     pub const LONGEST_NAME: usize = 80;
 }
@@ -449,7 +449,7 @@ impl TimelineSection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CompareSection {
-    /// The panes, from the left and the top: 1 to [`CompareSection::MOST_PANES`].
+    /// The panes, from the left and the top: 1 to [`CompareSection::MAX_PANES`].
     pub panes: Vec<Contender>,
     /// How hair in panes is shaded.
     pub shading: HairShading,
@@ -457,7 +457,7 @@ pub struct CompareSection {
 
 impl CompareSection {
     /// The most panes.
-    pub const MOST_PANES: usize = 6;
+    pub const MAX_PANES: usize = 6;
 }
 
 impl Default for CompareSection {

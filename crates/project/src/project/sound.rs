@@ -28,9 +28,9 @@ impl Default for SoundSection {
 
 impl SoundSection {
     /// Farthest start of the sound before and after that of the timeline, seconds.
-    pub const MOST_OFFSET_SECS: f64 = 3600.0;
+    pub const MAX_OFFSET_SECS: f64 = 3600.0;
     /// The largest gain: 12 dB.
-    pub const MOST_GAIN: f64 = 4.0;
+    pub const MAX_GAIN: f64 = 4.0;
 
     /// Whether there is something to hear.
     pub fn is_heard(&self) -> bool {
@@ -42,7 +42,7 @@ impl Settings for SoundSection {
     const TABLE: &'static [Setting<Self>] = &[
         Setting::number(
             field!(Self, offset_secs),
-            [-Self::MOST_OFFSET_SECS, Self::MOST_OFFSET_SECS],
+            [-Self::MAX_OFFSET_SECS, Self::MAX_OFFSET_SECS],
             "Starts at",
             "Time of the timeline at which the sound begins. Negative values leave out its beginning.",
         )
@@ -51,7 +51,7 @@ impl Settings for SoundSection {
         .decimals(3),
         Setting::number(
             field!(Self, gain),
-            [0.0, Self::MOST_GAIN],
+            [0.0, Self::MAX_GAIN],
             "Volume",
             "Loudness of the sound in the window and in recordings, as a multiple of that in its file.",
         )

@@ -6,7 +6,7 @@ use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
 use lovelock_groom::{HairShading, HairTie, Preset};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, HairDrawing, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, Transparency};
+use lovelock_render::{Backend, HairDrawing, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, Transparency};
 
 use super::super::Project;
 use super::PROJECT_VERSION;
@@ -95,7 +95,7 @@ impl Choices for BodySource {
 }
 
 /// The most shapes that a body can have.
-const MOST_COLLIDERS: usize = 1000;
+const MAX_COLLIDERS: usize = 1000;
 /// The longest name of a joint, characters.
 const LONGEST_COLLIDER: usize = 400;
 
@@ -125,8 +125,8 @@ impl Settings for BodySection {
     fn reconcile(&mut self) {
         let shapes = std::mem::take(&mut self.colliders.shapes);
         let named = shapes.into_iter().filter(|(name, _)| name.chars().count() <= LONGEST_COLLIDER);
-        self.colliders.shapes = named.take(MOST_COLLIDERS).collect();
-        self.other_scalps.truncate(Self::MOST_SCALPS);
+        self.colliders.shapes = named.take(MAX_COLLIDERS).collect();
+        self.other_scalps.truncate(Self::MAX_SCALPS);
         self.other_scalps.iter_mut().for_each(|kept| kept.scalp = kept.scalp.clamped());
     }
 }
@@ -144,7 +144,7 @@ impl Choices for MotionSource {
 }
 
 /// The farthest second of a clip that can be named: a day.
-const MOST_CLIP_SECS: f64 = 86_400.0;
+const MAX_CLIP_SECS: f64 = 86_400.0;
 
 impl Settings for MotionSection {
     const TABLE: &'static [Setting<Self>] = &[
@@ -159,14 +159,14 @@ impl Settings for MotionSection {
         .logarithmic(),
         Setting::number(
             field!(Self, start_secs),
-            [0.0, MOST_CLIP_SECS],
+            [0.0, MAX_CLIP_SECS],
             "Clip start",
             "Time of the clip at which the motion begins.",
         )
         .unit(Unit::SECONDS),
         Setting::number(
             field!(Self, end_secs),
-            [0.0, MOST_CLIP_SECS],
+            [0.0, MAX_CLIP_SECS],
             "Clip end",
             "Time of the clip at which the motion ends.",
         )
@@ -236,13 +236,13 @@ impl Settings for HairSection {
     }
 
     fn reconcile(&mut self) {
-        self.ties.truncate(HairTie::MOST);
+        self.ties.truncate(HairTie::MAX);
         self.cut = self.cut.clamped();
         self.style = self.style.chars().filter(|c| !c.is_control()).take(Self::LONGEST_STYLE).collect();
         self.moves = self.moves.map(|moves| moves.clamped());
         if let Some(grows) = &mut self.grows {
             grows.groom = grows.groom.clamped();
-            grows.ties.truncate(HairTie::MOST);
+            grows.ties.truncate(HairTie::MAX);
             grows.ties.iter_mut().for_each(|tie| *tie = tie.clamped());
         }
         let layers = &self.stack.layers;
@@ -336,11 +336,11 @@ impl Settings for CameraSection {
 
 impl Settings for RecordingSection {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::count(field!(Self, width), [16, MOST_SIDE as u64], "Width", "Width of the recorded images.")
+        Setting::count(field!(Self, width), [16, MAX_SIDE as u64], "Width", "Width of the recorded images.")
             .unit(Unit::PIXELS),
         Setting::count(
             field!(Self, height),
-            [16, MOST_SIDE as u64],
+            [16, MAX_SIDE as u64],
             "Height",
             "Height of the recorded images.",
         )
@@ -381,7 +381,7 @@ impl Settings for RecordingSection {
         ),
         Setting::count(
             field!(Self, subframes),
-            [1, Self::MOST_SUBFRAMES as u64],
+            [1, Self::MAX_SUBFRAMES as u64],
             "Samples per frame",
             "Images that are averaged per frame for motion blur while the shutter is open: 1 is no \
              blur, 8 to 16 are smooth. Rendering time grows in proportion.",
@@ -408,9 +408,9 @@ impl Settings for RecordingSection {
     ];
 
     fn reconcile(&mut self) {
-        if u64::from(self.width) * u64::from(self.height) > MOST_PIXELS {
+        if u64::from(self.width) * u64::from(self.height) > MAX_PIXELS {
             // Even, as films need it.
-            self.height = (MOST_PIXELS / u64::from(self.width)) as u32 & !1;
+            self.height = (MAX_PIXELS / u64::from(self.width)) as u32 & !1;
         }
         self.end_frame = self.end_frame.map(|end| end.max(self.first_frame + 1));
     }
@@ -428,12 +428,12 @@ impl Settings for TimelineSection {
 
     fn reconcile(&mut self) {
         let good = self.markers.iter().filter(|marker| marker.secs.is_finite() && marker.secs >= 0.0);
-        let markers = good.take(Self::MOST_MARKERS).map(|marker| Marker {
+        let markers = good.take(Self::MAX_MARKERS).map(|marker| Marker {
             secs: marker.secs,
             name: marker.name.chars().take(Self::LONGEST_NAME).collect(),
         });
         self.markers = markers.collect();
-        self.tracks = self.tracks.iter().filter_map(Track::in_range).take(Track::MOST).collect();
+        self.tracks = self.tracks.iter().filter_map(Track::in_range).take(Track::MAX).collect();
     }
 }
 
@@ -457,7 +457,7 @@ impl Settings for CompareSection {
         if self.panes.is_empty() {
             self.panes = Self::default().panes;
         }
-        self.panes.truncate(Self::MOST_PANES);
+        self.panes.truncate(Self::MAX_PANES);
     }
 }
 

@@ -286,7 +286,7 @@ fn panes_are_limited_in_number_and_range() {
                 exact: (resolution: 3))), (), (), (), (), (), ()]))";
     let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
     let panes = &project.compare.panes;
-    assert_eq!(panes.len(), CompareSection::MOST_PANES);
+    assert_eq!(panes.len(), CompareSection::MAX_PANES);
     assert_eq!((panes[0].scale, panes[1].scale), (1.0, 1.0));
     assert_eq!(panes[1].shadow.method, lovelock_render::ShadowMethod::Exact);
     assert_eq!(panes[1].shadow.exact.resolution, 64);

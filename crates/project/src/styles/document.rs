@@ -66,7 +66,7 @@ impl Style {
     /// The longest description, characters.
     pub const LONGEST_TEXT: usize = 400;
     /// The most tags.
-    pub const MOST_TAGS: usize = 16;
+    pub const MAX_TAGS: usize = 16;
     /// The longest tag, characters.
     pub const LONGEST_TAG: usize = 30;
 
@@ -154,7 +154,7 @@ impl Style {
         };
         self.name = short(&self.name, Self::LONGEST_NAME);
         self.text = short(&self.text, Self::LONGEST_TEXT);
-        self.tags.truncate(Self::MOST_TAGS);
+        self.tags.truncate(Self::MAX_TAGS);
         self.tags = self.tags.iter().map(|tag| short(tag, Self::LONGEST_TAG).to_lowercase()).collect();
         self.tags.retain(|tag| !tag.is_empty());
         self

@@ -39,7 +39,7 @@ pub fn own_id(path: &Path) -> String {
 
 impl OwnStyles {
     /// The most files that are listed.
-    pub const MOST: usize = 1000;
+    pub const MAX: usize = 1000;
 
     /// The styles in `folder`, which need not be there yet.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
@@ -61,7 +61,7 @@ impl OwnStyles {
             entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_style).collect();
         // By the name without the extension: a space comes before the dot.
         paths.sort_by_key(|path| path.with_extension("").to_string_lossy().to_lowercase());
-        paths.truncate(Self::MOST);
+        paths.truncate(Self::MAX);
         paths.into_iter().map(|path| OwnStyle { style: read(&path), path }).collect()
     }
 

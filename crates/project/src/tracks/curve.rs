@@ -93,7 +93,7 @@ pub(crate) fn smoothed(keys: &[Key]) -> Vec<Key> {
         return keys.to_vec();
     }
     // No more samples than a track may have keys: a long track is sampled in larger steps.
-    let count = ((length / SAMPLE_SECS).ceil() as usize).min(Track::MOST_KEYS - 1);
+    let count = ((length / SAMPLE_SECS).ceil() as usize).min(Track::MAX_KEYS - 1);
     let step = length / count as f64;
     let at = |i: usize| first.secs + step * i as f64;
     let samples: Vec<Vec<f64>> = (0..=count).filter_map(|i| value_at(keys, at(i), false)).collect();

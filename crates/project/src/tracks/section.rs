@@ -16,7 +16,7 @@ pub const MORPH_TARGET: &str = "hair/morph/amount";
 pub struct Key {
     /// Seconds from the start of the timeline.
     pub secs: f64,
-    /// The numbers, as many as the target has, 1 to [`Track::MOST_NUMBERS`].
+    /// The numbers, as many as the target has, 1 to [`Track::MAX_NUMBERS`].
     pub value: Vec<f64>,
 }
 
@@ -37,11 +37,11 @@ pub struct Track {
 
 impl Track {
     /// The most tracks of a project.
-    pub const MOST: usize = 64;
+    pub const MAX: usize = 64;
     /// The most keys of a track.
-    pub const MOST_KEYS: usize = 20_000;
+    pub const MAX_KEYS: usize = 20_000;
     /// The most numbers of a key.
-    pub const MOST_NUMBERS: usize = 4;
+    pub const MAX_NUMBERS: usize = 4;
     /// The longest name of a target, characters.
     pub const LONGEST_TARGET: usize = 120;
     /// Keys closer together than this are merged, seconds.
@@ -117,7 +117,7 @@ impl Track {
     /// Adds a key and replaces keys closer than [`Track::NEAREST_SECS`].
     pub fn put(&mut self, secs: f64, value: Vec<f64>) {
         self.keys.retain(|key| (key.secs - secs).abs() >= Self::NEAREST_SECS);
-        if self.keys.len() < Self::MOST_KEYS {
+        if self.keys.len() < Self::MAX_KEYS {
             let at = self.keys.partition_point(|key| key.secs < secs);
             self.keys.insert(at, Key { secs, value });
         }
@@ -142,14 +142,14 @@ impl Track {
     /// The track without invalid keys; `None` if nothing is left.
     pub(crate) fn in_range(&self) -> Option<Self> {
         let width =
-            self.keys.iter().map(|key| key.value.len()).find(|n| (1..=Self::MOST_NUMBERS).contains(n))?;
+            self.keys.iter().map(|key| key.value.len()).find(|n| (1..=Self::MAX_NUMBERS).contains(n))?;
         let good = |key: &&Key| {
             key.secs.is_finite()
                 && key.secs >= 0.0
                 && key.value.len() == width
                 && key.value.iter().all(|v| v.is_finite())
         };
-        let mut keys: Vec<Key> = self.keys.iter().filter(good).take(Self::MOST_KEYS).cloned().collect();
+        let mut keys: Vec<Key> = self.keys.iter().filter(good).take(Self::MAX_KEYS).cloned().collect();
         keys.sort_by(|a, b| a.secs.total_cmp(&b.secs));
         keys.dedup_by(|b, a| b.secs - a.secs < 0.5 * Self::NEAREST_SECS);
         let named = !self.target.is_empty() && self.target.chars().count() <= Self::LONGEST_TARGET;

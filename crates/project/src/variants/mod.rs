@@ -72,7 +72,7 @@ pub struct Locks {
 }
 
 /// The most locked paths that are kept.
-const MOST_LOCKS: usize = 512;
+const MAX_LOCKS: usize = 512;
 
 impl Locks {
     /// Whether a number stays.
@@ -83,7 +83,7 @@ impl Locks {
     /// Without more paths than [`Locks`] keep.
     #[must_use]
     pub fn clamped(mut self) -> Self {
-        while self.paths.len() > MOST_LOCKS {
+        while self.paths.len() > MAX_LOCKS {
             self.paths.pop_last();
         }
         self

@@ -16,7 +16,7 @@ const ARRAY_OF_TOKENS: u64 = 0x800b;
 const VECTOR_OF_TOKENS: u64 = 0x0029;
 
 /// The most bytes of the sections after the values. Ours take some hundred bytes.
-const MOST_TAIL: u64 = 64 << 20;
+const MAX_TAIL: u64 = 64 << 20;
 
 /// Rewrites the end of a crate file. `read` and `write` access the same file.
 ///
@@ -32,7 +32,7 @@ pub(super) fn mend(read: &mut (impl Read + Seek), write: &mut (impl Write + Seek
     let toc = u64::from_le_bytes(eight);
     read.seek(SeekFrom::Start(toc))?;
     let mut table = Vec::new();
-    read.by_ref().take(MOST_TAIL).read_to_end(&mut table)?;
+    read.by_ref().take(MAX_TAIL).read_to_end(&mut table)?;
     let mut sections = Vec::new();
     for section in 0..word(&table, 0)? {
         let at = 8 + 32 * section as usize;
@@ -41,7 +41,7 @@ pub(super) fn mend(read: &mut (impl Read + Seek), write: &mut (impl Write + Seek
     }
     let fields = sections.iter().position(|(name, ..)| name.starts_with(b"FIELDS\0")).ok_or_else(wrong)?;
     let start = sections[fields].1;
-    if toc < start || toc - start > MOST_TAIL {
+    if toc < start || toc - start > MAX_TAIL {
         return Err(wrong());
     }
     read.seek(SeekFrom::Start(start))?;

@@ -185,7 +185,7 @@ impl CurveScene {
                 most as f64 / 1e9,
             )))
         };
-        let most_frames = if format == CurveFormat::Glb { MOST_GLB_FRAMES } else { MOST_FRAMES };
+        let most_frames = if format == CurveFormat::Glb { MAX_GLB_FRAMES } else { MAX_FRAMES };
         if self.frames > most_frames {
             return Err(RecordError::request(format!(
                 "{}: {} frames; must be at most {most_frames}: write them in parts, with --frames",
@@ -200,32 +200,28 @@ impl CurveScene {
             CurveFormat::Usda => {
                 // Measured: a point takes 63 to 68 bytes as text.
                 let bytes = bytes(68, points + 2 * vertices);
-                if bytes > MOST_TEXT {
+                if bytes > MAX_TEXT {
                     return refuse(
                         bytes,
-                        MOST_TEXT,
+                        MAX_TEXT,
                         "write .usdc, the guides (--curves guides), or fewer frames",
                     );
                 }
             }
             CurveFormat::Usdc => {
                 let bytes = bytes(12, vertices);
-                if bytes > MOST_ARRAY {
-                    return refuse(
-                        bytes,
-                        MOST_ARRAY,
-                        "write fewer frames, or leave the body out (--no-body)",
-                    );
+                if bytes > MAX_ARRAY {
+                    return refuse(bytes, MAX_ARRAY, "write fewer frames, or leave the body out (--no-body)");
                 }
             }
             // Samples are written apart, each with a length of 64 bits.
             CurveFormat::Abc => {}
             CurveFormat::Glb => {
                 let bytes = bytes(12, points).saturating_add(64 * points + 128 * vertices);
-                if bytes > MOST_GLB {
+                if bytes > MAX_GLB {
                     return refuse(
                         bytes,
-                        MOST_GLB,
+                        MAX_GLB,
                         "write the guides (--curves guides), fewer frames, or .usdc",
                     );
                 }
@@ -236,15 +232,15 @@ impl CurveScene {
 }
 
 /// The most frames. Their times and bounding boxes are in memory.
-const MOST_FRAMES: u64 = 1 << 20;
+const MAX_FRAMES: u64 = 1 << 20;
 /// The most frames of a glTF, whose document has a node and a mesh for each.
-const MOST_GLB_FRAMES: u64 = 1 << 16;
+const MAX_GLB_FRAMES: u64 = 1 << 16;
 /// The most bytes of a text file. Hardly any program opens larger ones.
-const MOST_TEXT: u64 = 8 << 30;
+const MAX_TEXT: u64 = 8 << 30;
 /// The most bytes of one array with all its times, which is in memory while it is written.
-const MOST_ARRAY: u64 = 2 << 30;
+const MAX_ARRAY: u64 = 2 << 30;
 /// The most bytes of a binary glTF, whose lengths have 32 bits.
-const MOST_GLB: u64 = (1 << 32) - (64 << 20);
+const MAX_GLB: u64 = (1 << 32) - (64 << 20);
 
 /// Writes curves frame by frame. If it is dropped without [`CurveWriter::finish`], the export is cancelled and its file removed.
 pub struct CurveWriter(Writer);

@@ -30,11 +30,11 @@ pub(super) struct Planes {
 }
 
 /// The largest half float. Brighter light is clamped to it.
-const MOST: f32 = 65_504.0;
+const MAX: f32 = 65_504.0;
 
 impl Planes {
     pub fn new(layers: &FrameLayers) -> Self {
-        let half = |v: f32| f16::from_f32(if v.is_nan() { 0.0 } else { v.clamp(-MOST, MOST) });
+        let half = |v: f32| f16::from_f32(if v.is_nan() { 0.0 } else { v.clamp(-MAX, MAX) });
         let plane = |c: usize| layers.light.iter().map(|pixel| half(pixel[c])).collect();
         Self {
             halves: [plane(0), plane(1), plane(2), plane(3)],

@@ -18,7 +18,7 @@ use crate::manifest::{Manifest, ManifestFrame, read_manifest};
 pub(super) const JOURNAL_NAME: &str = "manifest.partial";
 
 /// Largest journal that is read, in bytes: a few million frames.
-const MOST_BYTES: u64 = 1 << 29;
+const MAX_BYTES: u64 = 1 << 29;
 
 /// The journal. It is open and locked, so that no other recording writes to the folder.
 pub(super) struct Journal {
@@ -44,7 +44,7 @@ impl Journal {
     /// What an earlier recording left in the folder: its journal or, if it ended regularly, its manifest.
     pub fn earlier(&mut self, folder: &Path) -> Option<Manifest> {
         let mut text = Vec::new();
-        let read = self.file.rewind().and_then(|()| (&self.file).take(MOST_BYTES).read_to_end(&mut text));
+        let read = self.file.rewind().and_then(|()| (&self.file).take(MAX_BYTES).read_to_end(&mut text));
         let recorded = read.ok().and_then(|_| parse(&text));
         recorded.or_else(|| read_manifest(folder).ok())
     }

@@ -27,7 +27,7 @@ use std::thread::JoinHandle;
 use worker::{Job, Pixels, Worker};
 
 /// Most threads that encode frames. A PNG takes some milliseconds, and rendering needs the other cores.
-const MOST_THREADS: usize = 4;
+const MAX_THREADS: usize = 4;
 
 /// The largest side in pixels, to catch typing errors.
 const LARGEST_SIDE: u32 = 16_384;
@@ -203,7 +203,7 @@ impl SequenceWriter {
     fn start_threads(&mut self, format: SequenceFormat, opener: &Arc<Opener>) -> Result<(), RecordError> {
         let SequenceSettings { width, height, .. } = self.settings;
         let is_large = format == SequenceFormat::Exr && u64::from(width) * u64::from(height) > LARGE;
-        let most = if is_large { 2 } else { MOST_THREADS };
+        let most = if is_large { 2 } else { MAX_THREADS };
         let count = std::thread::available_parallelism().map_or(1, usize::from).min(most);
         let (jobs, todo) = sync_channel(if is_large { 1 } else { count });
         let (done, spent) = sync_channel(2 * count + 2);

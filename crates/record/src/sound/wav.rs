@@ -9,11 +9,11 @@ use std::path::Path;
 const BLOCK: u64 = 4096;
 
 /// The most samples per channel: the format stores the number of bytes in 32 bits. Of two channels these are six hours.
-const MOST: u64 = (u32::MAX as u64 - 64) / 4;
+const MAX: u64 = (u32::MAX as u64 - 64) / 4;
 
 /// Writes `samples` samples per channel as 16-bit PCM, under a temporary name first. Returns the size of the file in bytes.
 pub(crate) fn write_wav(path: &Path, source: &mut dyn SoundSource, samples: u64) -> io::Result<u64> {
-    let samples = samples.min(MOST);
+    let samples = samples.min(MAX);
     let channels = source.channels().clamp(1, 2);
     let bytes = (samples * u64::from(channels) * 2) as u32;
     let mut file = PartialFile::create(path, &open_file)?;

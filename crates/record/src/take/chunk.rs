@@ -12,10 +12,10 @@ pub(super) const MAGIC: [u8; 8] = *b"\x9ALTAKE\r\n";
 pub(super) const HEADER_BYTES: usize = 64;
 
 /// The largest part of a chunk in bytes before compression. Writers make smaller chunks.
-pub(super) const MOST_RAW_BYTES: u32 = 128 << 20;
+pub(super) const MAX_RAW_BYTES: u32 = 128 << 20;
 
 /// The highest compression ratio of zstd. A header with a higher one is rejected.
-const MOST_RATIO: u64 = 1 << 16;
+const MAX_RATIO: u64 = 1 << 16;
 
 /// The contents of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,7 +121,7 @@ impl ChunkHeader {
         let first = u64::from(word(16)) | u64::from(word(20)) << 32;
         let frames = word(24);
         let believable = |part: &Part| {
-            part.raw <= MOST_RAW_BYTES && u64::from(part.raw) <= u64::from(part.packed) * MOST_RATIO
+            part.raw <= MAX_RAW_BYTES && u64::from(part.raw) <= u64::from(part.packed) * MAX_RATIO
         };
         match kind {
             Some(kind)
@@ -157,9 +157,9 @@ pub(super) fn pack(
     raw: &[u8],
     out: &mut Vec<u8>,
 ) -> io::Result<Part> {
-    if raw.len() > MOST_RAW_BYTES as usize {
+    if raw.len() > MAX_RAW_BYTES as usize {
         return Err(io::Error::other(format!(
-            "a part of {} bytes; must be at most {MOST_RAW_BYTES}",
+            "a part of {} bytes; must be at most {MAX_RAW_BYTES}",
             raw.len()
         )));
     }
@@ -190,7 +190,7 @@ pub(super) fn unpack(packed: &[u8], part: &Part) -> Result<Vec<u8>, String> {
 
 /// Compressed bytes that are enough for the start of any part. zstd compresses blocks of 128 KiB and stores those that do not get
 /// smaller as they are.
-pub(super) const MOST_START_BYTES: u32 = 160 << 10;
+pub(super) const MAX_START_BYTES: u32 = 160 << 10;
 
 /// The first bytes of a part, from the start of its compressed bytes; `None` if they cannot be decompressed.
 pub(super) fn unpack_start<const N: usize>(packed: &[u8]) -> Option<[u8; N]> {

@@ -35,7 +35,7 @@ pub(super) fn part_path(target: &Path) -> PathBuf {
 }
 
 /// Most unfinished takes of one name that are kept.
-const MOST_KEPT: u32 = 10_000;
+const MAX_KEPT: u32 = 10_000;
 
 /// Creates the unfinished file, empty and locked. One that an earlier recording left is renamed and kept:
 /// `NAME.take.part` becomes `NAME-cut1.take.part`.
@@ -85,7 +85,7 @@ fn set_aside(old: &File, target: &Path, part: &Path) -> Result<(), TakeError> {
         return fs::remove_file(part).map_err(|error| TakeError::io(part, "remove", error));
     }
     let stem = target.file_stem().unwrap_or_default();
-    for number in 1..=MOST_KEPT {
+    for number in 1..=MAX_KEPT {
         let mut name = stem.to_owned();
         name.push(format!("-cut{number}"));
         if let Some(extension) = target.extension() {
@@ -99,7 +99,7 @@ fn set_aside(old: &File, target: &Path, part: &Path) -> Result<(), TakeError> {
                 .map_err(|error| TakeError::io(part, format!("keep it as {}", kept.display()), error));
         }
     }
-    Err(TakeError::request(part, format!("there are already {MOST_KEPT} unfinished takes of this name")))
+    Err(TakeError::request(part, format!("there are already {MAX_KEPT} unfinished takes of this name")))
 }
 
 /// Renames the finished file to its final name and replaces an existing take.

@@ -13,7 +13,7 @@ use super::interpolate::mix_guides;
 pub struct TakeFrame {
     /// The guides in world space, with the time of the scene (`guides.time_secs`, which keeps increasing when the clip
     /// loops) and `guides.world_from_head`. Times and the transform are stored exactly, positions to within
-    /// [`super::MOST_ERROR_M`].
+    /// [`super::MAX_ERROR_M`].
     pub guides: GuideFrame,
     /// The time of the clip for the body's pose, in seconds.
     pub clip_secs: f64,

@@ -13,7 +13,7 @@ use super::layout::Layout;
 use crate::FrameRate;
 
 /// The longest project text in bytes. A project has some kilobytes.
-pub const MOST_PROJECT_BYTES: usize = 4 << 20;
+pub const MAX_PROJECT_BYTES: usize = 4 << 20;
 
 /// The header of a take.
 ///
@@ -90,10 +90,10 @@ impl TakeHeader {
             return wrong(format!("{num}/{den} frames per second"), "1 to 240");
         }
         self.layout()?;
-        if self.project.len() > MOST_PROJECT_BYTES {
+        if self.project.len() > MAX_PROJECT_BYTES {
             return wrong(
                 format!("a project of {} bytes", self.project.len()),
-                &format!("at most {MOST_PROJECT_BYTES} bytes"),
+                &format!("at most {MAX_PROJECT_BYTES} bytes"),
             );
         }
         if !(self.clip_secs.is_finite() && self.clip_secs >= 0.0 && self.start_secs.is_finite()) {

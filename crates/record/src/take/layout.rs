@@ -3,7 +3,7 @@
 use super::bytes::Bytes;
 
 /// The most guide points of a frame: ten times as many as the largest hairstyle has.
-pub const MOST_GUIDE_POINTS: u64 = 1 << 20;
+pub const MAX_GUIDE_POINTS: u64 = 1 << 20;
 
 /// Number of guides and points per guide of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,11 +18,11 @@ pub(super) const LAYOUT_BYTES: usize = 8;
 impl Layout {
     /// A layout of `guides` guides with `points` points each. An error is what was found and what is valid.
     pub(super) fn new(guides: u32, points: u32) -> Result<Self, (String, String)> {
-        if guides == 0 || points < 2 || u64::from(guides) * u64::from(points) > MOST_GUIDE_POINTS {
+        if guides == 0 || points < 2 || u64::from(guides) * u64::from(points) > MAX_GUIDE_POINTS {
             return Err((
                 format!("{guides} guides of {points} points"),
                 format!(
-                    "at least 1 guide of at least 2 points, and at most {MOST_GUIDE_POINTS} points in all"
+                    "at least 1 guide of at least 2 points, and at most {MAX_GUIDE_POINTS} points in all"
                 ),
             ));
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::chunk::{ChunkHeader, Kind, MAGIC};
 use super::index::Entry;
-use super::{MOST_CHUNK_FRAMES, TAKE_VERSION, TakeError, TakeHeader};
+use super::{MAX_CHUNK_FRAMES, TAKE_VERSION, TakeError, TakeHeader};
 
 /// Where the chunks of a take are.
 #[derive(Debug)]
@@ -58,6 +58,6 @@ pub(super) fn fits(entry: &Entry, take: u32) -> bool {
     let ChunkHeader { kind, frames, changes, .. } = entry.header;
     kind == Kind::Frames
         && entry.header.take == take
-        && (1..=MOST_CHUNK_FRAMES).contains(&frames)
+        && (1..=MAX_CHUNK_FRAMES).contains(&frames)
         && changes < frames
 }

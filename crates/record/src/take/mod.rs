@@ -6,7 +6,7 @@
 //!
 //! - Frames are stored in chunks of a second or less. Each chunk is written to the disk as soon as it is full and can be read
 //!   independently, so a crash costs at most the last second.
-//! - Positions are stored in head space as multiples of 0.05 mm. The error of a point is at most [`MOST_ERROR_M`].
+//! - Positions are stored in head space as multiples of 0.05 mm. The error of a point is at most [`MAX_ERROR_M`].
 //! - The number of guides may change during a take. Every chunk contains the layout of its frames, and nothing is
 //!   interpolated between frames with different layouts.
 //! - Every byte is covered by a checksum. Damage is reported and affects only its own chunk.
@@ -38,9 +38,9 @@ mod writer;
 pub use condition::TakeCondition;
 pub use error::TakeError;
 pub use frame::TakeFrame;
-pub use header::{AssetState, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint};
+pub use header::{AssetState, MAX_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint};
 pub use interpolate::mix_guides;
-pub use layout::{MOST_GUIDE_POINTS, TakeLayout};
+pub use layout::{MAX_GUIDE_POINTS, TakeLayout};
 pub use reader::{CACHE_BYTES, TakeReader};
 pub use writer::{TakeReport, TakeWriter};
 
@@ -52,10 +52,10 @@ pub const TAKE_VERSION: u32 = 2;
 
 /// The largest error of a point of a played frame, in metres, within 50 m of the world's origin. Half a step of 0.05 mm along
 /// each axis gives 0.0433 mm, and single precision adds less than 0.004 mm there.
-pub const MOST_ERROR_M: f64 = 5e-5;
+pub const MAX_ERROR_M: f64 = 5e-5;
 
 /// The most frames in one chunk.
-const MOST_CHUNK_FRAMES: u32 = 60;
+const MAX_CHUNK_FRAMES: u32 = 60;
 
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@ use super::map::MapError;
 use super::source::Source;
 
 /// The longest text of a header in bytes: a project in which every character is escaped, with some reserve.
-const MOST_HEAD_BYTES: u32 = 32 << 20;
+const MAX_HEAD_BYTES: u32 = 32 << 20;
 
 /// The header of the chunk at `offset`.
 pub(super) fn header_at(
@@ -33,7 +33,7 @@ pub(super) fn head_of(
 ) -> Result<Option<(TakeHeader, u32)>, MapError> {
     let Ok(header) = header_at(source, offset, length)? else { return Ok(None) };
     let ends = Entry { offset, header }.end();
-    if header.kind != Kind::Head || ends.is_none_or(|end| end > length) || header.text.raw > MOST_HEAD_BYTES {
+    if header.kind != Kind::Head || ends.is_none_or(|end| end > length) || header.text.raw > MAX_HEAD_BYTES {
         return Ok(None);
     }
     let mut packed = vec![0; header.text.packed as usize];

@@ -9,7 +9,7 @@ use super::layout::Layout;
 pub(super) const STEP_M: f64 = 5e-5;
 
 /// The largest distance of a point from the head, in steps: 6.7 km.
-const MOST_STEPS: f64 = (1_u32 << 27) as f64;
+const MAX_STEPS: f64 = (1_u32 << 27) as f64;
 
 /// Writes the guides of `frame` into `out`, in the order of [`Layout::numbers`].
 pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> Result<(), String> {
@@ -42,13 +42,13 @@ pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> R
             out[2 * total + to] = nearest(steps.z);
         }
     }
-    if furthest.is_nan() || furthest > MOST_STEPS {
+    if furthest.is_nan() || furthest > MAX_STEPS {
         let (x, y, z) = (from.x[at], from.y[at], from.z[at]);
         return Err(format!(
             "guide {}, point {} at [{x}, {y}, {z}] m; must be within {:.0} m of the head",
             at / points,
             at % points,
-            MOST_STEPS * STEP_M
+            MAX_STEPS * STEP_M
         ));
     }
     Ok(())

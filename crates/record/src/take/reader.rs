@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::bytes::Bytes;
 use super::cache::Cache;
-use super::chunk::{ChunkHeader, HEADER_BYTES, MOST_START_BYTES, Part, unpack, unpack_start};
+use super::chunk::{ChunkHeader, HEADER_BYTES, MAX_START_BYTES, Part, unpack, unpack_start};
 use super::codec::{self, DecodedChunk};
 use super::disk::part_path;
 use super::index::Entry;
@@ -343,7 +343,7 @@ impl TakeReader {
 
     /// The layout in a chunk whose parts start at `offset`; `None` if it is damaged.
     fn stored_layout(&mut self, offset: u64, header: &ChunkHeader) -> Result<Option<Layout>, TakeError> {
-        let mut packed = vec![0; header.data.packed.min(MOST_START_BYTES) as usize];
+        let mut packed = vec![0; header.data.packed.min(MAX_START_BYTES) as usize];
         match self.source.read_at(offset + u64::from(header.text.packed), &mut packed) {
             Ok(()) => {}
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),

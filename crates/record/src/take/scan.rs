@@ -6,7 +6,7 @@ use super::index::{Entry, TRAILER_BYTES, Trailer};
 use super::map::{Map, MapError, fits};
 use super::probe::{head_of, header_at, is_sound, next_magic, no_head, trailer};
 use super::source::Source;
-use super::{MOST_CHUNK_FRAMES, TakeHeader};
+use super::{MAX_CHUNK_FRAMES, TakeHeader};
 
 /// Bytes from the start of an unfinished take within which there is a copy of its header, even if the first copy is
 /// damaged. Other files are not scanned any further.
@@ -136,7 +136,7 @@ impl Scan {
 
 /// The most frames that fit into `bytes` bytes. No more are regarded as lost.
 fn frames_in(bytes: u64) -> u64 {
-    (bytes / HEADER_BYTES as u64).saturating_mul(u64::from(MOST_CHUNK_FRAMES))
+    (bytes / HEADER_BYTES as u64).saturating_mul(u64::from(MAX_CHUNK_FRAMES))
 }
 
 fn last_frame(entry: &Entry) -> u64 {

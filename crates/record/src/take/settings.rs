@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::MOST_PROJECT_BYTES;
+use super::MAX_PROJECT_BYTES;
 use super::bytes::Bytes;
 
 /// A change. From `frame` of the chunk on, `middle` replaces everything between the first `prefix` and the last `suffix` bytes.
@@ -138,7 +138,7 @@ fn apply_all(start: &str, edits: &[Edit]) -> Result<String, String> {
         let end =
             kept.map(|_| text.len() - suffix).ok_or("a change that keeps more bytes than the text has")?;
         text.splice(prefix..end, edit.middle.iter().copied());
-        if text.len() > MOST_PROJECT_BYTES {
+        if text.len() > MAX_PROJECT_BYTES {
             return Err(format!("a project of {} bytes", text.len()));
         }
     }

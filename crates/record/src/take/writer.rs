@@ -13,7 +13,7 @@ use super::layout::Layout;
 use super::quantise::quantise;
 use super::settings::SettingsLog;
 use super::worker::{Job, PendingChunk, TakeFile};
-use super::{MOST_PROJECT_BYTES, TAKE_VERSION, TakeError, TakeFrame, TakeHeader};
+use super::{MAX_PROJECT_BYTES, TAKE_VERSION, TakeError, TakeFrame, TakeHeader};
 
 /// Frames per chunk, if they last a second or less. Chunks twice as long are 4 % smaller, but take twice as long to read
 /// for a single frame.
@@ -146,10 +146,10 @@ impl TakeWriter {
     /// Records that the project is `project` from the next frame on. An unchanged text takes no space.
     ///
     /// # Errors
-    /// [`TakeError::Request`] for a text of more than [`MOST_PROJECT_BYTES`].
+    /// [`TakeError::Request`] for a text of more than [`MAX_PROJECT_BYTES`].
     pub fn change(&mut self, project: &str) -> Result<(), TakeError> {
-        if project.len() > MOST_PROJECT_BYTES {
-            let what = format!("a project of {} bytes; must be at most {MOST_PROJECT_BYTES}", project.len());
+        if project.len() > MAX_PROJECT_BYTES {
+            let what = format!("a project of {} bytes; must be at most {MAX_PROJECT_BYTES}", project.len());
             return Err(TakeError::request(&self.path, what));
         }
         self.pending.settings.change(self.pending.metas.len() as u32, project);

@@ -19,7 +19,7 @@ fn picture(frame: u32) -> Vec<u8> {
 }
 
 /// Most frames that the process to be killed writes; then it waits for its end, so that it has one on every machine.
-const MOST_OF_A_PROCESS: u32 = 70;
+const MAX_OF_A_PROCESS: u32 = 70;
 
 /// Writes the missing frames and calls `told` with the number of each.
 fn write(folder: &Path, told: &mut dyn FnMut(u32)) -> u32 {
@@ -58,7 +58,7 @@ fn a_program_that_writes() {
         writeln!(out, "frame {frame}").unwrap();
         out.flush().unwrap();
         written += 1;
-        if written == MOST_OF_A_PROCESS {
+        if written == MAX_OF_A_PROCESS {
             loop {
                 std::thread::park();
             }
@@ -92,8 +92,9 @@ fn a_sequence_that_was_killed_again_and_again_is_that_of_one_run() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
-        lines.filter(|line| line.starts_with("frame ")).take(frames).for_each(drop);
+        // The pipe stays open until the process is killed: a process that cannot write to it would end by itself, and tidy up.
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
+        lines.by_ref().filter(|line| line.starts_with("frame ")).take(frames).for_each(drop);
         std::thread::sleep(Duration::from_millis(more));
         child.kill().unwrap();
         child.wait().unwrap();

@@ -97,7 +97,7 @@ fn a_recording_that_is_killed_plays_up_to_its_last_second() {
         "{finished} of {} finished; the longest of the others was killed after frame {longest}",
         runs / 4
     );
-    assert!(longest > 120 && finished <= runs / 4);
+    assert!(longest > 120, "no run was killed late");
 }
 
 #[test]

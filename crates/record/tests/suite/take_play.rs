@@ -4,7 +4,7 @@ use crate::take_scene::{LINK_M, Random, SMALL, Size, frame, header, is_frame, pl
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::{GuideFrame, Guides};
 use lovelock_record::{
-    AssetState, FrameRate, MOST_ERROR_M, TakeAsset, TakeError, TakeFrame, TakeHeader, TakeReader, TakeWriter,
+    AssetState, FrameRate, MAX_ERROR_M, TakeAsset, TakeError, TakeFrame, TakeHeader, TakeReader, TakeWriter,
 };
 use std::fs;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ fn a_played_frame_is_the_recorded_one() {
     }
     // Negative control: another frame differs.
     assert!(!is_frame(&take.frame(10).unwrap(), 9, SIZE));
-    assert!(worst(&take.frame(10).unwrap().guides.guides, &frame(9, SIZE).guides.guides) > MOST_ERROR_M);
+    assert!(worst(&take.frame(10).unwrap().guides.guides, &frame(9, SIZE).guides.guides) > MAX_ERROR_M);
     assert!(take.verify().unwrap().is_whole());
     let again = folder.path().join("again.take");
     record(&again, 150, SIZE);
@@ -79,7 +79,7 @@ fn no_point_is_off_by_more_than_the_stated_error() {
         .fold(0.0, f64::max);
     println!("worst error {:.4} mm", seen * 1e3);
     // Half a step along each axis is 0.0433 mm. It is reached up to single precision, and the stated error is never exceeded.
-    assert!(seen > 0.042e-3 && seen < MOST_ERROR_M, "{seen}");
+    assert!(seen > 0.042e-3 && seen < MAX_ERROR_M, "{seen}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::take_scene::{
     Random, SMALL, Size, chunks, frame, header, is_frame, project, record_regrown, regrown_size,
 };
-use lovelock_record::{MOST_GUIDE_POINTS, TakeCondition, TakeError, TakeFrame, TakeReader, TakeWriter};
+use lovelock_record::{MAX_GUIDE_POINTS, TakeCondition, TakeError, TakeFrame, TakeReader, TakeWriter};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -66,7 +66,7 @@ fn unannounced_or_invalid_layouts_are_refused_and_recording_continues() {
     writer.push(&frame(0, SMALL)).unwrap();
     let error = writer.push(&frame(1, Size(5, 6))).unwrap_err();
     assert!(error.to_string().contains("frame 1: 5 guides of 6 points; must be 3 of 4"), "{error}");
-    for (guides, points) in [(0, 4), (3, 1), (usize::MAX, 2), (MOST_GUIDE_POINTS as usize, 2)] {
+    for (guides, points) in [(0, 4), (3, 1), (usize::MAX, 2), (MAX_GUIDE_POINTS as usize, 2)] {
         let error = writer.set_layout(guides, points).unwrap_err();
         assert!(error.is_request() && error.to_string().contains("must be at least 1 guide"), "{error}");
     }

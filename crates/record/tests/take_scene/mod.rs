@@ -105,7 +105,7 @@ pub fn is_frame(played: &TakeFrame, n: u64, size: Size) -> bool {
         ..*played
     };
     but_positions == wanted
-        && worst(&played.guides.guides, &wanted.guides.guides) < lovelock_record::MOST_ERROR_M
+        && worst(&played.guides.guides, &wanted.guides.guides) < lovelock_record::MAX_ERROR_M
 }
 
 /// Plays every frame of a take without lost frames. Returns their number.

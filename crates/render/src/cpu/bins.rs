@@ -4,7 +4,7 @@ use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 /// The most pieces that items are divided into: more would make the counts larger than the lists.
-const MOST_PIECES: usize = 64;
+const MAX_PIECES: usize = 64;
 /// Items per task at least.
 const PIECE: usize = 2048;
 
@@ -43,7 +43,7 @@ impl Bins {
         range_of: impl Fn(usize) -> Option<TileRange> + Sync,
     ) {
         let tiles = columns * rows;
-        let pieces = count.div_ceil(PIECE).clamp(1, MOST_PIECES);
+        let pieces = count.div_ceil(PIECE).clamp(1, MAX_PIECES);
         let piece_of = |piece: usize| count * piece / pieces..count * (piece + 1) / pieces;
         self.next.clear();
         self.next.resize(pieces * tiles, 0);

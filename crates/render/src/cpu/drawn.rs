@@ -14,7 +14,7 @@ const TARGET_PIXELS: f32 = 0.7;
 /// The same in a draft.
 const DRAFT_PIXELS: f32 = 1.4;
 /// The most points of fine strands: 100 bytes each with everything that drawing keeps of them.
-const MOST_POINTS: u64 = 1 << 22;
+const MAX_POINTS: u64 = 1 << 22;
 
 /// The strands that an image draws, for other programs.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl DrawnStrands {
         self.fine.follow(input.style, 0);
         let points = self.fine.points_per_strand;
         let target = if input.is_draft { DRAFT_PIXELS } else { TARGET_PIXELS };
-        let portion = portion_of(input, height, target, (points, MOST_POINTS));
+        let portion = portion_of(input, height, target, (points, MAX_POINTS));
         let before = std::mem::replace(&mut self.portion, portion);
         let Some(portion) = portion else {
             self.details.follow(input.style);

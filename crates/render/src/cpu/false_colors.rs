@@ -9,8 +9,8 @@ use super::tile::{Grid, HairPlanes, STRIDE, TILE};
 use super::view::View;
 use crate::{ColorScale, FrameInput};
 
-/// Values from this limit on are missing. Twin of `MOST_VALUE` in `value_points.wgsl`.
-const MOST: f32 = 1e30;
+/// Values from this limit on are missing. Twin of `MAX_VALUE` in `value_points.wgsl`.
+const MAX: f32 = 1e30;
 /// The least covered fraction of a pixel that has a value; less is rounding.
 const LEAST_SHARE: f32 = 1e-6;
 /// The index of the last colour.
@@ -28,7 +28,7 @@ pub(super) fn paint_values(
     let [low, high] = scale.range;
     let inverse = (high - low).recip();
     placed.points.par_iter_mut().zip(values).with_min_len(8192).for_each(|(point, &value)| {
-        let known = value.abs() < MOST;
+        let known = value.abs() < MAX;
         point.color = if known { [(value - low) * inverse, 1.0, 0.0] } else { [0.0; 3] };
     });
     let (placed, scratch) = (&*placed, Pool::<TileScratch>::default());

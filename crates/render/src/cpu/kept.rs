@@ -14,7 +14,7 @@ use crate::shadow_stage::soft_reach;
 use crate::{FrameInput, HairPose, Light, ShadowSettings};
 
 /// Given strands of more points are not compared: copies of them would cost too much memory beside those of other panes.
-const MOST_STRAND_POINTS: usize = 1 << 18;
+const MAX_STRAND_POINTS: usize = 1 << 18;
 
 /// The inputs of the last frame whose results are kept.
 #[derive(Debug, Default)]
@@ -101,7 +101,7 @@ impl KeptInputs {
                 }
                 same
             }
-            HairPose::Strands(strands) if strands.points() > MOST_STRAND_POINTS => {
+            HairPose::Strands(strands) if strands.points() > MAX_STRAND_POINTS => {
                 (self.guides, self.strands) = (None, Strands::default());
                 false
             }

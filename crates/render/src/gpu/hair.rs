@@ -26,7 +26,7 @@ struct ShadedPoint([u32; 8]);
 /// The width of a strand that is aimed at, pixels, on a GPU and on a software adapter.
 const TARGET_PIXELS: [f32; 2] = [0.35, 0.7];
 /// The most points of fine strands.
-const MOST_POINTS: u64 = 1 << 22;
+const MAX_POINTS: u64 = 1 << 22;
 
 /// The buffers of the strands. Data of the hairstyle is uploaded when it changes. A frame uploads only guides, or its strands if they
 /// are given.
@@ -87,7 +87,7 @@ impl HairBuffers {
         self.write_stored(gpu, commands, input)?;
         self.list.follow(input.style, 0);
         let points = self.list.points_per_strand;
-        let most = (gpu.most_storage_bytes() / size_of::<ShadedPoint>() as u64).min(MOST_POINTS);
+        let most = (gpu.most_storage_bytes() / size_of::<ShadedPoint>() as u64).min(MAX_POINTS);
         let target = TARGET_PIXELS[usize::from(gpu.is_software())];
         self.portion = portion_of(input, height, target, (points, most)).map(|portion| (portion, points));
         let Some((portion, _)) = self.portion else {

@@ -22,5 +22,5 @@ mod surface;
 mod targets;
 
 pub use pipelines::all_shaders;
-pub use renderer::{Finished, GpuRenderer, MOST_IN_FLIGHT, PendingPicture};
+pub use renderer::{Finished, GpuRenderer, MAX_IN_FLIGHT, PendingPicture};
 pub use shrink::Shrinker;

@@ -7,7 +7,7 @@ use lovelock_shadow::GpuList;
 use crate::image::DeviceImage;
 
 /// The most lists of a frame: that of the image and one for each light.
-pub(super) const MOST_LISTS: usize = 1 + crate::MAX_LIGHTS;
+pub(super) const MAX_LISTS: usize = 1 + crate::MAX_LIGHTS;
 /// Bytes of the head of a list.
 pub(super) const HEAD_BYTES: u64 = 16;
 
@@ -48,7 +48,7 @@ impl Present {
             kernel: Kernel::new(gpu, "present", source, "show")?.keeping(12),
             heads: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("heads of lists"),
-                size: HEAD_BYTES * MOST_LISTS as u64,
+                size: HEAD_BYTES * MAX_LISTS as u64,
                 usage: wgpu::BufferUsages::STORAGE
                     | wgpu::BufferUsages::COPY_DST
                     | wgpu::BufferUsages::COPY_SRC,
@@ -65,7 +65,7 @@ impl Present {
     /// Encodes collecting the heads of the lists of a frame.
     pub fn collect(&self, encoder: &mut wgpu::CommandEncoder, lists: &[Option<GpuList>]) {
         encoder.clear_buffer(&self.heads, 0, None);
-        for (at, list) in (0..MOST_LISTS as u64).zip(lists) {
+        for (at, list) in (0..MAX_LISTS as u64).zip(lists) {
             if let Some(list) = list {
                 encoder.copy_buffer_to_buffer(list.buffer, 0, &self.heads, HEAD_BYTES * at, HEAD_BYTES);
             }
@@ -85,7 +85,7 @@ impl Present {
         let before = before.filter(|before| before.size() == size);
         let mut uniform = PresentUniform {
             size,
-            lists: lists.len().min(MOST_LISTS) as u32,
+            lists: lists.len().min(MAX_LISTS) as u32,
             has_before: u32::from(before.is_some()),
             room: [u32::MAX; 8],
         };

@@ -22,7 +22,7 @@ use super::hair::HairBuffers;
 use super::layers::LayerBuffers;
 use super::light_buffers::LightBuffers;
 use super::pipelines::Pipelines;
-use super::present::MOST_LISTS;
+use super::present::MAX_LISTS;
 use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
 use super::skin_shadow::SkinShadow;
@@ -35,12 +35,12 @@ use crate::shadow_stage::has_soft_skin;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
 use flight::Flights;
-pub use flight::{Finished, MOST_IN_FLIGHT};
+pub use flight::{Finished, MAX_IN_FLIGHT};
 pub use picture::PendingPicture;
 use seen::{SeenHair, eye_input};
 
 /// The most attempts to render a frame whose lists were too short. Each attempt has longer lists or half as many rows per band.
-const MOST_ATTEMPTS: u32 = 16;
+const MAX_ATTEMPTS: u32 = 16;
 
 /// Renders pictures on a GPU. Keeps buffers from picture to picture.
 #[derive(Debug)]
@@ -153,7 +153,7 @@ impl GpuRenderer {
 
     /// Takes the heads of the lists of a finished frame. Returns whether it must be drawn again, because `lists` were too short for it;
     /// later frames have longer ones.
-    fn settle(&mut self, lists: &ListsOfFrame, heads: &[[u32; 2]; MOST_LISTS]) -> Result<bool, RenderError> {
+    fn settle(&mut self, lists: &ListsOfFrame, heads: &[[u32; 2]; MAX_LISTS]) -> Result<bool, RenderError> {
         let gpu = Arc::clone(&self.gpu);
         let [image, maps @ ..] = heads;
         let count = lists.maps.iter().flatten().count();

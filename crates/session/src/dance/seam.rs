@@ -19,7 +19,7 @@ use crate::take::TakePlayer;
 
 /// Duration of the blend, seconds, and its largest fraction of a period.
 const FADE_SECS: f64 = 0.75;
-const MOST_OF_ROUND: f64 = 0.4;
+const MAX_OF_ROUND: f64 = 0.4;
 
 /// Tolerance of the head's position after one period, metres, so that both states of the hair fit the same head.
 const SAME_PLACE_M: f32 = 1e-3;
@@ -32,7 +32,7 @@ fn share(left_secs: f64, fade_secs: f64, frame_secs: f64) -> f64 {
 }
 
 fn fade_secs(period_secs: f64) -> f64 {
-    FADE_SECS.min(MOST_OF_ROUND * period_secs)
+    FADE_SECS.min(MAX_OF_ROUND * period_secs)
 }
 
 /// The snapshot with its hair blended into `before` by the weight `share`.

@@ -104,7 +104,7 @@ type Open = Box<dyn FnMut(Backend, Option<&Arc<Gpu>>) -> Result<Renderer, Render
 const PATIENCE: Duration = Duration::from_millis(1);
 
 /// Number of consecutive failures after which a graphics device is no longer reopened automatically.
-const MOST_FAILURES: u32 = 3;
+const MAX_FAILURES: u32 = 3;
 
 /// Renders on a thread of its own. Requests that arrive while it renders replace each other.
 #[derive(Debug)]
@@ -397,7 +397,7 @@ impl Worker {
             self.fail(gpu.check().map_or_else(|loss| loss.to_string(), |()| error.to_string()));
             self.lost = Some(gpu);
             self.failed = self.failed.saturating_add(1);
-            if self.failed >= MOST_FAILURES {
+            if self.failed >= MAX_FAILURES {
                 self.give_up(request);
             }
             return false;
@@ -414,7 +414,7 @@ impl Worker {
     fn try_again(&mut self, choice: Backend) -> bool {
         let by_processor = self.opened.take().is_some_and(|opened| opened.renderer.backend() == Backend::Cpu);
         self.failed = self.failed.saturating_add(1);
-        if self.failed < MOST_FAILURES {
+        if self.failed < MAX_FAILURES {
             return true;
         }
         if choice != Backend::Auto || self.card_given_up || by_processor {
@@ -436,7 +436,7 @@ impl Worker {
     fn give_up_card(&mut self) {
         self.card_given_up = true;
         self.notices.put(Arc::new(format!(
-            "The graphics card failed {MOST_FAILURES} times in a row: the processor renders from now on. Choose \
+            "The graphics card failed {MAX_FAILURES} times in a row: the processor renders from now on. Choose \
              \"{}\" in Picture to try the card again.",
             Backend::Gpu.label()
         )));
@@ -450,7 +450,7 @@ impl Worker {
         let choice = request.project.picture.backend;
         if self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, &request.project)) {
             let why = format!(
-                "the graphics card was lost {MOST_FAILURES} times in a row with these settings: change one to try again"
+                "the graphics card was lost {MAX_FAILURES} times in a row with these settings: change one to try again"
             );
             return Err(GpuError::Input(why).into());
         }

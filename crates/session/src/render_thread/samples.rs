@@ -12,7 +12,7 @@ use super::RenderRequest;
 use crate::snapshot::FrameSnapshot;
 
 /// The most samples of each pixel.
-const MOST: u32 = 16;
+const MAX: u32 = 16;
 
 /// Where sample `index` is taken, pixels from the middle of a pixel: points of Halton's sequence for the bases 2 and 3.
 pub(super) fn jitter(index: u32) -> Vec2 {
@@ -51,7 +51,7 @@ impl Samples {
 
     /// Whether further samples of `request` are worth their time.
     pub fn wants_more(&self, request: &RenderRequest) -> bool {
-        request.still && self.is_of(request) && (1..MOST).contains(&self.taken)
+        request.still && self.is_of(request) && (1..MAX).contains(&self.taken)
     }
 
     fn is_of(&self, request: &RenderRequest) -> bool {
@@ -143,9 +143,9 @@ mod tests {
 
     #[test]
     fn samples_fill_a_pixel_evenly() {
-        let all: Vec<_> = (0..MOST).map(jitter).collect();
+        let all: Vec<_> = (0..MAX).map(jitter).collect();
         assert_eq!(all[0], Vec2::ZERO);
-        let mean = all.iter().sum::<Vec2>() / MOST as f32;
+        let mean = all.iter().sum::<Vec2>() / MAX as f32;
         assert!(mean.length() < 0.06, "{mean}");
         assert!(all.iter().all(|at| at.abs().max_element() <= 0.5));
         let quarters =

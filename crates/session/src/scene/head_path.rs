@@ -7,7 +7,7 @@ use lovelock_motion::{Body, Clip, Pose, pose_at};
 const SPACING_SECS: f64 = 1.0 / 30.0;
 
 /// Maximum number of samples: over half an hour at full rate.
-const MOST_SAMPLES: usize = 65_536;
+const MAX_SAMPLES: usize = 65_536;
 
 /// Positions of the head joint over a clip, world space.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl HeadPath {
     /// Samples the head of `body` over `clip`, or its position at rest.
     pub fn new(body: &Body, clip: Option<&Clip>, looping: bool) -> Self {
         let duration = clip.map_or(0.0, |clip| clip.duration_secs.max(0.0));
-        let count = ((duration / SPACING_SECS).ceil() as usize).clamp(1, MOST_SAMPLES);
+        let count = ((duration / SPACING_SECS).ceil() as usize).clamp(1, MAX_SAMPLES);
         let spacing_secs = if duration > 0.0 { duration / count as f64 } else { SPACING_SECS };
         let mut pose = Pose::default();
         let positions = (0..count)

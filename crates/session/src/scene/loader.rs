@@ -54,7 +54,7 @@ impl SceneLoader {
 
     /// The most memory of the hairstyles that are kept between two layers, bytes: those of the hair and those of its morph, each of the
     /// cut and the ties, and of the layers.
-    pub const MOST_LAYER_BYTES: u64 = 4 * StyleCache::MOST_BYTES;
+    pub const MAX_LAYER_BYTES: u64 = 4 * StyleCache::MAX_BYTES;
 
     /// The memory of the hairstyles that are kept between two layers, bytes.
     pub fn layer_bytes(&self) -> u64 {

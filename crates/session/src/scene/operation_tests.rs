@@ -59,7 +59,7 @@ fn a_tied_project_is_saved_loaded_and_untied() {
 
     project.hair.ties = vec![HairTie { radius: -1.0, ..HairTie::default() }; 20];
     let (sane, problems) = project.sanitised();
-    assert_eq!((sane.hair.ties.len(), sane.hair.ties[0].radius), (HairTie::MOST, 0.004));
+    assert_eq!((sane.hair.ties.len(), sane.hair.ties[0].radius), (HairTie::MAX, 0.004));
     assert!(!problems.is_empty());
 }
 

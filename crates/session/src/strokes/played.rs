@@ -125,7 +125,7 @@ pub fn play_strokes(
 /// The layer that takes the edits.
 fn layer_of(stack: &mut StyleStack) -> Result<u32, ProjectError> {
     stack.hand_layer(None).or_else(|| stack.push(Layer::of(Hand::default()))).ok_or_else(|| {
-        let most = StyleStack::MOST_LAYERS;
+        let most = StyleStack::MAX_LAYERS;
         ProjectError::option(format!(
             "--strokes: found a style of {most} layers; must have fewer, because a layer is added"
         ))

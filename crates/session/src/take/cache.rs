@@ -28,7 +28,7 @@ use crate::stats::StageTimes;
 use crate::totals::Totals;
 
 /// The longest playback of curves, seconds.
-const MOST_SECS: f64 = 86_400.0;
+const MAX_SECS: f64 = 86_400.0;
 
 /// Whether the first bytes of a file are those of a format of hair. A take begins otherwise.
 pub fn holds_curves(path: &Path) -> bool {
@@ -152,9 +152,9 @@ impl CachePlayer {
             clip_secs: scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs),
             ..TakeHeader::default()
         };
-        if end - start > MOST_SECS {
+        if end - start > MAX_SECS {
             let found = format!(
-                "{}: found curves over {:.0} s; must be {MOST_SECS} s at most",
+                "{}: found curves over {:.0} s; must be {MAX_SECS} s at most",
                 path.display(),
                 end - start
             );

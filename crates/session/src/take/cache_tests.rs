@@ -109,7 +109,7 @@ fn curves_of_one_time_and_other_files_do_not_play() {
     let path = folder.path().join("a.abc");
     write(&path, 1);
     let error = project_of_take(&path).expect_err("one time").to_string();
-    assert!(error.contains("a.abc: found curves of one time"), "{error}");
+    assert!(error.contains("a.abc: found curves at one time"), "{error}");
     std::fs::write(&path, b"HAIR and more").expect("a file");
     assert!(project_of_take(&path).is_err());
 }

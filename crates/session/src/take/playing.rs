@@ -22,7 +22,7 @@ use crate::stats::StageTimes;
 use crate::totals::Totals;
 
 /// Number of cached scenes of a take, so that seeking between parts does not grow the hair again.
-const MOST_SCENES: usize = 8;
+const MAX_SCENES: usize = 8;
 
 /// A take opened for playing, with its scene.
 pub(super) struct RecordedPlayer {
@@ -287,7 +287,7 @@ impl RecordedPlayer {
         } else {
             let (scene, problems) = self.loader.load_now(&project, &self.access)?;
             fits(self.reader.path(), guides_of(&self.frame), &scene.style, &problems)?;
-            if self.scenes.len() == MOST_SCENES {
+            if self.scenes.len() == MAX_SCENES {
                 self.scenes.remove(0);
             }
             let scene = self.lit(&scene);

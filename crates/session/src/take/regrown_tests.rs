@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lovelock_project::Project;
 use lovelock_project::files::Access;
-use lovelock_record::{MOST_ERROR_M, TakeFrame, TakeReader, TakeWriter};
+use lovelock_record::{MAX_ERROR_M, TakeFrame, TakeReader, TakeWriter};
 
 use super::TakePlayer;
 use super::tests::folder;
@@ -20,13 +20,13 @@ fn hair_with_other_guides_is_recorded_on_and_plays_in_any_order() {
     for n in [0, 39, 40, 41, 69, 70, 99, 71, 40, 39, 12] {
         let frame = player.snapshot(n as f64 / 60.0).expect("a frame");
         let off = farthest(&frame, &frames[n]);
-        assert!(f64::from(off) <= MOST_ERROR_M, "frame {n} is {off} m off");
+        assert!(f64::from(off) <= MAX_ERROR_M, "frame {n} is {off} m off");
         assert_eq!(guides(&frame), frame.scene.style.guides.count(), "frame {n}");
     }
     // Between frames with different guides, the nearer one is shown with its own hairstyle.
     for (place, wanted) in [(39.3, 39), (39.7, 40), (69.5, 70), (69.4, 69)] {
         let frame = player.snapshot(place / 60.0).expect("an instant");
-        assert!(f64::from(farthest(&frame, &frames[wanted])) <= MOST_ERROR_M, "{place}");
+        assert!(f64::from(farthest(&frame, &frames[wanted])) <= MAX_ERROR_M, "{place}");
         assert_eq!(guides(&frame), frame.scene.style.guides.count(), "{place}");
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lovelock_project::Project;
 use lovelock_project::error::ProblemKind;
 use lovelock_project::files::Access;
-use lovelock_record::{MOST_ERROR_M, TakeCondition};
+use lovelock_record::{MAX_ERROR_M, TakeCondition};
 
 use super::*;
 use crate::engine::Engine;
@@ -29,7 +29,7 @@ fn every_frame_comes_back_as_it_was_simulated_in_any_order() {
     for n in [0, 1, 64, 129, 128, 3, 60, 59] {
         let frame = player.snapshot(n as f64 / 60.0).expect("a frame");
         let off = farthest(&frame, &frames[n]);
-        assert!(f64::from(off) <= MOST_ERROR_M, "frame {n} is {off} m off");
+        assert!(f64::from(off) <= MAX_ERROR_M, "frame {n} is {off} m off");
         assert_eq!(frame.time_secs, frames[n].time_secs);
         assert_eq!(frame.guides.world_from_head, frames[n].guides.world_from_head);
         // The body too, whose pose follows from the clip's time.
@@ -38,7 +38,7 @@ fn every_frame_comes_back_as_it_was_simulated_in_any_order() {
     }
     // Control: the next frame differs by more than rounding.
     let beside = player.snapshot(65.0 / 60.0).expect("a frame");
-    assert!(f64::from(farthest(&beside, &frames[64])) > 10.0 * MOST_ERROR_M);
+    assert!(f64::from(farthest(&beside, &frames[64])) > 10.0 * MAX_ERROR_M);
 }
 
 #[test]

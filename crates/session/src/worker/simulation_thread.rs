@@ -33,7 +33,7 @@ use crate::snapshot::FrameSnapshot;
 use crate::take::{TakeProgress, TakeRecording, TakeTransport};
 
 /// Number of consecutive panics after which the simulation stops until something changes.
-const MOST_PANICS: u32 = 3;
+const MAX_PANICS: u32 = 3;
 
 /// Time after which what waits for a scene or a take is looked at again.
 const AGAIN: Duration = Duration::from_millis(50);
@@ -388,7 +388,7 @@ impl SimulationThread {
         self.last_steps.forget();
         self.forget_strokes();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
-        if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
+        if let (Some(scene), true) = (scene, self.panics < MAX_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
             if let (Some(engine), Some(project)) = (&mut self.engine, &self.project) {
                 engine.follow(project);

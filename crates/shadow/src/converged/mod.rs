@@ -23,7 +23,7 @@ use strips::Strips;
 pub const CONVERGED_CHANGE: f32 = 2e-3;
 
 /// The most subtexels along the edge of a texel.
-pub const MOST_CONVERGED_SAMPLES: u32 = 32;
+pub const MAX_CONVERGED_SAMPLES: u32 = 32;
 
 /// The first round that may be the last: two coarser rounds could agree because both miss features below a subtexel.
 const LEAST_SAMPLES: u32 = 4;
@@ -35,7 +35,7 @@ pub struct Converged {
     pub transmittance: Vec<f32>,
     /// Subtexels along the edge of a texel in the last round.
     pub samples: u32,
-    /// RMS change in the last round. Above [`CONVERGED_CHANGE`] only if [`MOST_CONVERGED_SAMPLES`] was reached.
+    /// RMS change in the last round. Above [`CONVERGED_CHANGE`] only if [`MAX_CONVERGED_SAMPLES`] was reached.
     pub change: f32,
     /// Samples and RMS change of every round but the first.
     pub changes: Vec<(u32, f32)>,
@@ -68,7 +68,7 @@ pub fn converged(
     let mut last = round(input, settings, &frame, &places, samples, &mut scratch)?;
     let mut change = f32::INFINITY;
     let mut changes = Vec::new();
-    while samples < LEAST_SAMPLES || (change > CONVERGED_CHANGE && samples < MOST_CONVERGED_SAMPLES) {
+    while samples < LEAST_SAMPLES || (change > CONVERGED_CHANGE && samples < MAX_CONVERGED_SAMPLES) {
         samples *= 2;
         let next = round(input, settings, &frame, &places, samples, &mut scratch)?;
         let squares: f64 = last.iter().zip(&next).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();

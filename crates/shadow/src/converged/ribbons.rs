@@ -11,7 +11,7 @@ use crate::methods::texels::TexelFrame;
 use crate::methods::texels::lines::{Draw, Steps};
 
 /// The largest optical depth of a ribbon; e^−10⁴ is 0 in any float.
-const MOST_DEPTH: f32 = 1e4;
+const MAX_DEPTH: f32 = 1e4;
 
 /// Rasterises ribbons into rows of subtexels.
 ///
@@ -38,7 +38,7 @@ impl Ribbons {
     pub(super) fn new(input: &ShadowInput, frame: &TexelFrame, samples: u32, places: &[Vec3]) -> Self {
         let resolution = frame.resolution;
         let width = input.strand_width / frame.texel_size * samples as f32;
-        let depth = safe_extinction(input.extinction_scale).min(MOST_DEPTH);
+        let depth = safe_extinction(input.extinction_scale).min(MAX_DEPTH);
         // Nothing is wider than the map.
         let width = if width > 0.0 { width.min((resolution * samples) as f32) } else { 0.0 };
         let mut wanted = vec![false; (resolution * resolution) as usize];
@@ -93,7 +93,7 @@ impl Ribbons {
     /// Whether a segment may touch a texel of a footprint: a conservative test of the texels around it.
     fn may_touch_wanted(&self, from: Vec3, to: Vec3) -> bool {
         /// A segment over more texels than this is always rasterised.
-        const MOST: u32 = 1024;
+        const MAX: u32 = 1024;
         // Half the width over the cosine of at most 45 degrees.
         let reach = Vec3::splat(0.71 * self.width / self.samples as f32);
         let last = (self.resolution - 1) as f32;
@@ -101,7 +101,7 @@ impl Ribbons {
         let high = (from.max(to) + reach).clamp(Vec3::ZERO, Vec3::splat(last));
         let columns = low.x as usize..high.x as usize + 1;
         let rows = low.y as u32..high.y as u32 + 1;
-        if rows.len() as u32 * columns.len() as u32 > MOST {
+        if rows.len() as u32 * columns.len() as u32 > MAX {
             return true;
         }
         rows.into_iter().any(|row| {

@@ -4,7 +4,7 @@ use lovelock_gpu::check_shader;
 use lovelock_shadow::{ShadowMethod, all_shaders};
 
 /// Storage buffers that a shader may use in core WebGPU.
-const MOST_STORAGE_BUFFERS: usize = 8;
+const MAX_STORAGE_BUFFERS: usize = 8;
 
 #[test]
 fn every_composed_shader_is_valid_and_keeps_within_the_limits_of_webgpu() {
@@ -16,7 +16,7 @@ fn every_composed_shader_is_valid_and_keeps_within_the_limits_of_webgpu() {
             .global_variables
             .iter()
             .filter(|(_, variable)| matches!(variable.space, naga::AddressSpace::Storage { .. }));
-        assert!(storage.count() <= MOST_STORAGE_BUFFERS, "{label}");
+        assert!(storage.count() <= MAX_STORAGE_BUFFERS, "{label}");
         places.sort_by_key(|place| (place.group, place.binding));
         assert!(places.windows(2).all(|two| two[0] != two[1]), "{label}: two things at one place");
         assert!(!module.entry_points.is_empty(), "{label}");

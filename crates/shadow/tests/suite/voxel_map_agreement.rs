@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 /// Half a step of 2^-12 at each face, half of 2^-20 for each of some hundred samples, the rounding of the
 /// exponential, and the reference's double precision against f32.
-const MOST_DIFFERENCE: f64 = 1.5e-4;
+const MAX_DIFFERENCE: f64 = 1.5e-4;
 
 fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
     let strand_width = 80e-6 * 100_000.0 / strands.count().max(1) as f32;
@@ -72,18 +72,15 @@ fn quick_and_plain_agree_on_hair_and_everywhere() {
                 let map = built(&input, &settings);
                 let dense = DenseMap::build(&input, &settings, Addressing::Window);
                 let on_hair = worst(&map, &dense, (0..hair.points()).map(|i| hair.point(i)));
-                assert!(
-                    on_hair < MOST_DIFFERENCE,
-                    "{resolution}, {direction}, {filter:?}: on hair {on_hair}"
-                );
+                assert!(on_hair < MAX_DIFFERENCE, "{resolution}, {direction}, {filter:?}: on hair {on_hair}");
                 let around = worst(&map, &dense, anywhere(4000).into_iter());
-                assert!(around < MOST_DIFFERENCE, "{resolution}, {direction}, {filter:?}: around {around}");
+                assert!(around < MAX_DIFFERENCE, "{resolution}, {direction}, {filter:?}: around {around}");
             }
             // Control: a light rotated by a degree is distinguished.
             let turned = ShadowInput { light: LightFrame::new(direction + 0.0175 * Vec3::ONE), ..input };
             let dense = DenseMap::build(&turned, &settings, Addressing::Window);
             let map = built(&input, &settings);
-            assert!(worst(&map, &dense, (0..hair.points()).map(|i| hair.point(i))) > 10.0 * MOST_DIFFERENCE);
+            assert!(worst(&map, &dense, (0..hair.points()).map(|i| hair.point(i))) > 10.0 * MAX_DIFFERENCE);
         }
     }
 }
@@ -110,7 +107,7 @@ fn quick_and_plain_agree_on_strands_of_any_number_of_points() {
         let map = built(&input, &settings);
         let dense = DenseMap::build(&input, &settings, Addressing::Window);
         let points = || (0..hair.points()).map(|i| hair.point(i));
-        assert!(worst(&map, &dense, points()) < MOST_DIFFERENCE, "{deposit:?}");
+        assert!(worst(&map, &dense, points()) < MAX_DIFFERENCE, "{deposit:?}");
         if deposit == VoxelDeposit::PointCount {
             assert_eq!(map.report().samples, hair.points() as u64);
         }
@@ -118,7 +115,7 @@ fn quick_and_plain_agree_on_strands_of_any_number_of_points() {
         let joined = strands(&[of.concat()]);
         let dense =
             DenseMap::build(&ShadowInput { strands: &joined, ..input }, &settings, Addressing::Window);
-        let joined_differ = worst(&map, &dense, points()) > 10.0 * MOST_DIFFERENCE;
+        let joined_differ = worst(&map, &dense, points()) > 10.0 * MAX_DIFFERENCE;
         assert_eq!(joined_differ, deposit == VoxelDeposit::Length);
     }
 }
@@ -133,7 +130,7 @@ fn quick_and_plain_agree_in_the_paper_s_modes() {
     let map = built(&input, &settings);
     let dense = DenseMap::build(&input, &settings, Addressing::Psi);
     let difference = worst(&map, &dense, (0..hair.points()).map(|i| hair.point(i)).chain(anywhere(2000)));
-    assert!(difference < MOST_DIFFERENCE, "{difference}");
+    assert!(difference < MAX_DIFFERENCE, "{difference}");
     // The paper's bound: twice the longest strand and the head; cells in steps of a sixteenth of an octave.
     let length = |strand: &Vec<Vec3>| strand.windows(2).map(|ends| ends[0].distance(ends[1])).sum::<f32>();
     let bound = 2.0 * small(CURLY).iter().map(length).fold(0.0, f32::max) + 0.24;

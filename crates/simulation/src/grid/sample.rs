@@ -7,7 +7,7 @@ use glam::{IVec3, Mat3, Vec3};
 use super::cell::{NUMBERS, PARTS};
 use super::direction::{crossing, friction_target, push_across};
 use super::pieces::tangents;
-use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDES, index};
+use super::{DensityGrid, MAX_SHARE_OF_A_CELL, MOMENTUM, OFFSETS, SIDES, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
@@ -143,7 +143,7 @@ impl DensityGrid {
 
     #[inline(always)]
     fn effect(&self, block: &Block, step: &GridStep, i: usize) -> GridEffect {
-        let most = MOST_OF_A_CELL * self.lattice.cell / step.h;
+        let most = MAX_SHARE_OF_A_CELL * self.lattice.cell / step.h;
         let turn: Mat3 = step.last_head.turn;
         // The published force is isotropic.
         let anisotropy = match self.repulsion.mode {

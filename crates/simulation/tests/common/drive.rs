@@ -76,7 +76,7 @@ impl Coverage {
 }
 
 /// Largest number of actions per drive, so that every input ends soon.
-const MOST_ACTIONS: u32 = 120;
+const MAX_ACTIONS: u32 = 120;
 
 /// A figure, or bare colliders, around a head.
 struct TestBody {
@@ -211,7 +211,7 @@ pub fn drive(bytes: &[u8]) -> Coverage {
     let (mut time_secs, mut head, mut dt) = (0.0, Affine3A::IDENTITY, 1.0 / 60.0);
     let mut saved: Option<Saved> = None;
     let mut field = body.key();
-    for _ in 0..MOST_ACTIONS {
+    for _ in 0..MAX_ACTIONS {
         if input.0.is_empty() {
             break;
         }

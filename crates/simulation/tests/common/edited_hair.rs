@@ -13,7 +13,7 @@ use super::any::Bytes;
 use super::figure::FIGURE;
 
 /// Limit of growing and tying per drive, because they cost much more than a step.
-const MOST_WORK: u32 = 6;
+const MAX_WORK: u32 = 6;
 
 pub struct EditedHair {
     base: Arc<Hairstyle>,
@@ -76,7 +76,7 @@ impl EditedHair {
     /// Grows the same hair at another length; returns whether it was grown hair.
     pub fn regrow(&mut self, input: &mut Bytes) -> bool {
         let Some(groom) = &mut self.groom else { return false };
-        if self.work >= MOST_WORK {
+        if self.work >= MAX_WORK {
             return false;
         }
         self.work += 1;
@@ -92,7 +92,7 @@ impl EditedHair {
         if !self.cut.is_empty() {
             self.result = Arc::new(trimmed(&self.result, &self.cut));
         }
-        if !self.ties.is_empty() && self.work < MOST_WORK {
+        if !self.ties.is_empty() && self.work < MAX_WORK {
             self.work += 1;
             self.result = Arc::new(tied(&self.result, &self.ties, &*FIGURE));
         }

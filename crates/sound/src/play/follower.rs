@@ -6,7 +6,7 @@ use super::Target;
 use super::mixer::Mixer;
 
 /// A larger difference between what is heard and the clock is closed by a jump, seconds. Smaller ones are not noticed.
-const MOST_DRIFT_SECS: f64 = 0.04;
+const MAX_DRIFT_SECS: f64 = 0.04;
 /// A difference of this size at once is a jump of the clock itself, seconds.
 const CLOCK_JUMP_SECS: f64 = 0.15;
 /// Time over which the difference is averaged, seconds, because the clock advances in steps of images.
@@ -16,7 +16,7 @@ const MEASURED_SECS: f64 = 0.5;
 /// A clock that differs less from its stated speed counts as exact. A slower one is that of a machine which plays in slow motion.
 const EXACT: f64 = 0.03;
 /// The largest change of speed that closes a difference; it is too small to be heard.
-const MOST_CORRECTION: f64 = 0.01;
+const MAX_CORRECTION: f64 = 0.01;
 
 /// Keeps what is heard in step with a clock.
 #[derive(Debug, Default)]
@@ -79,11 +79,11 @@ impl Follower {
             None => drift,
         };
         self.drift = Some([mean, now]);
-        if mean.abs() > MOST_DRIFT_SECS {
+        if mean.abs() > MAX_DRIFT_SECS {
             self.jump(mixer, heard, now, target, speed);
             return;
         }
-        let correction = (-mean).clamp(-MOST_CORRECTION, MOST_CORRECTION);
+        let correction = (-mean).clamp(-MAX_CORRECTION, MAX_CORRECTION);
         mixer.play(speed + correction * speed.abs().max(0.1), target.gain);
     }
 
@@ -175,7 +175,7 @@ mod tests {
                         worst = worst.max((device.heard_secs().expect("a place") - secs).abs());
                     }
                 }
-                assert!(worst < MOST_DRIFT_SECS, "{device_rate} Hz, {latency} s, rate {rate}: {worst}");
+                assert!(worst < MAX_DRIFT_SECS, "{device_rate} Hz, {latency} s, rate {rate}: {worst}");
                 assert_eq!(
                     device.follower.jumps(),
                     1,
@@ -196,7 +196,7 @@ mod tests {
                 [180, 360, 450, 480, 660].iter().filter_map(|jump| (i - jump >= 0).then_some(i - jump)).min();
             if since.is_none_or(|since| since > 12) && i > 30 {
                 let off = device.heard_secs().expect("a place") - time % 3.0;
-                assert!(off.abs() < MOST_DRIFT_SECS, "pass {i}: {off}");
+                assert!(off.abs() < MAX_DRIFT_SECS, "pass {i}: {off}");
             }
         }
         assert_eq!(device.follower.jumps(), 6);
@@ -215,7 +215,7 @@ mod tests {
             }
         }
         // An image lasts 47 ms of the dance, so the sound runs ahead of it by as much.
-        assert!(worst < MOST_DRIFT_SECS + 0.047, "{worst}");
+        assert!(worst < MAX_DRIFT_SECS + 0.047, "{worst}");
         assert!(device.follower.jumps() <= 4, "{}", device.follower.jumps());
     }
 

@@ -10,7 +10,7 @@ use crate::sound::{RATE, Sound};
 const FADE_SECS: f32 = 0.004;
 
 /// Parts of the output whose place in the sound is remembered. A device asks for some hundred frames at a time, so this is several seconds.
-const MOST_SPANS: usize = 1024;
+const MAX_SPANS: usize = 1024;
 
 /// Computes the samples that a device asks for.
 pub(super) struct Mixer {
@@ -147,7 +147,7 @@ impl State {
     /// Remembers where the sound is at the next frame.
     fn remember(&mut self, step: f64) {
         let step = if self.playing { step } else { 0.0 };
-        if self.spans.len() >= MOST_SPANS {
+        if self.spans.len() >= MAX_SPANS {
             self.spans.pop_front();
         }
         self.spans.push_back(Span { frame: self.written, place: self.place, step });

@@ -30,13 +30,13 @@ pub const LONGEST_SECS: f64 = 1800.0;
 pub const RATES: std::ops::RangeInclusive<u32> = 4_000..=384_000;
 
 /// The most channels that a file may have.
-const MOST_CHANNELS: usize = 32;
+const MAX_CHANNELS: usize = 32;
 
 /// The most samples per channel of one packet. The longest that a format allows are 65,535 of FLAC.
 const LONGEST_PACKET: usize = 1 << 20;
 
 /// The most damaged packets in a row after which the rest of a file is given up.
-const MOST_DAMAGED: u32 = 2000;
+const MAX_DAMAGED: u32 = 2000;
 
 /// Names of sound files end in one of these.
 pub const SOUND_EXTENSIONS: [&str; 5] = ["wav", "mp3", "ogg", "oga", "flac"];
@@ -146,7 +146,7 @@ fn read(
         }
         let decoded = match decoder.decode(&packet) {
             Ok(decoded) => decoded,
-            Err(Error::DecodeError(_) | Error::IoError(_)) if in_a_row < MOST_DAMAGED => {
+            Err(Error::DecodeError(_) | Error::IoError(_)) if in_a_row < MAX_DAMAGED => {
                 (damaged, in_a_row) = (damaged + 1, in_a_row + 1);
                 continue;
             }
@@ -213,8 +213,8 @@ fn chain_head(rate: u32, channels: usize) -> Result<Mix, (String, String)> {
         let wanted = format!("{} to {}", RATES.start(), RATES.end());
         return Err((format!("found {rate} samples per second"), wanted));
     }
-    if channels == 0 || channels > MOST_CHANNELS {
-        return Err((format!("found {channels} channels"), format!("1 to {MOST_CHANNELS}")));
+    if channels == 0 || channels > MAX_CHANNELS {
+        return Err((format!("found {channels} channels"), format!("1 to {MAX_CHANNELS}")));
     }
     Ok(Mix::new(channels))
 }

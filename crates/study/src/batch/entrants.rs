@@ -10,7 +10,7 @@ use super::sweep::Sweep;
 use crate::report::MethodReport;
 
 /// Maximum number of entrants.
-const MOST: usize = 512;
+const MAX: usize = 512;
 
 /// One entrant and its entry in the report.
 #[derive(Clone, Debug)]
@@ -69,9 +69,9 @@ pub(super) fn entrants(
                 }
             }
         }
-        if all.len() > MOST {
+        if all.len() > MAX {
             return Err(ProjectError::option(format!(
-                "more than {MOST} to compare at once: fewer methods, backends or values of a sweep"
+                "more than {MAX} to compare at once: fewer methods, backends or values of a sweep"
             )));
         }
     }
@@ -117,7 +117,7 @@ fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, Project
                     }
                 }
             }
-            if next.len() > MOST {
+            if next.len() > MAX {
                 break;
             }
         }

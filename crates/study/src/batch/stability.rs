@@ -17,7 +17,7 @@ use crate::report::{FootprintTruth, NamedTruth, Reference};
 pub(super) const SMALL: u32 = 16;
 
 /// Memory limit of all frames of all ground truths together, bytes.
-const MOST_BYTES: u64 = 4 << 30;
+const MAX_BYTES: u64 = 4 << 30;
 
 /// Transmittance of the first light at every strand point, as used by `renderer`.
 pub(super) fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f32>, ProjectError> {
@@ -31,11 +31,11 @@ pub(super) fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f
 /// What does not fit, with numbers.
 pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Result<(), String> {
     let bytes = frames.saturating_mul(points as u64).saturating_mul(4 * (truths as u64 + 1));
-    if bytes > MOST_BYTES {
+    if bytes > MAX_BYTES {
         return Err(format!(
             "{what} over {frames} frames of {points} points need {} MiB, more than the limit of {} MiB: ask for less at once",
             bytes >> 20,
-            MOST_BYTES >> 20
+            MAX_BYTES >> 20
         ));
     }
     Ok(())

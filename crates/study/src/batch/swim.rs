@@ -20,11 +20,11 @@ use super::work::CheckCancel;
 const SHIFTS: usize = 6;
 
 /// Maximum number of frames with shifts; each frame needs one draw per shift.
-const MOST_FRAMES: usize = 8;
+const MAX_FRAMES: usize = 8;
 
 /// The frames out of `frames` that are shifted: all if there are few, otherwise an even selection from the first to the last.
 pub(super) fn frames_shifted(frames: usize) -> Vec<usize> {
-    let count = frames.min(MOST_FRAMES);
+    let count = frames.min(MAX_FRAMES);
     // Integer rounding to nearest; the product of two list lengths does not overflow.
     (0..count).map(|i| (i * (frames - 1) + (count - 1) / 2) / (count - 1).max(1)).collect()
 }
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn shifts_are_less_than_a_texel_and_differ() {
         let mut random = SplitMix64::new(7);
-        let all: Vec<f32> = (0..3 * SHIFTS * MOST_FRAMES).map(|_| random.unit()).collect();
+        let all: Vec<f32> = (0..3 * SHIFTS * MAX_FRAMES).map(|_| random.unit()).collect();
         assert!(all.iter().all(|shift| (0.0..1.0).contains(shift)));
         assert!(all.iter().enumerate().all(|(i, a)| all[..i].iter().all(|b| a != b)));
     }
@@ -76,7 +76,7 @@ mod tests {
         assert_eq!(frames_shifted(0), [0; 0]);
         assert_eq!(frames_shifted(1), [0]);
         assert_eq!(frames_shifted(4), [0, 1, 2, 3]);
-        assert_eq!(frames_shifted(MOST_FRAMES), (0..MOST_FRAMES).collect::<Vec<_>>());
+        assert_eq!(frames_shifted(MAX_FRAMES), (0..MAX_FRAMES).collect::<Vec<_>>());
         assert_eq!(frames_shifted(99), [0, 14, 28, 42, 56, 70, 84, 98]);
         for frames in 1..200 {
             let shifted = frames_shifted(frames);

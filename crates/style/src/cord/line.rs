@@ -12,7 +12,7 @@ use crate::guides::frames;
 /// Distance between points of a line, metres.
 const STEP: f32 = 0.005;
 /// The longest line, points.
-const MOST: usize = 2000;
+const MAX: usize = 2000;
 /// Length over which a line moves away from the body, metres.
 const LEAVES: f32 = 0.03;
 /// Rounds of smoothing.
@@ -34,7 +34,7 @@ impl Line {
         let start = members.iter().map(|m| point(m, 0.0)).sum::<Vec3>() / members.len() as f32;
         let mut points = vec![start];
         let mut direction = Vec3::NEG_Y;
-        let steps = ((longest / STEP).ceil() as usize).clamp(2, MOST);
+        let steps = ((longest / STEP).ceil() as usize).clamp(2, MAX);
         for i in 0..steps {
             let from = i as f32 * STEP;
             let there = members.iter().filter(|m| beyond(m) >= from + STEP);
@@ -102,7 +102,7 @@ fn spaced(points: &[Vec3]) -> Vec<Vec3> {
     for pair in points.windows(2) {
         let length = pair[0].distance(pair[1]);
         let mut at = left;
-        while at <= length && out.len() < 2 * MOST {
+        while at <= length && out.len() < 2 * MAX {
             out.push(pair[0].lerp(pair[1], at / length));
             at += STEP;
         }

@@ -257,7 +257,7 @@ fn two_hundred_layers_leave_sound_hair() {
     let made = StyleCache::default().apply(&base, &stack(layers), Arc::new(PlainHead)).style;
     made.check().expect("sound");
     assert!(made.guides.x.iter().chain(&made.strands.offset_normal).all(|v| v.is_finite()));
-    assert!(made.strands.points() as u64 <= u64::from(lovelock_groom::MOST_POINTS));
+    assert!(made.strands.points() as u64 <= u64::from(lovelock_groom::MAX_POINTS));
     let longest = (0..made.guides.count())
         .map(|g| (1..31).map(|p| made.guides.point(g, p).distance(made.guides.point(g, p - 1))).sum::<f32>())
         .fold(0.0, f32::max);

@@ -33,7 +33,7 @@ pub struct HandEdits(Arc<Vec<Arc<HandSample>>>);
 
 impl HandEdits {
     /// The most places.
-    pub const MOST: usize = 100_000;
+    pub const MAX: usize = 100_000;
 
     /// Whether there is no edit.
     pub fn is_empty(&self) -> bool {
@@ -133,7 +133,7 @@ impl HandEdits {
             };
             samples.push(Arc::new(HandSample::of(place, roots.spacing, &edit)));
         }
-        samples.truncate(Self::MOST);
+        samples.truncate(Self::MAX);
         *self = Self::sorted(samples);
     }
 

@@ -17,7 +17,7 @@ const STEPS: f32 = 32_000.0;
 /// Two places nearer than this are the same.
 const SAME: f32 = 1.5e-4;
 /// Roots whose neighbours are searched to find the distance between roots.
-const MOST_PROBES: usize = 256;
+const MAX_PROBES: usize = 256;
 /// The range of distances between roots.
 const REACH: [f32; 2] = [0.01, 0.5];
 
@@ -81,7 +81,7 @@ impl HandRoots {
 
 /// The mean distance to the third nearest other place.
 fn spacing(directions: &[Vec3]) -> f32 {
-    let step = directions.len().div_ceil(MOST_PROBES).max(1);
+    let step = directions.len().div_ceil(MAX_PROBES).max(1);
     let (mut sum, mut count) = (0.0, 0.0);
     for probe in directions.iter().step_by(step) {
         let mut nearest = [f32::INFINITY; 3];

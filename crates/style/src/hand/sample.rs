@@ -39,12 +39,12 @@ pub(super) struct HandSample {
 
 impl HandSample {
     /// The most links.
-    pub const MOST_LINKS: usize = 1024;
+    pub const MAX_LINKS: usize = 1024;
 
     /// An edit in whole steps.
     pub fn of(place: HandPlace, spacing: f32, edit: &HandEdit) -> Self {
         let turn = |turn: &Vec2| turn.to_array().map(|v| step(v * TURN));
-        let mut turns: Vec<[i16; 2]> = edit.turns.iter().take(Self::MOST_LINKS).map(turn).collect();
+        let mut turns: Vec<[i16; 2]> = edit.turns.iter().take(Self::MAX_LINKS).map(turn).collect();
         if turns.iter().all(|turn| *turn == [0; 2]) {
             turns.clear();
         }
@@ -52,7 +52,7 @@ impl HandSample {
             let [low, high] = kind.range();
             let one = |value: &f32| step(within(*value, low, high, kind.neutral()) * steps(kind));
             let values: Vec<i16> =
-                edit.channels[kind as usize].iter().take(Self::MOST_LINKS + 1).map(one).collect();
+                edit.channels[kind as usize].iter().take(Self::MAX_LINKS + 1).map(one).collect();
             let neutral = step(kind.neutral() * steps(kind));
             if values.iter().all(|value| *value == neutral) { Vec::new() } else { values }
         });

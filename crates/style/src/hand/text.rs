@@ -12,7 +12,7 @@ use super::sample::HandSample;
 /// The version of the bytes.
 const VERSION: u8 = 1;
 /// The most bytes of all edits.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 
 impl HandEdits {
     /// The edits as one line of text; empty without edits. Equal edits have equal text.
@@ -38,8 +38,8 @@ impl HandEdits {
         }
         let packed = STANDARD.decode(text).map_err(|error| format!("edits by hand: {error}"))?;
         let size = packed.first_chunk().map_or(0, |size| u32::from_le_bytes(*size) as usize);
-        if size > MOST_BYTES {
-            return Err(format!("edits by hand: found {size} bytes; must be at most {MOST_BYTES}"));
+        if size > MAX_BYTES {
+            return Err(format!("edits by hand: found {size} bytes; must be at most {MAX_BYTES}"));
         }
         let bytes = lz4_flex::decompress_size_prepended(&packed)
             .map_err(|error| format!("edits by hand: {error}"))?;
@@ -104,7 +104,7 @@ impl Reader<'_> {
             return None;
         }
         let count = u32::from_le_bytes(self.bytes()?) as usize;
-        if count > HandEdits::MOST {
+        if count > HandEdits::MAX {
             return None;
         }
         (0..count).map(|_| self.sample().map(Arc::new)).collect()
@@ -117,7 +117,7 @@ impl Reader<'_> {
         let flags = self.short()?;
         let links = self.short()? as usize;
         let counts = [self.short()?, self.short()?, self.short()?, self.short()?].map(usize::from);
-        if links > HandSample::MOST_LINKS || counts.iter().any(|count| *count > HandSample::MOST_LINKS + 1) {
+        if links > HandSample::MAX_LINKS || counts.iter().any(|count| *count > HandSample::MAX_LINKS + 1) {
             return None;
         }
         let [x, y] = [self.row(links)?, self.row(links)?];

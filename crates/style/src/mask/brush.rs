@@ -75,7 +75,7 @@ impl MaskBrush {
     /// Steps of a stroke: the distance between two dabs as a fraction of the radius.
     const SPACING: f32 = 0.25;
     /// The most dabs of one movement; a longer one spreads them.
-    const MOST_DABS: usize = 64;
+    const MAX_DABS: usize = 64;
 
     /// Puts the brush down once at `place`, head space. A place or a radius that is not finite paints nothing.
     pub fn dab(&self, map: &mut MaskMap, head: &HeadBox, place: Vec3, mode: BrushMode) {
@@ -122,8 +122,8 @@ impl MaskBrush {
             return from;
         }
         let steps = (distance / spacing) as usize;
-        let (steps, spacing) = if steps > Self::MOST_DABS {
-            (Self::MOST_DABS, distance / Self::MOST_DABS as f32)
+        let (steps, spacing) = if steps > Self::MAX_DABS {
+            (Self::MAX_DABS, distance / Self::MAX_DABS as f32)
         } else {
             (steps, spacing)
         };

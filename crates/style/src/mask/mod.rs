@@ -25,7 +25,7 @@ pub struct Mask {
 
 impl Mask {
     /// The most parts.
-    pub const MOST_PARTS: usize = 16;
+    pub const MAX_PARTS: usize = 16;
 
     /// A mask of one part.
     pub fn of(part: MaskPart) -> Self {
@@ -36,7 +36,7 @@ impl Mask {
     /// there are too many parts.
     pub fn painted_mut(&mut self) -> Option<&mut MaskPart> {
         let painted = self.parts.iter().position(|part| part.region == MaskRegion::Painted);
-        if painted.is_none() && self.parts.len() < Self::MOST_PARTS {
+        if painted.is_none() && self.parts.len() < Self::MAX_PARTS {
             self.parts.push(MaskPart { mix: MaskMix::Add, ..MaskPart::region(MaskRegion::Painted) });
         }
         self.parts.iter_mut().find(|part| part.region == MaskRegion::Painted)
@@ -81,7 +81,7 @@ impl Mask {
     /// The mask with every number in its range.
     #[must_use]
     pub fn clamped(&self) -> Self {
-        let parts = self.parts.iter().take(Self::MOST_PARTS).map(MaskPart::clamped);
+        let parts = self.parts.iter().take(Self::MAX_PARTS).map(MaskPart::clamped);
         Self { parts: parts.collect(), inverted: self.inverted }
     }
 }

@@ -115,5 +115,5 @@ fn numbers_far_outside_are_brought_into_range() {
     let tame = wild.clamped();
     assert_eq!((tame.border, tame.softness, tame.radius), (0.0, 0.0, 3.0));
     let many = Mask { parts: vec![MaskPart::default(); 100], inverted: false };
-    assert_eq!(many.clamped().parts.len(), Mask::MOST_PARTS);
+    assert_eq!(many.clamped().parts.len(), Mask::MAX_PARTS);
 }

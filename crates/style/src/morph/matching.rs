@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// Wisps match if their roots are nearer than this many times the usual distance of neighbours.
 const REACH: f32 = 2.0;
 /// Strands of a pair of wisps are matched by distance up to this many comparisons, and in their order beyond it.
-const MOST_COMPARISONS: usize = 4_000_000;
+const MAX_COMPARISONS: usize = 4_000_000;
 
 /// A wisp of a morph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,7 +88,7 @@ fn strand_pairs(styles: [&Hairstyle; 2], of: &[Vec<u32>; 2]) -> Vec<[Option<u32>
     let many = 1 - few;
     let [few_roots, many_roots] =
         [few, many].map(|side| of[side].iter().map(|&s| strand_root(styles[side], s)).collect::<Vec<_>>());
-    let by_distance = few_roots.len() * many_roots.len() <= MOST_COMPARISONS;
+    let by_distance = few_roots.len() * many_roots.len() <= MAX_COMPARISONS;
     let mut free: Vec<bool> = vec![true; many_roots.len()];
     let mut out = Vec::with_capacity(many_roots.len());
     for (i, root) in few_roots.iter().enumerate() {

@@ -5,7 +5,7 @@ use super::{Group, Layer, StyleStack};
 impl StyleStack {
     /// Adds a layer at a place of the list, with a number of its own; returns the number, or `None` if the stack is full.
     pub fn insert(&mut self, at: usize, mut layer: Layer) -> Option<u32> {
-        if self.layers.len() >= Self::MOST_LAYERS {
+        if self.layers.len() >= Self::MAX_LAYERS {
             return None;
         }
         layer.id = self.layers.iter().map(|layer| layer.id).max().unwrap_or(0).checked_add(1)?;
@@ -46,8 +46,7 @@ impl StyleStack {
 
     /// Puts layers into a new group; returns its number.
     pub fn make_group(&mut self, ids: &[u32], name: &str) -> Option<u32> {
-        if self.groups.len() >= Self::MOST_GROUPS || !self.layers.iter().any(|layer| ids.contains(&layer.id))
-        {
+        if self.groups.len() >= Self::MAX_GROUPS || !self.layers.iter().any(|layer| ids.contains(&layer.id)) {
             return None;
         }
         let id = self.groups.iter().map(|group| group.id).max().unwrap_or(0).checked_add(1)?;

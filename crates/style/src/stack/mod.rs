@@ -31,9 +31,9 @@ pub struct StyleStack {
 
 impl StyleStack {
     /// The most layers.
-    pub const MOST_LAYERS: usize = 256;
+    pub const MAX_LAYERS: usize = 256;
     /// The most groups.
-    pub const MOST_GROUPS: usize = 64;
+    pub const MAX_GROUPS: usize = 64;
 
     /// The layer with that number.
     pub fn layer(&self, id: u32) -> Option<&Layer> {
@@ -113,8 +113,8 @@ impl Settings for StyleStack {
 
     /// Limits the numbers of layers and groups, gives each layer a number of its own, and keeps the layers of a group together.
     fn reconcile(&mut self) {
-        self.layers.truncate(Self::MOST_LAYERS);
-        self.groups.truncate(Self::MOST_GROUPS);
+        self.layers.truncate(Self::MAX_LAYERS);
+        self.groups.truncate(Self::MAX_GROUPS);
         self.number();
         self.gather_groups();
     }

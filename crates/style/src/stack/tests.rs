@@ -112,7 +112,7 @@ fn bad_stacks_are_brought_into_order() {
     assert_eq!(tidy.layers[0].name.len(), Layer::LONGEST_NAME);
     assert_eq!(tidy.solo, None);
     let many = StyleStack { layers: vec![Layer::default(); 1000], ..StyleStack::default() }.clamped();
-    assert_eq!(many.layers.len(), StyleStack::MOST_LAYERS);
+    assert_eq!(many.layers.len(), StyleStack::MAX_LAYERS);
     assert_eq!(many.clone().push(Layer::default()), None);
     assert!(find(&many, "1.length.length").is_some() || find(&many, "1.weight").is_some());
 }

@@ -68,7 +68,7 @@ impl CurveModel for Ramp {
     }
 
     fn add(&mut self, at: [f32; 2]) -> Option<usize> {
-        if self.points.len() >= Self::MOST_POINTS {
+        if self.points.len() >= Self::MAX_POINTS {
             return None;
         }
         // Not on top of another point.

@@ -22,7 +22,7 @@ const MENUS: [(Subject, &str); 4] = [
 
 /// The button that adds a layer.
 pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
-    let full = stack.layers.len() >= StyleStack::MOST_LAYERS;
+    let full = stack.layers.len() >= StyleStack::MAX_LAYERS;
     ui.add_enabled_ui(!full, |ui| {
         // A click on the search does not close the menu.
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -39,7 +39,7 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
             view.search.clear();
         }
         let tip = "Adds a change of the hair after the selected layer.";
-        let full = format!("There are {} layers, the most.", StyleStack::MOST_LAYERS);
+        let full = format!("There are {} layers, the most.", StyleStack::MAX_LAYERS);
         button.hover_tooltip(tip).disabled_hover_tooltip(full);
     });
 }

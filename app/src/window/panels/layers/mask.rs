@@ -94,7 +94,7 @@ fn parts(ui: &mut Ui, mask: &mut Mask) {
         mask.parts.remove(i);
     }
     ui.horizontal(|ui| {
-        let full = mask.parts.len() >= Mask::MOST_PARTS;
+        let full = mask.parts.len() >= Mask::MAX_PARTS;
         let add = ui.add_enabled(!full, egui::Button::new("Add region"));
         if add.hover_tooltip("Limits the layer to a region of the head.").clicked() {
             mask.parts.push(MaskPart::region(MaskRegion::Front));

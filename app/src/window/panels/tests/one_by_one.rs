@@ -225,7 +225,7 @@ fn ties_are_added_chosen_and_removed() {
         control(&harness, Role::Button, "+ Bun").click();
         harness.run();
     }
-    assert_eq!(kinds(&harness).len(), HairTie::MOST);
+    assert_eq!(kinds(&harness).len(), HairTie::MAX);
     harness.get_by_label("Scissors").click();
     harness.run();
     assert!(harness.state().state.scissors);

@@ -55,5 +55,5 @@ fn beats_become_markers_once() {
             "{markers:?}"
         );
     }
-    assert!(harness.state().state.project.timeline.markers.len() < TimelineSection::MOST_MARKERS);
+    assert!(harness.state().state.project.timeline.markers.len() < TimelineSection::MAX_MARKERS);
 }

@@ -10,7 +10,7 @@ use crate::io::basis::{Shape, Spread};
 use crate::io::frames::{CurveFrames, merged};
 
 /// The most times of a file.
-const MOST_TIMES: u64 = 1 << 20;
+const MAX_TIMES: u64 = 1 << 20;
 
 pub(super) struct Frames {
     pub(super) name: String,
@@ -39,7 +39,7 @@ impl Frames {
             }
             let mut add = |property: &lovelock_alembic::Property| {
                 let samples = if property.is_constant() { 1 } else { property.samples };
-                if samples > MOST_TIMES {
+                if samples > MAX_TIMES {
                     return Err(refused(&object, format!("{samples} samples"), "1048576 at most"));
                 }
                 let own = archive.times(property);

@@ -39,9 +39,9 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 pub const METRES_Y_UP: &str = "metres, Y up";
 
 /// The most points of all polylines.
-const MOST_POINTS: usize = 1 << 28;
+const MAX_POINTS: usize = 1 << 28;
 /// How often the points of a file may be used by objects that share them.
-const MOST_SHARING: u64 = 8;
+const MAX_SHARING: u64 = 8;
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let bytes = match source {
@@ -155,7 +155,7 @@ impl Hair {
             .iter()
             .fold(self.raw.points.len(), |sum, &count| sum.saturating_add(shape.polyline_points(count)));
         // Objects may share their points; a small file could then ask for any amount of memory.
-        if made > MOST_POINTS || 12 * self.controls > MOST_SHARING * archive.length() + (1 << 20) {
+        if made > MAX_POINTS || 12 * self.controls > MAX_SHARING * archive.length() + (1 << 20) {
             return Err(refused(
                 object,
                 format!("{made} points"),

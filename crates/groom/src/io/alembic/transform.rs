@@ -7,7 +7,7 @@ use super::objects::{Ancestor, CurveObject};
 use super::refused;
 
 /// The most operations of one transform.
-const MOST_OPERATIONS: u64 = 256;
+const MAX_OPERATIONS: u64 = 256;
 
 /// The transform from an object's own space to the archive at a time: those of all its ancestors.
 pub(super) fn to_archive(
@@ -52,11 +52,11 @@ fn own(archive: &mut Archive<'_>, above: &Ancestor, secs: f64) -> Result<Option<
     if !samples(&above.operations) || !samples(&above.values) {
         return Ok(Some(DMat4::IDENTITY));
     }
-    let operations = archive.few(operations, 0, MOST_OPERATIONS)?;
+    let operations = archive.few(operations, 0, MAX_OPERATIONS)?;
     let (sample, next, t) = archive.times(values).around(secs, values.samples);
-    let mut numbers = archive.few(values, sample, 16 * MOST_OPERATIONS)?;
+    let mut numbers = archive.few(values, sample, 16 * MAX_OPERATIONS)?;
     if t > 0.0 {
-        let later = archive.few(values, next, 16 * MOST_OPERATIONS)?;
+        let later = archive.few(values, next, 16 * MAX_OPERATIONS)?;
         for (number, later) in numbers.iter_mut().zip(later) {
             *number += t * (later - *number);
         }

@@ -18,7 +18,7 @@ use serde::Deserialize;
 
 use super::HairFileError;
 use super::chain::{Chains, chain};
-use super::file::{MOST_COPIED_POINTS, RawHair};
+use super::file::{MAX_COPIED_POINTS, RawHair};
 use super::format::HairFormat;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
@@ -128,7 +128,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         radii: Shared::new(each().filter_map(of(RADIUS))),
         linear: Shared::new(each().filter_map(of(COLOUR))),
         indices: Shared::new(each().filter_map(|primitive| primitive.indices)),
-        most_points: MOST_COPIED_POINTS.max(bytes.len()),
+        most_points: MAX_COPIED_POINTS.max(bytes.len()),
         raw: RawHair::new(Vec::new(), Vec::new()),
         widths: Some(Vec::new()),
         colours: Some(Vec::new()),

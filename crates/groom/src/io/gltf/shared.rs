@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// The most elements that are kept for later primitives: 1 GiB of positions.
-const MOST_KEPT: usize = 1 << 26;
+const MAX_KEPT: usize = 1 << 26;
 
 /// The decoded accessors of one attribute.
 pub(super) struct Shared<T> {
@@ -46,7 +46,7 @@ impl<T> Shared<T> {
             return Ok(Rc::clone(known));
         }
         let elements: Rc<[T]> = read()?.into();
-        if self.size + elements.len() <= MOST_KEPT {
+        if self.size + elements.len() <= MAX_KEPT {
             self.size += elements.len();
             self.kept.insert(accessor, Rc::clone(&elements));
         }

@@ -10,15 +10,15 @@ use glam::{DMat4, DVec3, Vec3};
 use super::curve::Parameters;
 use super::tokens::{Token, Tokens};
 use crate::io::HairFileError;
-use crate::io::file::{MOST_COPIED_POINTS, RawHair};
+use crate::io::file::{MAX_COPIED_POINTS, RawHair};
 use crate::io::source::open_beside;
 
 /// The most open blocks, named coordinate systems, objects and included files. Real scenes have a few hundred.
-const MOST_BLOCKS: usize = 10_000;
-const MOST_INCLUDES: usize = 4096;
+const MAX_BLOCKS: usize = 10_000;
+const MAX_INCLUDES: usize = 4096;
 const DEEPEST_INCLUDE: usize = 32;
 /// The most points of all polylines.
-const MOST_POINTS: usize = 1 << 28;
+const MAX_POINTS: usize = 1 << 28;
 
 /// Strands with their widths.
 #[derive(Default)]
@@ -202,7 +202,7 @@ impl<'a> Scene<'a> {
             }
             b"CoordinateSystem" => {
                 let name = self.quoted("a name in quotes after CoordinateSystem")?;
-                if self.systems.len() >= MOST_BLOCKS {
+                if self.systems.len() >= MAX_BLOCKS {
                     return Err(self.malformed("at most 10000 coordinate systems"));
                 }
                 self.systems.insert(name, self.transform);
@@ -245,7 +245,7 @@ impl<'a> Scene<'a> {
     }
 
     fn begin(&mut self) -> Result<(), HairFileError> {
-        if self.blocks.len() >= MOST_BLOCKS {
+        if self.blocks.len() >= MAX_BLOCKS {
             return Err(self.malformed("at most 10000 open blocks"));
         }
         self.blocks.push(self.transform);
@@ -301,7 +301,7 @@ impl<'a> Scene<'a> {
         strands.widths[first..].iter_mut().for_each(|width| *width *= scale);
         let points = strands.points.len();
         self.has_widths |= parameters.has_width();
-        if points > MOST_POINTS { Err(self.malformed("268435456 points at most")) } else { Ok(()) }
+        if points > MAX_POINTS { Err(self.malformed("268435456 points at most")) } else { Ok(()) }
     }
 
     /// The parameters after the kind of a curve: a declaration in quotes, then a value or values in brackets.
@@ -370,7 +370,7 @@ impl<'a> Scene<'a> {
 
     fn end_object(&mut self) -> Result<(), HairFileError> {
         if let Some((name, strands)) = self.object.take() {
-            if self.objects.len() >= MOST_BLOCKS {
+            if self.objects.len() >= MAX_BLOCKS {
                 return Err(self.malformed("at most 10000 objects"));
             }
             self.objects.insert(name, strands);
@@ -386,7 +386,7 @@ impl<'a> Scene<'a> {
             return Ok(());
         };
         self.copied += object.points.len();
-        if self.copied > MOST_COPIED_POINTS {
+        if self.copied > MAX_COPIED_POINTS {
             return Err(self.malformed("at most 33554432 points of repeated objects"));
         }
         let scale = self.transform.determinant().abs().cbrt() as f32;
@@ -404,7 +404,7 @@ impl<'a> Scene<'a> {
         let name = String::from_utf8_lossy(&name).into_owned();
         let short: String = name.chars().take(80).collect::<String>().escape_debug().collect();
         self.includes += 1;
-        if self.includes > MOST_INCLUDES || self.files.len() >= DEEPEST_INCLUDE {
+        if self.includes > MAX_INCLUDES || self.files.len() >= DEEPEST_INCLUDE {
             return Err(self.malformed("4096 included files at most, 32 within each other"));
         }
         match open_beside(self.folder.as_deref(), Path::new(&name)) {

@@ -10,7 +10,7 @@ use crate::io::basis::{Shape, Spread};
 use crate::io::frames::{CurveFrames, OpenedFrames, Stated, merged};
 
 /// The most times of a file.
-const MOST_TIMES: usize = 1 << 20;
+const MAX_TIMES: usize = 1 << 20;
 
 struct Frames {
     layer: Stage<'static>,
@@ -47,7 +47,7 @@ impl Frames {
             is_moved |= of_transform.len() > 1;
             times.extend(of_transform);
             times = merged(times);
-            if times.len() > MOST_TIMES {
+            if times.len() > MAX_TIMES {
                 return Err(layer.malformed(format!("{} times", times.len()), "1048576 at most"));
             }
             let counts = layer.attribute(prim, "curveVertexCounts", usize::MAX)?;

@@ -32,7 +32,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 };
 
 /// The most points of all polylines.
-const MOST_POINTS: usize = 1 << 28;
+const MAX_POINTS: usize = 1 << 28;
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     read_layer(&mut Stage::open(name, source)?)
@@ -74,7 +74,7 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
             }
             None => all_colours = false,
         }
-        if raw.points.len() > MOST_POINTS {
+        if raw.points.len() > MAX_POINTS {
             return Err(layer.malformed(format!("{} points", raw.points.len()), "268435456 at most"));
         }
     }
@@ -107,7 +107,7 @@ impl Curves {
         }
         let counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
         let made: usize = counts.iter().map(|&count| shape.polyline_points(count)).sum();
-        if made > MOST_POINTS {
+        if made > MAX_POINTS {
             return Err(layer.malformed(format!("{path}: curves of {made} points"), "268435456 at most"));
         }
         let mut primvar = |names: [&str; 2]| -> Result<Option<Vec<Vec3>>, HairFileError> {

@@ -95,7 +95,7 @@ fn an_error_that_was_measured_stays_where_the_picture_alone_cannot_be_compared()
     rig.project.compare.panes[0].scale = 0.1;
     let view = LiveView { shows: LiveShows::PictureError, ..LiveView::default() };
     // The pane is small enough, the picture that it is held against is not.
-    let width = lovelock_render::MOST_SIDE + 8;
+    let width = lovelock_render::MAX_SIDE + 8;
     rig.draw(LiveRequest { width, view, ..rig.request(&[0]) });
     let pane = rig.pane(0);
     assert!(pane.error.rmse().is_some() && pane.problem.is_none(), "{:?}", pane.error);

@@ -12,7 +12,7 @@ use crate::cpu::tile::{STRIDE, TILE};
 /// Pixels of a row that are tested together, and of a layer that are shaded together. Not more than rows have unused items.
 pub(super) const LANES: usize = 8;
 /// A pixel may be in both triangles of a layer. The last lanes may be unused.
-const MOST: usize = 2 * TILE * TILE + LANES;
+const MAX: usize = 2 * TILE * TILE + LANES;
 
 /// The pixels of a layer in a tile.
 pub(super) struct Covered {
@@ -29,7 +29,7 @@ pub(super) struct Covered {
 
 impl Default for Covered {
     fn default() -> Self {
-        let (words, numbers) = (|| vec![0; MOST], || vec![0.0; MOST]);
+        let (words, numbers) = (|| vec![0; MAX], || vec![0.0; MAX]);
         Self { len: 0, at: words(), samples: words(), u: numbers(), t: numbers(), depth: numbers() }
     }
 }
@@ -121,7 +121,7 @@ fn cover<S: Sink>(triangle: &Triangle, surface: &SurfaceSamples, sink: &S, out: 
             }
             for lane in 0..used {
                 let n = out.len;
-                if samples[lane] != 0 && sink.is_open(first + lane) && n < MOST {
+                if samples[lane] != 0 && sink.is_open(first + lane) && n < MAX {
                     out.at[n] = (first + lane) as u32;
                     out.samples[n] = samples[lane];
                     (out.u[n], out.t[n], out.depth[n]) = (u[lane], t[lane], depth[lane]);

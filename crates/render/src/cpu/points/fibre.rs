@@ -10,7 +10,7 @@ use crate::MAX_LIGHTS;
 use crate::cpu::math::{log2, max};
 use crate::cpu::view::{FibreView, View};
 use crate::fibre::{
-    FACING_FIBRES, FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MOST_INCLINED, OWN_FIBRES,
+    FACING_FIBRES, FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MAX_INCLINED, OWN_FIBRES,
 };
 
 /// The light that points scatter toward the eye.
@@ -20,7 +20,7 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
     let ShadedFrom { here, tangent, to_eye, absorption, turn, packed, .. } = from;
     let (mut sin_v, mut cos_v) = (from.sin_v, from.cos_v);
     for lane in 0..LANES {
-        sin_v[lane] = sin_v[lane].clamp(-MOST_INCLINED, MOST_INCLINED);
+        sin_v[lane] = sin_v[lane].clamp(-MAX_INCLINED, MAX_INCLINED);
         cos_v[lane] = max(cos_v[lane], LEAST_COSINE);
     }
     let strength = uniform.colors.w;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};
 use super::view::View;
-use crate::light::MOST_LIGHT;
+use crate::light::MAX_LIGHT;
 use crate::strand_details::PointColours;
 
 mod fibre;
@@ -351,7 +351,7 @@ fn shade_group<const COLORED: bool>(
             half_width: half_width[lane],
             run_x: run[0][lane],
             run_y: run[1][lane],
-            color: three(|c| min(sum[c][lane], MOST_LIGHT)),
+            color: three(|c| min(sum[c][lane], MAX_LIGHT)),
             hash: hash[lane],
         };
     }

@@ -22,7 +22,7 @@ const SLABS: usize = 8;
 const SLICES_PER_SLAB: u32 = 16;
 /// Optical depth 1 in fixed point, and the largest optical depth of a fragment.
 const ONE: f32 = 65_536.0;
-const MOST: f32 = 16.0;
+const MAX: f32 = 16.0;
 
 /// The record of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,7 +66,7 @@ impl Record {
 }
 
 fn optical_depth(alpha: f32) -> f32 {
-    if alpha < 1.0 { (-LN_2 * log2(1.0 - alpha)).min(MOST) } else { MOST }
+    if alpha < 1.0 { (-LN_2 * log2(1.0 - alpha)).min(MAX) } else { MAX }
 }
 
 /// Weights from the estimated order, and the normalisation of opacity.

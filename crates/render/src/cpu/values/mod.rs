@@ -19,7 +19,7 @@ use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError};
 
 /// Values from this limit on count as missing, so that sums stay finite.
-const MOST: f32 = 1e30;
+const MAX: f32 = 1e30;
 
 /// The least covered fraction of a pixel that has a value; less is rounding.
 const LEAST_SHARE: f32 = 1e-6;
@@ -124,7 +124,7 @@ impl ValueRenderer {
         let grid = self.place(&view, input, strands, width, height);
         // In place of colours: the value times 1 or 0, and 1 or 0. Their quotient is the mean of the values.
         self.placed.points.par_iter_mut().zip(values).with_min_len(8192).for_each(|(point, &value)| {
-            point.color = if value.abs() < MOST { [value, 1.0, 0.0] } else { [0.0; 3] };
+            point.color = if value.abs() < MAX { [value, 1.0, 0.0] } else { [0.0; 3] };
         });
         self.placed.sort(&view, &grid, input, strands, &[]);
         let mut tiles = std::mem::take(&mut self.tiles);

@@ -5,7 +5,7 @@
 @group(0) @binding(3) var<storage, read_write> entries: array<vec4f>;
 
 // The most that a point is moved, metres: light along the hair would go a long way in it.
-const MOST_WAY: f32 = 0.1;
+const MAX_WAY: f32 = 0.1;
 
 fn turned_by(rib: u32) -> vec2f {
     let angle = TAU * f32(rib) / f32(clusters.grid.x);
@@ -37,7 +37,7 @@ fn way_out(outer: u32, i: u32, rib: u32, radius: f32) -> f32 {
     let c = radius * radius - 1.0;
     let way = (sqrt(max(b * b - a * c, 0.0)) - b) / a;
     // A section without an area gives NaN or infinity.
-    return select(0.0, min(way, MOST_WAY), way > 0.0 && abs(determinant) > 0.0);
+    return select(0.0, min(way, MAX_WAY), way > 0.0 && abs(determinant) > 0.0);
 }
 
 @compute @workgroup_size(64)

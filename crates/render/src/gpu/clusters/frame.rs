@@ -7,7 +7,7 @@ use lovelock_gpu::Gpu;
 use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 
 use super::constant::Largest;
-use super::kernels::{ClusterVariant, MOST_PIXELS_A_THREAD};
+use super::kernels::{ClusterVariant, MAX_PIXELS_A_THREAD};
 use crate::clusters::{guides_of, to_strongest_light};
 use crate::{FrameInput, HairPose, PictureSettings};
 
@@ -104,7 +104,7 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
 }
 
 /// The most threads per triangle.
-const MOST_LANES: u64 = 64;
+const MAX_LANES: u64 = 64;
 /// How much larger than at rest volumes may become in each direction.
 const GROWN: f32 = 2.0;
 
@@ -122,7 +122,7 @@ pub(super) fn lanes(
     // The number of a thread has 32 bits.
     let room = u64::from(u32::MAX) / (2 * frame.quads()).max(1);
     // NaN gives one.
-    ((steps / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, room.clamp(1, MOST_LANES) as u32)
+    ((steps / MAX_PIXELS_A_THREAD).ceil() as u32).clamp(1, room.clamp(1, MAX_LANES) as u32)
 }
 
 #[cfg(test)]

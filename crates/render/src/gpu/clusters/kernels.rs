@@ -27,7 +27,7 @@ pub(in crate::gpu) const FRAGMENT_PARTS: [ShaderPart; 4] = [CLUSTERS, LAYER, CEL
 pub(in crate::gpu) const PUBLISHED_PARTS: [ShaderPart; 3] = [CLUSTERS, SURFACE, PUBLISHED];
 
 /// The most steps of loops per thread: half of what software adapters allow.
-pub(super) const MOST_PIXELS_A_THREAD: f32 = 32_768.0;
+pub(super) const MAX_PIXELS_A_THREAD: f32 = 32_768.0;
 
 /// What kernels of clusters are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

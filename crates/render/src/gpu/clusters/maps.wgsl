@@ -11,7 +11,7 @@
 // Sine of the angle between eye and hair below which the azimuth of the eye is not defined well: five degrees.
 const ALONG_HAIR: f32 = 0.087;
 // The most that a half float holds.
-const MOST_DEPTH: f32 = 60000.0;
+const MAX_DEPTH: f32 = 60000.0;
 
 struct Place {
     column: u32,
@@ -128,7 +128,7 @@ fn fill_map(quad: u32, place: Place) {
             texel = texel_of(place, k);
         }
         sum += select(0.0, texel.z + texel.w, k > 0u && k <= place.texels);
-        maps[first + 1u + k] = vec2u(pack2x16float(min(texel.xy, vec2f(MOST_DEPTH))), pack2x16float(texel.zw));
+        maps[first + 1u + k] = vec2u(pack2x16float(min(texel.xy, vec2f(MAX_DEPTH))), pack2x16float(texel.zw));
     }
     let mean = sum / f32(2u * place.texels);
     maps[first] = vec2u(bitcast<u32>(1.0 / max(mean, 0.02)), place.texels);
@@ -162,7 +162,7 @@ fn cross_layer(slot: u32, column: u32, met: u32, position: vec2f) {
     let u = at - floor(at);
     let depths = light_depths(place, u);
     let cosines = cos(light.xz) + (cos(light.yw) - cos(light.xz)) * u;
-    crossings[slot] = vec2u(pack2x16float(min(depths, vec2f(MOST_DEPTH))), pack2x16snorm(cosines));
+    crossings[slot] = vec2u(pack2x16float(min(depths, vec2f(MAX_DEPTH))), pack2x16snorm(cosines));
 }
 
 fn fill_crossings(quad: u32, column: u32, layer: u32, light: vec4f) {

@@ -50,7 +50,7 @@ fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
             * published_highlight(shifted_tangent(tangent, normal, -SECONDARY_SHIFT), l, v, SECONDARY_EXPONENT);
         sum += light.radiance_blur.xyz * (color * (matt + second) + first) * lit;
     }
-    sum = min(sum, vec3f(MOST_LIGHT));
+    sum = min(sum, vec3f(MAX_LIGHT));
     let hash = shaded[i].color.y & 0xffff0000u;
     shaded[i].color = vec2u(pack2x16float(sum.rg), (pack2x16float(vec2f(sum.b, 0.0)) & 0xffffu) | hash);
 }

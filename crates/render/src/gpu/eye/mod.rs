@@ -70,9 +70,9 @@ pub(super) struct EyeInput<'a> {
 }
 
 /// The most pixels per thread: half of what software adapters allow.
-const MOST_PIXELS_A_THREAD: f32 = 32_768.0;
+const MAX_PIXELS_A_THREAD: f32 = 32_768.0;
 /// The most threads per segment.
-const MOST_LANES: u32 = 64;
+const MAX_LANES: u32 = 64;
 
 impl EyeInput<'_> {
     /// Threads per segment, so that none iterates over too many pixels: from the largest possible length and width.
@@ -80,7 +80,7 @@ impl EyeInput<'_> {
         let (columns, rows) = (self.area.columns as f32, self.area.rows as f32);
         let most = (2.0 * self.reach + 4.0) * (columns.hypot(rows) + 2.0 * self.reach);
         let most = if most < columns * rows { most } else { columns * rows };
-        ((most / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, MOST_LANES)
+        ((most / MAX_PIXELS_A_THREAD).ceil() as u32).clamp(1, MAX_LANES)
     }
 }
 

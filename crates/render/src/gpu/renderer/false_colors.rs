@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lovelock_gpu::PassTimer;
 
 use super::picture::unsettled;
-use super::{GpuRenderer, MOST_ATTEMPTS, eye_input};
+use super::{GpuRenderer, MAX_ATTEMPTS, eye_input};
 use crate::color_scale::ColorScale;
 use crate::gpu::eye::HairOutput;
 use crate::gpu::false_colors::PaintInput;
@@ -53,7 +53,7 @@ impl GpuRenderer {
         let gpu = Arc::clone(&self.gpu);
         let shown = images.free([targets.width, targets.height]);
         self.false_colors.write(&gpu, &self.pipelines.false_colors, values)?;
-        for _ in 0..=MOST_ATTEMPTS {
+        for _ in 0..=MAX_ATTEMPTS {
             if self.draw_false_colors(scale, &shown)? {
                 return Ok(shown);
             }

@@ -12,13 +12,13 @@ use lovelock_gpu::{Gpu, GpuError, PassTimer, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
 use super::{GpuRenderer, ListsOfFrame, Output, number_of_bytes};
-use crate::gpu::present::{HEAD_BYTES, MOST_LISTS};
+use crate::gpu::present::{HEAD_BYTES, MAX_LISTS};
 use crate::image::{DeviceImage, DeviceImages};
 use crate::picture::check_size_for;
 use crate::{FrameInput, FrameStats, RenderError};
 
 /// The most frames that are prepared while the device has not finished them.
-pub const MOST_IN_FLIGHT: usize = 2;
+pub const MAX_IN_FLIGHT: usize = 2;
 
 /// A frame that the device has finished.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ const PENDING: u8 = 0;
 const DONE: u8 = 1;
 const FAILED: u8 = 2;
 
-const HEADS_BYTES: u64 = HEAD_BYTES * MOST_LISTS as u64;
+const HEADS_BYTES: u64 = HEAD_BYTES * MAX_LISTS as u64;
 const REPORT_BYTES: u64 = HEADS_BYTES + 4 * SUM_WORDS;
 
 /// The frames that the device has not finished, oldest first, and what they leave for later ones.
@@ -72,7 +72,7 @@ pub(super) struct Flights {
 
 impl GpuRenderer {
     /// Draws `input` into one of `images`, without waiting. Commands that are submitted to the same device afterwards see the image.
-    /// At most [`MOST_IN_FLIGHT`] frames should be in flight: see [`GpuRenderer::in_flight`]. `measured` asks for the times of passes and
+    /// At most [`MAX_IN_FLIGHT`] frames should be in flight: see [`GpuRenderer::in_flight`]. `measured` asks for the times of passes and
     /// the mean transmittance, which costs reading them back.
     ///
     /// # Errors
@@ -189,8 +189,8 @@ impl GpuRenderer {
 }
 
 /// The heads of the lists and the sum of the transmittances.
-fn read_report(report: &Report) -> Result<([[u32; 2]; MOST_LISTS], f64), GpuError> {
-    let mut heads = [[0; 2]; MOST_LISTS];
+fn read_report(report: &Report) -> Result<([[u32; 2]; MAX_LISTS], f64), GpuError> {
+    let mut heads = [[0; 2]; MAX_LISTS];
     let mut sum = 0.0;
     {
         let bytes =

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{GpuError, PassTime, PassTimer, Readback, Traffic};
 
-use super::{GpuRenderer, ListsOfFrame, MOST_ATTEMPTS, Output, number_of_bytes};
-use crate::gpu::present::{HEAD_BYTES, MOST_LISTS};
+use super::{GpuRenderer, ListsOfFrame, MAX_ATTEMPTS, Output, number_of_bytes};
+use crate::gpu::present::{HEAD_BYTES, MAX_LISTS};
 use crate::picture::check_size_for;
 use crate::{FrameInput, FrameStats, Picture, RenderError};
 
@@ -34,7 +34,7 @@ impl GpuRenderer {
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
         let before = self.gpu.traffic();
-        for _ in 0..=MOST_ATTEMPTS {
+        for _ in 0..=MAX_ATTEMPTS {
             let pending = self.begin(input, size, back)?;
             if let Some(stats) = self.finish_picture(pending, picture)? {
                 return Ok(FrameStats { traffic: self.gpu.traffic().since(before), ..stats });
@@ -107,7 +107,7 @@ impl GpuRenderer {
         pending.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers, &mut self.heads])?;
         self.readbacks.push(pending.readback);
         gpu.check()?;
-        let mut heads = [[0_u32; 2]; MOST_LISTS];
+        let mut heads = [[0_u32; 2]; MAX_LISTS];
         for (head, bytes) in heads.iter_mut().zip(self.heads.chunks_exact(HEAD_BYTES as usize)) {
             let words: [u32; 4] = bytemuck::pod_read_unaligned(bytes);
             *head = [words[0], words[1]];

@@ -15,8 +15,8 @@ const FIBRES_PER_DEPTH: f32 = 1.0 / 0.15;
 const LEAST_TRANSMITTANCE: f32 = 1.0 / 510.0;
 const OWN_FIBRES: f32 = 0.5;
 const FACING_FIBRES: f32 = 0.6;
-const MOST_INCLINED: f32 = 0.9396926;
-const MOST_FIBRES: f32 = 40.0;
+const MAX_INCLINED: f32 = 0.9396926;
+const MAX_FIBRES: f32 = 40.0;
 const LARGEST_SOURCE: f32 = 0.25;
 const WIDEST: f32 = 20.0;
 const BACKSCATTER: f32 = 0.636619772;
@@ -96,7 +96,7 @@ fn tilted(p: u32, sin_v: f32, cos_v: f32) -> vec2f {
 }
 
 fn scatter_of(t: vec3f, v: vec3f, absorption: vec3f) -> Scatter {
-    let sin_v = clamp(dot(t, v), -MOST_INCLINED, MOST_INCLINED);
+    let sin_v = clamp(dot(t, v), -MAX_INCLINED, MAX_INCLINED);
     let cos_v = sqrt(1.0 - sin_v * sin_v);
     let eye = cosine_step(cos_v);
     let sigma = clamp(absorption, vec3f(0.0), vec3f(1e6));
@@ -143,7 +143,7 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32, 
 
     let crossed = -FIBRES_PER_DEPTH * log(max(lit, LEAST_TRANSMITTANCE));
     let facing = max(dot(l, v), 0.0);
-    let n = clamp(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0, MOST_FIBRES);
+    let n = clamp(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0, MAX_FIBRES);
     let unhit = exp(-n);
     let reached = exp(-n * (1.0 - s.forward));
     let psi = clamp(reached - unhit, vec3f(0.0), vec3f(1.0));

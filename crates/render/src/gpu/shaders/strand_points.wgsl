@@ -54,7 +54,7 @@ override FIBRE: bool = true;
 override COLORED: bool = false;
 
 // The largest half float. See cpu/points/mod.rs.
-const MOST_LIGHT: f32 = 65504.0;
+const MAX_LIGHT: f32 = 65504.0;
 
 // See pigment.rs in groom.
 const WHITENING: f32 = 97.381;
@@ -200,7 +200,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         sum += ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
     }
 
-    sum = min(sum, vec3f(MOST_LIGHT));
+    sum = min(sum, vec3f(MAX_LIGHT));
     let width = frame.width_opacity_tip.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
     let half_width = 0.5 * thin(width);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;

@@ -6,10 +6,10 @@
 // The number that becomes 0, and the reciprocal of the distance to the number that becomes 1.
 @group(0) @binding(20) var<uniform> value_range: vec2f;
 
-// Values from this limit on are missing. Twin of `MOST` in cpu/values/mod.rs.
-const MOST_VALUE: f32 = 1e30;
+// Values from this limit on are missing. Twin of `MAX` in cpu/values/mod.rs.
+const MAX_VALUE: f32 = 1e30;
 // The most that a fragment can hold as a half float, with room for the gain of streaks.
-const MOST_PLACE: f32 = 5e4;
+const MAX_PLACE: f32 = 5e4;
 
 fn put_value(i: u32, value: f32, share: f32) {
     // The hash of the strand is kept.
@@ -32,8 +32,8 @@ fn given_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let i = id.x + id.y * groups.x * 64u;
     if (i < arrayLength(&values)) {
         let value = values[i];
-        let place = clamp((value - value_range.x) * value_range.y, -MOST_PLACE, MOST_PLACE);
-        let known = abs(value) < MOST_VALUE;
+        let place = clamp((value - value_range.x) * value_range.y, -MAX_PLACE, MAX_PLACE);
+        let known = abs(value) < MAX_VALUE;
         put_value(i, select(0.0, place, known), select(0.0, 1.0, known));
     }
 }

@@ -15,7 +15,7 @@ use crate::engine::{BrushLayers, Engine};
 use crate::strokes::{Stroke, StrokeReport, StrokeStart};
 
 /// The most requests that wait for a scene.
-const MOST_WAITING: usize = 4096;
+const MAX_WAITING: usize = 4096;
 /// The longest time for which hair is kept as a stroke has left it until its scene comes, seconds.
 const LONGEST_KEPT_SECS: f64 = 20.0;
 /// The longest time for which a stroke waits for the scene that has its layer, seconds, and the longest if the project lacks that.
@@ -105,7 +105,7 @@ impl SimulationThread {
             }
             self.brushing.waiting.push_back(request);
         }
-        if self.take.is_some() || self.brushing.waiting.len() > MOST_WAITING {
+        if self.take.is_some() || self.brushing.waiting.len() > MAX_WAITING {
             self.drop_waiting();
             self.end_open_stroke();
         }

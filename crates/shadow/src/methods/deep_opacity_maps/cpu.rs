@@ -11,7 +11,7 @@ use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 /// The map of [`ShadowMethod::DeepOpacityMaps`].
 pub type DeepOpacityMaps = TexelMap<Layers>;
 
-const MOST_LAYERS: usize = *DeepOpacityMapsSettings::LAYERS.end() as usize;
+const MAX_LAYERS: usize = *DeepOpacityMapsSettings::LAYERS.end() as usize;
 
 /// A record is the depth of the first fragment, then the optical depth before the end of each layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +19,9 @@ pub struct Layers {
     settings: DeepOpacityMapsSettings,
     pub(super) count: usize,
     /// The start of each layer, relative to the first fragment.
-    pub(super) starts: [f32; MOST_LAYERS],
+    pub(super) starts: [f32; MAX_LAYERS],
     /// 1 over the thickness of each layer.
-    pub(super) per_depth: [f32; MOST_LAYERS],
+    pub(super) per_depth: [f32; MAX_LAYERS],
 }
 
 impl Layers {
@@ -45,7 +45,7 @@ impl TexelMethod for Layers {
             LayerGrowth::Linear => (layer + 1) as f32,
         };
         let thinnest = settings.depth_share / (0..count).map(weight).sum::<f32>();
-        let (mut starts, mut per_depth) = ([0.0; MOST_LAYERS], [0.0; MOST_LAYERS]);
+        let (mut starts, mut per_depth) = ([0.0; MAX_LAYERS], [0.0; MAX_LAYERS]);
         let mut start = 0.0;
         for layer in 0..count {
             let thickness = thinnest * weight(layer);

@@ -13,7 +13,7 @@ use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 pub type DensityClustering = TexelMap<Clustering>;
 
 /// The most clusters per texel.
-pub(super) const MOST: usize = *DensityClusteringSettings::CLUSTERS.end() as usize;
+pub(super) const MAX: usize = *DensityClusteringSettings::CLUSTERS.end() as usize;
 
 /// Half the width of a uniform distribution divided by its standard deviation (the paper's γ).
 const GAMMA: f64 = 1.732_050_807_568_877_2;
@@ -239,7 +239,7 @@ impl TexelMethod for Clustering {
             [_, _, _, _, _] => self.fill_bins::<5>(fragments, record),
             [_, _, _, _, _, _] => self.fill_bins::<6>(fragments, record),
             [_, _, _, _, _, _, _] => self.fill_bins::<7>(fragments, record),
-            _ => self.fill_bins::<MOST>(fragments, record),
+            _ => self.fill_bins::<MAX>(fragments, record),
         }
     }
 

@@ -15,7 +15,7 @@ pub(crate) const BAND_ROWS: u32 = 16;
 /// Points per worker: with fewer, another worker does not pay off.
 const POINTS_PER_PIECE: usize = 4096;
 /// The most pieces that strands are divided into.
-const MOST_PIECES: usize = 16;
+const MAX_PIECES: usize = 16;
 
 /// Unsorted fragments per block. A list that doubles as it grows would hold up to twice what it needs, and three times while
 /// it is moved. With blocks, only the last one of a piece and band is partly empty.
@@ -349,7 +349,7 @@ pub(crate) fn sum_over_segments(
 
 /// The number of pieces to divide strands into in the current thread pool.
 fn piece_count(points: usize) -> usize {
-    (2 * rayon::current_num_threads()).min(points / POINTS_PER_PIECE).clamp(1, MOST_PIECES)
+    (2 * rayon::current_num_threads()).min(points / POINTS_PER_PIECE).clamp(1, MAX_PIECES)
 }
 
 /// The first strand of piece `piece` of `pieces`, which have about the same number of points.

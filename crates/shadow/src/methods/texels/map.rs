@@ -21,7 +21,7 @@ use crate::{
 const POINTS_PER_LOOKUP: usize = 2048;
 
 /// The largest optical depth of a fragment, so that sums stay finite; e^−10⁴ is 0 in any float.
-const MOST_DEPTH_PER_FRAGMENT: f32 = 1e4;
+const MAX_DEPTH_PER_FRAGMENT: f32 = 1e4;
 
 /// The map of a method with a record for each texel; everything is lit until it is built.
 ///
@@ -191,7 +191,7 @@ impl<M: TexelMethod> TexelMap<M> {
 /// A = t², for texels of edge t.
 pub(crate) fn depth_per_texel(extinction_scale: f32, strand_width: f32, frame: &TexelFrame) -> f32 {
     let depth = safe_extinction(extinction_scale) * strand_width / frame.texel_size;
-    if depth > 0.0 { depth.min(MOST_DEPTH_PER_FRAGMENT) } else { 0.0 }
+    if depth > 0.0 { depth.min(MAX_DEPTH_PER_FRAGMENT) } else { 0.0 }
 }
 
 impl<M: TexelMethod> TexelMap<M> {

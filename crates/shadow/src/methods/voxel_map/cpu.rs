@@ -21,9 +21,9 @@ use crate::{
 /// Points per worker: with fewer, another worker does not pay off.
 const POINTS_PER_WORKER: usize = 4096;
 /// The most private grids. Merging more of them costs more than it saves.
-const MOST_GRIDS: usize = 8;
+const MAX_GRIDS: usize = 8;
 /// The most cells of all private grids together, which bounds their address space to 1 GiB.
-const MOST_CELLS: usize = 1 << 28;
+const MAX_CELLS: usize = 1 << 28;
 /// Points per parallel task of the bounds.
 const POINTS_PER_BOUNDS: usize = 1 << 14;
 /// Points per parallel task of a lookup.
@@ -192,8 +192,8 @@ pub(super) fn fixed_point_depth(
 
 /// The number of private grids for this map in the current thread pool.
 fn grid_count(layout: &Layout, points: usize) -> usize {
-    let useful = rayon::current_num_threads().min(points / POINTS_PER_WORKER).min(MOST_GRIDS);
-    useful.min(MOST_CELLS / layout.cells()).max(1)
+    let useful = rayon::current_num_threads().min(points / POINTS_PER_WORKER).min(MAX_GRIDS);
+    useful.min(MAX_CELLS / layout.cells()).max(1)
 }
 
 /// The first strand of piece `piece` of `pieces`, which have about the same number of points.

@@ -22,7 +22,7 @@ const LANES: usize = 16;
 /// Segments with more samples than this, among shorter ones, are processed one at a time.
 const LONG: u32 = 24;
 /// The most that one sample adds, in fixed point: τ = 32, twice the largest depth of a cell.
-const MOST_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
+const MAX_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
 
 simd_versions! {
     /// [`Deposit::run`] for the vectors of `width`.
@@ -173,7 +173,7 @@ impl Deposit {
             let inverse = 1.0 / count;
             // ℓ sinθ in cells is the length across the light.
             let depth = self.depth * across.sqrt() * inverse + 0.5;
-            let depth = if depth < MOST_PER_SAMPLE { depth } else { MOST_PER_SAMPLE };
+            let depth = if depth < MAX_PER_SAMPLE { depth } else { MAX_PER_SAMPLE };
             block.inverse[lane] = inverse;
             block.samples[lane] = whole_part(count * keep[lane]) as u32;
             block.depth[lane] = whole_part(depth * keep[lane]) as u32;
@@ -182,7 +182,7 @@ impl Deposit {
 
     #[inline(always)]
     fn fill_points(&self, block: &mut Block) {
-        let depth = whole_part((self.depth + 0.5).min(MOST_PER_SAMPLE)) as u32;
+        let depth = whole_part((self.depth + 0.5).min(MAX_PER_SAMPLE)) as u32;
         for lane in 0..BLOCK - 1 {
             block.samples[lane] = u32::from(block.valid[lane]);
             block.depth[lane] = if block.valid[lane] { depth } else { 0 };

@@ -14,7 +14,7 @@ use super::grid::{Grid, bits};
 use super::layout::{Layout, TILE_CELLS};
 
 /// The value at which sums saturate: above 16 in fixed point, the largest depth that a cell can hold, and far from overflow.
-const MOST: u32 = 1 << 25;
+const MAX: u32 = 1 << 25;
 /// Shift from the fixed-point format of density (2^20) to that of faces (2^12).
 const FACE_SHIFT: u32 = 8;
 
@@ -95,7 +95,7 @@ impl Faces {
     #[inline(always)]
     fn pass(&mut self, slice: &mut [u32; TILE_CELLS]) {
         for ((cell, sum), front) in slice.iter_mut().zip(&mut self.sum).zip(&mut self.front) {
-            *sum = (*sum + (*cell).min(MOST)).min(MOST);
+            *sum = (*sum + (*cell).min(MAX)).min(MAX);
             let back = ((*sum + (1 << (FACE_SHIFT - 1))) >> FACE_SHIFT).min(0xffff);
             *cell = *front | back << 16;
             *front = back;

@@ -9,7 +9,7 @@ const SLABS_AT: u32 = 6u;
 const LIGHT_AT: u32 = 14u;
 const SLICES: f32 = 128.0;
 const DEPTH_ONE: f32 = 65536.0;
-const MOST_DEPTH: f32 = 16.0;
+const MAX_DEPTH: f32 = 16.0;
 const LIGHT_ONE: f32 = 16384.0;
 
 // Depth falls with distance; its inverse is distance up to a factor.
@@ -26,5 +26,5 @@ fn slice_of(record: u32, depth: f32) -> f32 {
 }
 
 fn optical_depth(alpha: f32) -> f32 {
-    return select(MOST_DEPTH, min(-log(1.0 - alpha), MOST_DEPTH), alpha < 1.0);
+    return select(MAX_DEPTH, min(-log(1.0 - alpha), MAX_DEPTH), alpha < 1.0);
 }

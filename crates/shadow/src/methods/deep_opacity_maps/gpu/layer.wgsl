@@ -2,7 +2,7 @@
 // before the end of each layer. `texels.integers.x`: layers. `texels.floats`: the start of each of 16 layers, relative to the first fragment,
 // then 1 over the thickness of each.
 
-const MOST_LAYERS: u32 = 16u;
+const MAX_LAYERS: u32 = 16u;
 
 fn record_of(texel: u32) -> u32 {
     return texel * (texels.integers.x + 1u);

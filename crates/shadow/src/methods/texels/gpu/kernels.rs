@@ -6,7 +6,7 @@ use super::Pass;
 use crate::gpu::PointLookup;
 
 /// The number of cached sets of kernels, so that switching a setting back and forth does not recompile.
-const MOST_KEPT: usize = 8;
+const MAX_KEPT: usize = 8;
 
 /// The kernels for certain values of the shaders' constants.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ impl KernelSets {
             return Ok(());
         }
         let set = Kernels::new(gpu, passes, query, constants)?;
-        self.0.truncate(MOST_KEPT - 1);
+        self.0.truncate(MAX_KEPT - 1);
         self.0.insert(0, set);
         Ok(())
     }

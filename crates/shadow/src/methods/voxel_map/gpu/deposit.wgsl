@@ -7,7 +7,7 @@
 @group(0) @binding(4) var<storage, read_write> full: array<atomic<u32>>;
 
 // The most that one sample adds, in fixed point: an optical depth of 32.
-const MOST_PER_SAMPLE: f32 = 33554432.0;
+const MAX_PER_SAMPLE: f32 = 33554432.0;
 
 // Whether a point was included in the bounds of the window. False for NaN.
 fn holds(p: vec3f) -> bool {
@@ -49,7 +49,7 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let count = u32(2.0 * sqrt(d.x * d.x + across)) + 1u;
     let inverse = 1.0 / f32(count);
     // The length across the light, in cells, counts.
-    let depth = u32(min(voxels.anchor.w * sqrt(across) * inverse + 0.5, MOST_PER_SAMPLE));
+    let depth = u32(min(voxels.anchor.w * sqrt(across) * inverse + 0.5, MAX_PER_SAMPLE));
     if (depth == 0u) {
         return;
     }
@@ -67,6 +67,6 @@ fn deposit_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     }
     let p = window_from_world(points[i].xyz);
     if (holds(p)) {
-        add(vec3u(held(p)), u32(min(voxels.anchor.w + 0.5, MOST_PER_SAMPLE)));
+        add(vec3u(held(p)), u32(min(voxels.anchor.w + 0.5, MAX_PER_SAMPLE)));
     }
 }

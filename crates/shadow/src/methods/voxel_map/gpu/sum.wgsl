@@ -5,7 +5,7 @@
 @group(0) @binding(4) var<storage, read> full: array<u32>;
 
 // The value at which sums saturate: above 16 in fixed point.
-const MOST: u32 = 1u << 25u;
+const MAX: u32 = 1u << 25u;
 // Shift from the fixed-point format of density to that of faces.
 const FACE_SHIFT: u32 = 8u;
 
@@ -22,7 +22,7 @@ fn sum_columns(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         let at = i * slice + column;
         let cell = map[at];
         let wrapped = ((full[at >> 5u] >> (at & 31u)) & 1u) != 0u;
-        sum = min(sum + select(min(cell, MOST), MOST, wrapped), MOST);
+        sum = min(sum + select(min(cell, MAX), MAX, wrapped), MAX);
         let back = min((sum + (1u << (FACE_SHIFT - 1u))) >> FACE_SHIFT, 0xffffu);
         let faces = front | (back << 16u);
         // Most cells are empty and lit.

@@ -1,7 +1,7 @@
 //! Every method on the published hairstyle of 100,500 points: build, and lookups at every point.
 #![allow(missing_docs)] // `criterion_main` makes functions without.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../shadow/tests/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;

@@ -1,7 +1,7 @@
 //! Stages of the voxel map. The published figure for 100,500 points is 90 ms in all (Pentium 4, 3 GHz).
 #![allow(missing_docs)] // `criterion_main` makes functions without.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../shadow/tests/common/mod.rs"]
 mod common;
 
 use std::hint::black_box;

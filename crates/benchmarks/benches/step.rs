@@ -16,7 +16,7 @@ use lovelock_motion::{BodyField, FieldPose, PlacedCollider};
 use lovelock_simulation::{Integrator, PlacedField, Simulation, SimulationSettings, StepInput, Wind};
 use lovelock_testkit::clock::process_time;
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../../simulation/tests/common/mod.rs"]
 mod common;
 use common::{STEP_SECS, Stage, straight, style};
 

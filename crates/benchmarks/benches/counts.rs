@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use gungraun::prelude::*;
-use lovelock_counts::{DANCER, Drawn, Moving, Shadowed, guides, hair_file, one_thread, strands, style};
+use lovelock_benchmarks::{DANCER, Drawn, Moving, Shadowed, guides, hair_file, one_thread, strands, style};
 use lovelock_groom::{HairFile, Strands, interpolate, load_hair_bytes};
 use lovelock_motion::{Character, load_character_bytes};
 use lovelock_render::Transparency;
