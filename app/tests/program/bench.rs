@@ -66,7 +66,7 @@ fn every_stage_of_a_scene_is_measured() {
 }
 
 #[test]
-fn a_run_is_compared_with_an_earlier_one() {
+fn a_run_is_compared_with_an_earlier_one_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let args = ["bench", "simulate-402", "--frames", "2", "--json"];
     let first = run(dir.path(), args).done().json();
@@ -93,7 +93,7 @@ fn a_run_is_compared_with_an_earlier_one() {
 }
 
 #[test]
-fn a_published_scene_uses_its_own_settings_and_has_published_figures() {
+fn a_published_scene_uses_its_own_settings_and_has_published_figures_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let measure = |more: &[&str]| {
         let args = ["bench", "woman-300k", "--frames", "1", "--backend", "cpu", "--json"];
@@ -143,7 +143,7 @@ fn wrong_requests_are_rejected_before_any_work() {
 }
 
 #[test]
-fn locks_are_measured_through_the_dance_with_changed_settings() {
+fn locks_are_measured_through_the_dance_with_changed_settings_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let of = |cohesion: &str| {
         let set = format!("simulation.locks.cohesion={cohesion}");

@@ -32,7 +32,7 @@ fn the_database_is_built_alike_each_time_and_described() {
 }
 
 #[test]
-fn films_of_clusters_are_drawn_and_resumed_only_as_they_began() {
+fn films_of_clusters_are_drawn_and_resumed_only_as_they_began_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let cache = dir.path().join("cache");

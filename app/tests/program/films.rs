@@ -60,7 +60,7 @@ fn format_blur_and_transparency_are_in_the_json() {
 }
 
 #[test]
-fn a_killed_recording_resumes_to_the_same_bytes() {
+fn a_killed_recording_resumes_to_the_same_bytes_long_suite() {
     let dir = folder();
     let more =
         |out: &'static str| [out, "--frames", "0..16", "--size", "96x64", "--motion-blur", "2", "--resume"];

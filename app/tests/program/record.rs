@@ -304,7 +304,7 @@ fn files_on_the_command_line_replace_those_of_the_project() {
 }
 
 #[test]
-fn the_gpu_records_other_methods_and_reports_its_passes() {
+fn the_gpu_records_other_methods_and_reports_its_passes_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let record = |backend: &str, shadow: &str, transparency: &str| {
@@ -376,7 +376,7 @@ fn a_take_reads_files_outside_its_folder_only_if_they_are_named() {
 }
 
 #[test]
-fn takes_beside_each_other_give_the_same_image_each_time() {
+fn takes_beside_each_other_give_the_same_image_each_time_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let run = |args: &[&str]| run(dir.path(), args);
     let mut project = small_project();

@@ -40,7 +40,7 @@ fn alone() -> MutexGuard<'static, ()> {
 }
 
 #[test]
-fn the_default_project_looks_the_same_on_both() {
+fn the_default_project_looks_the_same_on_both_long_suite() {
     let _alone = alone();
     let (width, height) = (480, 270);
     let (project, _, mut engine) = dancer();

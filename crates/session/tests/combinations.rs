@@ -91,7 +91,7 @@ fn draw_all(name: &str, mut project: Project) {
 }
 
 #[test]
-fn grown_hairstyles() {
+fn grown_hairstyles_long_suite() {
     for &preset in lovelock_testkit::suite::cases(&[Preset::Smooth, Preset::Curly], &Preset::ALL) {
         let mut project = Project::default();
         project.set_preset(preset);
@@ -100,7 +100,7 @@ fn grown_hairstyles() {
 }
 
 #[test]
-fn imported_grooms() {
+fn imported_grooms_long_suite() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let files = ["hair/yuksel/straight.hair", "hair/tressfx/sintel_16pt.tfx"];
     for &file in lovelock_testkit::suite::cases(&files[..1], &files) {

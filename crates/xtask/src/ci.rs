@@ -16,7 +16,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     }
     system::prepare()?;
     let mut steps = Vec::new();
-    let (outcome, time) = timed(|| lints::build(cargo(testing::BUILD).arg("--examples")));
+    let (outcome, time) = timed(|| lints::build(cargo(testing::BUILD).args(["--examples", "--keep-going"])));
     steps.push(("build and lint", outcome, time));
     let (tests, time) = timed(|| testing::tests(&Suite::default()));
     let ran = match tests {

@@ -7,7 +7,7 @@ use lovelock_session::render_thread::ShownMask;
 use lovelock_style::operations::Lift;
 use lovelock_style::{HeadBox, Layer};
 
-use super::tools::{drag_over, unfold, view, with_picture};
+use super::tools::{drag_over, into_view, unfold, view, with_picture};
 use super::whole::{CTRL, Whole, go, key, of, project, wait};
 use crate::window::brushes::SeenHair;
 use crate::window::overlay;
@@ -119,6 +119,7 @@ fn a_map_is_painted_into_a_layer_of_its_own() {
     key(&mut harness, Modifiers::NONE, Key::H);
     unfold(&mut harness, "Brushes");
     let start = |harness: &mut Whole| {
+        into_view(harness, egui::accesskit::Role::Button, "Density");
         super::control(harness, egui::accesskit::Role::Button, "Density").click();
         go(harness);
     };

@@ -38,7 +38,7 @@ pub(super) fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &s
 }
 
 /// Scrolls a control of a panel into view.
-fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name: &str) {
+pub(super) fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name: &str) {
     control(harness, role, name).scroll_to_me();
     harness.run_steps(4);
 }

@@ -57,7 +57,7 @@ fn only_the_front_is_touched_unless_the_brush_goes_through() {
 }
 
 #[test]
-fn a_thousand_strokes_are_undone_to_the_byte_and_survive_a_file() {
+fn a_thousand_strokes_are_undone_to_the_byte_and_survive_a_file_long_suite() {
     let style = hair(1, 60);
     let mut history = vec![HandEdits::default()];
     let mut texts = vec![String::new()];

@@ -87,7 +87,7 @@ fn a_transparent_frame_is_clear_beside_the_figure_and_opaque_on_it() {
 }
 
 #[test]
-fn a_blurred_frame_is_the_mean_of_its_instants_and_the_same_each_time() {
+fn a_blurred_frame_is_the_mean_of_its_instants_and_the_same_each_time_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = |name: &str| dir.path().join(name);
     let blurred = |name: &str, frames, subframes, degrees| {

@@ -77,7 +77,7 @@ fn errors(surface: &Surface, near: f32, truth: impl Fn(Vec3) -> f32) -> (f32, f3
 }
 
 #[test]
-fn simple_solids() {
+fn simple_solids_long_suite() {
     // The triangles lie inside the sphere by r (1 - cos(angle / 2)), up to 0.06 mm, and interpolation between
     // corners 7 mm apart is off by cell^2 / 4r, 0.15 mm; over the centre by less than half a cell.
     let ball = sphere(Vec3::ZERO, 0.1);

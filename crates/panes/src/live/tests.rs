@@ -284,7 +284,7 @@ fn a_pane_that_always_loses_the_device_stops_retrying_beside_one_that_works() {
 }
 
 #[test]
-fn a_probe_follows_a_strand_and_reads_each_pane_there() {
+fn a_probe_follows_a_strand_and_reads_each_pane_there_long_suite() {
     let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact, ShadowMethod::OpacityMaps]);
     rig.project.compare.panes[1].shadow.exact.filter = lovelock_render::TexelFilter::Nearest;
     let shown = LiveRequest { width: 160, height: 120, ..rig.request(&[0, 1, 2]) };

@@ -88,7 +88,7 @@ fn an_undone_track_is_not_written_again() {
 }
 
 #[test]
-fn a_pass_of_minutes_is_written_to_its_end() {
+fn a_pass_of_minutes_is_written_to_its_end_long_suite() {
     let mut overdub = Overdub::default();
     overdub.set_armed(true);
     // Two hundred seconds are 12,000 passes.

@@ -271,7 +271,7 @@ fn sizes_out_of_range_are_refused_with_the_limit() {
 }
 
 #[test]
-fn odd_hair_in_every_combination_is_a_picture() {
+fn odd_hair_in_every_combination_is_a_picture_long_suite() {
     let point = Vec3::new(0.01, 0.0, 0.0);
     let along_light = (0..11).map(|i| Vec3::new(0.0, -0.006, -0.008) * i as f32).collect();
     let odd: [(&str, Vec<Vec<Vec3>>); 6] = [

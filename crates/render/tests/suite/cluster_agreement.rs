@@ -139,7 +139,7 @@ fn is_background(renderer: &mut Renderer, scene: &Scene) -> bool {
 }
 
 #[test]
-fn broken_guides_leave_the_rest_of_the_image() {
+fn broken_guides_leave_the_rest_of_the_image_long_suite() {
     for value in [f32::NAN, f32::INFINITY, 1e30, 0.0] {
         for shadow in [LocalShadow::Map, LocalShadow::Directional] {
             let mut s = wig();

@@ -141,7 +141,7 @@ fn hair_of_the_other_side_keeps_every_byte() {
 }
 
 #[test]
-fn coloured_strands_look_the_same_on_both() {
+fn coloured_strands_look_the_same_on_both_long_suite() {
     for (name, mut scene) in scenes() {
         let plain = draw(&scene, Backend::Cpu).expect("a picture");
         let Some(plain_gpu) = draw(&scene, Backend::Gpu) else { return };

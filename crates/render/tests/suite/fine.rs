@@ -16,7 +16,7 @@ fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> (f64, FrameSta
 }
 
 #[test]
-fn the_number_of_strands_changes_neither_brightness_nor_shadow() {
+fn the_number_of_strands_changes_neither_brightness_nor_shadow_long_suite() {
     let mut scene = wig();
     let mut renderer = CpuRenderer::default();
     for (distance, side) in [(0.9, 320), (3.0, 320)] {

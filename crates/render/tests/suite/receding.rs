@@ -68,7 +68,7 @@ fn grey_tuft(transparency: Transparency) -> Scene {
 }
 
 #[test]
-fn light_and_cover_stay_as_a_tuft_recedes() {
+fn light_and_cover_stay_as_a_tuft_recedes_long_suite() {
     for backend in [Backend::Cpu, Backend::Gpu] {
         let Some(screen) = Screen::measured(backend) else { return };
         for transparency in Transparency::ALL {

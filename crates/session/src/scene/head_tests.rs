@@ -48,7 +48,7 @@ fn strands(scene: &Scene) -> Strands {
 }
 
 #[test]
-fn every_preset_grows_on_every_character() {
+fn every_preset_grows_on_every_character_long_suite() {
     for name in
         ["mh_body.glb", "CesiumMan.glb", "robot.glb", "Fox.glb", "MorphStressTest.gltf", "SimpleSkin.gltf"]
     {

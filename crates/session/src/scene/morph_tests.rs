@@ -70,7 +70,7 @@ fn a_scene_at_the_ends_of_a_morph_has_the_strands_of_the_two_styles() {
 }
 
 #[test]
-fn a_dragged_amount_keeps_the_hair_moving_without_a_jump() {
+fn a_dragged_amount_keeps_the_hair_moving_without_a_jump_long_suite() {
     let (access, mut loader) = (Access::new(), SceneLoader::new());
     let fastest = |amounts: &mut dyn FnMut(u32) -> f32, loader: &mut SceneLoader| {
         let mut project = morphing(0.0);

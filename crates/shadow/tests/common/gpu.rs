@@ -1,7 +1,8 @@
 //! The device of the tests, and maps that are built on it.
 #![allow(dead_code, unreachable_pub, missing_docs)] // A module of tests, each of which uses its part.
 
-use std::sync::{Arc, OnceLock};
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::Vec3;
 use lovelock_gpu::{Gpu, GrowBuffer, PassTime, PassTimer, read_buffer, wgpu};
@@ -11,9 +12,15 @@ use lovelock_shadow::{
     ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
-/// The device that all tests of a process share; `None` without an adapter.
+/// The device that all tests of a process share; `None` without an adapter. The test that has it keeps it until its thread ends: a software
+/// adapter has been seen to mix up the maps of two threads, and it uses every core for one of them.
 pub fn device() -> Option<&'static Arc<Gpu>> {
     static DEVICE: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
+    static TURN: Mutex<()> = Mutex::new(());
+    thread_local!(static HAS_TURN: RefCell<Option<MutexGuard<'static, ()>>> = const { RefCell::new(None) });
+    HAS_TURN.with_borrow_mut(|turn| {
+        turn.get_or_insert_with(|| TURN.lock().unwrap_or_else(PoisonError::into_inner));
+    });
     DEVICE
         .get_or_init(|| match Gpu::open() {
             Ok(gpu) => Some(gpu),

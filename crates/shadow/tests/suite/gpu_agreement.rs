@@ -136,7 +136,7 @@ fn transmittance_is_that_of_the_definition_with_every_filter() {
 }
 
 #[test]
-fn the_error_against_every_fragment_sorted_is_that_of_the_definition() {
+fn the_error_against_every_fragment_sorted_is_that_of_the_definition_long_suite() {
     let Some(gpu) = device() else { return };
     let settings = ShadowSettings::default();
     for groom in Groom::for_both_backends() {

@@ -216,7 +216,7 @@ fn thin_lines(mut settings: ShadowSettings) -> ShadowSettings {
 }
 
 #[test]
-fn bins_lie_where_the_definition_has_them() {
+fn bins_lie_where_the_definition_has_them_long_suite() {
     use ClusterDeviation::{Exact, Merged};
     use ClusterSeeds::{Histogram, TowardLight, Uniform};
     let usual = clusters(TowardLight, Exact, 1, 4);

@@ -164,7 +164,7 @@ fn truth(groom: &Groom, settings: &ShadowSettings) -> Converged {
 const WIDE: [&str; 2] = ["smooth", "curly"];
 
 #[test]
-fn errors_against_the_converged_shadow_fall_with_resolution() {
+fn errors_against_the_converged_shadow_fall_with_resolution_long_suite() {
     for groom in grooms() {
         // The footprint of the finest map.
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };

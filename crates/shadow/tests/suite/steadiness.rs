@@ -45,7 +45,7 @@ fn change(method: ShadowMethod, groom: &Groom, jitter: bool) -> f64 {
 const BOUND: f64 = 1.3;
 
 #[test]
-fn nothing_shimmers_more_than_the_truth() {
+fn nothing_shimmers_more_than_the_truth_long_suite() {
     for groom in [Groom::tuft(), Groom::preset(Preset::Smooth), Groom::preset(Preset::Curly)] {
         let truth = change(ShadowMethod::Exact, &groom, false);
         for &method in ShadowMethod::ALL {

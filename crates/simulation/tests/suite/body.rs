@@ -30,7 +30,7 @@ fn deepest(preset: Preset, motion: &str, colliders: bool) -> f32 {
 }
 
 #[test]
-fn presets_enter_the_skin_by_less_than_a_millimetre_in_dance_and_backflip() {
+fn presets_enter_the_skin_by_less_than_a_millimetre_in_dance_and_backflip_long_suite() {
     for &preset in suite::cases(&[Preset::Smooth, Preset::Long], &Preset::ALL) {
         for motion in ["dance", "backflip"] {
             let depth = deepest(preset, motion, true);
@@ -43,7 +43,7 @@ fn presets_enter_the_skin_by_less_than_a_millimetre_in_dance_and_backflip() {
 
 // With all guides, every second step: long hair 2.4 mm, two points of 4.7 million; see docs/simulation.md.
 #[test]
-fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance() {
+fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance_long_suite() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
     let motion = file.to_str().expect("a name in UTF-8");

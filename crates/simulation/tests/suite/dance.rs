@@ -116,7 +116,7 @@ fn away_after_rounds(preset: Preset, settings: &SimulationSettings) -> f32 {
 }
 
 #[test]
-fn short_hair_returns_to_its_style_after_the_dance() {
+fn short_hair_returns_to_its_style_after_the_dance_long_suite() {
     // Measured: 0.030 and 0.027. Guides that flutter or hang over the face: 0.15 and more. Long hair may lie
     // in front of a shoulder or behind it.
     for &preset in suite::cases(&[Preset::Smooth], &[Preset::Smooth, Preset::Curly]) {

@@ -58,7 +58,7 @@ fn hair_at_rest_has_no_kinks() {
 }
 
 #[test]
-fn hair_in_motion_does_not_fold_link_by_link() {
+fn hair_in_motion_does_not_fold_link_by_link_long_suite() {
     let folded = |settings: &SimulationSettings, preset| {
         let mut stage = Stage::new(preset);
         let mut simulation = stage.simulation(Some(0.0));

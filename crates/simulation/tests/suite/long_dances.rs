@@ -99,17 +99,17 @@ fn a_captured_dance_keeps_its_lengths_at_30_hertz() {
 }
 
 #[test]
-fn a_captured_dance_keeps_its_lengths_at_60_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_60_hertz_long_suite() {
     captured(|_| 1.0 / 60.0);
 }
 
 #[test]
-fn a_captured_dance_keeps_its_lengths_at_144_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_144_hertz_long_suite() {
     captured(|_| 1.0 / 144.0);
 }
 
 #[test]
-fn a_captured_dance_keeps_its_lengths_in_uneven_steps() {
+fn a_captured_dance_keeps_its_lengths_in_uneven_steps_long_suite() {
     captured(uneven);
 }
 

@@ -10,7 +10,7 @@ use lovelock_testkit::{data_dir, suite};
 use crate::common::{STEP_SECS, Stage, bare, distance_from_style, frame, head, straight, style};
 
 #[test]
-fn no_point_moves_by_a_hundredth_in_five_seconds_of_standing_still() {
+fn no_point_moves_by_a_hundredth_in_five_seconds_of_standing_still_long_suite() {
     let mut stages: Vec<(String, Stage, SimulationSettings)> =
         suite::cases(&[Preset::Smooth, Preset::Ponytail], &Preset::ALL)
             .iter()

@@ -206,7 +206,7 @@ fn sweeps_run_a_method_over_its_settings() {
 }
 
 #[test]
-fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_rest_is_made() {
+fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_rest_is_made_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = little_hair();
     // The smallest possible limit is 16 MiB; this hair needs more.
