@@ -57,13 +57,13 @@ pub(crate) enum Task {
     /// Converts a hair file to another format.
     Convert(Convert),
     /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
-    Farm(Farm),
+    Farm(super::farm::Farm),
     /// Lists the hairstyles that are shipped and one's own, and draws contact sheets of them.
     Presets(Presets),
     /// Lists every setting of a project: name, label, range, default, and what it changes.
     Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
-    Assemble(Assemble),
+    Assemble(super::farm::Assemble),
     /// Makes the database from which hair is drawn as clusters.
     Satf(Satf),
     /// Plays recorded strokes of brushes on the hair of a project and writes the project with them.
@@ -426,20 +426,6 @@ pub(crate) struct StyleTask {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Farm {
-    #[command(flatten)]
-    pub(crate) source: SourceArguments,
-    /// Folder for the job, new or empty: template.json and the project with its files.
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    #[command(flatten)]
-    pub(crate) film: FilmArguments,
-    /// Frames per task; 10, or more if that would make more than 1024 tasks.
-    #[arg(long, value_name = "N")]
-    pub(crate) chunk: Option<u64>,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct Satf {
     #[command(subcommand)]
     pub(crate) task: SatfTask,
@@ -462,20 +448,8 @@ pub(crate) struct SatfBuild {
     pub(crate) force: bool,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct Assemble {
-    /// Folder whose subfolders contain the parts.
-    pub(crate) parts: PathBuf,
-    /// Folder for the joined sequence.
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    /// Frames of the whole sequence, half open.
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub(crate) frames: Range<u64>,
-}
-
 /// `A..B`, half open and not empty.
-fn frames(text: &str) -> Result<Range<u64>, String> {
+pub(super) fn frames(text: &str) -> Result<Range<u64>, String> {
     let wanted = || format!("found `{text}`; must be A..B with A below B, such as 0..240");
     let (start, end) = text.split_once("..").ok_or_else(wanted)?;
     let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());

@@ -9,6 +9,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::project::save_project;
+use lovelock_render::StrandCount;
 use lovelock_testkit::wait::{HANG, wait_for};
 use serde_json::Value;
 
@@ -97,6 +98,7 @@ pub fn small_project() -> Project {
     project.hair.groom.strands_per_wisp = 8;
     project.hair.groom.segments_per_strand = 10;
     project.shadow.voxel_map.resolution = 32;
+    project.picture.strands = StrandCount::Stored;
     (project.recording.width, project.recording.height) = (96, 64);
     project
 }

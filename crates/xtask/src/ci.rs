@@ -22,6 +22,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     let ran = match tests {
         Ok(Ran { totals, times, outcome }) => {
             steps.push(("test", outcome, time));
+            steps.push(("slow tests", times.check(), Duration::ZERO));
             Some((totals, times))
         }
         Err(error) => {
@@ -45,9 +46,6 @@ pub(crate) fn run() -> anyhow::Result<()> {
     println!();
     print!("{}", report(&steps));
     if let Some((totals, times)) = &ran {
-        for slow in times.too_slow() {
-            println!("slow: {slow}");
-        }
         print!("{}", times.report());
         println!("{totals}");
     }

@@ -11,7 +11,7 @@ use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::{PROJECT_EXTENSION, load_project};
-use lovelock_render::Backend;
+use lovelock_render::{Backend, StrandCount};
 use lovelock_testkit::wait::wait_until;
 
 use super::super::command::Command;
@@ -40,6 +40,7 @@ pub(super) fn playing_window() -> Whole {
 fn window_of(backend: Backend, playing: bool) -> Whole {
     let mut project = Project::default();
     project.picture.backend = backend;
+    project.picture.strands = StrandCount::Stored;
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
     project.shadow.voxel_map.resolution = 32;
