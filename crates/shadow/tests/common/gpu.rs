@@ -12,8 +12,8 @@ use lovelock_shadow::{
     ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
-/// The device that all tests of a process share; `None` without an adapter. The test that has it keeps it until its thread ends: a software
-/// adapter has been seen to mix up the maps of two threads, and it uses every core for one of them.
+/// The device that all tests of a process share; `None` without an adapter. A test keeps it until its thread ends, because the uniforms of a
+/// handle belong to one frame at a time, and an error of the device to whoever asks first.
 pub fn device() -> Option<&'static Arc<Gpu>> {
     static DEVICE: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     static TURN: Mutex<()> = Mutex::new(());
