@@ -18,6 +18,7 @@ use crate::cli::Assignment;
 use super::command::Command;
 use super::files::{place_of, set_part};
 use super::opening::{Aim, Found};
+use super::page::Page;
 use super::path_dialog::Purpose;
 use super::trial::Trial;
 use super::{Pending, Window, copy, notices};
@@ -195,14 +196,8 @@ impl Window {
             Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
             Command::Palette => self.palette.toggle(),
             Command::CompareTakes => self.open_path_dialog(Purpose::Beside),
-            Command::Compare => {
-                self.layout.compare.shown = !self.layout.compare.shown;
-                self.layout.wall.shown = false;
-            }
-            Command::Wall => {
-                self.layout.wall.shown = !self.layout.wall.shown;
-                self.layout.compare.shown = false;
-            }
+            Command::Compare => self.layout.page.toggle(Page::Compare),
+            Command::Wall => self.layout.page.toggle(Page::Wall),
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::Manual => self.manual.toggle(),
             Command::WhatIsThis => self.what_is_this(ctx),
@@ -290,8 +285,8 @@ impl Window {
 
     fn frame_hair(&mut self, ctx: &egui::Context) {
         let Some(frame) = self.session.frame.clone() else { return };
-        let compares = self.layout.compare.shown;
-        let [width, height] = if compares { self.compare.wanted() } else { self.viewport.wanted };
+        let [width, height] =
+            if self.layout.page == Page::Compare { self.compare.wanted() } else { self.viewport.wanted };
         let aspect = width as f32 / height.max(1) as f32;
         let guides = &frame.guides.guides;
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
@@ -338,14 +333,15 @@ impl Window {
                     return Err(format!("{}: must end in .usdc, .usd, .usda, .glb or .abc", path.display()));
                 }
                 let access = self.session.access().clone();
-                let panes = (self.layout.compare.shown && pictures).then(|| self.layout.compare.sheet());
+                let panes =
+                    (self.layout.page == Page::Compare && pictures).then(|| self.layout.compare.sheet());
                 let resume = purpose == Purpose::Resume;
                 self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }
             Purpose::ExportStyle => self.export_style(path)?,
             Purpose::SaveStrokes => self.save_strokes(path)?,
             Purpose::Report => self.export_report(path, ctx),
-            Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
+            Purpose::Picture if self.layout.page == Page::Compare => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return Ok(Used::Done) };
                 let [width, height] = painted.image.size();

@@ -7,6 +7,7 @@ use lovelock_project::styles::STYLE_EXTENSION;
 
 use super::actions::Used;
 use super::command::Command;
+use super::page::Page;
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::{Window, keys};
 
@@ -87,12 +88,12 @@ impl Window {
                 .project_path
                 .clone()
                 .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
-            Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
+            Purpose::Film if self.layout.page == Page::Compare => folder.join("out").join("comparison.mp4"),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
             Purpose::Preview => folder.join("out").join("dance.apng"),
             Purpose::Curves => folder.join("out").join("dance.usdc"),
-            Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
+            Purpose::Picture if self.layout.page == Page::Compare => folder.join("comparison.png"),
             Purpose::ExportStyle => {
                 let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
                 folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
@@ -134,7 +135,7 @@ impl Window {
         let clip = self.session.frames(recording.fps);
         let first = recording.first_frame;
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
-        let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
+        let what = if self.layout.page == Page::Compare { "The panes with their labels: " } else { "" };
         let counted = counted(frames, "frame", "frames");
         format!(
             "{what}{counted} of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",

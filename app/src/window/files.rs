@@ -12,6 +12,7 @@ use lovelock_project::project::{BodySection, CameraSection, Contender, load_proj
 use lovelock_session::scene::{Scene, camera_for_size};
 
 use super::opening::{Aim, Found, Opened};
+use super::page::Page;
 use super::trial::Trial;
 use super::{Pending, Window, notices, remember};
 
@@ -216,8 +217,7 @@ impl Window {
                     let other = Contender { take: Some(file), ..own.clone() };
                     project.compare.panes = vec![own, other];
                 });
-                self.layout.compare.shown = true;
-                self.layout.wall.shown = false;
+                self.layout.page = Page::Compare;
             }
             Found::Part(_, Some(reason)) => return Err(reason.clone()),
             found => {

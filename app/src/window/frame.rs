@@ -12,6 +12,7 @@ use lovelock_session::resolution;
 
 use super::control::Keying;
 use super::focus::{Area, Focus};
+use super::page::Page;
 use super::path_dialog::Purpose;
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
@@ -102,12 +103,10 @@ impl Window {
         let image = ui.available_rect_before_wrap();
         self.focus.set_image(image);
         let begin = Focus::begin_area(ui);
-        if self.layout.wall.shown {
-            self.wall_page(ui, &mut project);
-        } else if self.layout.compare.shown {
-            self.comparison(ui, &mut project);
-        } else {
-            self.picture(ui, &mut project);
+        match self.layout.page {
+            Page::Image => self.picture(ui, &mut project),
+            Page::Compare => self.comparison(ui, &mut project),
+            Page::Wall => self.wall_page(ui, &mut project),
         }
         self.focus.end_area(ui, Area::Page, begin);
         for request in control::end_keying(&ctx) {
@@ -142,11 +141,10 @@ impl Window {
         }
         self.windows(&ctx);
         // The single image is not visible while panes are shown.
-        let walls = self.layout.wall.shown;
-        let compares = self.layout.compare.shown && !walls;
+        let page = self.layout.page;
         self.rest_hidden_pages();
         let (shown, seen) = self.shown();
-        let size = if compares || walls { [0, 0] } else { self.viewport.wanted };
+        let size = if page == Page::Image { self.viewport.wanted } else { [0, 0] };
         self.brushes.send(self.session.worker());
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
         self.follow_mask(&seen);
@@ -154,12 +152,12 @@ impl Window {
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
-        if compares {
+        if page == Page::Compare {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
             self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
         }
-        if walls {
+        if page == Page::Wall {
             self.send_wall();
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
@@ -182,12 +180,10 @@ impl Window {
         }
         self.focus.end_pass(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
-            let shown = if walls {
-                self.wall.has_pictures()
-            } else if compares {
-                self.compare.has_pictures()
-            } else {
-                self.session.painted.is_some()
+            let shown = match page {
+                Page::Image => self.session.painted.is_some(),
+                Page::Compare => self.compare.has_pictures(),
+                Page::Wall => self.wall.has_pictures(),
             };
             screenshot.update(&ctx, shown);
         }

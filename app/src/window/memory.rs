@@ -5,22 +5,22 @@ use lovelock_record::CACHE_BYTES;
 use lovelock_session::scene::SceneLoader;
 
 use super::Window;
+use super::page::Page;
 use super::panels::statistics::Fact;
 use super::timeline::Thumbnails;
 
 impl Window {
     /// Lets the pages that are not shown give back what they hold.
     pub(super) fn rest_hidden_pages(&mut self) {
-        let walls = self.layout.wall.shown;
-        let compares = self.layout.compare.shown && !walls;
+        let page = self.layout.page;
         let mut left = false;
-        if !compares {
+        if page != Page::Compare {
             left |= self.compare.leave(self.session.live());
         }
-        if !walls {
+        if page != Page::Wall {
             left |= self.wall.leave();
         }
-        if compares || walls {
+        if page != Page::Image {
             self.session.leave_image();
         }
         if left {

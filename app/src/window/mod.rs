@@ -24,6 +24,7 @@ mod memory;
 mod notices;
 mod opening;
 mod overlay;
+mod page;
 mod palette;
 mod panels;
 mod path_dialog;
@@ -68,6 +69,7 @@ use lovelock_session::resolution;
 use lovelock_session::window_device::WindowDevice;
 use notices::Notices;
 use overlay::scissors::Scissors;
+use page::Page;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
@@ -95,6 +97,7 @@ struct Layout {
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
     view_rate: f32,
+    page: Page,
     compare: CompareLayout,
     wall: WallLayout,
     timeline: timeline::Zoom,
@@ -112,6 +115,7 @@ impl Default for Layout {
             files: Vec::new(),
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
+            page: Page::default(),
             compare: CompareLayout::default(),
             wall: WallLayout::default(),
             timeline: timeline::Zoom::default(),
@@ -237,10 +241,13 @@ pub(crate) fn open(
     let shown = shown.transpose()?;
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
-        window.layout.compare.shown |= shows.panes;
         window.layers.reveal(shown);
-        // Nine simulations are not what a program should start with.
-        window.layout.wall.shown = false;
+        if shows.panes {
+            window.layout.page = Page::Compare;
+        } else if window.layout.page == Page::Wall {
+            // Nine simulations are not what a program should start with.
+            window.layout.page = Page::Image;
+        }
         Ok(window)
     })
 }
@@ -407,10 +414,10 @@ impl Window {
         match command {
             Command::Undo => because(self.history.undo_len() == 0, "There is nothing to undo."),
             Command::Redo => because(self.history.redo_len() == 0, "There is nothing to redo."),
-            Command::SavePicture if self.layout.wall.shown => {
+            Command::SavePicture if self.layout.page == Page::Wall => {
                 Some("The wall cannot be saved as an image. Close it to save the image of the viewport.")
             }
-            Command::SavePicture if self.layout.compare.shown => {
+            Command::SavePicture if self.layout.page == Page::Compare => {
                 because(!self.compare.has_pictures(), "The panes are not rendered yet.")
             }
             Command::SavePicture => because(self.session.painted.is_none(), "There is no image yet."),

@@ -11,8 +11,6 @@ use crate::window::theme;
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "switches, each with its own button")]
 pub(crate) struct CompareLayout {
-    /// Whether the panes are shown in place of the single image.
-    pub(crate) shown: bool,
     /// Whether two panes share the page, divided by a line, instead of a grid of all panes.
     pub(crate) wipe: bool,
     /// The panes to the left and right of the line. A held key shows the second in place of the others.
@@ -86,7 +84,6 @@ impl CostPlot {
 impl Default for CompareLayout {
     fn default() -> Self {
         Self {
-            shown: false,
             wipe: false,
             pair: [0, 1],
             split: 0.5,

@@ -37,6 +37,7 @@ use zoom::Zoom;
 use super::Window;
 use super::command::Command;
 use super::control::is_any_open;
+use super::page::Page;
 
 /// The state of the comparison, and its last request.
 #[derive(Default)]
@@ -198,7 +199,7 @@ fn next_pane(project: &Project) -> Contender {
 impl Window {
     /// Puts the settings of the selected pane in place of the project's while panes are shown, so that the panels edit the pane.
     pub(super) fn begin_pane(&self, project: &mut Project) -> Option<PaneEdit> {
-        let shown = self.layout.compare.shown && !self.layout.wall.shown;
+        let shown = self.layout.page == Page::Compare;
         let pane = shown.then(|| self.edited_pane(project))?;
         PaneEdit::begin(project, pane)
     }

@@ -18,6 +18,7 @@ use super::super::command::Command;
 use super::keyboard::entry;
 use super::{Shown, control, controls, drag, screen_of};
 use crate::window::actions::Opened;
+use crate::window::page::Page;
 use crate::window::{Layout, Window};
 
 /// The window on an off-screen display.
@@ -339,12 +340,7 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     let mut harness = playing_window();
     let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
         let window = of(harness);
-        (
-            window.layout.wall.shown,
-            window.layout.compare.shown,
-            window.scissors.held,
-            window.overdub.is_armed(),
-        )
+        (window.layout.page, window.scissors.held, window.overdub.is_armed())
     };
     let before = state(&harness);
     // The keys come in the same pass as the one that opens the dialog, and after its text is refused.
@@ -379,7 +375,9 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
         assert!(is_open(&harness));
         key(&mut harness, CTRL, Key::N);
         key(&mut harness, Modifiers::NONE, Key::N);
-        assert!(is_open(&harness) && of(&harness).pending.is_none() && !of(&harness).layout.wall.shown);
+        assert!(
+            is_open(&harness) && of(&harness).pending.is_none() && of(&harness).layout.page == Page::Image
+        );
         key(&mut harness, modifiers, opens);
         assert!(!is_open(&harness));
     }

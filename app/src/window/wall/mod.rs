@@ -15,6 +15,7 @@ use rounds::Rounds;
 use serde::{Deserialize, Serialize};
 
 use super::images::ShownImage;
+use super::page::Page;
 use super::{Window, camera_control, images, theme, viewport};
 use crate::window::command::Command;
 
@@ -31,8 +32,6 @@ const MAX_PIXELS: f32 = 640.0 * 480.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct WallLayout {
-    /// Whether the wall is shown in place of the image.
-    pub(crate) shown: bool,
     /// How far variants are from the present hairstyle, 0 to 1.
     pub(crate) amount: f32,
     /// What stays.
@@ -41,7 +40,7 @@ pub(crate) struct WallLayout {
 
 impl Default for WallLayout {
     fn default() -> Self {
-        Self { shown: false, amount: 0.5, locks: Locks::default() }
+        Self { amount: 0.5, locks: Locks::default() }
     }
 }
 
@@ -153,7 +152,7 @@ impl Window {
         match Wall::start(self.display.device().clone(), move || images::wake(&wake)) {
             Ok(wall) => self.wall.wall = Some(wall),
             Err(error) => {
-                self.layout.wall.shown = false;
+                self.layout.page = Page::Image;
                 self.fail(format!("the thread of the wall could not be started: {error}"));
             }
         }
