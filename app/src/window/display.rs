@@ -201,7 +201,7 @@ impl Window {
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,
-            "The graphics device was lost and opened again. Nothing else is lost.".to_owned(),
+            "The graphics device was lost and reopened. The project is unchanged.".to_owned(),
         );
     }
 

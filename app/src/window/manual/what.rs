@@ -104,7 +104,7 @@ impl WhatIsThis {
                 ui.painter().text(
                     screen.center_top() + egui::vec2(0.0, 34.0),
                     egui::Align2::CENTER_TOP,
-                    "Click a control to read about it. Escape ends this.",
+                    "Click a control to read about it. Escape cancels.",
                     egui::FontId::proportional(14.0),
                     theme::ACCENT,
                 );

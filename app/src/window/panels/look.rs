@@ -79,7 +79,7 @@ fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
 }
 
 /// Why the number of strands has no effect.
-const NO_STRANDS: &str = "Clusters are drawn in place of strands.";
+const NO_STRANDS: &str = "Clusters are drawn instead of strands.";
 
 /// Why the number of strands has no effect on panes.
 const STORED_STRANDS: &str =

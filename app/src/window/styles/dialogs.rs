@@ -39,10 +39,10 @@ impl Dialog {
         match self {
             Self::Save { .. } => ("Save as a style of your own".to_owned(), "Save style"),
             Self::Replace { style, asked: None, .. } => {
-                (format!("Replace what is in {} by the hair as it is now?", style.name), "Update style")
+                (format!("Replace the contents of {} with the current hair?", style.name), "Update style")
             }
             Self::Replace { style, .. } => {
-                (format!("You have a style {}. Replace it?", style.name), "Replace")
+                (format!("You already have a style {}. Replace it?", style.name), "Replace")
             }
             Self::Rename { .. } => ("Rename your style".to_owned(), "Rename style"),
             Self::Delete { path, name } => (format!("Delete {name} ({})?", short(path)), "Delete style"),
