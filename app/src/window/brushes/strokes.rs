@@ -190,7 +190,8 @@ impl Window {
         } else {
             ""
         };
-        let what = if stroke.tool == Tool::Freeze { "freezes or frees no lock" } else { "changes no hair" };
+        let what =
+            if stroke.tool == Tool::Freeze { "freezes or unfreezes no lock" } else { "changes no hair" };
         self.notices.push(notices::Kind::Warning, format!("The stroke {what}.{held}"));
     }
 }

@@ -116,10 +116,7 @@ impl BodyKey {
                 None => notes.push(Problem::new(
                     Place::Body,
                     ProblemKind::Ignored,
-                    format!(
-                        "{} has no joint called `{name}`; the hair is on the joint that was guessed",
-                        body.name
-                    ),
+                    format!("{} has no joint called `{name}`; the hair is on a guessed joint", body.name),
                 )),
             }
         }

@@ -54,7 +54,7 @@ impl Settings for MaskBrush {
             field!(Self, strength),
             [0.0, 1.0],
             "Strength",
-            "How far a stroke raises the mask at once. 100 % paints it white.",
+            "How much one stroke raises the mask. 100 % paints it white.",
         )
         .unit(Unit::FRACTION),
         Setting::number(

@@ -32,7 +32,7 @@ impl Choices for GradientPigment {
     }
 }
 
-/// Goes over into another colour from a place along the strand on.
+/// Blends into another colour from a place along the strand on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     /// What colours the tips.
