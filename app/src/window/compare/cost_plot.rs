@@ -246,7 +246,7 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
         });
     };
     ui.spacing_mut().item_spacing.y = 2.0;
-    let titles = ["build", "ask", "draw", "whole", "memory", "error"];
+    let titles = ["build", "query", "draw", "whole", "memory", "error"];
     row(
         ui,
         (RichText::new("ms").color(theme::QUIET), "Milliseconds on the device named in each line."),
