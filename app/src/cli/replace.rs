@@ -73,7 +73,7 @@ pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, 
             return Err(ProjectError::input(
                 path,
                 format!(
-                    "{name}: found a file of that name, which may hold {kind}; must be another name, or add --force to replace it"
+                    "{name}: already exists and may hold {kind}; must be another name, or add --force to replace it"
                 ),
             ));
         }
@@ -84,12 +84,12 @@ pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, 
         return Err(ProjectError::input(
             path,
             format!(
-                "{name}: found something that this program did not make; must be another name, or add --force to replace it"
+                "{name}: already exists and was not made by this program; must be another name, or add --force to replace it"
             ),
         ));
     }
-    let what = if matches!(holds, Holds::Images) { "replaced the images" } else { "replaced the file" };
-    Ok(Replaced(Some(format!("{name}: {what} of before"))))
+    let what = if matches!(holds, Holds::Images) { "images" } else { "file" };
+    Ok(Replaced(Some(format!("{name}: replaced the existing {what}"))))
 }
 
 /// As [`check`], of files in a folder.
@@ -106,7 +106,7 @@ pub(super) fn check_in(
     for name in names {
         is_there |= check(&folder.join(name), holds, force)?.0.is_some();
     }
-    Ok(Replaced(is_there.then(|| format!("{}: replaced the files of before", folder.display()))))
+    Ok(Replaced(is_there.then(|| format!("{}: replaced the existing files", folder.display()))))
 }
 
 /// Whether a folder holds images that are named as frames, or a sequence.
