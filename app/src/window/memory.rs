@@ -71,7 +71,8 @@ impl Window {
         let caches = [
             (
                 "Layers",
-                "Hairstyles between two layers, so that a change evaluates only the layers after it. Beyond the limit the first ones go.",
+                "Hairstyles kept between layers, so that a change evaluates only the layers after it. Beyond the limit the \
+                 first are dropped.",
                 worker.layer_bytes(),
                 SceneLoader::MAX_LAYER_BYTES,
             ),
