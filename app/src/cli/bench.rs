@@ -80,7 +80,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
 /// Width and height of reference scenes, pixels.
 const REFERENCE_SIZE: (u32, u32) = (384, 384);
 
-/// The reference scenes of the request, which nothing else may stand beside.
+/// The reference scenes of the request, which must not be combined with anything else.
 fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
     let mut references: Vec<ReferenceScene> = Vec::new();
     let mut others = false;

@@ -1,4 +1,4 @@
-//! What happens to a file that is there already. Files that hold work are replaced only with `--force`; what this program has made and can
+//! What happens to an existing output file. Files that hold work are replaced only with `--force`; what this program has made and can
 //! make again is replaced, and standard error says so.
 
 use std::fs::File;
@@ -11,7 +11,7 @@ use lovelock_record::MANIFEST_NAME;
 /// The bytes at both ends of a file in which the mark of this program is looked for.
 const SEARCHED: u64 = 4 << 20;
 
-/// What a file of an output's name holds if it is there.
+/// What an existing file with an output's name holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Holds {
     /// Work that cannot be made again by the same command: a project, strokes, a take, hair.
@@ -40,13 +40,13 @@ impl Holds {
     pub(super) const DATABASE: Self = Self::Made(&[&lovelock_satf::file::MAGIC]);
 }
 
-/// What is said when the work is done: that something was replaced.
+/// The message, printed when the work is done, that something was replaced.
 #[derive(Debug)]
 #[must_use]
 pub(super) struct Replaced(Option<String>);
 
 impl Replaced {
-    /// Says it on standard error.
+    /// Prints it on standard error.
     pub(super) fn tell(&self) {
         if let Some(said) = &self.0 {
             eprintln!("lovelock: {said}");

@@ -28,7 +28,7 @@ impl Window {
         }
     }
 
-    /// Gives back everything that was kept for the project before, because another one takes its place.
+    /// Frees everything that was kept for the previous project, because another one replaces it.
     pub(super) fn rest_all(&mut self) {
         self.compare.leave(self.session.live());
         self.compare.forget_project();

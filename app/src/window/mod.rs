@@ -197,7 +197,7 @@ pub(crate) struct Window {
     styles: styles::Browser,
     /// The project with the style that is shown and not applied.
     preview: Option<styles::Preview>,
-    /// The project that is seen, and the same with the colours of its morph.
+    /// The displayed project, and the same with the colours of its morph.
     morphed: Option<(Arc<Project>, Arc<Project>)>,
     /// The style that is exported, while its path is asked for.
     exported: Option<Box<lovelock_project::styles::Style>>,

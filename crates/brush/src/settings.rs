@@ -14,7 +14,7 @@ pub enum BrushMirror {
     Off,
     /// The mirrored stroke, on the hair as it is there: each side keeps its own shape.
     Own,
-    /// The hair there takes the mirrored shape: both sides become alike.
+    /// The hair there takes the mirrored shape: both sides become equal.
     Same,
 }
 

@@ -175,7 +175,7 @@ impl Window {
         self.history.edit(&label, Some(gesture), project);
     }
 
-    /// Ends a stroke that has written nothing: it is no undo step, and a layer that was added for it goes.
+    /// Ends a stroke that has written nothing: it makes no undo step, and a layer that was added for it is removed.
     fn end_without_change(&mut self, stroke: &OpenStroke) {
         let strokes = &self.brushes.strokes;
         let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);

@@ -128,7 +128,7 @@ impl WhatIsThis {
     }
 }
 
-/// The rows of this pass. Those of the next one are noted anew.
+/// The rows of this pass. They are recorded again in each pass.
 fn take_rows(ctx: &Context) -> Rows {
     ctx.data_mut(|data| {
         let rows = data.get_temp::<Rows>(key()).unwrap_or_default();

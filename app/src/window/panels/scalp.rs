@@ -1,4 +1,4 @@
-//! The scalp: how it is shown, and what is corrected.
+//! The scalp: its display and its corrections.
 
 use egui::Ui;
 use lovelock_base::settings::Unit;

@@ -1,4 +1,4 @@
-//! The sound beside the dance.
+//! The sound of the dance.
 
 use egui::{Label, RichText, Sense, Ui};
 use lovelock_project::Project;

@@ -576,7 +576,7 @@ impl PathDialog {
     }
 }
 
-/// Whether an ending is meant as an extension: `v1.2` and `bob. short` have none.
+/// Whether the text after the last point is an extension: `v1.2` and `bob. short` have none.
 fn looks_like_extension(ending: &std::ffi::OsStr) -> bool {
     let ending = ending.to_string_lossy();
     !ending.is_empty()

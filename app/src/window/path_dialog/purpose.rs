@@ -21,7 +21,7 @@ pub(crate) enum Purpose {
     Motion,
     /// Light from a picture of the surroundings.
     Surroundings,
-    /// A sound beside the dance.
+    /// A sound for the dance.
     Sound,
     /// Saving the project.
     SaveProject,
@@ -45,7 +45,7 @@ pub(crate) enum Purpose {
     Report,
 }
 
-/// What happens to the file that is there already.
+/// What happens to an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Replaces {
     /// There is none, or it is only read, or it is the file that is saved again.

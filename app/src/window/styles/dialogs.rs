@@ -27,7 +27,7 @@ pub(super) enum Dialog {
 }
 
 impl Dialog {
-    /// Asks whether a style of the user's own becomes the hair as it is now.
+    /// Asks whether to replace one of the user's styles with the current hair.
     pub(super) fn update(entry: &Entry, project: &Project) -> Self {
         let Style { name, text, tags, .. } = (*entry.style).clone();
         let style = Box::new(Style { name, text, tags, ..Style::of_project(project) });

@@ -90,7 +90,7 @@ pub(super) fn ui(
     action
 }
 
-/// Every number that varies, with a box that locks it.
+/// Every number that varies, with a checkbox that locks it.
 fn single_locks(ui: &mut Ui, locks: &mut Locks, project: &Project) {
     ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
         let mut family_shown = None;

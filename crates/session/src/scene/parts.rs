@@ -44,7 +44,7 @@ pub(super) struct BodyKey {
     head_joint: Option<String>,
 }
 
-/// A body, and everything that is derived from it alone.
+/// A body, and everything that is derived only from it.
 #[derive(Clone, Debug)]
 pub(super) struct BodyPart {
     pub(super) body: Arc<Body>,

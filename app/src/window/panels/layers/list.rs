@@ -33,7 +33,7 @@ enum Action {
     Move(Row, usize, Option<u32>),
 }
 
-/// Shows the list and does what is asked of it.
+/// Shows the list and runs the requested action.
 pub(super) fn show(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     let before = ui.spacing().item_spacing;
     let top = ui.cursor().top();
@@ -158,7 +158,7 @@ fn layer_row(
     ));
 }
 
-/// Gives a layer a name; that of its operation is no name of its own.
+/// Names a layer; the name of its operation is the default and is not stored.
 fn set_name(layer: &mut Layer, name: String) {
     layer.name = if name == layer.operation.label() { String::new() } else { name };
 }
