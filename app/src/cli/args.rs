@@ -28,16 +28,16 @@ pub(crate) struct Arguments {
     /// Save a screenshot of the window as a PNG file and exit.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
-    /// Replace a file of the screenshot's name even if it is no image.
+    /// Replace an existing file of the screenshot's name even if it is not an image.
     #[arg(long, requires = "screenshot")]
     pub(crate) force: bool,
     /// Open the window with the comparison of the project's panes, like key C.
     #[arg(long)]
     pub(crate) panes: bool,
-    /// Open the window with the mask of a layer shown, by its place in the list from 1.
+    /// Open the window with the mask of this layer shown: its position in the list, from 1.
     #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) mask: Option<u32>,
-    /// Seconds between the first hair on the screen and the screenshot.
+    /// Seconds to wait for the screenshot after hair first appears on the screen.
     #[arg(long, value_name = "SECONDS", default_value_t = 6.0, requires = "screenshot")]
     pub(crate) after: f64,
     #[command(subcommand)]
@@ -58,15 +58,15 @@ pub(crate) enum Task {
     Convert(Convert),
     /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
     Farm(super::farm::Farm),
-    /// Lists the hairstyles that are shipped and one's own, and draws contact sheets of them.
+    /// Lists the shipped hairstyles and your own, and draws contact sheets of them.
     Presets(Presets),
     /// Lists every setting of a project: name, label, range, default, and what it changes.
     Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
     Assemble(super::farm::Assemble),
-    /// Makes the database from which hair is drawn as clusters.
+    /// Builds the database for drawing hair as clusters.
     Satf(Satf),
-    /// Plays recorded strokes of brushes on the hair of a project and writes the project with them.
+    /// Plays recorded brush strokes on the hair of a project and writes the result as a new project.
     Style(StyleTask),
 }
 
@@ -75,11 +75,11 @@ pub(crate) enum Task {
 pub(crate) struct SourceArguments {
     /// Project or take; the default project if none is given.
     pub(crate) project: Option<PathBuf>,
-    /// Hairstyle to use instead of the project's: the id of a shipped one, the name of one's own, or a .lovelockstyle file.
+    /// Hairstyle to use instead of the project's: the id of a shipped style, the name of one of yours, or a .lovelockstyle file.
     /// `lovelock presets` lists all.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,
-    /// Second hairstyle that the hair turns into, named as by --preset. `--set hair.morph.amount=0.5` or a track sets how far.
+    /// Second hairstyle to morph into, named as for --preset. `--set hair.morph.amount=0.5` or a track sets the amount.
     #[arg(long, value_name = "ID")]
     pub(crate) morph: Option<String>,
     /// Hair file to use instead of the project's hairstyle.
@@ -91,10 +91,10 @@ pub(crate) struct SourceArguments {
     /// Motion file (BVH, VRM animation, or another character with a clip) to use instead of the project's motion.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
-    /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that gives light from all directions.
+    /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that lights the scene from all directions.
     #[arg(long, value_name = "FILE")]
     pub(crate) surroundings: Option<PathBuf>,
-    /// Sound file (WAV, MP3, Ogg Vorbis or FLAC) beside the dance, which films get. `--set sound.offset_secs=1.5` shifts it.
+    /// Sound file (WAV, MP3, Ogg Vorbis or FLAC) to play with the dance and in films. `--set sound.offset_secs=1.5` shifts it.
     #[arg(long, value_name = "FILE")]
     pub(crate) sound: Option<PathBuf>,
     /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
@@ -142,7 +142,7 @@ pub(crate) struct Record {
     /// manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
-    /// Replace a take of that name, or what this program did not make. Films, curves and images of this program are always replaced.
+    /// Replace an existing take, or a file that this program did not make. Its own films, curves and images are always replaced.
     #[arg(long)]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -157,7 +157,7 @@ pub(crate) struct Record {
     /// How overlapping strands are blended.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
-    /// Backend: auto (the graphics card if there is a real one), gpu (any wgpu adapter, also a software one) or cpu (without any
+    /// Backend: auto (the graphics card if there is a real one), gpu (any wgpu adapter, including a software one) or cpu (without any
     /// driver); the project's choice if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
@@ -191,8 +191,8 @@ pub(crate) struct Record {
     /// size or another setting has changed since.
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Count the frames of a take on the timeline of the dance from which it was recorded: frame 40 is that of the dance, also if the
-    /// take begins there.
+    /// Number the frames of a take on the timeline of the dance from which it was recorded: frame 40 is frame 40 of the dance, even if
+    /// the take begins there.
     #[arg(long, conflicts_with = "seamless")]
     pub(crate) dance_time: bool,
     /// Curves in a .usdc, .usda, .abc or .glb file: guides or strands; strands in USD and Alembic and guides in glTF if none is given.
@@ -263,10 +263,11 @@ pub(crate) struct Bench {
     /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), clusters-crowd and
     /// clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
     /// are simulated by each integrator and not rendered; all but crowds if none is named. `locks` measures how well the locks of each
-    /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, that of one.
+    /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, measures only that
+    /// style.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
     /// sorting exactly. `reference` writes scenes for a path tracer and our images of them; `reference-curly` and
-    /// `reference-curly-red-side`, for example, some or one of them.
+    /// `reference-curly-red-side`, for example, write only some or one of them.
     pub(crate) scenes: Vec<BenchTarget>,
     /// Change a setting of every scene, such as simulation.gravity=12; may be given several times.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
@@ -277,7 +278,7 @@ pub(crate) struct Bench {
     /// Replace a file of that name that this program did not make. Its own are always replaced.
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
-    /// Strands of reference scenes, 100 to 120000, the wider the fewer; 12000 if none is given.
+    /// Number of strands in reference scenes, 100 to 120000; 12000 if none is given. Fewer strands are wider.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=120_000))]
     pub(crate) strands: Option<u32>,
     /// Earlier run to compare with: the output of `lovelock bench --json`. Stages are compared by their multiples of the machine's
@@ -345,7 +346,7 @@ pub(crate) struct Presets {
     #[arg(long, value_name = "N", requires = "sheet", num_args = 0..=1, default_missing_value = "6",
         value_parser = clap::value_parser!(u32).range(1..=60))]
     pub(crate) dance: Option<u32>,
-    /// Give each hairstyle a row of the sheet with this many sides of it at rest.
+    /// Give each hairstyle a row of the sheet with views of it at rest from this many sides.
     #[arg(long, value_name = "N", requires = "sheet", conflicts_with = "dance", num_args = 0..=1, default_missing_value = "4",
         value_parser = clap::value_parser!(u32).range(1..=60))]
     pub(crate) sides: Option<u32>,
@@ -355,10 +356,10 @@ pub(crate) struct Presets {
     /// Hairstyles side by side in the sheet.
     #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) columns: Option<u32>,
-    /// Replace a file of the name of the sheet or of a thumbnail even if it is no image.
+    /// Replace an existing file of the name of the sheet or of a thumbnail even if it is not an image.
     #[arg(long)]
     pub(crate) force: bool,
-    /// Write the thumbnails of the window's browser into this folder, ID.jpg each; those of the program are in assets/styles.
+    /// Write the thumbnails of the window's browser into this folder, as ID.jpg; the program's own are in assets/styles.
     #[arg(long, value_name = "DIR", conflicts_with = "sheet")]
     pub(crate) thumbnails: Option<PathBuf>,
     /// Change a setting of each hairstyle in the sheet, such as camera.azimuth=90; may be given several times.
@@ -390,7 +391,7 @@ pub(crate) struct Convert {
     pub(crate) input: PathBuf,
     #[arg(help = format!("The new file, in the format of its extension: .{}", written_extensions().join(", .")))]
     pub(crate) out: PathBuf,
-    /// Replace the new file if it is there already.
+    /// Replace the new file if it already exists.
     #[arg(long)]
     pub(crate) force: bool,
     /// Unit of IN: auto, m, cm, mm or in.
@@ -408,19 +409,19 @@ pub(crate) struct StyleTask {
     /// Recorded strokes, a .lovelockstrokes file. Each is played at its time of the dance.
     #[arg(long, value_name = "FILE")]
     pub(crate) strokes: PathBuf,
-    /// Play only the first strokes, so many; all by default.
+    /// Play only this many strokes, from the first; all by default.
     #[arg(long, value_name = "N")]
     pub(crate) count: Option<usize>,
-    /// Play strokes that were made on the body at rest one after another from this second of the dance on, carried along with the head.
+    /// Play strokes that were made on the body at rest one after another, starting at this second of the dance; they move with the head.
     #[arg(long, value_name = "SECONDS")]
     pub(crate) on_dance: Option<f64>,
     /// The new project.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
-    /// Replace the new project if it is there already.
+    /// Replace the new project if it already exists.
     #[arg(long)]
     pub(crate) force: bool,
-    /// Record what is seen meanwhile as a film (.mp4), with the size and rate of the project's recordings. The brush is a circle.
+    /// Record the strokes as a film (.mp4), with the size and rate of the project's recordings. A circle shows the brush.
     #[arg(long, value_name = "FILE")]
     pub(crate) film: Option<PathBuf>,
 }
@@ -433,8 +434,8 @@ pub(crate) struct Satf {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum SatfTask {
-    /// Writes the database to a file, the same bytes on every run. The program makes its own at first use and keeps it in the user's
-    /// cache folder.
+    /// Writes the database to a file, with the same bytes on every run. The program builds its own at first use, in the user's cache
+    /// folder.
     Build(SatfBuild),
 }
 
@@ -443,7 +444,7 @@ pub(crate) struct SatfBuild {
     /// The file.
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: PathBuf,
-    /// Replace the file even if it is no database.
+    /// Replace the file even if it is not a database.
     #[arg(long)]
     pub(crate) force: bool,
 }

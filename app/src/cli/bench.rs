@@ -80,7 +80,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
 /// Width and height of reference scenes, pixels.
 const REFERENCE_SIZE: (u32, u32) = (384, 384);
 
-/// The reference scenes of the request, which nothing else may stand beside.
+/// The reference scenes of the request, which must not be combined with anything else.
 fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
     let mut references: Vec<ReferenceScene> = Vec::new();
     let mut others = false;
@@ -99,12 +99,12 @@ fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
     let refuse = |message: &str| Err(ProjectError::option(message));
     if references.is_empty() {
         if task.strands.is_some() {
-            return refuse("--strands: found without reference scenes; must stand beside `reference`");
+            return refuse("--strands: found without reference scenes; must be used with `reference`");
         }
         return Ok(references);
     }
     if others {
-        return refuse("reference scenes are not measured; must be the only scenes of a command");
+        return refuse("reference scenes are not measured; must be the only scenes of the command");
     }
     if task.baseline.is_some() {
         return refuse("--baseline: found with reference scenes, which are not measured; leave it out");
@@ -115,7 +115,7 @@ fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
 /// Writes reference scenes and prints what `scenes.json` says.
 fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -> Result<(), ProjectError> {
     let Some(out) = &task.out else {
-        return Err(ProjectError::option("--out: not found; reference scenes need a folder"));
+        return Err(ProjectError::option("--out: missing; must be a folder for reference scenes"));
     };
     if out.is_file() {
         return Err(ProjectError::input(out, format!("{}: found a file; must be a folder", out.display())));

@@ -75,7 +75,7 @@ pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), Projec
 
 fn summary(report: &FarmReport) -> String {
     format!(
-        "{}: frames {}..{} at {} a second in {} tasks of {} frames; steps {}\n\
+        "{}: frames {}..{} at {} per second in {} tasks of {} frames; steps {}\n\
          try it here with: openjd run {} --step Assemble --run-dependencies",
         report.template,
         report.first_frame,

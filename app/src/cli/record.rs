@@ -91,10 +91,10 @@ fn summary(report: &RecordReport) -> String {
         .join(", ");
     let kept = match report.frames_kept {
         0 => String::new(),
-        kept => format!(" ({kept} of them were there)"),
+        kept => format!(" ({kept} of them already existed)"),
     };
     format!(
-        "{}: {} frames of {}x{} at {} a second{kept}, {} strands, {} segments\n\
+        "{}: {} frames of {}x{} at {} per second{kept}, {} strands, {} segments\n\
          {:.1} ms a frame on {} ({stages})\n\
          largest stretch {:.1e}, deepest in the body {:.2} mm, {} guides put back",
         report.out.display(),
@@ -121,8 +121,8 @@ fn advice(health: &[Gauge]) -> String {
 
 fn take_summary(report: &TakeRecordReport) -> String {
     format!(
-        "{}: {} frames at {} a second, {} guides of {} points, {:.2} MB a second\n\
-         {:.1} times as fast as it plays; largest stretch {:.1e}, deepest in the body {:.2} mm, {} guides put back",
+        "{}: {} frames at {} per second, {} guides of {} points, {:.2} MB per second\n\
+         {:.1} times as fast as real time; largest stretch {:.1e}, deepest in the body {:.2} mm, {} guides put back",
         report.out,
         report.frames,
         report.fps,
@@ -142,7 +142,7 @@ fn curve_summary(report: &CurveRecordReport) -> String {
         vertices => format!("a body of {vertices} vertices"),
     };
     format!(
-        "{}: {} frames from {} on at {} a second, {} {} of {} points in all, {body}\n{:.1} MB in {:.1} s",
+        "{}: {} frames from {} on at {} per second, {} {} of {} points in all, {body}\n{:.1} MB in {:.1} s",
         report.out,
         report.frames,
         report.first_frame,

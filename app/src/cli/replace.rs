@@ -1,4 +1,4 @@
-//! What happens to a file that is there already. Files that hold work are replaced only with `--force`; what this program has made and can
+//! What happens to an existing output file. Files that hold work are replaced only with `--force`; what this program has made and can
 //! make again is replaced, and standard error says so.
 
 use std::fs::File;
@@ -11,7 +11,7 @@ use lovelock_record::MANIFEST_NAME;
 /// The bytes at both ends of a file in which the mark of this program is looked for.
 const SEARCHED: u64 = 4 << 20;
 
-/// What a file of an output's name holds if it is there.
+/// What an existing file with an output's name holds.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Holds {
     /// Work that cannot be made again by the same command: a project, strokes, a take, hair.
@@ -40,13 +40,13 @@ impl Holds {
     pub(super) const DATABASE: Self = Self::Made(&[&lovelock_satf::file::MAGIC]);
 }
 
-/// What is said when the work is done: that something was replaced.
+/// The message, printed when the work is done, that something was replaced.
 #[derive(Debug)]
 #[must_use]
 pub(super) struct Replaced(Option<String>);
 
 impl Replaced {
-    /// Says it on standard error.
+    /// Prints it on standard error.
     pub(super) fn tell(&self) {
         if let Some(said) = &self.0 {
             eprintln!("lovelock: {said}");
@@ -73,7 +73,7 @@ pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, 
             return Err(ProjectError::input(
                 path,
                 format!(
-                    "{name}: found a file of that name, which may hold {kind}; must be another name, or add --force to replace it"
+                    "{name}: already exists and may hold {kind}; must be another name, or add --force to replace it"
                 ),
             ));
         }
@@ -84,12 +84,12 @@ pub(super) fn check(path: &Path, holds: Holds, force: bool) -> Result<Replaced, 
         return Err(ProjectError::input(
             path,
             format!(
-                "{name}: found something that this program did not make; must be another name, or add --force to replace it"
+                "{name}: already exists and was not made by this program; must be another name, or add --force to replace it"
             ),
         ));
     }
-    let what = if matches!(holds, Holds::Images) { "replaced the images" } else { "replaced the file" };
-    Ok(Replaced(Some(format!("{name}: {what} of before"))))
+    let what = if matches!(holds, Holds::Images) { "images" } else { "file" };
+    Ok(Replaced(Some(format!("{name}: replaced the existing {what}"))))
 }
 
 /// As [`check`], of files in a folder.
@@ -106,7 +106,7 @@ pub(super) fn check_in(
     for name in names {
         is_there |= check(&folder.join(name), holds, force)?.0.is_some();
     }
-    Ok(Replaced(is_there.then(|| format!("{}: replaced the files of before", folder.display()))))
+    Ok(Replaced(is_there.then(|| format!("{}: replaced the existing files", folder.display()))))
 }
 
 /// Whether a folder holds images that are named as frames, or a sequence.

@@ -21,13 +21,13 @@ pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
     let bar = std::io::stderr().is_terminal().then(|| {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
-        ProgressBar::new(TICKS as u64).with_style(style).with_message("making the database")
+        ProgressBar::new(TICKS as u64).with_style(style).with_message("building the database")
     });
     // An output that cannot be written is refused before any work.
     let begins = Once::new();
     let report = build_satf(&task.out, &|done| match &bar {
         Some(bar) => bar.set_position((TICKS * done) as u64),
-        None => begins.call_once(|| eprintln!("making the database of hair clusters")),
+        None => begins.call_once(|| eprintln!("building the database of hair clusters")),
     });
     if let Some(bar) = &bar {
         bar.finish_and_clear();

@@ -46,7 +46,7 @@ impl Source {
                 }
                 CurveMotion::Refused(reason) => {
                     let message = format!(
-                        "{reason}; these curves cannot be played: --hair takes them as a still hairstyle"
+                        "{reason}; these curves cannot be played: use --hair to load them as a still hairstyle"
                     );
                     return Err(ProjectError::input(path, message));
                 }
@@ -234,7 +234,7 @@ fn allow(
     let refused = |option: &str| {
         let take = take.display();
         ProjectError::option(format!(
-            "{option}: {take} was recorded with another one and plays as recorded; leave the option out"
+            "{option}: {take} was recorded with another file and plays as recorded; leave the option out"
         ))
     };
     if task.preset.is_some() {
@@ -273,7 +273,7 @@ pub(crate) fn apply(set: &[Assignment], project: &mut Project) -> Result<(), Pro
             && (["body", "motion"].contains(&section) || name.starts_with("hair.import."));
         if project.take.file.is_some() && RECORDED.contains(&section) && !free {
             let message = format!(
-                "--set {name}: a take plays as recorded; must be a setting of another section than {section}"
+                "--set {name}: a take plays as recorded; must be a setting outside the section {section}"
             );
             return Err(ProjectError::option(message));
         }

@@ -68,7 +68,9 @@ impl Window {
             (Some(info), _) => format!("{}: {}", info.label, info.tooltip()),
             (None, Some(info)) => format!("{}: {}", info.label, info.tooltip),
             (None, None) if name.is_empty() => "There is no control at this place.".to_owned(),
-            (None, None) => format!("The manual does not mention {name}. Search it with other words: F1."),
+            (None, None) => {
+                format!("The manual does not mention {name}. Press F1 to search it with other words.")
+            }
         };
         self.notices.push(Kind::Done, text);
     }

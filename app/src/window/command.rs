@@ -59,7 +59,7 @@ pub enum Command {
     ExportCurves,
     /// Compares shadow methods and writes a report.
     ExportReport,
-    /// Picks the sound beside the dance.
+    /// Picks the sound of the dance.
     PickSound,
     /// Moves the camera until the hair fills the image.
     FrameHair,

@@ -109,7 +109,8 @@ impl Window {
                 dialog.about(self.recording_in_words())
             }
             Purpose::Curves => dialog.about(
-                "USD and Alembic hold all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
+                "USD and Alembic contain all strands, .glb the guide strands; each includes the body. The Recording panel \
+                 sets the frames."
                     .to_owned(),
             ),
             Purpose::Open
@@ -123,7 +124,7 @@ impl Window {
             | Purpose::SaveStrokes
             | Purpose::Picture => dialog,
             Purpose::Report => dialog.about(
-                "report.html opens in a browser. A report in the same folder is replaced, with the images that it names."
+                "report.html opens in a browser. Replaces a report in the same folder, and its images."
                     .to_owned(),
             ),
         });

@@ -28,7 +28,7 @@ pub(super) struct Display {
     place: Option<egui::Rect>,
     /// Whether the window is closed in order to open it with another graphics device.
     pub(super) is_reopening: bool,
-    /// Whether the options of text that were changed to draw all glyphs anew must be set back.
+    /// Whether the text options, which were changed to redraw all glyphs, must be restored.
     sharpen_text: bool,
     /// For trials without hardware that fails: when the device is taken away, seconds after the window has opened.
     loses_device: Option<(Stopwatch, f64)>,
@@ -201,7 +201,7 @@ impl Window {
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,
-            "The graphics device was lost and opened again. Nothing else is lost.".to_owned(),
+            "The graphics device was lost and reopened. The project is unchanged.".to_owned(),
         );
     }
 

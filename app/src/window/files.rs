@@ -76,7 +76,7 @@ impl Window {
         let hair = self.history.project().hair.clone();
         self.openings
             .start(path, aim, hair, &self.ctx)
-            .map_err(|error| format!("{}: a thread that reads it could not start: {error}", path.display()))
+            .map_err(|error| format!("{}: could not start a thread to read it: {error}", path.display()))
     }
 
     fn look_into_or_tell(&mut self, path: &Path, aim: Aim) {

@@ -1,4 +1,4 @@
-//! The keyboard focus: F6 goes round the areas of the window, Tab moves within one.
+//! The keyboard focus: F6 cycles through the areas of the window, Tab moves within one.
 
 use egui::accesskit::{Action, ActionRequest, TreeId};
 use egui::{

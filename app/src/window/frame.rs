@@ -169,7 +169,7 @@ impl Window {
         if let Some(path) = self.notices.show(&ctx, image)
             && let Err(error) = open::that_detached(&path)
         {
-            self.warn([format!("{}: no program could be started that opens it: {error}", path.display())]);
+            self.warn([format!("{}: could not start a program to open it: {error}", path.display())]);
         }
         if let Some(info) = control::end_reveal(&ctx) {
             self.explain_missing(info);
@@ -221,8 +221,8 @@ impl Window {
                                 let rate = &mut self.layout.view_rate;
                                 let slider = egui::Slider::new(rate, least..=most).integer();
                                 ui.add(slider.suffix(" images/s").text("while moving")).hover_tooltip(
-                                    "While something moves, fewer pixels are rendered if that is needed for this many \
-                                     images per second. At rest every pixel is rendered.",
+                                    "Renders fewer pixels during motion if needed to keep this frame rate. At rest every \
+                                     pixel is rendered.",
                                 );
                             });
                         });
@@ -354,7 +354,7 @@ impl Window {
                 row += 1;
             }
             if let Some((fraction, text)) = self.compare.reporting.progress() {
-                let tip = "Stops the report. The methods that are finished stay in it.";
+                let tip = "Stops the report. Finished methods are kept in it.";
                 if progress_overlay(ui, rect, row, fraction, &format!("Report · {text}"), tip) {
                     self.compare.reporting.cancel();
                 }
@@ -378,7 +378,7 @@ impl Window {
                 if left > 0.0 {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
-                    let tip = "Does not open this file. The project stays unchanged.";
+                    let tip = "Cancels opening this file. The project stays unchanged.";
                     if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
                         self.openings.cancel_first();
                     }

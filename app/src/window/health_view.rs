@@ -87,7 +87,7 @@ impl Window {
                 let ClusterStats { clusters, macro_clusters, volumes, bytes, bytes_unshared } = clusters;
                 fact(
                     "Clusters, macro",
-                    "Locks drawn as clusters, and macro-clusters: sets of parameters, each of which several clusters may share.",
+                    "Locks drawn as clusters, and macro-clusters: sets of parameters that several clusters may share.",
                     format!("{clusters}, {macro_clusters}"),
                 );
                 fact(
@@ -97,7 +97,7 @@ impl Window {
                 );
                 fact(
                     "Cluster memory",
-                    "Memory of the parameters of clusters, and what it would be if no clusters shared them.",
+                    "Memory for the parameters of clusters, and what it would be without sharing.",
                     format!("{} of {}", mib(bytes), mib(bytes_unshared)),
                 );
             }
@@ -126,12 +126,12 @@ impl Window {
                 );
                 fact(
                     "From the card",
-                    "Copied back to memory for the last image: lengths of lists, and what unfolding the passes measures.",
+                    "Copied back to memory for the last image: list lengths, and the measured times of passes.",
                     kib(bytes_back),
                 );
                 fact(
                     "Waits, new buffers",
-                    "How often the last image waited for the graphics device, and what it created there.",
+                    "How often the last image waited for the graphics device, and how many buffers it created there.",
                     format!("{waits}, {created}"),
                 );
             }

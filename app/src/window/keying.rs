@@ -23,7 +23,7 @@ impl Window {
                 if !project.set_key(&target, secs, value) {
                     let (tracks, keys) = (Track::MAX, Track::MAX_KEYS);
                     self.warn([format!(
-                        "There is no room for another key: a project has at most {tracks} tracks of {keys} keys."
+                        "The key limit is reached: a project can have {tracks} tracks of {keys} keys. Remove a key first."
                     )]);
                 }
             }
@@ -33,12 +33,12 @@ impl Window {
             KeyRequest::Record { target, label } => {
                 self.overdub.arm_only(target);
                 let what = if self.session.playing {
-                    "Hold and move it to write its track"
+                    "Hold and move the control to write its track"
                 } else {
-                    "Play the dance and move it to write its track, or move it now to set a key"
+                    "Play the dance and move the control to write its track, or move it now to set a key"
                 };
                 self.notices
-                    .push(notices::Kind::Done, format!("{label} is recorded. {what}. W ends the recording."));
+                    .push(notices::Kind::Done, format!("Recording {label}. {what}. Press W to stop."));
             }
         }
     }

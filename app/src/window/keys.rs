@@ -47,7 +47,7 @@ fn is_function_key(key: Key) -> bool {
     name.len() > 1 && name.starts_with('F')
 }
 
-/// Whether a key was pressed in this pass with these modifiers and no others; it is taken from whoever comes later.
+/// Whether a key was pressed in this pass with these modifiers and no others; the key is consumed.
 ///
 /// `?`, `[` and `]` need Shift or `AltGr` on many keyboards, which are therefore no modifiers of these keys.
 pub(crate) fn consume(ctx: &egui::Context, modifiers: Modifiers, key: Key) -> bool {

@@ -28,7 +28,7 @@ impl Window {
         }
     }
 
-    /// Gives back everything that was kept for the project before, because another one takes its place.
+    /// Frees everything that was kept for the previous project, because another one replaces it.
     pub(super) fn rest_all(&mut self) {
         self.compare.leave(self.session.live());
         self.compare.forget_project();
@@ -51,17 +51,17 @@ impl Window {
         let pages = [
             (
                 "Single image",
-                "Renderer and images of the viewport. Given back while panes or the wall are shown, and with the project.",
+                "Renderer and images of the viewport. Freed while panes or the wall are shown, and with the project.",
                 session.painter().held_bytes(),
             ),
             (
                 "Panes",
-                "Renderers, strands and images of the comparison. Given back when it is left.",
+                "Renderers, strands and images of the comparison. Freed when it is closed.",
                 session.live().held_bytes(),
             ),
             (
                 "Wall",
-                "Simulations, renderers and images of the variants. Given back when the wall is left.",
+                "Simulations, renderers and images of the variants. Freed when the wall is closed.",
                 self.wall.held_bytes(),
             ),
         ];
@@ -71,25 +71,26 @@ impl Window {
         let caches = [
             (
                 "Layers",
-                "Hairstyles between two layers, so that a change evaluates only the layers after it. Beyond the limit the first ones go.",
+                "Hairstyles kept between layers, so that a change evaluates only the layers after it. Beyond the limit the \
+                 first are dropped.",
                 worker.layer_bytes(),
                 SceneLoader::MAX_LAYER_BYTES,
             ),
             (
                 "Undo steps",
-                "Projects that undo and redo return to. Beyond the limit the oldest steps go.",
+                "Projects kept for undo and redo. Beyond the limit the oldest steps are dropped.",
                 self.history.bytes(),
                 History::MAX_BYTES,
             ),
             (
                 "Take",
-                "Decoded frames of the take that plays. Beyond the limit those go that were shown longest ago.",
+                "Decoded frames of the playing take. Beyond the limit the least recently shown are dropped.",
                 worker.take_bytes(),
                 CACHE_BYTES as u64,
             ),
             (
                 "Thumbnails",
-                "Images along the timeline. Beyond the limit the oldest go.",
+                "Images along the timeline. Beyond the limit the oldest are dropped.",
                 self.thumbnails.bytes(),
                 Thumbnails::MAX_BYTES,
             ),
@@ -98,11 +99,11 @@ impl Window {
             fact(name, tip, at_most(bytes, most));
         }
         if let Some(sound) = self.soundtrack.loaded() {
-            let tip = "Samples of the sound beside the dance.";
+            let tip = "Samples of the sound of the dance.";
             fact("Sound", tip, format!("{} MiB", mib(sound.sound.bytes())));
         }
         if let Some((database, _)) = lovelock_satf::cache::ready() {
-            let tip = "The database of hair that is drawn as clusters. It stays until the program ends.";
+            let tip = "Database for hair drawn as clusters. Kept until the program ends.";
             fact("Database of clusters", tip, format!("{} MiB", mib(database.bytes())));
         }
         facts

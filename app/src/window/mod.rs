@@ -201,7 +201,7 @@ pub(crate) struct Window {
     styles: styles::Browser,
     /// The project with the style that is shown and not applied.
     preview: Option<styles::Preview>,
-    /// The project that is seen, and the same with the colours of its morph.
+    /// The displayed project, and the same with the colours of its morph.
     morphed: Option<(Arc<Project>, Arc<Project>)>,
     /// The style that is exported, while its path is asked for.
     exported: Option<Box<lovelock_project::styles::Style>>,
@@ -235,7 +235,9 @@ pub(crate) fn open(
         let layer = layers.get(place as usize - 1);
         layer.map(|layer| layer.id).ok_or_else(|| {
             let found = counted(layers.len(), "layer", "layers");
-            ProjectError::option(format!("--mask {place}: found {found}; must be the place of one"))
+            ProjectError::option(format!(
+                "--mask {place}: found {found}; must be the position of a layer, from 1"
+            ))
         })
     });
     let shown = shown.transpose()?;
@@ -395,8 +397,8 @@ impl Window {
         self.edit(label, project);
         if let Some(control) = self.overdub.take_refused() {
             self.warn([format!(
-                "{control} follows its track while the dance plays. Pause to set a key, press W to write the track anew, \
-                 or mute it on the timeline."
+                "{control} follows its track while the dance plays. Pause to set a key, press W to rewrite the track, or \
+                 mute it on the timeline."
             )]);
         }
     }
@@ -423,12 +425,12 @@ impl Window {
             Command::SavePicture => because(self.session.painted.is_none(), "There is no image yet."),
             Command::RecordTake | Command::Scissors if takes => Some(TAKE_PLAYS),
             Command::RecordTake => because(!loaded, "There is no hair to record yet."),
-            Command::PlayTake if takes => Some("A take plays already."),
+            Command::PlayTake if takes => Some("A take is already playing."),
             Command::PlayTake => because(
                 self.session.saved_take.is_none(),
-                "No take has been recorded. R records one; File, Open… plays one from the disk.",
+                "No take has been recorded. Press R to record one, or play a saved one with File, Open….",
             ),
-            Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take plays."),
+            Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take is playing."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
             Command::ShowMask => because(self.layers.selected.is_none(), NO_LAYER),
             Command::PaintMask if takes && !self.layers.painting => Some(TAKE_PLAYS),
@@ -436,14 +438,14 @@ impl Window {
             Command::BrushSmaller | Command::BrushLarger => {
                 because(!(self.layers.painting || self.brushes.on), "No brush is in use.")
             }
-            Command::ExportCurves => because(self.recorder.is_running(), "A recording runs already."),
+            Command::ExportCurves => because(self.recorder.is_running(), "A recording is already running."),
             _ => None,
         }
     }
 }
 
-const TAKE_PLAYS: &str = "A take plays: body and hair move as recorded. Leave the take (Shift+R) first.";
-const NO_LAYER: &str = "No layer is selected. Select one in the panel Layers: its mask is meant.";
+const TAKE_PLAYS: &str = "A take is playing: body and hair move as recorded. Leave the take (Shift+R) first.";
+const NO_LAYER: &str = "No layer is selected. Select one in the Layers panel to show or paint its mask.";
 
 /// The layout of panes in a recording: side by side, in the colours of the window and without times, so that the same panes give
 /// the same pixels.

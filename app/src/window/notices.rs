@@ -178,7 +178,7 @@ fn one(ui: &mut Ui, notice: &Notice, width: f32) -> (bool, Option<PathBuf>) {
 fn written(ui: &mut Ui, path: &Path) -> Option<PathBuf> {
     let mut opened = None;
     ui.horizontal(|ui| {
-        let tip = "Opens it with the program that the system has for it.";
+        let tip = "Opens it in the system's default program.";
         if ui.button("Open").hover_tooltip(tip).clicked() {
             opened = Some(path.to_owned());
         }

@@ -108,7 +108,7 @@ impl Openings {
             Err(TryRecvError::Empty) => return None,
             Ok(found) => found,
             Err(TryRecvError::Disconnected) => Err(ProjectError::work(
-                "the file could not be opened because of an internal error of its reader",
+                "the file could not be opened because of an internal error in its reader",
             )),
         };
         let Opening { path, aim, .. } = self.0.pop_front()?;

@@ -137,7 +137,7 @@ impl Palette {
                     }
                 }
                 if found.is_empty() {
-                    ui.label(RichText::new("No command and no setting is called so.").color(theme::QUIET));
+                    ui.label(RichText::new("No command or setting matches.").color(theme::QUIET));
                 }
             });
         });

@@ -113,7 +113,7 @@ impl Recorder {
 /// Says what was recorded: name, frames, size and folder. `kept` of the frames were there before.
 fn recorded(out: &Path, frames: u64, kept: u64) -> String {
     let name = out.file_name().unwrap_or_default().to_string_lossy();
-    let kept = if kept > 0 { format!(", {kept} of which were there") } else { String::new() };
+    let kept = if kept > 0 { format!(", {kept} of which already existed") } else { String::new() };
     let data = std::fs::metadata(out).ok();
     let size = data
         .filter(std::fs::Metadata::is_file)
@@ -131,9 +131,9 @@ fn recorded(out: &Path, frames: u64, kept: u64) -> String {
 fn left_by_cancel(out: &Path) -> String {
     let name = out.file_name().unwrap_or_default().to_string_lossy();
     if out.is_dir() {
-        format!("Recording cancelled. Its complete images stay in {}.", out.display())
+        format!("Recording cancelled. Complete images are kept in {}.", out.display())
     } else if out.exists() {
-        format!("Recording cancelled. Nothing was written: {name} is the file from before.")
+        format!("Recording cancelled. Nothing was written: {name} is unchanged.")
     } else {
         "Recording cancelled. Nothing was written.".to_owned()
     }
@@ -155,12 +155,13 @@ mod tests {
             said.starts_with("Recorded dance.mp4: 48 frames, 2.5 MB, in ") && said.ends_with(&place),
             "{said}"
         );
-        assert!(left_by_cancel(&film).contains("dance.mp4 is the file from before"));
+        assert!(left_by_cancel(&film).contains("dance.mp4 is unchanged"));
         let images = folder.path().join("images");
         std::fs::create_dir(&images).expect("a folder");
         assert!(
-            recorded(&images, 48, 12).starts_with("Recorded images: 48 frames, 12 of which were there, in ")
+            recorded(&images, 48, 12)
+                .starts_with("Recorded images: 48 frames, 12 of which already existed, in ")
         );
-        assert!(left_by_cancel(&images).contains("complete images stay in"));
+        assert!(left_by_cancel(&images).contains("Complete images are kept in"));
     }
 }

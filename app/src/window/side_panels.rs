@@ -22,9 +22,9 @@ impl Window {
                     let note = if let Some(problem) = problems.first() {
                         problem.as_str()
                     } else if curves {
-                        "Curves of a file play in place of the simulation. Leave them (Shift+R) to change the hair."
+                        "Curves from a file play instead of the simulation. Leave them (Shift+R) to change the hair."
                     } else {
-                        "A take plays: body and hair move as recorded. Leave the take (Shift+R) to change them."
+                        "A take is playing: body and hair move as recorded. Leave the take (Shift+R) to change them."
                     };
                     super::control::note(ui, note);
                     if curves {
@@ -168,7 +168,10 @@ impl Window {
                 // The panes have their own statistics; the single image is not rendered beside them.
                 section(ui, "Statistics", true, |ui| {
                     if compares {
-                        super::control::note(ui, "Of the single image, before the comparison was opened.");
+                        super::control::note(
+                            ui,
+                            "Measured on the single image, before the comparison was opened.",
+                        );
                     }
                     let session = &self.session;
                     self.session.view.measured = panels::statistics::ui(

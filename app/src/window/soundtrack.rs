@@ -87,7 +87,7 @@ pub(crate) struct Soundtrack {
     stamp: Option<Stamp>,
     loading: Option<Loading>,
     loaded: Option<Arc<Loaded>>,
-    /// Why the file of the project is not heard.
+    /// Why the file of the project does not play.
     problem: Option<String>,
     player: Option<Player>,
 }
@@ -212,7 +212,7 @@ impl Soundtrack {
         }
     }
 
-    /// Why nothing is heard, as a sentence: of the file, or of the computer.
+    /// Why no sound plays, as a sentence: a problem of the file, or of the computer.
     pub(crate) fn problem(&self) -> Option<String> {
         self.problem.clone().or_else(|| self.player.as_ref().and_then(Player::failure))
     }

@@ -102,7 +102,7 @@ impl Window {
         }
         if let Some(mode) = done.in_vain {
             let why = match mode {
-                BrushMode::Add => "The mask is full here, or no hair grows: the stroke paints nothing.",
+                BrushMode::Add => "The mask is full here, or no hair grows here: the stroke paints nothing.",
                 BrushMode::Erase => "The mask is empty here: the stroke erases nothing.",
                 BrushMode::Smooth => "The mask is even here: the stroke smooths nothing.",
             };

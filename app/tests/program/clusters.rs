@@ -65,9 +65,9 @@ fn films_of_clusters_are_drawn_and_resumed_only_as_they_began_long_suite() {
     let told = record("told", &["--draw", "clusters", "--json"]);
     let json = told.done().json();
     assert_eq!(json["draw"], "clusters");
-    assert_eq!(told.stderr.matches("made again").count(), 1, "{told:?}");
+    assert_eq!(told.stderr.matches("was rebuilt").count(), 1, "{told:?}");
     let silent = record("silent", &["--draw", "clusters"]);
-    assert!(!silent.done().stderr.contains("made again"), "{silent:?}");
+    assert!(!silent.done().stderr.contains("was rebuilt"), "{silent:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Brushes: tools that change the hair that is seen, and write what they did into a layer of the style.
+//! Brushes: tools that change the displayed hair, and write the change into a layer of the style.
 //!
 //! A [`Brush`] is one stroke. It gets the guides as they move at one instant, moves those that its tool touches, and carries each change
 //! back to the rest shape: a motion turns every link at rest to the one that is seen, and what it turns to the new place of the link becomes

@@ -14,7 +14,7 @@ pub enum BrushMirror {
     Off,
     /// The mirrored stroke, on the hair as it is there: each side keeps its own shape.
     Own,
-    /// The hair there takes the mirrored shape: both sides become alike.
+    /// The hair there takes the mirrored shape: both sides become equal.
     Same,
 }
 
@@ -95,24 +95,24 @@ impl Settings for BrushSettings {
             field!(Self, share),
             [0.0, 1.0],
             "Share of locks",
-            "The part of the locks that the brush touches. Lower values make hair less even.",
+            "Share of the locks that the brush affects. Lower values make hair less even.",
         )
         .unit(Unit::FRACTION),
         Setting::switch(
             field!(Self, front_only),
             "Front only",
-            "Whether the brush leaves hair on the far side of the head as it is.",
+            "Leaves hair on the far side of the head unchanged.",
         ),
         Setting::choice::<BrushMirror>(
             field!(Self, mirror),
             "Mirror",
-            "Whether brushes act on the other side of the head too. Mirrored stroke: the same stroke on the hair as it is there. \
-             Mirrored hair: the hair there becomes a mirror image. Holds for all brushes.",
+            "Makes brushes act on the other side of the head too. Mirrored stroke repeats the stroke there, on the hair as \
+             it is. Mirrored hair makes the hair there a mirror image. Applies to all brushes.",
         ),
         Setting::switch(
             field!(Self, keep_lengths),
             "Keep length",
-            "Whether hair keeps its length. Otherwise combing stretches it.",
+            "Keeps the length of hair. Off, combing stretches it.",
         ),
         Setting::number(field!(Self, curl_radius), [0.0, 0.05], "Curl radius", "Radius of new curls.")
             .unit(Unit::METRES_AS_MM)

@@ -36,7 +36,7 @@ pub enum GpuError {
     #[error("the graphics device was lost: {0}")]
     Lost(String),
     /// A buffer could not be read back.
-    #[error("a picture could not be read back from the graphics device: {0}")]
+    #[error("an image could not be read back from the graphics device: {0}")]
     Readback(String),
 }
 

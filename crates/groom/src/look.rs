@@ -151,7 +151,7 @@ impl Settings for HairLook {
         Setting::color(
             field!(Self, dye),
             "Dye",
-            "Colour of the dye: how a head of hair with it looks in white light.",
+            "Colour of the dye, as a head of dyed hair looks in white light.",
         ),
         Setting::number(
             field!(Self, dye_amount),

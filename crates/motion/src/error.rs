@@ -75,7 +75,7 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MotionError>
         return Err(MotionError::malformed(&file, "the path", "is a folder; must be a file"));
     }
     if data.len() > limit {
-        let problem = format!("{} bytes; files of at most {limit} bytes are read", data.len());
+        let problem = format!("{} bytes; must be at most {limit} bytes", data.len());
         return Err(MotionError::malformed(&file, "the file", problem));
     }
     std::fs::read(path).map_err(read)

@@ -111,7 +111,7 @@ fn read_figure(
         return usd::read(name, bytes, settings, needs_mesh);
     }
     if bytes.starts_with(b"HIERARCHY") {
-        let problem = "is BVH, which holds motion and no body; open it as a motion file";
+        let problem = "is BVH, which holds motion but no body; open it as a motion file";
         return Err(MotionError::malformed(name, "the file", problem));
     }
     gltf::read(name, bytes, base_dir, settings, needs_mesh)

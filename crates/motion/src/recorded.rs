@@ -53,10 +53,8 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     let frames = ((duration * RATE).round() as usize).saturating_add(1);
     let longest = (LIMIT as f64 / joints.len() as f64 / RATE).min(LONGEST_SECS);
     if duration > LONGEST_SECS || frames.saturating_mul(joints.len()) > LIMIT {
-        let problem = format!(
-            "lasts {duration:.0} s with {} joints; at most {longest:.0} s of them are read",
-            joints.len()
-        );
+        let problem =
+            format!("lasts {duration:.0} s with {} joints; must be at most {longest:.0} s", joints.len());
         return Err(MotionError::malformed(file, format!("clip `{}`", clip.name), problem));
     }
     let frame_secs = if frames > 1 { duration / (frames - 1) as f64 } else { 1.0 / RATE };

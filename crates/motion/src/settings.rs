@@ -218,7 +218,7 @@ impl Settings for BodySettings {
         Setting::choice::<OwnHair>(
             field!(Self, own_hair),
             "Model's hair",
-            "Whether the model's own hair is drawn as a part of the body.",
+            "Draws the model's own hair as a part of the body.",
         ),
     ];
 }

@@ -33,8 +33,8 @@ impl LivePane {
 
     /// What the numbers of [`LivePane::figures_label`] are, a paragraph each.
     pub fn figures_text(&self) -> String {
-        let mut text = "Time: the median of the last images, with the shadow maps. While nothing moves, maps are kept and count with the \
-                        time that they took when they were made.\n\nMemory: the shadow maps of all lights."
+        let mut text = "Time: the median of the last images, with the shadow maps. Maps reused while nothing moves count \
+                        with the time of their last build.\n\nMemory: the shadow maps of all lights."
             .to_owned();
         match &self.error {
             LiveError::NotMeasured => {}
@@ -45,9 +45,9 @@ impl LivePane {
                 let side = if *bias > 0.0 { "too bright" } else { "too dark" };
                 let _ = write!(
                     text,
-                    "\n\nError: root mean square difference of transmittance from Exact with the project's settings, for the first light \
-                     that is on, over all points of strands, also those that the camera does not see. 0 is none, 1 is full light against none. \
-                     Mean {bias:+.4} ({side}), 99 of 100 points below {p99:.3}."
+                    "\n\nError: root mean square difference of transmittance from Exact with the project's settings, for \
+                     the first light that is on, over all points of strands, including those hidden from the camera. 0 is \
+                     no error, 1 is full light against none. Mean {bias:+.4} ({side}), 99 of 100 points below {p99:.3}."
                 );
             }
             LiveError::Refused(why) => {

@@ -70,7 +70,7 @@ impl LiveShows {
     }
 }
 
-/// What all panes show, and what is measured.
+/// What all panes show and measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiveView {
     /// What they show.

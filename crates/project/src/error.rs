@@ -126,7 +126,7 @@ pub enum Place {
     Lights,
     /// The picture of the surroundings.
     Surroundings,
-    /// The sound beside the dance.
+    /// The sound of the dance.
     Sound,
     /// The camera.
     Camera,

@@ -123,16 +123,15 @@ impl Settings for PictureSettings {
             field!(Self, cluster_size),
             [4.0, 4000.0],
             "Clusters below",
-            "Height of a head in the image below which locks are drawn in place of strands.",
+            "Height of a head in the image below which locks are drawn instead of strands.",
         )
         .unit(Unit::PIXELS)
         .logarithmic(),
         Setting::choice::<Transparency>(
             field!(Self, transparency),
             "Transparency",
-            "How strands that overlap in a pixel are blended: each hiding what is behind it, \
-             averaged, weighted by an estimated order, blended segment by segment, or sorted \
-             exactly.",
+            "How strands that overlap in a pixel are blended: each hiding what is behind it, averaged, weighted by an \
+             estimated order, blended segment by segment, or sorted exactly.",
         ),
         Setting::choice::<Backend>(
             field!(Self, backend),

@@ -14,7 +14,7 @@ use crate::file::{DatabaseError, VERSION};
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Note {
     /// The file could not be used, so the database was made again.
-    #[error("The hair database was made again: {} could not be used ({reason}).", .path.display())]
+    #[error("The hair database was rebuilt: {} could not be used ({reason}).", .path.display())]
     MadeAgain {
         /// The file.
         path: PathBuf,
@@ -22,7 +22,7 @@ pub enum Note {
         reason: String,
     },
     /// The database could not be kept, so it will be made again at the next start.
-    #[error("The hair database could not be kept as {} ({reason}).", .path.display())]
+    #[error("The hair database could not be saved as {} ({reason}).", .path.display())]
     NotKept {
         /// The file.
         path: PathBuf,

@@ -29,7 +29,7 @@ pub enum DatabaseError {
     #[error("this is not a hair database")]
     NotADatabase,
     /// The database has another version than this program's.
-    #[error("the hair database has version {0}, and this program uses version {VERSION}")]
+    #[error("the hair database has version {0}; must be version {VERSION}")]
     OtherVersion(u32),
     /// Bytes are missing.
     #[error("the hair database ends after {found} of {wanted} bytes")]

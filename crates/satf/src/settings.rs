@@ -166,12 +166,12 @@ impl Settings for ClusterSettings {
             field!(Self, macro_tolerance),
             [0.0, 1.0],
             "Sharing",
-            "How different locks may be that share one set of parameters. At 0 only equal locks share.",
+            "How much locks that share one set of parameters may differ. At 0 only equal locks share.",
         ),
         Setting::switch(
             field!(Self, curls),
             "Curl records",
-            "Makes curled locks smoother, by records of loose and tight curls. Off, all locks use records of straight hair.",
+            "Makes curled locks smoother, with records of loose and tight curls. Off, all locks use records of straight hair.",
         ),
         Setting::choice::<RecordLookup>(
             field!(Self, lookup),

@@ -1,4 +1,4 @@
-//! Work on a thread of its own, which whoever waits for it may leave.
+//! Runs work on a thread whose waiter can cancel.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,14 +31,14 @@ pub(crate) fn aside<T: Send + 'static>(
             // Nobody may be waiting any more.
             let _ = sender.send(work(&inside));
         })
-        .map_err(|error| ProjectError::work(format!("a thread that reads could not start: {error}")))?;
+        .map_err(|error| ProjectError::work(format!("could not start a thread to read: {error}")))?;
     loop {
         match result.recv_timeout(TICK) {
             Ok(result) => return Ok(result),
             Err(RecvTimeoutError::Timeout) => tick(watch.done()),
             Err(RecvTimeoutError::Disconnected) => match thread.join() {
                 Err(panic) => resume_unwind(panic),
-                Ok(()) => return Err(ProjectError::work("a thread that reads ended without a result")),
+                Ok(()) => return Err(ProjectError::work("the thread that reads ended without a result")),
             },
         }
         if cancelled.load(Ordering::Relaxed) {

@@ -74,7 +74,7 @@ impl Filmstrip {
         self.jobs.put(request);
     }
 
-    /// Closes the take, and gives back what is kept for further requests.
+    /// Closes the take, and frees what is kept for further requests.
     pub fn rest(&self) {
         self.jobs.rest();
     }
@@ -94,7 +94,7 @@ impl Drop for Filmstrip {
     }
 }
 
-/// A take that is open, and what it was opened with.
+/// An open take, and how it was opened.
 struct Open {
     file: PathBuf,
     access: Access,

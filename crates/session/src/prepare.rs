@@ -65,7 +65,7 @@ pub fn check_frames(frames: &Range<u64>) -> Result<(), ProjectError> {
     }
     // About two weeks at 30 frames per second, which is a typing error.
     if frames.end > 40_000_000 {
-        return Err(ProjectError::option(format!("frame {} is farther than any dance goes", frames.end)));
+        return Err(ProjectError::option(format!("frame {}: must be at most 40000000", frames.end)));
     }
     Ok(())
 }

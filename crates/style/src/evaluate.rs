@@ -8,7 +8,7 @@ use crate::{HeadBox, Layer, Operation, Scope, StyleStack};
 
 /// Applies stacks and keeps the hairstyle after each layer, so that a change of one layer recomputes only that one and those after it.
 ///
-/// Hairstyles that together take more than [`StyleCache::MAX_BYTES`] are not all kept: first those after the first layers go.
+/// Hairstyles that together take more than [`StyleCache::MAX_BYTES`] are not all kept: those after the first layers are dropped first.
 #[derive(Clone)]
 pub struct StyleCache {
     start: Option<(Arc<Hairstyle>, Arc<dyn Obstacle + Send>)>,

@@ -309,7 +309,7 @@ pub fn length(points: &[Vec3]) -> f32 {
     points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
-/// Makes a guide longer by a factor: new hair goes on at its end and bends down. A factor below 1 takes hair away there.
+/// Lengthens a guide by a factor: new hair continues at its end and bends down. A factor below 1 removes hair there.
 pub fn lengthen(points: &mut [Vec3], factor: f32) {
     let links = points.len() - 1;
     let link = length(points) / links as f32;

@@ -12,7 +12,7 @@ use crate::{Ramp, Scope};
 pub enum Subject {
     /// The guides, which are simulated.
     Shape,
-    /// The drawn strands alone.
+    /// Only the drawn strands.
     Strands,
     /// Colours.
     Colour,

@@ -16,11 +16,11 @@ const POINTS: u8 = 12;
 /// What a choice does.
 fn text(mirror: BrushMirror) -> &'static str {
     match mirror {
-        BrushMirror::Off => "Off: only the hair under the brush is changed.",
+        BrushMirror::Off => "Off: changes only the hair under the brush.",
         BrushMirror::Own => {
-            "Mirrored stroke: the same stroke on the other side. Hair there is moved alike and keeps its own shape."
+            "Mirrored stroke: the same stroke on the other side. Hair there moves the same way and keeps its own shape."
         }
-        BrushMirror::Same => "Mirrored hair: hair on the other side becomes a mirror image of this side.",
+        BrushMirror::Same => "Mirrored hair: makes hair on the other side a mirror image of this side.",
     }
 }
 

@@ -1,4 +1,4 @@
-//! Brushes: combing the hair that is seen, while it dances.
+//! Brushes: tools that comb the displayed hair during playback.
 
 mod bar;
 mod circle;

@@ -40,13 +40,13 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
                 *on = !*on;
             }
         };
-        let tip = "Brushes the hair with the pointer, also while it dances. Beside the hair, the pointer moves the camera. Key: H";
+        let tip = "Brushes the hair with the pointer, even during playback. Drag outside the hair to move the camera. Key: H";
         toggle(ICON_BRUSH, "Brush", &mut brushes.on, tip);
         let tip = "Shows the hairstyle without its simulation. Pause (Space) instead to brush one pose of the moving hair.";
         toggle(ICON_PAUSE, "No physics", &mut brushes.still, tip);
         if brushes.strokes.frozen.contains(&true) {
             let thaw = ui.button((ICON_AC_UNIT.rich_text(), "Unfreeze all"));
-            if thaw.hover_tooltip("Lets brushes touch every lock again.").clicked() {
+            if thaw.hover_tooltip("Unfreezes all locks, so that tools act on them again.").clicked() {
                 request = Some(BrushRequest::Thaw);
             }
         }
@@ -63,16 +63,16 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
     tool_settings(ui, brushes.tool, kept);
     let recorded = brushes.strokes.recorded.len();
     let save = ui.add_enabled(recorded > 0, egui::Button::new("Save strokes…"));
-    let tip = "Saves the strokes since the program started, to be played again by `lovelock style`.";
-    if save.hover_tooltip(tip).disabled_hover_tooltip("There is no stroke yet.").clicked() {
+    let tip = "Saves the strokes made since the program started, for replay with `lovelock style`.";
+    if save.hover_tooltip(tip).disabled_hover_tooltip("There are no strokes yet.").clicked() {
         request = Some(BrushRequest::Save);
     }
-    note(ui, "Strokes are written into the selected layer By hand, or into the last one.");
+    note(ui, "Strokes go into the selected By hand layer, or into the last one.");
     ui.horizontal_wrapped(|ui| {
         ui.label("Paint a map:");
         for (id, name, tip) in MAPS {
             let tip = format!(
-                "{tip} The map is the painted mask of a layer, whose settings say how much. Ctrl erases."
+                "{tip} The map is the painted mask of a layer, and the layer's settings set the amount. Ctrl erases."
             );
             if ui.button(name).hover_tooltip(tip).clicked() {
                 request = Some(BrushRequest::Paint(id));
@@ -97,13 +97,12 @@ pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
         _ => {}
     }
     section(ui, "Falloff", false, |ui| {
-        let tip =
-            "Strength by the distance from the centre of the brush: left is the centre, right its edge.";
+        let tip = "Strength of the brush from its centre (left) to its edge (right).";
         curve(ui, "From the centre", tip, &mut now.falloff, &default.falloff);
-        let tip = "Strength along the hair: left is the root, right the tip.";
+        let tip = "Strength of the brush from the root of the hair (left) to its tip (right).";
         curve(ui, "Root to tip", tip, &mut now.along, &default.along);
     });
-    restore_all(ui, "Defaults", "Restores every setting of this tool.", &mut now, &default);
+    restore_all(ui, "Defaults", "Restores the defaults of this tool.", &mut now, &default);
     if now != before {
         kept.set(tool, now);
     }

@@ -175,7 +175,7 @@ impl Window {
         self.history.edit(&label, Some(gesture), project);
     }
 
-    /// Ends a stroke that has written nothing: it is no undo step, and a layer that was added for it goes.
+    /// Ends a stroke that has written nothing: it makes no undo step, and a layer that was added for it is removed.
     fn end_without_change(&mut self, stroke: &OpenStroke) {
         let strokes = &self.brushes.strokes;
         let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);
@@ -190,7 +190,8 @@ impl Window {
         } else {
             ""
         };
-        let what = if stroke.tool == Tool::Freeze { "freezes or frees no lock" } else { "changes no hair" };
+        let what =
+            if stroke.tool == Tool::Freeze { "freezes or unfreezes no lock" } else { "changes no hair" };
         self.notices.push(notices::Kind::Warning, format!("The stroke {what}.{held}"));
     }
 }

@@ -142,8 +142,8 @@ pub(super) fn ui(
 }
 
 /// Why no pane can be added.
-const FULL: &str = "There are six panes, the most. Remove one first, choose another method in the title bar of a pane, or compare any \
-                    number of methods in a report (Export report…).";
+const FULL: &str = "The limit of six panes is reached. Remove one first, choose another method in the title bar of a pane, \
+                    or compare any number of methods in a report (Export report…).";
 
 /// The two panes of the wipe.
 fn pair(ui: &mut Ui, layout: &mut CompareLayout, project: &Project) {

@@ -139,7 +139,7 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
         .collect();
     let unit = if which == CostPlot::ErrorMemory { "MiB" } else { "ms" };
     if ways.iter().all(|(_, way, _)| way.error == LiveError::NotMeasured) {
-        note(ui, "Errors are not measured. Press the ruler above the panes.");
+        note(ui, "Errors are not measured. Click the ruler above the panes.");
     } else if !left_out.is_empty() {
         note(ui, format!("Not on these axes: {}.", left_out.join(", ")));
     }
@@ -246,10 +246,10 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
         });
     };
     ui.spacing_mut().item_spacing.y = 2.0;
-    let titles = ["build", "ask", "draw", "whole", "memory", "error"];
+    let titles = ["build", "query", "draw", "whole", "memory", "error"];
     row(
         ui,
-        (RichText::new("ms").color(theme::QUIET), "Milliseconds on the device that each line names."),
+        (RichText::new("ms").color(theme::QUIET), "Milliseconds on the device named in each line."),
         titles.map(|title| RichText::new(title).color(theme::QUIET)),
     );
     for (index, way) in shown(costs, project, panes) {
@@ -278,8 +278,8 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
     }
     note(
         ui,
-        "Medians of the last images, measured while everything else runs. Maps that are kept while nothing moves count with the time that \
-         they took when they were made. Error: RMSE of transmittance from Exact.",
+        "Medians of the last images, measured while everything else runs. Maps reused while nothing moves count with the \
+         time of their last build. Error: RMSE of transmittance against Exact.",
     );
 }
 

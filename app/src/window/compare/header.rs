@@ -154,7 +154,7 @@ fn settings(ui: &mut Ui, index: usize, pane: &mut Contender, can_swap: Option<bo
         }
     });
     let response = response.hover_tooltip(
-        "What hair is drawn as, transparency, backend, resolution and all settings of the method.",
+        "How hair is drawn, transparency, backend, resolution and all settings of the method.",
     );
     let name = format!("Settings of pane {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
@@ -166,7 +166,7 @@ pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
     if let Some(take) = pane.take_name() {
         ui.horizontal(|ui| {
             ui.label(format!("Shows the {take}"));
-            let tip = "Shows the scene of the other panes in place of the take.";
+            let tip = "Shows the scene of the other panes instead of the take.";
             if ui.button("Remove take").hover_tooltip(tip).clicked() {
                 pane.take = None;
             }

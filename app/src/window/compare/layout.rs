@@ -58,7 +58,7 @@ impl CostPlot {
         match self {
             Self::Whole => "Whole",
             Self::Build => "Build",
-            Self::Ask => "Ask",
+            Self::Ask => "Query",
             Self::Draw => "Draw",
             Self::ErrorTime => "Error · time",
             Self::ErrorMemory => "Error · memory",
@@ -71,7 +71,7 @@ impl CostPlot {
                 "Time per image over the last seconds, without simulation and interpolation of strands."
             }
             Self::Build => "Time to build the shadow maps over the last seconds.",
-            Self::Ask => "Time to look up the shadow maps at all strand points over the last seconds.",
+            Self::Ask => "Time to query the shadow maps at all strand points over the last seconds.",
             Self::Draw => "Time of the rest of the image over the last seconds.",
             Self::ErrorTime => {
                 "Each variant as a point: lower left is better. Its previous settings form a trail."

@@ -321,7 +321,7 @@ impl Window {
                 if let Some(pane) = panes.get(index).cloned() {
                     let used = pane.applied_to(project);
                     if used == *project {
-                        let said = format!("The project has the settings of pane {} already.", index + 1);
+                        let said = format!("The project already has the settings of pane {}.", index + 1);
                         self.notices.push(super::notices::Kind::Warning, said);
                     }
                     *project = used;

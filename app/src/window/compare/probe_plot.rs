@@ -15,8 +15,9 @@ const ROW: f64 = 0.075;
 /// The name of the exact step function.
 const UNFILTERED: &str = "one texel, unfiltered";
 
-const OF_METHOD: &str = "The transmittance that the pane's method returns at the hair. Methods filter between neighbouring texels or cells, \
-                         as their setting Filter says, so that light does not jump at their edges. This also holds for Exact.";
+const OF_METHOD: &str = "The transmittance that the pane's method returns at the hair. Methods filter between neighbouring \
+                         texels or cells according to their setting Filter, so that light does not jump at their edges. So \
+                         does Exact.";
 
 const OF_TEXEL: &str = "The thin line: the transmittance behind all fragments of hair in the one texel of Exact that contains the hair, \
                         without filter. Exact itself returns the mean of this and of the neighbouring texels where its filter is linear, \

@@ -125,8 +125,8 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
     ui.heading("Export report");
     note(
         ui,
-        "Compares shadow methods with the settings of the project, and writes errors, times, images and a page to a folder. Times are measured \
-         while the window works: pause the dance for times that can be compared.",
+        "Compares shadow methods with the settings of the project, and writes errors, times, images and a page to a folder. \
+         Times are measured while the window runs: pause the dance for comparable times.",
     );
     ui.horizontal(|ui| {
         ui.label(RichText::new("Methods").strong());
@@ -166,7 +166,7 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
             })
             .response;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Backend"));
-        response.hover_tooltip("What renders and is timed. Both are compared in tables of their own.");
+        response.hover_tooltip("The backends to render with and time. Each has its own tables.");
         ui.end_row();
         ui.label("Size");
         ui.horizontal(|ui| {
@@ -181,20 +181,20 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
         let last = clip.saturating_sub(1);
         let drag = ui.add(DragValue::new(first).range(0..=last).speed(0.5));
         drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "First frame"));
-        drag.hover_tooltip("Images, errors and times are of this frame, which is the present one at first.");
+        drag.hover_tooltip("The frame for images, errors and times. Starts as the current frame.");
         ui.end_row();
         ui.label("Frames");
         let most = (clip - (*first).min(last)).min(240);
         let drag = ui.add(DragValue::new(count).range(1..=most.max(1)).speed(0.2));
         drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Frames"));
-        drag.hover_tooltip("With several, pop and flicker from frame to frame are measured as well.");
+        drag.hover_tooltip("With more than one, also measures popping and flicker from frame to frame.");
         ui.end_row();
         ui.label("Quick");
         let quick = ui.checkbox(&mut options.quick, "");
         quick.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::CheckBox, true, options.quick, "Quick report")
         });
-        quick.hover_tooltip("Leaves out swim, banding and two tests of stability, and times fewer draws.");
+        quick.hover_tooltip("Skips swim, banding and two stability tests, and times fewer draws.");
         ui.end_row();
     });
     if options.methods.is_empty() {
@@ -215,9 +215,7 @@ impl Window {
     /// Opens the dialog of a report with the options of the last one, at the present frame.
     pub(in crate::window) fn open_report_dialog(&mut self) {
         if self.compare.reporting.is_running() {
-            self.warn([
-                "A report is being written. Cancel it above the image, or wait for its end.".to_owned()
-            ]);
+            self.warn(["A report is being written. Wait for it, or cancel it above the image.".to_owned()]);
             return;
         }
         let project = self.history.project();
@@ -286,7 +284,7 @@ impl Window {
                 let said = if report.complete {
                     format!("Report of {} rows in {}", report.methods.len(), page.display())
                 } else {
-                    format!("The report was stopped: what is finished is in {}", page.display())
+                    format!("The report was stopped. The finished part is in {}", page.display())
                 };
                 self.notices.push_written(said, page);
             }

@@ -56,7 +56,7 @@ pub(in crate::window) fn choice(ui: &mut Ui, edited: usize, visible: &[usize]) -
         ui.label(RichText::new("Edits pane").strong());
         for &pane in visible {
             let text = RichText::new(format!("{}", pane + 1)).color(theme::PLOT[pane % theme::PLOT.len()]);
-            let tip = "The settings below are those of this pane. A click on a pane selects it as well.";
+            let tip = "Shows the settings of this pane below. Clicking the pane also selects it.";
             let response = ui.selectable_label(pane == edited, text).hover_tooltip(tip);
             let name = format!("Edit pane {}", pane + 1);
             response.widget_info(|| {

@@ -218,9 +218,9 @@ impl KeyedRow {
         Some(match self.setting.path.split('.').next().unwrap_or_default() {
             "compare" => "Panes do not follow the timeline. Close the comparison to set keys of the project.",
             "hair" | "body" => {
-                "This setting cannot follow the timeline: a change loads or grows the hair again."
+                "This setting cannot follow the timeline: a change reloads or regrows the hair."
             }
-            _ => "This setting cannot follow the timeline: it holds for all of it.",
+            _ => "This setting cannot follow the timeline: it applies to the whole timeline.",
         })
     }
 
@@ -268,7 +268,7 @@ impl KeyedRow {
         let response = response.hover_tooltip(match (self.has_key, self.has_track) {
             (true, _) => "Removes the key at this time.",
             (false, true) => "Sets a key at this time. The track has keys at other times.",
-            (false, false) => "Sets a key at this time, which begins a track on the timeline.",
+            (false, false) => "Sets a key at this time, and adds a track to the timeline.",
         });
         if response.clicked() {
             if self.has_key { self.remove(ui) } else { self.add(ui) }
@@ -314,7 +314,7 @@ fn menu(ui: &Ui, whole: Rect, name: &Response, row: Option<&KeyedRow>, differs: 
                 }
                 ui.separator();
             }
-            reset = entry(ui, "Reset", (!differs).then_some("The value is the default."));
+            reset = entry(ui, "Reset", (!differs).then_some("The value is already the default."));
             if let Some(KeyedRow { setting: RowSetting { path, info, value }, .. }) = row {
                 if entry(ui, "Copy value", None) {
                     ui.copy_text(info.format(*value));

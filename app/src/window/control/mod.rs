@@ -27,7 +27,7 @@ use super::theme;
 /// Width of the column of labels, points.
 const LABEL_WIDTH: f32 = 118.0;
 
-/// Tells the user something about a control, in a message that takes no place from the others.
+/// Shows the user a message about a control, without moving the other controls.
 fn say(ctx: &egui::Context, sentence: String) {
     ctx.data_mut(|data| {
         let said: &mut Vec<String> = data.get_temp_mut_or_default(said_key());
@@ -41,7 +41,7 @@ fn said_key() -> Id {
     Id::unique("said by controls")
 }
 
-/// What controls told the user since the last call.
+/// The messages of controls since the last call.
 pub(crate) fn said(ctx: &egui::Context) -> Vec<String> {
     ctx.data_mut(|data| data.remove_temp(said_key())).unwrap_or_default()
 }

@@ -119,7 +119,7 @@ impl Limits {
                 super::say(
                     &self.ctx,
                     format!(
-                        "{label}: found {}{suffix}; must be {} to {}{suffix}. {}{suffix} is taken.",
+                        "{label}: found {}{suffix}; must be {} to {}{suffix}. It is set to {}{suffix}.",
                         say(number),
                         say(low),
                         say(high),

@@ -74,7 +74,7 @@ impl Manual {
         let mut goto = None;
         ui.horizontal(|ui| {
             let back = ui.add_enabled(!self.before.is_empty(), egui::Button::new("Back"));
-            if back.hover_tooltip("Returns to the place before.").clicked() {
+            if back.hover_tooltip("Goes back to the previous place.").clicked() {
                 self.back();
             }
         });
@@ -120,7 +120,7 @@ impl Manual {
                 }
             }
             if found.is_empty() {
-                ui.weak("No page contains this.");
+                ui.weak("No page contains this text.");
             }
         });
         goto

@@ -104,7 +104,7 @@ impl WhatIsThis {
                 ui.painter().text(
                     screen.center_top() + egui::vec2(0.0, 34.0),
                     egui::Align2::CENTER_TOP,
-                    "Click a control to read about it. Escape ends this.",
+                    "Click a control to read about it. Escape cancels.",
                     egui::FontId::proportional(14.0),
                     theme::ACCENT,
                 );
@@ -128,7 +128,7 @@ impl WhatIsThis {
     }
 }
 
-/// The rows of this pass. Those of the next one are noted anew.
+/// The rows of this pass. They are recorded again in each pass.
 fn take_rows(ctx: &Context) -> Rows {
     ctx.data_mut(|data| {
         let rows = data.get_temp::<Rows>(key()).unwrap_or_default();

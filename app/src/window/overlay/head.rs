@@ -82,9 +82,9 @@ impl Hold {
         }
     }
 
-    /// Where what is at `place` goes as the pointer drags it: over the head, as far over it as it was and on the side where it was
-    /// taken hold of; beside the head and in the air in the plane that faces the camera. With it the head's normals where it was
-    /// taken hold of and where it goes. All in head space.
+    /// Where an object at `place` moves as the pointer drags it: over the head, at the same height and on the side where the drag
+    /// began; beside the head and in the air in the plane that faces the camera. Also returns the head's normals at the start and at
+    /// the end. All in head space.
     pub(super) fn drag(
         self,
         view: View,

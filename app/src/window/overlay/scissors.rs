@@ -44,7 +44,7 @@ impl Scissors {
     }
 }
 
-/// Whether a line is too short to be meant.
+/// Whether a line is too short to be intended.
 pub(crate) fn is_too_short([from, to]: [Pos2; 2]) -> bool {
     (to - from).length() < SHORTEST
 }

@@ -43,7 +43,7 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
     choice(
         ui,
         "Collider",
-        "The shape that is edited, named after its joint.",
+        "The shape to edit, named after its joint.",
         &mut shown.selected,
         before,
         &options,
@@ -67,5 +67,11 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
     if *edits == ColliderEdits::default() {
         return;
     }
-    restore_all(ui, "Colliders", "Restores every shape as fitted.", edits, &ColliderEdits::default());
+    restore_all(
+        ui,
+        "Colliders",
+        "Restores every shape to its fitted size and position.",
+        edits,
+        &ColliderEdits::default(),
+    );
 }

@@ -100,7 +100,7 @@ fn grown(ui: &mut Ui, hair: &mut HairSection) {
     section(ui, "Shape", true, |ui| settings(ui, &SHAPE, groom, &default));
     section(ui, "Texture", true, |ui| settings(ui, &TEXTURE, groom, &default));
     section(ui, "Counts", false, |ui| settings(ui, &COUNTS, groom, &default));
-    restore_all(ui, "Defaults", "Restores every control of this hairstyle.", groom, &default);
+    restore_all(ui, "Defaults", "Restores the defaults of this hairstyle.", groom, &default);
 }
 
 fn imported(ui: &mut Ui, hair: &mut HairSection) {

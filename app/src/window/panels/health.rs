@@ -72,7 +72,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
                 }
                 (false, None) => "Pauses, marks the place in the image, and moves the camera to it.",
             };
-            asked = button.hover_tooltip(tip).disabled_hover_tooltip("This value has no place.").clicked();
+            asked = button.hover_tooltip(tip).disabled_hover_tooltip("This value has no position.").clicked();
             ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
             if let Some(when) = gauge.when_in_words() {
                 ui.label(RichText::new(when.trim_start()).small().weak())
@@ -85,7 +85,8 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
     ui.painter().rect_filled(full, 1.5, color);
     if let Some(within) = &gauge.within {
-        ui.label(RichText::new(format!("in {within}")).small().weak()).hover_tooltip("Part of the body.");
+        ui.label(RichText::new(format!("in {within}")).small().weak())
+            .hover_tooltip("The part of the body that the hair is in.");
     }
     if !gauge.advice.is_empty() {
         ui.label(RichText::new(&gauge.advice).small().color(color));

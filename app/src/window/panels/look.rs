@@ -23,7 +23,7 @@ const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 
 const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
 
-/// What a pane of a comparison has for itself, beside what hair is drawn as.
+/// The settings that each pane of a comparison has separately, besides how hair is drawn.
 const OF_PANE: [&str; 2] = ["transparency", "backend"];
 
 /// How hair is divided into clusters.
@@ -79,7 +79,7 @@ fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
 }
 
 /// Why the number of strands has no effect.
-const NO_STRANDS: &str = "Clusters are drawn in place of strands.";
+const NO_STRANDS: &str = "Clusters are drawn instead of strands.";
 
 /// Why the number of strands has no effect on panes.
 const STORED_STRANDS: &str =

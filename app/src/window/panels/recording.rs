@@ -178,7 +178,8 @@ fn summary(section: &RecordingSection, clip_frames: u64) -> String {
 }
 
 /// What the button does that stops a recording.
-pub(crate) const CANCEL: &str = "Stops the recording. Complete images of a folder stay; of a film nothing is written, and an older file of its name stays.";
+pub(crate) const CANCEL: &str = "Stops the recording. Complete images in a folder are kept. An unfinished film is \
+                                 discarded, and an existing film of that name is unchanged.";
 
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
 pub(crate) fn ui(

@@ -130,7 +130,7 @@ fn sentence(features: &Features) -> String {
         Curl::Tight => "tightly curled",
     };
     format!(
-        "This sector stands for {curl} hair with an optical depth of {optical_depth:.2} along the radius and centroids at \
+        "This sector represents {curl} hair with an optical depth of {optical_depth:.2} along the radius and centroids at \
          {s_centroid:.2} of the arc and {t_centroid:.2} of the radius."
     )
 }

@@ -1,4 +1,4 @@
-//! The scalp: how it is shown, and what is corrected.
+//! The scalp: its display and its corrections.
 
 use egui::Ui;
 use lovelock_base::settings::Unit;
@@ -19,7 +19,7 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
         );
         let before = tool.painting;
         ui.checkbox(&mut tool.painting, "Paint scalp")
-            .hover_tooltip("Dragging over the head adds hair. With Ctrl held it removes hair.");
+            .hover_tooltip("Drag over the head to add hair, Ctrl+drag to remove it.");
         tool.shown |= tool.painting && !before;
         tool.painting &= tool.shown;
     });
@@ -31,7 +31,8 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
             "Size of the brush, seen from the middle of the head.",
         )
         .show(ui, &mut tool.brush, ScalpTool::default().brush);
-        ui.checkbox(&mut tool.mirrored, "Both sides").hover_tooltip("Paints the other side alike.");
+        ui.checkbox(&mut tool.mirrored, "Both sides")
+            .hover_tooltip("Paints the same on the other side of the head.");
     }
     let default = ScalpFit::default();
     settings(ui, &["forward", "up", "nod", "width", "size"], fit, &default);
@@ -57,8 +58,8 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
             fit.removed = default.removed.clone();
         }
         let reset = ui.add_enabled(!fit.is_automatic(), egui::Button::new("Fit again"));
-        let reset = reset.disabled_hover_tooltip("The scalp is as it was found.");
-        if reset.hover_tooltip("Restores the scalp that was found.").clicked() {
+        let reset = reset.disabled_hover_tooltip("The scalp is unchanged.");
+        if reset.hover_tooltip("Restores the detected scalp.").clicked() {
             *fit = default.clone();
         }
     });

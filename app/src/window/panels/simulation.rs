@@ -54,7 +54,7 @@ pub(crate) fn ui(
         accuracy(ui, simulation, default);
         setting(ui, "preroll_secs", timeline, &TimelineSection::default());
     });
-    restore_all(ui, "Defaults", "Restores every control of this panel.", simulation, default);
+    restore_all(ui, "Defaults", "Restores the defaults of this panel.", simulation, default);
 }
 
 /// The stiffness from root to tip as a curve.

@@ -1,4 +1,4 @@
-//! The sound beside the dance.
+//! The sound of the dance.
 
 use egui::{Label, RichText, Sense, Ui};
 use lovelock_project::Project;
@@ -25,18 +25,18 @@ pub(crate) fn ui(
 ) -> Option<SoundRequest> {
     let mut request = None;
     let file = &mut project.sound.file;
-    let tip = "The sound that plays beside the dance and goes into films.";
+    let tip = "The sound that plays with the dance and in films.";
     row(ui, "Sound", tip, file.is_some(), file, None, |ui, file| {
         let name = file.as_ref().and_then(|file| file.path.file_name());
         let name = name.map_or_else(|| "Silence".into(), |name| name.to_string_lossy());
         ui.add(Label::new(name).truncate().sense(Sense::CLICK))
     });
     ui.horizontal_wrapped(|ui| {
-        let tip = "Picks the sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC.";
+        let tip = "Adds a sound to the dance: WAV, MP3, Ogg Vorbis or FLAC.";
         if ui.button("Sound file…").hover_tooltip(tip).clicked() {
             request = Some(SoundRequest::PickFile);
         }
-        if file.is_some() && ui.button("Remove sound").hover_tooltip("Returns to silence.").clicked() {
+        if file.is_some() && ui.button("Remove sound").hover_tooltip("Removes the sound.").clicked() {
             *file = None;
         }
     });
@@ -77,7 +77,7 @@ fn markers(ui: &mut Ui, project: &mut Project, loaded: &Loaded, duration_secs: f
     let offset = project.sound.offset_secs;
     let times = loaded.beats.secs.iter().map(|beat| beat + offset);
     let times: Vec<f64> = times.filter(|secs| *secs >= 0.0 && *secs <= duration_secs).collect();
-    let why_not = times.is_empty().then_some("No beat was found in the time of the dance.");
+    let why_not = times.is_empty().then_some("No beat was found during the dance.");
     let clicked = unless(ui, why_not, |ui| {
         let tip = "Adds a marker at every beat of the dance, named by its number. Existing markers stay.";
         ui.button("Markers at the beats").hover_tooltip(tip).clicked()

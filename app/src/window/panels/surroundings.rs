@@ -45,12 +45,12 @@ pub(crate) fn ui(
         ui.add(Label::new(name).truncate().sense(Sense::CLICK))
     });
     ui.horizontal_wrapped(|ui| {
-        let tip = "Takes the light from a picture of all directions: Radiance (.hdr) or OpenEXR (.exr).";
+        let tip = "Lights the scene with a picture of the surroundings: Radiance (.hdr) or OpenEXR (.exr).";
         if ui.button("Picture file…").hover_tooltip(tip).clicked() {
             request = Some(SurroundingsRequest::PickFile);
         }
         if file.is_some() {
-            let tip = "Returns to the light of a sky above a ground.";
+            let tip = "Returns to light from sky and ground.";
             if ui.button("Remove picture").hover_tooltip(tip).clicked() {
                 *file = None;
             }
@@ -74,7 +74,7 @@ fn key_light(ui: &mut Ui, project: &mut Project, strongest: Option<Strongest>) {
         (_, None) => Some("No direction of this picture is much brighter than the rest."),
         _ => None,
     };
-    let tip = "Gives the first light the direction and the colour of the strongest light in the picture.";
+    let tip = "Sets the first light to the direction and colour of the strongest light in the picture.";
     let button = egui::Button::new("Key light from the surroundings");
     let response = ui.add_enabled(why_not.is_none(), button).hover_tooltip(tip);
     let response = response.disabled_hover_tooltip(format!("{tip}\n\n{}", why_not.unwrap_or_default()));
@@ -111,7 +111,7 @@ fn thumbnail(ui: &mut Ui, picture: &Panorama, turn: &mut f32) -> Response {
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Picture of the surroundings"));
     response.on_hover_cursor(CursorIcon::ResizeHorizontal).hover_tooltip(
-        "Drag to turn the surroundings; the width of the picture is a full turn. Double-click turns them back. The middle is in \
+        "Drag to turn the surroundings; the width of the picture is a full turn. Double-click to reset. The middle is in \
          front of the figure, and the ring marks the strongest light.",
     )
 }

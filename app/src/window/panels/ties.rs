@@ -13,7 +13,7 @@ use crate::window::aim::Aim;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, choice, entry, note, setting, settings};
 
-const FULL: &str = "There can be no more ties.";
+const FULL: &str = "The tie limit is reached. Remove a tie first.";
 
 /// Range of the positions of ties, metres.
 const REACH: RangeInclusive<f64> = -0.6..=0.6;
@@ -35,7 +35,7 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
         let full = ties.len() >= HairTie::MAX;
         for (kind, words) in [
             (TieKind::Ponytail, "Gathers the hair at the back of the head and lets it hang."),
-            (TieKind::Bun, "Gathers the hair on top of the head and winds it up."),
+            (TieKind::Bun, "Gathers the hair on top of the head and winds it into a bun."),
         ] {
             let button = ui.add_enabled(!full, egui::Button::new(format!("+ {}", label(kind))));
             if button.hover_tooltip(words).disabled_hover_tooltip(FULL).clicked() {
@@ -47,18 +47,18 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
             let is_aside = tie.at.x.abs() > ASIDE;
             let why_not = if full { FULL } else { "Move the tie to one side of the head first." };
             let button = ui.add_enabled(!full && is_aside, egui::Button::new("Mirror"));
-            let words = "Adds the same tie on the other side of the head: two of them are pigtails.";
+            let words = "Adds a matching tie on the other side of the head, for pigtails.";
             if button.hover_tooltip(words).disabled_hover_tooltip(why_not).clicked() {
                 mirror(ties, selected);
             }
-            if ui.button("Remove").hover_tooltip("Removes this tie; its hair falls.").clicked() {
+            if ui.button("Remove").hover_tooltip("Removes this tie and lets its hair fall.").clicked() {
                 ties.remove(*selected);
                 *selected = selected.saturating_sub(1);
             }
         }
     });
     let Some(tie) = ties.get_mut(*selected) else {
-        note(ui, "No tie: the hair falls as it grows.");
+        note(ui, "No ties: the hair falls freely.");
         return;
     };
     let shipped = shipped.get(*selected).copied().unwrap_or_default();
@@ -78,7 +78,7 @@ pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, held: &mut bool) {
             *held = !*held;
         }
         let grow = ui.add_enabled(!cut.is_empty(), egui::Button::new("Grow back"));
-        let grow = grow.hover_tooltip("Undoes all cuts.").disabled_hover_tooltip("Nothing is cut.");
+        let grow = grow.hover_tooltip("Undoes all cuts.").disabled_hover_tooltip("There are no cuts.");
         if grow.clicked() {
             *cut = Haircut::default();
         }

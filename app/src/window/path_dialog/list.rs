@@ -55,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, rows: &[Row], chosen: Option<usize>, folder: &Fo
     egui::Frame::canvas(ui.style()).show(ui, |ui| {
         ui.set_min_size(vec2(ui.available_width(), TALL));
         if rows.is_empty() {
-            let text = if folder.is_reading() { "Reading the folder" } else { "Nothing here fits" };
+            let text = if folder.is_reading() { "Reading the folder" } else { "No matching files" };
             ui.label(RichText::new(text).color(theme::QUIET));
             return;
         }

@@ -300,7 +300,7 @@ impl PathDialog {
             Stage::Waits(path) => return say(format!("Opening {}", name(path)), theme::QUIET),
             Stage::Asks(path) => {
                 let what = match self.purpose {
-                    Purpose::SaveStrokes => "holds other strokes. Replace them?".to_owned(),
+                    Purpose::SaveStrokes => "contains other strokes. Replace them?".to_owned(),
                     purpose => format!("is another {}. Replace it?", purpose.replaced()),
                 };
                 return say(format!("{} {what}", name(path)), theme::ACCENT);
@@ -378,7 +378,7 @@ impl PathDialog {
     fn accept(&mut self, path: PathBuf) -> Answer {
         self.error = None;
         if self.purpose.opens() && !path.exists() {
-            self.refuse(format!("{}: found no such file; must be one that exists", path.display()));
+            self.refuse(format!("{}: not found; must be an existing file", path.display()));
             return Answer::Pending;
         }
         Answer::Path(self.purpose, path)
@@ -576,7 +576,7 @@ impl PathDialog {
     }
 }
 
-/// Whether an ending is meant as an extension: `v1.2` and `bob. short` have none.
+/// Whether the text after the last point is an extension: `v1.2` and `bob. short` have none.
 fn looks_like_extension(ending: &std::ffi::OsStr) -> bool {
     let ending = ending.to_string_lossy();
     !ending.is_empty()

@@ -21,7 +21,7 @@ pub(crate) enum Purpose {
     Motion,
     /// Light from a picture of the surroundings.
     Surroundings,
-    /// A sound beside the dance.
+    /// A sound for the dance.
     Sound,
     /// Saving the project.
     SaveProject,
@@ -45,7 +45,7 @@ pub(crate) enum Purpose {
     Report,
 }
 
-/// What happens to the file that is there already.
+/// What happens to an existing file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Replaces {
     /// There is none, or it is only read, or it is the file that is saved again.
@@ -64,7 +64,7 @@ impl Purpose {
             Self::Body => "Body from a character file",
             Self::Motion => "Motion from a motion file, or from a clip of another character",
             Self::Surroundings => "Light from a picture of the surroundings: .hdr or .exr",
-            Self::Sound => "Sound beside the dance: WAV, MP3, Ogg Vorbis or FLAC",
+            Self::Sound => "Sound for the dance: WAV, MP3, Ogg Vorbis or FLAC",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record images to a folder",
@@ -72,7 +72,7 @@ impl Purpose {
             Self::Resume => "Resume the images in a folder",
             Self::Curves => "Export curves: .usdc, .usda, .abc or .glb",
             Self::ExportStyle => "Export the style",
-            Self::SaveStrokes => "Save the strokes of the brushes",
+            Self::SaveStrokes => "Save the brush strokes",
             Self::Picture => "Save the image",
             Self::Report => "Export the report to a folder",
         }

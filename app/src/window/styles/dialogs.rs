@@ -27,7 +27,7 @@ pub(super) enum Dialog {
 }
 
 impl Dialog {
-    /// Asks whether a style of the user's own becomes the hair as it is now.
+    /// Asks whether to replace one of the user's styles with the current hair.
     pub(super) fn update(entry: &Entry, project: &Project) -> Self {
         let Style { name, text, tags, .. } = (*entry.style).clone();
         let style = Box::new(Style { name, text, tags, ..Style::of_project(project) });
@@ -39,10 +39,10 @@ impl Dialog {
         match self {
             Self::Save { .. } => ("Save as a style of your own".to_owned(), "Save style"),
             Self::Replace { style, asked: None, .. } => {
-                (format!("Replace what is in {} by the hair as it is now?", style.name), "Update style")
+                (format!("Replace the contents of {} with the current hair?", style.name), "Update style")
             }
             Self::Replace { style, .. } => {
-                (format!("You have a style {}. Replace it?", style.name), "Replace")
+                (format!("You already have a style {}. Replace it?", style.name), "Replace")
             }
             Self::Rename { .. } => ("Rename your style".to_owned(), "Rename style"),
             Self::Delete { path, name } => (format!("Delete {name} ({})?", short(path)), "Delete style"),

@@ -201,7 +201,7 @@ impl Browser {
         Some((id, &entry.style, self.parts))
     }
 
-    /// The entries that are shown: those that fit best what is searched come first.
+    /// The entries that are shown: the best matches of the search come first.
     fn shown(&self, kept: &Kept) -> Vec<Entry> {
         let fits = |entry: &&Entry| {
             self.tags.iter().all(|tag| tags_of(entry).any(|own| own == tag))

@@ -24,7 +24,7 @@ pub(super) fn ui(ui: &mut Ui, project: &mut Project) {
                 ends = Some(true);
             }
             let end = ui.button("End morph");
-            if end.hover_tooltip("Ends the morph with the style that the project had.").clicked() {
+            if end.hover_tooltip("Ends the morph and keeps the project's own style.").clicked() {
                 ends = Some(false);
             }
         });

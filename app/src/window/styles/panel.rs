@@ -40,11 +40,11 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
         if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
             browser.search.clear();
         }
-        let tip = "Shows styles with these words in their name, description or tags. Enter applies the first, the down key goes to \
+        let tip = "Shows styles with these words in their name, description or tags. Enter applies the first; Down moves to \
                    the pictures.";
         field.hover_tooltip(tip);
         let save = ui.add_enabled(browser.own.is_some(), Button::new("Save as style…"));
-        let tip = "Keeps this hairstyle with its colours and motion among your own.";
+        let tip = "Saves this hairstyle with its colours and motion as one of your styles.";
         if save.hover_tooltip(tip).disabled_hover_tooltip("The system has no folder for your data.").clicked()
         {
             let style = Style::of_project(project);
@@ -69,9 +69,13 @@ fn parts(ui: &mut Ui, project: &Project, browser: &mut Browser) {
     ui.horizontal(|ui| {
         ui.label("Apply");
         let toggles = [
-            (&mut parts.shape, "Shape", "A click takes the cut, the form and the layers that change them."),
-            (&mut parts.colour, "Colour", "A click takes the colours."),
-            (&mut parts.motion, "Motion", "A click takes how the hair moves."),
+            (
+                &mut parts.shape,
+                "Shape",
+                "Clicking a style applies its cut, its form and the layers that change them.",
+            ),
+            (&mut parts.colour, "Colour", "Clicking a style applies its colours."),
+            (&mut parts.motion, "Motion", "Clicking a style applies how its hair moves."),
         ];
         for (on, name, tip) in toggles {
             if ui.selectable_label(*on, name).hover_tooltip(tip).clicked() {
@@ -82,10 +86,10 @@ fn parts(ui: &mut Ui, project: &Project, browser: &mut Browser) {
             let differs = own.as_ref().is_some_and(|entry| differs(&entry.style, project));
             let button = ui.add_enabled(differs, Button::new("Update…"));
             let why_not = match &own {
-                Some(_) => "The hair is as your style has it.",
-                None => "The hair does not have a style of your own.",
+                Some(_) => "The hair already matches your style.",
+                None => "The hair does not use one of your styles.",
             };
-            let tip = "Puts the hair as it is now into your style, in place of what is in it.";
+            let tip = "Replaces the contents of your style with the current hair.";
             updates = button.hover_tooltip(tip).disabled_hover_tooltip(why_not).clicked();
         });
     });
@@ -133,7 +137,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
     arrows(ui, browser, picked);
     let entered = picked.entered && !browser.search.typed.trim().is_empty();
     if shown.is_empty() {
-        note(ui, "No style has all of this. Clear the search and the filters to see every style.");
+        note(ui, "No style matches. Clear the search and the filters to see every style.");
     }
     let first = shown.first().filter(|_| entered);
     let mut action = first.map(|entry| (entry.clone(), Action::Apply(browser.parts)));
@@ -231,7 +235,7 @@ fn one(
     if browser.reveal.take_if(|id| *id == entry.id).is_some() {
         response.scroll_to_me(Some(egui::Align::Center));
     }
-    let tip = format!("{}\n\nA click applies it. More by a right click.", look.text);
+    let tip = format!("{}\n\nClick to apply it, right-click for more.", look.text);
     response.hover_tooltip(tip).context_menu(|ui| {
         let name = if favourite { "No favourite" } else { "Favourite" };
         let mut entries = vec![
@@ -295,9 +299,11 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
         Action::Apply(parts) => {
             let kept = project.apply_style_below_layers(&entry.style, parts);
             if kept > 0 {
-                let layers = if kept == 1 { "One layer of yours stays" } else { "Layers of yours stay" };
-                let said =
-                    format!("{layers} over {}. Remove what you do not want in Layers.", entry.style.name);
+                let layers = if kept == 1 { "One of your layers is kept" } else { "Your layers are kept" };
+                let said = format!(
+                    "{layers} on top of {}. Remove what you do not want in Layers.",
+                    entry.style.name
+                );
                 browser.requests.push(Request::Done(said));
             }
             browser.clicked = Some(entry.id.clone());

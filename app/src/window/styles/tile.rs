@@ -104,5 +104,5 @@ fn star(ui: &Ui, tile_response: &Response, picture: Rect, tile: &Tile<'_>) -> bo
         egui::TextStyle::Button,
     );
     ui.painter().galley(Align2::CENTER_CENTER.anchor_size(rect.center(), galley.size()).min, galley, color);
-    response.hover_tooltip("Favourites can be shown alone.").clicked()
+    response.hover_tooltip("Marks the style as a favourite. The list can show favourites only.").clicked()
 }

@@ -95,7 +95,7 @@ impl Window {
             Some(Ok(copy)) => {
                 style.hair.style = own_id(&copy);
                 self.styles.refresh();
-                let text = format!("{} is among your own styles now", style.name);
+                let text = format!("Added {} to your styles", style.name);
                 self.notices.push(notices::Kind::Done, text);
             }
             Some(Err(error)) => self.fail(error.to_string()),

@@ -65,12 +65,12 @@ fn the_palette_closes_without_a_command() {
     harness.key_press(Key::Enter);
     harness.run();
     assert!(
-        harness.query_by_label("No command and no setting is called so.").is_some(),
+        harness.query_by_label("No command or setting matches.").is_some(),
         "Enter finds nothing and stays"
     );
     harness.key_press(Key::Escape);
     harness.run();
-    assert!(harness.query_by_label("No command and no setting is called so.").is_none());
+    assert!(harness.query_by_label("No command or setting matches.").is_none());
     assert!(harness.state().state.1.is_empty());
 }
 
@@ -227,11 +227,11 @@ fn a_refused_path_stays_in_the_dialog_with_the_reason() {
     harness.key_press(Key::Enter);
     harness.run();
     assert_eq!(harness.state().state.1, None, "it is still open");
-    assert!(harness.query_by_label_contains("found no such file").is_some());
+    assert!(harness.query_by_label_contains("must be an existing file").is_some());
     assert_eq!(harness.get_by_label("Open file").rect(), before, "the button stays where it was");
     harness.event(Event::Text("2".to_owned()));
     harness.run();
-    assert!(harness.query_by_label_contains("found no such file").is_none(), "the text is corrected");
+    assert!(harness.query_by_label_contains("must be an existing file").is_none(), "the text is corrected");
 }
 
 #[test]

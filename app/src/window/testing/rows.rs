@@ -45,7 +45,7 @@ fn a_number_beyond_its_range_is_brought_into_it_and_says_so() {
     type_at(&mut harness, field, "90");
     assert!((harness.state().state.0 - 0.7).abs() < 1e-6, "{}", harness.state().state.0);
     let said = control::said(&harness.ctx);
-    assert_eq!(said, ["Length: found 90 cm; must be 2 to 70 cm. 70 cm is taken."]);
+    assert_eq!(said, ["Length: found 90 cm; must be 2 to 70 cm. It is set to 70 cm."]);
     // A number within the range says nothing.
     type_at(&mut harness, field, "69.5");
     assert!((harness.state().state.0 - 0.695).abs() < 1e-6, "{}", harness.state().state.0);
@@ -60,7 +60,7 @@ fn a_number_beyond_its_range_is_brought_into_it_and_says_so() {
     assert!(control::said(&harness.ctx).is_empty());
     type_at(&mut harness, fields[1], "5000");
     assert_eq!(harness.state().state.hair.groom.wisps, 1000);
-    assert_eq!(control::said(&harness.ctx), ["Wisps: found 5000; must be 8 to 1000. 1000 is taken."]);
+    assert_eq!(control::said(&harness.ctx), ["Wisps: found 5000; must be 8 to 1000. It is set to 1000."]);
 }
 
 #[test]

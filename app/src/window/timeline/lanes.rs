@@ -83,7 +83,7 @@ pub(super) fn ui(
         painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
     }
     let response = response.hover_tooltip(
-        "Drag to scrub. The wheel zooms, the right button pans, and a double-click shows the whole timeline.",
+        "Drag to scrub. The wheel zooms, right-drag pans, and a double-click shows the whole timeline.",
     );
     if response.double_clicked() {
         *zoom = Zoom::default();

@@ -69,7 +69,7 @@ fn edge(ui: &Ui, room: f32, tracks_height: &mut Option<f32>) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Height of the timeline"));
     let response = response
         .on_hover_cursor(CursorIcon::ResizeVertical)
-        .hover_tooltip("Drag to show more or fewer tracks. A double-click follows their number again.");
+        .hover_tooltip("Drag to show more or fewer tracks. Double-click to fit their number.");
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         *tracks_height = Some(room + y - at.y);
     }

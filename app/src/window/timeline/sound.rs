@@ -24,7 +24,8 @@ pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section
     }
     let hot = response.hovered() || response.dragged();
     response.hover_tooltip(format!(
-        "{}, from {:.2} s on. Drag it to shift it against the dance. Keys and markers snap to its beats; Alt lets them go.",
+        "{}, from {:.2} s on. Drag to shift it against the dance. Keys and markers snap to its beats; hold Alt to move them \
+         freely.",
         sound.name, section.offset_secs
     ));
     let painter = ui.painter_at(lane);

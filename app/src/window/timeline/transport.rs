@@ -43,14 +43,14 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> 
     if let Some(only) = &view.writing.only {
         let name: String = only.chars().take(LONGEST_NAME).collect();
         ui.label(RichText::new(name).small().color(theme::RECORDING))
-            .hover_tooltip(format!("{only} alone is recorded (W ends it)."));
+            .hover_tooltip(format!("Recording only {only}. Press W to stop."));
     }
     request = rate(ui, view.rate).or(request);
     ui.monospace(format!("{:6.2} s", view.time_secs));
     ui.label(RichText::new(format!("frame {}", frame(view.time_secs, fps))).small().color(theme::QUIET)).hover_tooltip(
         format!(
-            "Frame of the film, {fps} per second, as the Recording panel and the in and out points count. An arrow key moves by one step of \
-             the simulation, 1/60 s."
+            "Frame of the film at {fps} per second, as counted by the Recording panel and the in and out points. An arrow \
+             key moves by one step of the simulation, 1/60 s."
         ),
     );
     ui.add_space(12.0);
@@ -74,7 +74,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> 
             }
             if let Some(Recorded { secs, kept_secs, .. }) = recording {
                 ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
-                    .hover_tooltip(format!("{kept_secs:.1} s of the take are already safe on the disk."));
+                    .hover_tooltip(format!("{kept_secs:.1} s of the take are already saved to disk."));
             }
         }
     }

@@ -32,19 +32,19 @@ pub(super) fn ui(
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 4.0);
         let other = ui.button(format!("{} Others", ICON_CASINO.codepoint));
-        if other.hover_tooltip("Shows other variants of the present hairstyle.").clicked() {
+        if other.hover_tooltip("Shows other variants of the current hairstyle.").clicked() {
             action = Some(Action::Again);
         }
         let back = ui.add_enabled(rounds.has_before(), egui::Button::new(ICON_ARROW_BACK));
         back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Variants before"));
-        if back.hover_tooltip("Shows the variants before these.").clicked() {
+        if back.hover_tooltip("Returns to the previous variants.").clicked() {
             action = Some(Action::Back);
         }
         ui.separator();
         let mut percent = 100.0 * layout.amount;
         let slider =
             egui::Slider::new(&mut percent, 0.0..=100.0).fixed_decimals(0).suffix(" %").text("Range");
-        if ui.add(slider).hover_tooltip("How far variants are from the present hairstyle.").changed() {
+        if ui.add(slider).hover_tooltip("How much variants differ from the current hairstyle.").changed() {
             layout.amount = percent / 100.0;
         }
         ui.separator();
@@ -52,7 +52,7 @@ pub(super) fn ui(
             let locked = layout.locks.families.contains(&family);
             let icon = if locked { ICON_LOCK } else { ICON_LOCK_OPEN };
             let text = format!("{} {}", icon.codepoint, family.label());
-            let tip = format!("{} Locked, it is the same in all variants.", family.text());
+            let tip = format!("{} Lock it to keep it the same in all variants.", family.text());
             let response = ui.selectable_label(locked, text).hover_tooltip(tip);
             response.widget_info(|| {
                 egui::WidgetInfo::selected(
@@ -68,7 +68,7 @@ pub(super) fn ui(
         }
         let more = ui.button("Keep");
         popup(&more, |ui| single_locks(ui, &mut layout.locks, project));
-        more.hover_tooltip("Locks single settings.");
+        more.hover_tooltip("Holds single settings fixed.");
         ui.separator();
         if let Some(ms) = ms {
             let rate =
@@ -82,7 +82,7 @@ pub(super) fn ui(
             action = Some(Action::Close);
         }
         ui.label(
-            RichText::new("Click adopts a variant, Shift+click on two makes a child of both.")
+            RichText::new("Click a variant to adopt it, Shift+click two to make a child of both.")
                 .small()
                 .color(theme::QUIET),
         );
@@ -90,7 +90,7 @@ pub(super) fn ui(
     action
 }
 
-/// Every number that varies, with a box that locks it.
+/// Every number that varies, with a checkbox that locks it.
 fn single_locks(ui: &mut Ui, locks: &mut Locks, project: &Project) {
     ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
         let mut family_shown = None;

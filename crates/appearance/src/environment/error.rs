@@ -14,7 +14,7 @@ pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Bytes of the largest piece that a file may ask to be held in memory at once.
 pub(super) const MAX_BLOCK_BYTES: u64 = 256 << 20;
 
-/// What a file was wanted to be.
+/// What a file must be.
 const FORMATS: &str = "a Radiance (.hdr) or OpenEXR (.exr) picture";
 
 /// Why a file could not be read as a picture of the surroundings.
@@ -28,7 +28,7 @@ pub struct EnvironmentError {
     pub problem: Problem,
 }
 
-/// What is wrong with a picture: what was found, and what was wanted.
+/// What is wrong with a picture: what was found, and what it must be.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
     /// The system does not give the file's content.

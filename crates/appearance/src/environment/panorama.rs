@@ -57,7 +57,7 @@ impl Panorama {
     ///
     /// # Errors
     ///
-    /// Names the file, what was found and what was wanted, where the file is no such picture, is damaged, or
+    /// Names the file, what was found and what it must be, where the file is no such picture, is damaged, or
     /// exceeds [`MAX_WIDTH`](super::MAX_WIDTH), [`MAX_HEIGHT`](super::MAX_HEIGHT) or
     /// [`MAX_FILE_BYTES`](super::MAX_FILE_BYTES).
     pub fn load(path: &Path) -> Result<Self, EnvironmentError> {

@@ -23,7 +23,7 @@ const PARTS_FROM: f32 = 0.2;
 /// Clearance of flattened hair from the body, metres.
 const FLAT: f32 = 0.004;
 /// Hair up to the first distance from the body lies on it, or on other hair that does, and slides along it under a comb. From the second
-/// distance on it hangs free and goes wherever the comb goes. Metres.
+/// distance on it hangs free and follows the comb. Metres.
 const SLIDES: [f32; 2] = [0.06, 0.12];
 /// The same for a comb that presses hair toward the body.
 const PRESSED: [f32; 2] = [0.01, 0.04];

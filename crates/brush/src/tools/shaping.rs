@@ -10,9 +10,9 @@ use crate::touch::TouchedGuide;
 
 /// Guides whose course a guide takes over while it is smoothed.
 const NEIGHBOURS: usize = 6;
-/// The part of the way that smoothing goes at a dab.
+/// The fraction of the way that smoothing moves per dab.
 const SMOOTH: f32 = 0.35;
-/// The part of the way that straightening goes at a dab.
+/// The fraction of the way that straightening moves per dab.
 const STRAIGHTEN: f32 = 0.25;
 
 /// The nearest roots to each.

@@ -47,7 +47,7 @@ fn check(found: &Value) -> anyhow::Result<()> {
         ("light_where_clear", json!(0.0)),
     ];
     for (name, wanted) in same {
-        ensure!(found[name] == wanted, "{name}: found {}, expected {wanted}", found[name]);
+        ensure!(found[name] == wanted, "{name}: found {}; must be {wanted}", found[name]);
     }
     ensure!(found["comments"].as_str().is_some_and(|text| text.contains("voxel-map")), "comments: {found}");
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
@@ -61,7 +61,7 @@ fn check(found: &Value) -> anyhow::Result<()> {
         ("least transmittance", number(&found["transmittance"][0]), 0.0, 0.5),
         ("most transmittance", number(&found["transmittance"][1]), 1.0, 1.0),
     ] {
-        ensure!((low..=high).contains(&value), "{name}: found {value}, expected {low} to {high}");
+        ensure!((low..=high).contains(&value), "{name}: found {value}; must be {low} to {high}");
     }
     Ok(())
 }

@@ -63,7 +63,7 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     };
     let (own, ours) = (draw(&take, "single")?, draw(&moved.join("dance.take"), "same take")?);
     let theirs = files(&moved.join("frames"))?;
-    ensure!(ours.len() == 8, "{} files of a single machine; expected 7 frames and a manifest", ours.len());
+    ensure!(ours.len() == 8, "{} files of a single machine; must be 7 frames and a manifest", ours.len());
     compare(&theirs, &ours)?;
     compare(&pictures(&theirs), &pictures(&own))?;
     let mut altered = theirs.clone();

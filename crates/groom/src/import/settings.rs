@@ -156,7 +156,7 @@ impl Settings for ImportSettings {
             field!(Self, placement.scale),
             [0.25, 4.0],
             "Scale",
-            "Scales the hair after the fit.",
+            "Scales the hair after it is fitted.",
         )
         .logarithmic(),
         Setting::vector(

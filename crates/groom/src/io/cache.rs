@@ -40,7 +40,7 @@ impl CurveMotion {
     pub fn problem(&self) -> Option<String> {
         match self {
             Self::Refused(reason) => Some(format!(
-                "{reason}; the motion of these curves cannot be played, they are a still hairstyle"
+                "{reason}; the motion of these curves cannot be played, only a still hairstyle is read"
             )),
             Self::Still | Self::Moving(_) => None,
         }
@@ -228,7 +228,7 @@ fn notes_on_units(unit: Unit, up: UpAxis, of_file: Option<Stated>, guess: &UnitG
             "Unit: read from the file; its points are in metres.".to_owned()
         }
         None if of_file.is_some() => {
-            "Unit: one centimetre, as USD says, because the file states none.".to_owned()
+            "Unit: one centimetre, the default of USD; the file states none.".to_owned()
         }
         None => format!("Unit: {}, guessed. {}", metres(guess.metres_per_unit), guess.reason),
     };
@@ -236,7 +236,7 @@ fn notes_on_units(unit: Unit, up: UpAxis, of_file: Option<Stated>, guess: &UnitG
         UpAxis::Auto if of_file.is_some_and(|stated| stated.up) => {
             "Up axis: read from the file; its points have Y up."
         }
-        UpAxis::Auto => "Up axis: Y, which is usual; the file states none.",
+        UpAxis::Auto => "Up axis: Y, the usual one; the file states none.",
         UpAxis::Y => "Up axis: Y, as set.",
         UpAxis::Z => "Up axis: Z, as set.",
     };

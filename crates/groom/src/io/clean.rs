@@ -44,7 +44,7 @@ impl Fault {
         let why = match self {
             Self::OnePoint => "of fewer than two points",
             Self::NonFinite => "with coordinates that are not numbers",
-            Self::Distant => "reaching over 1000 times further than the others",
+            Self::Distant => "reaching more than 1000 times farther than the others",
             Self::ZeroLength => "of no length",
         };
         format!("Left out {count} {strands} {why}.")

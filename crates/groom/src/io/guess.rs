@@ -47,7 +47,7 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
     let apart = 1e-6 * file.bounds.size().max_element();
     let across = "0.09 to 0.30 m across";
     let (metres_per_unit, unit, reason) = if file.is_in_metres {
-        (1.0, Some(Unit::Metre), "The file says its unit.".to_owned())
+        (1.0, Some(Unit::Metre), "The file states its unit.".to_owned())
     } else if span > apart {
         let named = Unit::NAMED
             .into_iter()
@@ -57,14 +57,16 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
                 metres,
                 Some(unit),
                 format!(
-                    "The roots span {span:.3} units; at one {} a unit that is a scalp, {across}.",
+                    "The roots span {span:.3} units; at one {} per unit that is a scalp, {across}.",
                     unit.word()
                 ),
             ),
             None => (
                 0.15 / span,
                 None,
-                format!("The roots span {span:.3} units, in no usual unit {across}: scaled to 0.15 m."),
+                format!(
+                    "The roots span {span:.3} units, which is not {across} in any usual unit: scaled to 0.15 m."
+                ),
             ),
         }
     } else {

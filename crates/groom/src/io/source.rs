@@ -108,13 +108,13 @@ pub(super) fn open_beside(folder: Option<&Path>, relative: &Path) -> Result<File
     use std::path::Component;
     let folder = folder.ok_or("there is no folder to look in")?;
     if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-        return Err("only files in the folder of the file and below are read".to_owned());
+        return Err("only files in the folder of the file and its subfolders are read".to_owned());
     }
     let path = folder.join(relative);
     let read = |error: std::io::Error| error.to_string();
     let (folder, real) = (folder.canonicalize().map_err(read)?, path.canonicalize().map_err(read)?);
     if !real.starts_with(&folder) {
-        return Err("only files in the folder of the file and below are read".to_owned());
+        return Err("only files in the folder of the file and its subfolders are read".to_owned());
     }
     File::open(&real).map_err(read)
 }

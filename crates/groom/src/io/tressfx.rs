@@ -49,7 +49,7 @@ fn read_3(file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
     let follow_hairs = file.u32(12);
     if follow_hairs > 0 {
         raw.notes.push(format!(
-            "The file asks for {follow_hairs} follow hairs a strand, which are not in it and were not made."
+            "The file asks for {follow_hairs} follow hairs per strand, which it does not contain; none were made."
         ));
     }
     let optional = [
@@ -153,7 +153,7 @@ fn finish(file: &Bytes<'_>, raw: &mut RawHair, optional: &[(usize, &str)], sized
         }
     }
     if raw.both_ends_pinned {
-        raw.notes.push("The file holds both ends of its strands; only roots are held here.".to_owned());
+        raw.notes.push("The file fixes both ends of its strands; only roots are fixed here.".to_owned());
     }
 }
 

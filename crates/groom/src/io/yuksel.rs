@@ -82,7 +82,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let transparency = take(TRANSPARENCY, 4, "transparency values")?;
     let colours = take(COLOURS, 12, "colours")?;
     if take(UVS, 8, "texture coordinates")?.is_some() {
-        notes.push("Texture coordinates were left out: they have no use here.".to_owned());
+        notes.push("Texture coordinates were left out: they are not used.".to_owned());
     }
 
     // Every count has been compared with the file's size by now, so the allocations below are bounded by it.

@@ -103,7 +103,7 @@ impl Settings for HairTie {
         Setting::choice::<TieKind>(
             field!(Self, kind),
             "Style",
-            "What the hair does beyond the tie: it hangs, or it is wound up.",
+            "What the hair does beyond the tie: hangs down, or winds into a bun.",
         ),
         Setting::vector(
             field!(Self, at),
@@ -156,7 +156,7 @@ impl Settings for HairTie {
         Setting::switch(
             field!(Self, sphere_at_ring),
             "Follow ring",
-            "Moves the patch with the tie. Off, the patch has a position of its own.",
+            "Moves the patch with the tie. Off, the patch has its own position.",
         ),
         Setting::vector(
             field!(Self, sphere_centre),

@@ -123,7 +123,7 @@ pub fn farm(
     let chunk = request.chunk.unwrap_or(10.max(least)).min(count);
     if chunk < least {
         return Err(ProjectError::option(format!(
-            "--chunk {chunk}: {} tasks for {count} frames, and a job has {MAX_TASKS} at most; must be {least} or more",
+            "--chunk {chunk}: {} tasks for {count} frames, but a job has {MAX_TASKS} at most; must be {least} or more",
             count.div_ceil(chunk)
         )));
     }
@@ -208,8 +208,8 @@ fn as_recorded(project: &Project, take: &Path) -> Result<(), ProjectError> {
     match parts.iter().find(|(same, _)| !same) {
         None => Ok(()),
         Some((_, part)) => Err(ProjectError::option(format!(
-            "the {part} of the project are not those that {} was recorded with, and a job draws a take as it was recorded; \
-             leave the take, and the job simulates the project itself",
+            "the {part} of the project are not those that {} was recorded with, and a job renders a take as recorded; leave \
+             the take, and the job simulates the project itself",
             take.display()
         ))),
     }
@@ -252,7 +252,7 @@ impl Building {
             return Err(ProjectError::input(
                 &folder,
                 format!(
-                    "{}: is there already, from a job that is being written or was cut short; remove it or name another folder",
+                    "{}: already exists, from a job that is being written or was interrupted; remove it or name another folder",
                     folder.display()
                 ),
             ));

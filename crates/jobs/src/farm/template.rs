@@ -52,20 +52,20 @@ impl Template {
                 "objectType": "DIRECTORY",
                 "dataFlow": "INOUT",
                 "default": ".",
-                "description": "The folder of this job, where every machine reaches it; pictures go into its folder frames.",
+                "description": "The folder of this job, at a path that every machine can reach; images go into its folder frames.",
             }),
             json!({
                 "name": "Lovelock",
                 "type": "STRING",
                 "default": "lovelock",
-                "description": "The program: a name that is found, or its path on the machines that draw.",
+                "description": "The program: a name on the search path, or its path on the rendering machines.",
             }),
             json!({
                 "name": "Backend",
                 "type": "STRING",
                 "default": "cpu",
                 "allowedValues": ["cpu", "gpu", "auto"],
-                "description": "What draws. The processor draws the same bytes on every machine.",
+                "description": "The rendering backend. The CPU renders the same bytes on every machine.",
             }),
         ];
         let take = match &self.source {
@@ -77,7 +77,7 @@ impl Template {
                     "objectType": "FILE",
                     "dataFlow": "IN",
                     "default": path.to_string_lossy(),
-                    "description": "The take that is drawn, with the files that it was made from where it names them.",
+                    "description": "The take to render. The files that it was made from must be at the paths that it names.",
                 }));
                 "{{Param.Take}}".to_owned()
             }
@@ -86,7 +86,7 @@ impl Template {
         let fps = self.fps.to_string();
         let simulate = json!({
             "name": "Simulate",
-            "description": "Simulates the frames, once, into a take; hair lives through the pre-roll before them.",
+            "description": "Simulates the frames once, after the pre-roll, into a take.",
             "script": run(&[
                 "record", "{{Param.Folder}}/project.lovelock", "-o", &take,
                 "--frames", &format!("{}..{end}", self.simulated_from), "--fps", &fps,
@@ -109,7 +109,7 @@ impl Template {
         drawing.extend(size.iter().flat_map(|size| ["--size", size]));
         let mut draw = json!({
             "name": "Draw",
-            "description": "Draws ranges of frames, in any order and on any number of machines.",
+            "description": "Renders ranges of frames, in any order and on any number of machines.",
             "parameterSpace": {
                 "taskParameterDefinitions": [{ "name": "Frames", "type": "STRING", "range": self.ranges() }],
             },
@@ -117,7 +117,7 @@ impl Template {
         });
         let assemble = json!({
             "name": "Assemble",
-            "description": "Puts the parts together into one sequence with its manifest.",
+            "description": "Joins the parts into one sequence with its manifest.",
             "dependencies": [{ "dependsOn": "Draw" }],
             "script": run(&[
                 "assemble", "{{Param.Folder}}/parts", "-o", "{{Param.Folder}}/frames",
@@ -133,7 +133,7 @@ impl Template {
         json!({
             "specificationVersion": "jobtemplate-2023-09",
             "name": format!("Lovelock {name}"),
-            "description": format!("Frames {start}..{end} at {fps} a second, {} a task.", self.chunk),
+            "description": format!("Frames {start}..{end} at {fps} per second, {} per task.", self.chunk),
             "parameterDefinitions": parameters,
             "steps": steps,
         })

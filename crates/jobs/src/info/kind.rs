@@ -109,7 +109,7 @@ impl FileKind {
         };
         kind.ok_or_else(|| {
             let ending = path.extension().map_or_else(
-                || "it has no ending".to_owned(),
+                || "it has no extension".to_owned(),
                 |ending| format!("`.{}` is not read", ending.to_string_lossy()),
             );
             ProjectError::input(

@@ -75,7 +75,7 @@ pub struct ProjectInfo {
     pub hair: String,
     /// The picture of the surroundings, or `null`.
     pub surroundings: Option<String>,
-    /// The sound beside the dance, or `null`.
+    /// The sound of the dance, or `null`.
     pub sound: Option<String>,
     /// Id of the shadow method.
     pub shadow: String,

@@ -74,7 +74,7 @@ impl fmt::Display for Info {
                 line(
                     f,
                     "film",
-                    format_args!("{}x{} at {} a second", project.width, project.height, project.fps),
+                    format_args!("{}x{} at {} per second", project.width, project.height, project.fps),
                 )?;
                 remarks(f, &project.dropped, &project.notes)
             }
@@ -131,7 +131,7 @@ impl fmt::Display for Info {
                 line(
                     f,
                     "frames",
-                    format_args!("{} at {} a second, {:.2} s", take.frames, take.fps, take.duration_secs),
+                    format_args!("{} at {} per second, {:.2} s", take.frames, take.fps, take.duration_secs),
                 )?;
                 line(f, "guides", format_args!("{} of {} points", take.guides, take.points_per_guide))?;
                 for regrown in take.regrown.iter().take(MAX_REGROWN) {
@@ -147,7 +147,7 @@ impl fmt::Display for Info {
                 }
                 line(f, "program", &take.program)?;
                 let rate = take.bytes as f64 / 1e6 / take.duration_secs.max(1e-9);
-                line(f, "size", format_args!("{} bytes, {rate:.2} MB a second", take.bytes))?;
+                line(f, "size", format_args!("{} bytes, {rate:.2} MB per second", take.bytes))?;
                 line(f, "condition", &take.condition)?;
                 remarks(f, &take.dropped, &[])
             }

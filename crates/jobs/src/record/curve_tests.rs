@@ -98,7 +98,7 @@ fn hair_that_changes_on_the_way_is_followed_or_refused_in_words() {
     });
     write(&other, "guides.usdc", Some(CurveSource::Guides)).expect("the same guides");
     let error = write(&other, "strands.usdc", None).expect_err("other strands");
-    assert!(error.to_string().contains("frame 5: the hair is made of other parts"), "{error}");
+    assert!(error.to_string().contains("frame 5: the structure of the hair changes"), "{error}");
     assert_eq!(error.exit_code(), 2);
     assert!(
         !path.with_file_name("strands.usdc").exists()

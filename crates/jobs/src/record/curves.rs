@@ -176,10 +176,9 @@ pub fn record_curves(
 
 fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), ProjectError> {
     match request.option_of_pictures() {
-        Some(option) => Err(ProjectError::option(format!(
-            "{option}: {} holds curves and no pictures",
-            request.out.display()
-        ))),
+        Some(option) => {
+            Err(ProjectError::option(format!("{option}: {} holds curves, not images", request.out.display())))
+        }
         None => Ok(()),
     }
 }
@@ -221,8 +220,8 @@ fn check_same(
     }
     let what = if same_hair { "the body" } else { "the hair" };
     Err(ProjectError::option(format!(
-        "frame {frame}: {what} is made of other parts from here on, and one file holds one: write the frames before it \
-         and those from it on apart, with --frames"
+        "frame {frame}: the structure of {what} changes here, and a file can hold only one: write the frames before it and \
+         from it on to separate files, with --frames"
     )))
 }
 

@@ -13,8 +13,8 @@ use lovelock_session::snapshot::FrameSnapshot;
 use super::request::RecordRequest;
 
 /// The error for unsupported settings of panes.
-pub(super) const PANES_ALONE: &str = "panes beside each other are recorded as a film or PNG files, without a transparent \
-    background and motion blur: switch those off, or record the one picture";
+pub(super) const PANES_ALONE: &str = "panes side by side can only be recorded as a film or PNG files, without a transparent \
+                                      background or motion blur: switch those off, or record the single image";
 
 /// Renders the frames of a recording.
 pub(super) enum Drawer {

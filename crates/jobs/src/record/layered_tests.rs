@@ -247,12 +247,12 @@ fn unsupported_settings_are_refused_with_a_message() {
     };
     for (wrong, said) in [
         (RecordRequest { motion_blur: Some(0), ..request(&at("x")) }, "must be 1 (none) to 64"),
-        (RecordRequest { motion_blur: Some(65), ..request(&at("x")) }, "65 pictures"),
+        (RecordRequest { motion_blur: Some(65), ..request(&at("x")) }, "65 samples"),
         (RecordRequest { shutter_degrees: Some(361.0), ..request(&at("x")) }, "must be 0 to 360"),
         (RecordRequest { shutter_degrees: Some(f32::NAN), ..request(&at("x")) }, "must be 0 to 360"),
         (RecordRequest { format: exr, ..request(&at("x.mp4")) }, "EXR files need a folder"),
         (RecordRequest { size: Some((63, 47)), ..request(&at("x.mp4")) }, "such as 62x46"),
-        (RecordRequest { format: exr, panes: Some(sheet), ..request(&at("x")) }, "panes beside each other"),
+        (RecordRequest { format: exr, panes: Some(sheet), ..request(&at("x")) }, "panes side by side"),
     ] {
         let error = refused(&small_project(), &wrong);
         assert!(error.contains(said), "{error}");

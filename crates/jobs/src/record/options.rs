@@ -39,7 +39,7 @@ impl Options {
         if !(1..=most).contains(&options.subframes) {
             let asked = options.subframes;
             return Err(ProjectError::option(format!(
-                "motion blur of {asked} pictures a frame: must be 1 (none) to {most}"
+                "motion blur of {asked} samples per frame: must be 1 (none) to {most}"
             )));
         }
         if !(0.0..=360.0).contains(&options.shutter_degrees) {

@@ -67,7 +67,7 @@ pub fn record_take(
     let (project, _) = project.sanitised();
     if let Some(file) = &project.take.file {
         return Err(ProjectError::option(format!(
-            "{}: the project plays a take already: {}",
+            "{}: the project already plays a take: {}",
             request.out.display(),
             file.path.display()
         )));
@@ -75,7 +75,7 @@ pub fn record_take(
     let of_films = request.seamless.then_some("--loop");
     if let Some(option) = request.option_of_pictures().or(of_films) {
         return Err(ProjectError::option(format!(
-            "{option}: {} is a take, which holds the simulation alone and no pictures",
+            "{option}: {} is a take, which holds only the simulation, not images",
             request.out.display()
         )));
     }

@@ -108,7 +108,7 @@ fn films_show_it_and_curves_name_the_frame() {
                 record_curves(&project, &request, &mut |_| ControlFlow::Continue(()))
             };
             let error = write(18..22).expect_err("two sizes").to_string();
-            assert!(error.contains("frame 20: the hair is made of other parts from here on"), "{error}");
+            assert!(error.contains("frame 20: the structure of the hair changes here"), "{error}");
             assert!(!out.exists());
             write(20..22).expect("one size");
             std::fs::remove_file(&out).expect("a file");

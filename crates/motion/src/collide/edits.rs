@@ -73,12 +73,12 @@ impl Settings for ColliderEdits {
 
 impl Settings for ColliderEdit {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::switch(field!(Self, enabled), "Enabled", "Whether hair collides with this shape."),
+        Setting::switch(field!(Self, enabled), "Enabled", "Makes hair collide with this shape."),
         Setting::number(
             field!(Self, scale),
             [0.2, 3.0],
             "Size",
-            "Radii of the shape, relative to those that were fitted.",
+            "Radii of the shape, relative to the fitted ones.",
         )
         .unit(Unit::FRACTION),
         Setting::vector(
@@ -97,8 +97,8 @@ impl Settings for FieldEdit {
         Setting::switch(
             field!(Self, enabled),
             "Skin",
-            "Makes hair collide with the skin of head, neck and shoulders itself, in place of the \
-             round shapes that approximate them.",
+            "Makes hair collide with the skin of head, neck and shoulders itself, instead of the round shapes that \
+             approximate them.",
         ),
         Setting::number(
             field!(Self, lift),

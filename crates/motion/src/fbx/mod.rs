@@ -150,8 +150,8 @@ fn refuse(file: &str, bytes: &[u8], error: &ufbx::Error) -> MotionError {
                 "has a version{version} that is not read; export it as FBX 2011 to 2020 (versions 7100 to 7700)"
             )
         }
-        _ if is_cut(bytes) => "ends too early; it was cut off, copy or export it again".to_owned(),
-        ErrorType::TruncatedFile => "ends too early; it was cut off, copy or export it again".to_owned(),
+        _ if is_cut(bytes) => "ends too early: it was cut off; copy or export it again".to_owned(),
+        ErrorType::TruncatedFile => "ends too early: it was cut off; copy or export it again".to_owned(),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit => {
             "unpacks to more than 60 times its size; export it again".to_owned()
         }

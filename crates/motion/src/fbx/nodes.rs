@@ -75,7 +75,7 @@ impl Nodes {
         }
         let count = nodes.skeleton.joints.len();
         if count >= usize::from(u16::MAX) {
-            let problem = format!("{count} joints; at most {} are read", u16::MAX);
+            let problem = format!("{count} joints; must be at most {}", u16::MAX);
             return Err(MotionError::malformed(file, "the scene", problem));
         }
         nodes.rest_in_bind_pose(scene);

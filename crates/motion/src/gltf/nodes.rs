@@ -108,7 +108,7 @@ impl Tree {
             skeleton.joints.push(Joint { name, parent, translation, rotation, scale });
         }
         if skeleton.joints.len() >= usize::from(u16::MAX) {
-            let problem = format!("{} joints; at most {} are read", skeleton.joints.len(), u16::MAX);
+            let problem = format!("{} joints; must be at most {}", skeleton.joints.len(), u16::MAX);
             return Err(MotionError::malformed(file, "the scene", problem));
         }
         skeleton.update_rest();

@@ -146,7 +146,7 @@ impl<'a> Reader<'a> {
         let codes = layer.sample_times(animation, name)?;
         if codes.len().saturating_mul(lanes) > MAX_VALUES {
             let problem =
-                format!("{} samples of {lanes} {name}; at most {MAX_VALUES} values are read", codes.len());
+                format!("{} samples of {lanes} {name}; must be at most {MAX_VALUES} values", codes.len());
             return Err(MotionError::malformed(self.file, layer.path(animation), problem));
         }
         let (mut times, mut values) = (Vec::new(), Vec::with_capacity(codes.len() * lanes));

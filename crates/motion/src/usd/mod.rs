@@ -84,11 +84,11 @@ pub(crate) fn read(
     let mut notes = Vec::new();
     let mut dropped = BTreeMap::new();
     if layer.composes() {
-        notes.push("what the file refers to in other files or in variants was left out".to_owned());
+        notes.push("references to other files and variants were ignored".to_owned());
     }
     let space = stage_space(layer)?;
     if !space.is_stated {
-        notes.push("the file states no metersPerUnit; a centimetre was taken, as USD says".to_owned());
+        notes.push("the file states no metersPerUnit; centimetres, the default of USD, are used".to_owned());
     }
     let (metres_from_stage, unit_metres) = (space.metres_from_stage, space.metres as f32);
     let figure = skeleton::Figure::read(file, layer, metres_from_stage, needs_mesh)?;

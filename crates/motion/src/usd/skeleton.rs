@@ -49,7 +49,7 @@ impl Figure {
             }
         }
         if figure.skeleton.joints.len() >= usize::from(u16::MAX) {
-            let problem = format!("{} joints; at most {} are read", figure.skeleton.joints.len(), u16::MAX);
+            let problem = format!("{} joints; must be at most {}", figure.skeleton.joints.len(), u16::MAX);
             return Err(MotionError::malformed(file, "the skeletons", problem));
         }
         figure.skeleton.update_rest();

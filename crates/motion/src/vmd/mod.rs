@@ -35,7 +35,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
         let found = if raw.dropped.is_empty() && unknown == 0 {
             "no key".to_owned()
         } else {
-            format!("keys of a camera, a face, or {unknown} other bones alone")
+            format!("only keys of a camera, a face, or {unknown} other bones")
         };
         let wanted = "keys of bones with the standard names, such as センター";
         return Err(MotionError::Empty { file: name.into(), found, wanted });

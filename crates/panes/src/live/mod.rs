@@ -67,7 +67,7 @@ impl Live {
         self.jobs.put(request);
     }
 
-    /// Gives back everything that is kept for further requests, and drops the images, because nobody sees the panes. They are drawn again
+    /// Frees everything that is kept for further requests, and drops the images, because the panes are hidden. They are drawn again
     /// from the next request on.
     pub fn rest(&self) {
         self.jobs.rest();

@@ -71,7 +71,7 @@ impl Cell {
             + self.textures.as_ref().map_or(0, DeviceImages::bytes)
     }
 
-    /// Shows another variant. Hair of the same layout goes on moving.
+    /// Shows another variant. Hair of the same layout keeps moving.
     pub(super) fn set(&mut self, variant: Arc<Project>, scene: Arc<Scene>) {
         self.is_new |= self.engine.set_scene(scene);
         self.variant = variant;

@@ -79,7 +79,7 @@ impl Wall {
         self.jobs.put(request);
     }
 
-    /// Gives back the simulations, renderers and images of all variants, because nobody sees them. They begin anew with the next request.
+    /// Frees the simulations, renderers and images of all variants, because they are hidden. They start again with the next request.
     pub fn rest(&self) {
         self.jobs.rest();
     }

@@ -31,7 +31,7 @@ struct AtTime {
     project: Arc<Project>,
 }
 
-/// The project with a style that is shown without being applied, and what it was made of.
+/// The project with a style that is shown without being applied, and its inputs.
 #[derive(Clone, Debug)]
 struct Preview {
     of: Arc<Project>,

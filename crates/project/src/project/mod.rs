@@ -65,7 +65,7 @@ pub struct Project {
     pub lights: Vec<Light>,
     /// The light from all directions.
     pub surroundings: SurroundingsSection,
-    /// The sound beside the dance.
+    /// The sound of the dance.
     pub sound: SoundSection,
     /// The camera.
     pub camera: CameraSection,
@@ -140,7 +140,7 @@ impl Project {
         self.surroundings.file = Some(FileRef::new(path));
     }
 
-    /// Puts a sound file that the user picked beside the dance.
+    /// Adds a sound file that the user picked to the dance.
     pub fn set_sound_file(&mut self, path: impl Into<std::path::PathBuf>) {
         self.sound.file = Some(FileRef::new(path));
     }

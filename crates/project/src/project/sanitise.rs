@@ -33,7 +33,7 @@ impl Project {
         }
         let (found, kept) = (self.compare.panes.len(), project.compare.panes.len());
         if found != kept {
-            note(Place::Compare, vec![format!("found {}; {kept} now", counted(found, "pane", "panes"))]);
+            note(Place::Compare, vec![format!("found {}; {kept} kept", counted(found, "pane", "panes"))]);
         }
         let preroll_of = |timeline: &TimelineSection| TimelineSection {
             preroll_secs: timeline.preroll_secs,
@@ -67,7 +67,7 @@ impl Project {
             note(
                 Place::Lights,
                 vec![format!(
-                    "there were {found} lights; the first {MAX_LIGHTS}, the most there can be, are kept"
+                    "found {found} lights; must be at most {MAX_LIGHTS}: the first {MAX_LIGHTS} are kept"
                 )],
             );
         }

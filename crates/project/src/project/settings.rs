@@ -139,11 +139,11 @@ pub fn settings_table(section: &str) -> String {
 /// The page of all settings, as Markdown.
 pub fn settings_page() -> String {
     let mut text = String::from(
-        "# Settings\n\n\
-         Every setting of a project, by its name in the project file. `--set NAME=VALUE` changes one on the command line, and\n\
-         `lovelock settings --json` prints the same list for other programs. The program writes this page: `cargo xtask docs`.\n\n\
-         Values outside the range are brought into it when a project is opened. Where a list has several entries, such as lights,\n\
-         its first entry stands for all: `lights.1.intensity` is that of the second light. `NAME` is the name of a joint.\n",
+        "# Settings\n\nEvery setting of a project, by its name in the project file. `--set NAME=VALUE` changes one on the \
+         command line, and\n`lovelock settings --json` prints the same list for other programs. The program writes this \
+         page: `cargo xtask docs`.\n\nValues outside the range are clamped to it when a project is opened. Where a list has \
+         several entries, such as lights,\nits first entry stands for all: `lights.1.intensity` is that of the second \
+         light. `NAME` is the name of a joint.\n",
     );
     for (section, title) in SECTIONS {
         let _ = write!(text, "\n## {title}: `{section}`\n\n{}", settings_table(section));

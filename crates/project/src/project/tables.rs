@@ -153,7 +153,7 @@ impl Settings for MotionSection {
             field!(Self, speed),
             [0.1, 4.0],
             "Tempo",
-            "Seconds of the clip that pass per second. The hair reacts to the speed.",
+            "Speed of the motion: seconds of the clip per second. The hair reacts to it.",
         )
         .unit(Unit::TIMES)
         .logarithmic(),
@@ -175,14 +175,13 @@ impl Settings for MotionSection {
         Setting::switch(
             field!(Self, looping),
             "Loop",
-            "Starts the clip again at its end. Off, the last pose is held.",
+            "Repeats the clip. Off, the body holds the last pose.",
         ),
         Setting::number(
             field!(Self, loop_blend_secs),
             [0.0, 2.0],
             "Loop blend",
-            "Duration over which the end of a clip that does not loop by itself is blended into its \
-             start.",
+            "Duration of the blend from the end of the clip into its start, for clips that do not loop by themselves.",
         )
         .unit(Unit::SECONDS)
         .decimals(2),
@@ -255,7 +254,7 @@ impl Settings for HairMorph {
         field!(Self, amount),
         [0.0, 1.0],
         "Morph",
-        "How far the hair has turned into the second style. 0 is the project's own style and 1 the second one.",
+        "How far the hair is morphed: 0 is the project's own style, 1 the second one.",
     )
     .unit(Unit::FRACTION)];
 
@@ -376,15 +375,15 @@ impl Settings for RecordingSection {
         Setting::switch(
             field!(Self, transparent),
             "Transparent",
-            "Leaves out background and ground, so that the images can be composited over others. A \
-             film has no alpha and is refused.",
+            "Leaves out background and ground, so that the images can be composited over others. Not for films, which have \
+             no alpha.",
         ),
         Setting::count(
             field!(Self, subframes),
             [1, Self::MAX_SUBFRAMES as u64],
             "Samples per frame",
-            "Images that are averaged per frame for motion blur while the shutter is open: 1 is no \
-             blur, 8 to 16 are smooth. Rendering time grows in proportion.",
+            "Images averaged per frame for motion blur while the shutter is open: 1 is no blur, 8 to 16 are smooth. \
+             Rendering time grows in proportion.",
         )
         .logarithmic(),
         Setting::number(
@@ -421,8 +420,7 @@ impl Settings for TimelineSection {
         field!(Self, preroll_secs),
         [0.0, 30.0],
         "Pre-roll",
-        "Simulated time before a frame that is jumped to or that a recording starts at, so that \
-             the hair has settled. 0 shows the style at rest.",
+        "Time simulated before a recording or a jump, so that the hair has settled. 0 starts with the style at rest.",
     )
     .unit(Unit::SECONDS)];
 

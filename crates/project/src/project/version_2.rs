@@ -6,7 +6,7 @@ use super::Project;
 const OLD_DRAG: f32 = 0.8;
 const OLD_SETTLE: f32 = 2.0;
 
-/// Replaces drag and settling that had their old defaults by those of the project's style. Values that somebody chose stay.
+/// Replaces drag and settling that had their old defaults by those of the project's style. Values that the user chose are kept.
 /// Otherwise the old defaults would count as chosen, and the simulation would no longer follow the style.
 pub(super) fn migrate(project: &mut Project) {
     // One coefficient was that of skin and clothes.

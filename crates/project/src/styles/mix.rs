@@ -23,11 +23,11 @@ impl Default for StyleParts {
 impl StyleParts {
     /// The whole style.
     pub const ALL: Self = Self { shape: true, colour: true, motion: true };
-    /// Its shape alone.
+    /// Only its shape.
     pub const SHAPE: Self = Self { shape: true, colour: false, motion: false };
-    /// Its colours alone.
+    /// Only its colours.
     pub const COLOUR: Self = Self { shape: false, colour: true, motion: false };
-    /// How it moves alone.
+    /// Only how it moves.
     pub const MOTION: Self = Self { shape: false, colour: false, motion: true };
 
     /// Whether layers of that operation belong to these parts. Operations of other versions belong to the shape.

@@ -159,7 +159,7 @@ impl OwnStyles {
             return Ok(());
         }
         let (name, folder) = (path.display(), self.folder.display());
-        Err(ProjectError::output(path, format!("{name}: is not one of your styles, which lie in {folder}")))
+        Err(ProjectError::output(path, format!("{name}: is not one of your styles, which are in {folder}")))
     }
 
     /// The file of the style with that file name.

@@ -55,7 +55,7 @@ impl Family {
             Self::Cut => "Length, layers and fringe.",
             Self::Line => "Parting, direction of combing, volume and ends.",
             Self::Texture => "Locks, curls, waves and frizz.",
-            Self::Layers => "Weights and numbers of the layers of shape and strands.",
+            Self::Layers => "Weights and values of the layers of shape and strands.",
             Self::Colour => "Pigments, dye, grey and highlights, and layers of colour.",
         }
     }

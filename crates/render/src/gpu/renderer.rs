@@ -65,7 +65,7 @@ pub struct GpuRenderer {
     screen: Screen,
     layers: LayerBuffers,
     false_colors: FalseColors,
-    /// What the last picture knew of itself.
+    /// Uniform of the last frame.
     last: FrameUniform,
     /// Where its hair is.
     seen: SeenHair,

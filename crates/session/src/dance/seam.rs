@@ -195,14 +195,14 @@ impl SeamOfTake {
             if now.1 != before.1 {
                 return Err(ProjectError::option(format!(
                     "a seamless loop: at {secs:.2} s of {name} the hair has other guides than {period_secs:.2} s before; \
-                     take frames between which it stays the same"
+                     choose frames between which it stays the same"
                 )));
             }
             let off = now.0.distance(before.0);
             if off > SAME_PLACE_M {
                 return Err(ProjectError::option(format!(
-                    "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {period_secs:.2} s before; \
-                     the frames have to be one round of the dance",
+                    "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {period_secs:.2} s \
+                     before; the frames must be one round of the dance",
                     1e3 * off
                 )));
             }

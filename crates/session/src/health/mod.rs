@@ -195,13 +195,13 @@ fn gauges(
     let mut gauges = vec![
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
             let more = if settings.integrator == Integrator::Relaxation {
-                "Choose the direct method, or raise the sweeps"
+                "Choose the direct method, or raise the iterations"
             } else if settings.substeps < lovelock_simulation::MAX_SUBSTEPS {
                 "Raise the substeps"
             } else {
                 "Slow the motion down"
             };
-            format!("Locks are drawn out. {more}, and look whether the motion leaps there.")
+            format!("Locks are stretched. {more}, and check whether the motion jumps there.")
         }),
         Gauge::new(
             GaugeKind::Penetration,
@@ -210,21 +210,21 @@ fn gauges(
             || {
                 let (part, fit) = fitting(totals.deepest, scene, "raise");
                 format!(
-                    "Hair goes into the body: {part}. Raise the skin margin or the substeps; to hide what is left, {fit}."
+                    "Hair goes into the body: {part}. Raise the skin margin or the substeps; to hide the rest, {fit}."
                 )
             },
         ),
         Gauge::new(GaugeKind::Folded, f64::from(totals.unsure_points), totals.unsure_at, || {
-            "Hair is caught where skin is folded over itself: under a chin, or between a raised shoulder and the neck. Tie it up \
-             or cut it shorter, or soften the pose there; to keep hair further out, raise Lift (Colliders, Head and shoulders)."
+            "Hair is caught where skin is folded over itself: under a chin, or between a raised shoulder and the neck. Tie \
+             it up, cut it shorter or soften the pose there; to keep hair further out, raise Lift (Colliders, Head and \
+             shoulders)."
                 .to_owned()
         }),
         Gauge::new(GaugeKind::Energy, f64::from(energy), fastest_at, || {
             if settings.wind.speed > 15.0 {
-                "The hair is torn about. Calm the wind, or lower the air drag that it takes hold of."
-                    .to_owned()
+                "The wind blows the hair too hard. Lower the wind speed or the air drag.".to_owned()
             } else {
-                "The hair flies. Slow the motion down, or raise Settling and Air drag.".to_owned()
+                "The hair moves too fast. Slow the motion down, or raise Settling and Air drag.".to_owned()
             }
         }),
         Gauge::new(
@@ -232,8 +232,8 @@ fn gauges(
             totals.recovered_guides as f64,
             totals.recovered_at.map(|guide| (guide, u32::MAX)),
             || {
-                "The simulation lost guides and put them back to where they were a step before. Raise the substeps, or lower \
-                 stiffness, wind and repulsion; a guide that is lost again and again has points that lie on each other."
+                "Guides became invalid and were put back to the previous step. Raise the substeps, or lower stiffness, wind \
+                 and repulsion; a guide that fails repeatedly has points on top of each other."
                     .to_owned()
             },
         ),
@@ -244,8 +244,8 @@ fn gauges(
             || {
                 let (part, fit) = fitting(rest, scene, "lower");
                 format!(
-                    "The style begins inside the body: {part}. It stays as near as it was drawn; draw it further off the body, \
-                     or {fit}."
+                    "The style starts inside the body: {part}. The simulation does not push it out; move the style away \
+                     from the body, or {fit}."
                 )
             },
         ),

@@ -52,7 +52,7 @@ impl<T> LatestJob<T> {
         self.pending.1.notify_one();
     }
 
-    /// Drops a request that waits, and makes the worker give back what it keeps ([`Job::Rest`]) before it takes a later request.
+    /// Drops a request that waits, and makes the worker free what it keeps ([`Job::Rest`]) before it takes a later request.
     pub fn rest(&self) {
         let mut pending = self.lock();
         (pending.request, pending.rest) = (None, true);
@@ -72,7 +72,7 @@ impl<T> LatestJob<T> {
         pending.request.is_some() || pending.rest
     }
 
-    /// Whether the current request is of no use any more: the worker must end, or give back what it keeps.
+    /// Whether the current request is obsolete: the worker must end, or free what it keeps.
     pub fn is_dropped(&self) -> bool {
         let pending = self.lock();
         pending.closed || pending.rest

@@ -168,7 +168,7 @@ impl RenderThread {
         self.jobs.put(request);
     }
 
-    /// Closes the renderer, and gives back what is kept for further requests with the latest image. The next request opens it again.
+    /// Closes the renderer, and frees what is kept for further requests, including the latest image. The next request opens it again.
     pub fn rest(&self) {
         self.jobs.rest();
     }
@@ -259,7 +259,7 @@ enum Work {
     Image(RenderRequest),
     /// Another sample of the last image, which stands still.
     Sample(RenderRequest),
-    /// To give back what is kept.
+    /// To free what is kept.
     Rest,
 }
 
@@ -313,7 +313,7 @@ impl Worker {
         }
     }
 
-    /// Gives back what is kept for further requests.
+    /// Frees what is kept for further requests.
     fn rest(&mut self) {
         (self.opened, self.textures, self.last) = (None, None, None);
         (self.samples, self.mask, self.picture) =

@@ -44,7 +44,7 @@ pub(super) struct BodyKey {
     head_joint: Option<String>,
 }
 
-/// A body, and everything that is derived from it alone.
+/// A body, and everything that is derived only from it.
 #[derive(Clone, Debug)]
 pub(super) struct BodyPart {
     pub(super) body: Arc<Body>,
@@ -116,10 +116,7 @@ impl BodyKey {
                 None => notes.push(Problem::new(
                     Place::Body,
                     ProblemKind::Ignored,
-                    format!(
-                        "{} has no joint called `{name}`; the hair is on the joint that was guessed",
-                        body.name
-                    ),
+                    format!("{} has no joint called `{name}`; the hair is on a guessed joint", body.name),
                 )),
             }
         }

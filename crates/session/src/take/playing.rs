@@ -254,7 +254,7 @@ impl RecordedPlayer {
         };
         if self.told_lost != Some(first) {
             self.told_lost = Some(first);
-            self.notices.push(format!("{error}; frame {near} is shown in their place"));
+            self.notices.push(format!("{error}; frame {near} is shown instead"));
         }
         Ok(near)
     }
@@ -344,7 +344,7 @@ fn fits(
     Err(ProjectError::input(
         path,
         format!(
-            "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}{why}",
+            "{}: its hairstyle has changed: found {guides} guides of {points} points; must be {} of {}{why}",
             path.display(),
             recorded.0,
             recorded.1

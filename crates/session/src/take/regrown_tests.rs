@@ -78,7 +78,7 @@ fn a_part_of_a_take_with_other_guides_than_its_project_is_refused() {
     let mut player = played(&other);
     player.snapshot(29.0 / 60.0).expect("what fits");
     let error = player.snapshot(30.0 / 60.0).expect_err("what does not");
-    assert!(error.to_string().contains("its hairstyle is another one now"), "{error}");
+    assert!(error.to_string().contains("its hairstyle has changed"), "{error}");
     player.snapshot(0.0).expect("what fits");
 }
 

@@ -198,7 +198,7 @@ impl fmt::Display for ShadowMethod {
 
 /// A name that is no shadow method's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no shadow method is called \"{found}\"; use one of: {}", ids())]
+#[error("no shadow method is called \"{found}\"; must be one of: {}", ids())]
 pub struct UnknownShadowMethod {
     /// The name that was asked for.
     pub found: String,
@@ -290,7 +290,7 @@ mod tests {
         let error = "Voxel map".parse::<ShadowMethod>().unwrap_err().to_string();
         assert_eq!(
             error,
-            "no shadow method is called \"Voxel map\"; use one of: none, voxel-map, opacity-maps, deep-opacity-maps, \
+            "no shadow method is called \"Voxel map\"; must be one of: none, voxel-map, opacity-maps, deep-opacity-maps, \
              density-clustering, occupancy-maps, exact"
         );
     }

@@ -31,8 +31,7 @@ impl Settings for SimulationSettings {
             field!(Self, stiffness_bias),
             [0.05, 0.95],
             "Stiffness bias",
-            "Share of the change from root to tip stiffness that is reached at the middle of a wisp. \
-             50 % is a straight line.",
+            "Share of the change from root to tip stiffness reached at the middle of a wisp. 50 % is a straight line.",
         )
         .unit(Unit::FRACTION),
         Setting::number(
@@ -165,8 +164,7 @@ impl Settings for SimulationSettings {
             field!(Self, layering),
             [0.0, 1.0],
             "Layering",
-            "How much of their height over the skull wisps keep when they are pressed down, of 25 mm \
-             at most.",
+            "How much of their height over the skull wisps keep when they are pressed down, up to 25 mm.",
         )
         .unit(Unit::FRACTION),
         Setting::choice::<Integrator>(
@@ -282,7 +280,7 @@ impl Settings for Locks {
             field!(Self, friction),
             [0.0, 60.0],
             "Lock friction",
-            "How quickly the strands of a lock move alike.",
+            "How quickly the strands of a lock adopt a common motion.",
         )
         .unit(Unit::PER_SECOND),
         Setting::number(
@@ -335,7 +333,7 @@ impl Settings for Repulsion {
             field!(Self, cohesion),
             [0.0, 20.0],
             "Cohesion",
-            "How quickly wisps move like their neighbours.",
+            "How quickly wisps adopt the motion of their neighbours.",
         )
         .unit(Unit::PER_SECOND),
     ];

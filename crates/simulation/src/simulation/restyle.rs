@@ -24,7 +24,7 @@ const INITIAL_HOLD: f32 = 6.0;
 /// This is the case while a tie is dragged.
 const NEARBY: f32 = 0.03;
 
-/// Gathered hair whose points move no further than this keeps its ties as they are, metres.
+/// Gathered hair whose points move no further than this keeps its ties, metres.
 const NUDGE: f32 = 0.002;
 
 /// Ties that grow to their full strength.

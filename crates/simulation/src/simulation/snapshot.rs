@@ -337,7 +337,7 @@ impl Reader<'_> {
     fn count(&mut self, most: u32) -> Result<u32, RestoreError> {
         let count = self.u32()?;
         if count > most {
-            return Err(damaged(&format!("found {count} colliders; at most {most} are allowed")));
+            return Err(damaged(&format!("found {count} colliders; must be at most {most}")));
         }
         Ok(count)
     }

@@ -239,7 +239,7 @@ fn open(reader: &dyn FormatReader) -> Result<(u32, Box<dyn AudioDecoder>), Strin
     {
         let minutes = frames as f64 / longest * LONGEST_SECS / 60.0;
         return Err(format!(
-            "found a sound of {minutes:.0} minutes (at most {} are read)",
+            "found a sound of {minutes:.0} minutes (must be at most {})",
             LONGEST_SECS / 60.0
         ));
     }

@@ -71,7 +71,7 @@ pub(super) fn entrants(
         }
         if all.len() > MAX {
             return Err(ProjectError::option(format!(
-                "more than {MAX} to compare at once: fewer methods, backends or values of a sweep"
+                "more than {MAX} to compare at once: choose fewer methods, backends or values of a sweep"
             )));
         }
     }
@@ -135,7 +135,7 @@ fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> ProjectError {
     known.dedup();
     let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
     ProjectError::option(format!(
-        "--sweep {}: the methods that are compared have no such setting; theirs: {known}",
+        "--sweep {}: the compared methods have no such setting; must be one of {known}",
         sweep.setting
     ))
 }

@@ -35,8 +35,7 @@ impl Folder {
             return Err(ProjectError::option("-o: no name for the report's folder"));
         }
         if path.exists() && !path.is_dir() {
-            let message =
-                format!("{}: a file of this name is in the way of the report's folder", path.display());
+            let message = format!("{}: found a file; must be the report's folder", path.display());
             return Err(ProjectError::input(path, message));
         }
         let new = NewFolders::missing_on(&path.join(PICTURES));

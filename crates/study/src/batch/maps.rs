@@ -30,7 +30,7 @@ pub(super) const TRANSMITTANCE_ERROR: Kind = Kind {
 /// FLIP.
 pub(super) const PICTURE_ERROR: Kind = Kind {
     id: "picture-error",
-    title: "Image difference as seen (FLIP)",
+    title: "Perceived image difference (FLIP)",
     short: "FLIP",
     map: ColorMap::Magma,
     largest: 0.3,
@@ -54,7 +54,7 @@ pub(super) const POP: Kind = Kind {
 /// Change from frame to frame that differs from the reference.
 pub(super) const FLICKER: Kind = Kind {
     id: "flicker",
-    title: "Change of transmittance from frame to frame that is not the reference's own",
+    title: "Change of transmittance from frame to frame that the reference does not show",
     short: "Flicker",
     map: ColorMap::Magma,
     largest: 0.1,

@@ -83,9 +83,9 @@ pub fn compare(
     match work.run(&snapshots, entrants, &mut renderers, &mut report, progress) {
         Ok(()) => report.complete = true,
         Err(ProjectError::Cancelled) => {
-            report
-                .notes
-                .push("Stopped before its end: what is here is whole, and more was asked for.".to_owned());
+            report.notes.push(
+                "Stopped before its end: the results here are complete, but others are missing.".to_owned(),
+            );
         }
         Err(error) => return Err(error),
     }

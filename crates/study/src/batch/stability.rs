@@ -33,7 +33,8 @@ pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Res
     let bytes = frames.saturating_mul(points as u64).saturating_mul(4 * (truths as u64 + 1));
     if bytes > MAX_BYTES {
         return Err(format!(
-            "{what} over {frames} frames of {points} points need {} MiB, more than the limit of {} MiB: ask for less at once",
+            "{what} over {frames} frames of {points} points need {} MiB, more than the limit of {} MiB: compare fewer \
+             frames or points at once",
             bytes >> 20,
             MAX_BYTES >> 20
         ));

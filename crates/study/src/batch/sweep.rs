@@ -20,7 +20,7 @@ impl FromStr for Sweep {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wanted =
-            || format!("`{text}` is no sweep: must be SETTING=VALUE,VALUE,… such as resolution=64,128,256");
+            || format!("found `{text}`; must be SETTING=VALUE,VALUE,… such as resolution=64,128,256");
         let (setting, values) = text.split_once('=').ok_or_else(wanted)?;
         let values: Vec<_> = values.split(',').map(|value| value.trim().to_owned()).collect();
         let setting = setting.trim().to_owned();

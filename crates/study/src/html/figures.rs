@@ -55,7 +55,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         return None;
     }
     let label = match cost {
-        Cost::Time => format!("build and ask, ms on the {}", group.backend),
+        Cost::Time => format!("build and query, ms on the {}", group.backend),
         Cost::Memory => "shadow maps, MiB".into(),
     };
     // A method without cost has a large error; it is drawn on the edge, so that the others can be distinguished.
@@ -163,7 +163,7 @@ pub(super) fn banding(method: &MethodReport) -> Option<String> {
     let round = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
     let scale = round.into_iter().find(|&scale| scale >= largest).unwrap_or(1.0);
     let y = Axis::even("error", -scale, scale);
-    let mut plot = Plot::new(272.0, 120.0, Axis::even("depth, part of the slab", 0.0, 1.0), y);
+    let mut plot = Plot::new(272.0, 120.0, Axis::even("depth, fraction of the slab", 0.0, 1.0), y);
     plot.level(0.0, "");
     plot.line(&errors, thin(color(method)), None);
     Some(plot.svg(&format!("Error of {} in a slab of even density", method.label), 0.0))

@@ -81,7 +81,8 @@ fn header(report: &CompareReport) -> String {
         facts.join(" · ")
     );
     if !report.complete {
-        out += "<div class=\"banner\"><b>This comparison is not complete.</b> It was stopped, or still runs: what is here is whole, the rest is missing.</div>";
+        out += "<div class=\"banner\"><b>This comparison is not complete.</b> It was stopped, or is still running: the \
+                results here are complete, the rest are missing.</div>";
     }
     out += &doubts(report);
     out + "</header>"
@@ -121,7 +122,7 @@ fn doubts(report: &CompareReport) -> String {
     let head = if reference.converged {
         "A part of the reference is missing."
     } else if reference.footprints.is_empty() {
-        "There is no converged reference: errors are missing or held against less than the truth."
+        "There is no converged reference: errors are missing, or measured against a reference that is not exact."
     } else {
         "The reference did not converge within its limit: errors near its last change mean nothing."
     };
@@ -132,8 +133,8 @@ fn doubts(report: &CompareReport) -> String {
 fn coarse_points(report: &CompareReport) -> String {
     let Some(change) = report.reference.doubt_at_points() else { return String::new() };
     format!(
-        "<div class=\"banner\"><b>The truth at points is not fine enough.</b> Errors at points below {} may be the truth's own: \
-         by that much (root mean square) it changes when its map has half as many texels along each edge.</div>",
+        "<div class=\"banner\"><b>The truth at points is not fine enough.</b> Errors at points below {} may be the truth's \
+         own: it changes by that much (root mean square) when its map has half as many texels along each edge.</div>",
         fixed(Some(f64::from(change)), 4)
     )
 }
@@ -144,8 +145,8 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
     if reference.converged {
         let _ = write!(
             out,
-            "<p>Transmittance of every method is held against the mean of the light over the method's own texels, found with \
-             {} × {} rays a texel. It converged: the last round changed it by {} (root mean square).</p>",
+            "<p>Transmittance of every method is compared with the mean of the light over the method's own texels, computed \
+             with {} × {} rays per texel. It converged: the last round changed it by {} (root mean square).</p>",
             reference.samples,
             reference.samples,
             fixed(Some(f64::from(reference.change)), 5)
@@ -155,8 +156,8 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         out += &tables::overview(group, names, report);
     }
     if !out.is_empty() {
-        out += "<p class=\"note\">Click a heading to sort by it; hover over one to see what it means. Shaded costs are on the front: \
-                no other method of the table is both more accurate (by <i>One truth</i>) and cheaper.</p>";
+        out += "<p class=\"note\">Click a heading to sort by it; hover over one to see what it means. Shaded costs are on \
+                the front: no other method in the table is both more accurate (by <i>One truth</i>) and cheaper.</p>";
     }
     out += &between_backends(report);
     if names.draws {
@@ -202,15 +203,16 @@ fn costs(groups: &[Group<'_>], names: &Names) -> String {
         let error = if fallen == 0 {
             "The error is that of <i>One truth</i>."
         } else if fallen == methods().count() {
-            "<i>One truth</i> could not be had: the error is that against each method's own texels, and methods with different texels \
-             cannot be ranked by it."
+            "<i>One truth</i> is missing: the error is that against each method's own texels, and methods with different \
+             texels cannot be ranked by it."
         } else {
             "The error is that of <i>One truth</i>; where a method has none, that against its own texels."
         };
         let _ = write!(
             out,
-            "<p class=\"note\">{error} Lower is more accurate, further left is cheaper. Filled dots, joined by the grey band, are \
-             the front; dashed lines join the settings of a sweep. A method that would lie outside of a plot is put on its edge.</p>"
+            "<p class=\"note\">{error} Lower is more accurate, further left is cheaper. Filled dots, joined by the grey \
+             band, are the front; dashed lines join the settings of a sweep. A method outside a plot is drawn at its \
+             edge.</p>"
         );
     }
     out
@@ -243,9 +245,9 @@ fn probes(report: &CompareReport, names: &Names) -> String {
     }
     format!(
         "<p>A probe is a ray of light through a point of hair. Thin black steps: the light along that very ray, strand by \
-         strand. Dashed: its mean over a texel around the ray. Each coloured curve: what a method answers along the ray. The \
-         lanes below show what the method keeps there (slices, layers, cells, slabs, clusters, fragments), darker where more \
-         hair is counted. Point at a lane to highlight its curve.</p>{out}"
+         strand. Dashed: its mean over a texel around the ray. Each coloured curve: the transmittance that a method returns \
+         along the ray. The lanes below show what the method stores there (slices, layers, cells, slabs, clusters, \
+         fragments), darker where more hair is counted. Point at a lane to highlight its curve.</p>{out}"
     )
 }
 
@@ -315,8 +317,9 @@ fn banding(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Strin
         }
     }
     format!(
-        "<p>A slab of even density, made for this test, is lit from the front: transmittance should fall as an exponential. \
-         Slices and layers show as waves in the error. The plots differ in scale.</p>{tables}<div class=\"small\">{plots}</div>"
+        "<p>A slab of uniform density, made for this test, is lit from the front: transmittance should fall exponentially. \
+         Slices and layers show as waves in the error. The plots differ in scale.</p>{tables}<div \
+         class=\"small\">{plots}</div>"
     )
 }
 
@@ -347,9 +350,10 @@ fn reference(report: &CompareReport, names: &Names) -> String {
     if !rows.is_empty() {
         let _ = write!(
             out,
-            "<div class=\"scroll\"><table><caption>One truth for each size of texel.</caption><thead><tr><th scope=\"col\">Held \
-             against it</th><th scope=\"col\">Points</th><th scope=\"col\">Subtexels</th><th scope=\"col\">Last change</th>\
-             <th scope=\"col\" class=\"text\"></th></tr></thead><tbody>{rows}</tbody></table></div>"
+            "<div class=\"scroll\"><table><caption>One truth for each size of texel.</caption><thead><tr><th \
+             scope=\"col\">Compared with it</th><th scope=\"col\">Points</th><th scope=\"col\">Subtexels</th><th \
+             scope=\"col\">Last change</th><th scope=\"col\" \
+             class=\"text\"></th></tr></thead><tbody>{rows}</tbody></table></div>"
         );
     }
     if let Some(points) = &reference.points {

@@ -15,7 +15,7 @@ pub(super) fn section(report: &CompareReport, groups: &[Group<'_>], names: &Name
     let [first, end] = report.frames;
     let frames = if end > first + 1 {
         format!(
-            "the film of frames {first} to {}; flicker is what of it the reference does not show.",
+            "the film of frames {first} to {}; flicker is the part that the reference does not show.",
             end - 1
         )
     } else {
@@ -35,22 +35,24 @@ pub(super) fn section(report: &CompareReport, groups: &[Group<'_>], names: &Name
     ));
     if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.light_sweep) {
         items.push(format!(
-            "<b>Light turned</b>: the first light turns sideways by 0.1° a step, {steps} times, and nothing else moves; {} \
-             points are looked at. The truth changes a little; <i>Excess</i> and <i>Jitter</i> are what a method adds to that.",
+            "<b>Light turned</b>: the first light turns sideways by 0.1° per step, {steps} times, and nothing else moves; \
+             {} points are measured. The truth changes a little; <i>Excess</i> and <i>Jitter</i> are the change that a \
+             method adds.",
             grouped(points)
         ));
     }
     if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.stray) {
         items.push(format!(
-            "<b>Stray hair</b>: a bundle made for this test, the same in every report, into which a single hair moves from the \
-             light, {steps} steps of 1 mm. At the {} points behind it the truth does not change at all, so every change is the \
-             method's. Measured with the method's definition on the CPU, on rows of the GPU too.",
+            "<b>Stray hair</b>: a bundle made for this test, the same in every report, into which a single hair moves from \
+             the light, {steps} steps of 1 mm. At the {} points behind it the truth does not change at all, so every change \
+             is an error of the method. Measured with the method's definition on the CPU, on rows of the GPU too.",
             grouped(points)
         ));
     }
     format!(
-        "<p>How much transmittance moves that should not. Less is better, and 0 is none.</p><ul class=\"tests\"><li>{}</li></ul>{tables}\
-         <p class=\"note\">Maps of swim, pop and flicker are among the pictures above.</p>",
+        "<p>Changes of transmittance that should not happen. Lower is better, and 0 is none.</p><ul \
+         class=\"tests\"><li>{}</li></ul>{tables}<p class=\"note\">Maps of swim, pop and flicker are among the pictures \
+         above.</p>",
         items.join("</li><li>")
     )
 }

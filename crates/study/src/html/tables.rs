@@ -59,7 +59,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
             "Root mean square error of transmittance at strand points, against the method's own texels",
         ),
         Column("Bias", "Mean error: above zero the hair is too bright"),
-        Column("p99", "99th percentile of the error without its sign"),
+        Column("p99", "99th percentile of the absolute error"),
         Column(
             "First 10",
             "Root mean square error where fewer than ten fragments of hair lie before the point",
@@ -74,8 +74,8 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
         Column("p99", "99th percentile of the perceived difference over the pixels"),
         Column("PSNR", "Peak signal to noise ratio of the image, decibels; ∞ for an equal image"),
         Column("SSIM", "Structural similarity of the image; 1 for an equal image"),
-        Column("Build", "To make the shadow maps of all lights, milliseconds, median"),
-        Column("Ask", "To ask them at every strand point and body vertex, milliseconds, median"),
+        Column("Build", "Time to build the shadow maps of all lights: milliseconds, median"),
+        Column("Query", "Time to query them at every strand point and body vertex: milliseconds, median"),
         Column("Memory", "Shadow maps of all lights"),
         Column("Swim", SWIM),
     ];
@@ -143,12 +143,12 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
 pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
     const COLUMNS: [Column; 11] = [
         Column("Swim", SWIM),
-        Column("p99", "99th percentile over the points, of each its deviation over the frames"),
+        Column("p99", "99th percentile over the points of the deviation of each over the frames"),
         Column(
             "Pop",
-            "Largest change of any point from one frame to the next; it includes what the moving hair does",
+            "Largest change of any point from one frame to the next, including the effect of the moving hair",
         ),
-        Column("p99", "99th percentile over the points, of each its largest change"),
+        Column("p99", "99th percentile over the points of the largest change of each"),
         Column(
             "Flicker",
             "Root mean square of the change from frame to frame that is not the reference's own",
@@ -202,10 +202,10 @@ pub(super) fn banding(group: &Group<'_>, names: &Names) -> String {
             "Largest error of the second derivative, as a multiple of the exponential's own where light enters",
         ),
         Column("Largest wave", "The largest amplitude of all waves in the error of transmittance"),
-        Column("Its period", "As a part of the slab's depth"),
+        Column("Its period", "As a fraction of the slab's depth"),
         Column(
             "Slice distance",
-            "As a part of the slab's depth; none where slices differ in depth, or where there are none",
+            "As a fraction of the slab's depth; none where slices differ in depth, or where there are none",
         ),
         Column("Slice wave", "Amplitude of the wave with the period of the slices"),
     ];
@@ -252,7 +252,6 @@ pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
     for pass in passes.iter().take(80) {
         let stage = if pass.contains('/') { "" } else { " class=\"stage\"" };
         let name = match *pass {
-            "query" => "ask",
             "draw" => "draw (the rest)",
             "whole" => "whole picture",
             pass => pass,

@@ -160,7 +160,7 @@ fn the_page_is_whole_and_names_everything() {
         "3.00 MiB",
         "Probe 1: pixel 100, 80",
         "in each of the 3 frames.",
-        "6\u{202f}543 points are looked at",
+        "6\u{202f}543 points are measured",
         "26 steps of 1 mm",
         ">0.2346</td>",
         ">6.5e−5</td>",

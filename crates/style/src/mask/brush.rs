@@ -16,7 +16,7 @@ pub enum BrushMode {
     Add,
     /// Lowers it toward 0.
     Erase,
-    /// Brings it nearer to what is around.
+    /// Brings it closer to its surroundings.
     Smooth,
 }
 
@@ -26,7 +26,7 @@ pub enum BrushMode {
 pub struct MaskBrush {
     /// Radius on the head, metres.
     pub radius: f32,
-    /// How far the mask goes at once: 1 is all the way.
+    /// How much one stroke changes the mask: 1 is completely.
     pub strength: f32,
     /// The outer part of the radius over which the strength falls to 0.
     pub falloff: f32,
@@ -54,7 +54,7 @@ impl Settings for MaskBrush {
             field!(Self, strength),
             [0.0, 1.0],
             "Strength",
-            "How far a stroke raises the mask at once. 100 % paints it white.",
+            "How much one stroke raises the mask. 100 % paints it white.",
         )
         .unit(Unit::FRACTION),
         Setting::number(

@@ -163,8 +163,7 @@ impl Settings for MaskPart {
         Setting::choice::<MaskMix>(
             field!(Self, mix),
             "Combine",
-            "How the region is combined with those before it. Within: where both are. Plus: where either is. Minus: where \
-             those before are and this is not.",
+            "How the region is combined with those before it. Within keeps the overlap, Plus adds the region, Minus removes it.",
         ),
         Setting::switch(
             field!(Self, inverted),

@@ -28,7 +28,7 @@ impl Operate for Hand {
     const KIND: Kind = Kind {
         id: "hand",
         label: "By hand",
-        text: "Brush strokes: combing, cutting, curling. They stay with their place on the scalp.",
+        text: "Brush strokes: combing, cutting, curling. They keep their place on the scalp.",
         subject: Subject::Shape,
     };
 

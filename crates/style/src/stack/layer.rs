@@ -73,7 +73,7 @@ impl Layer {
 
 impl Settings for Layer {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::switch(field!(Self, on), "On", "Switches the layer on or off."),
+        Setting::switch(field!(Self, on), "On", "Turns the layer on or off."),
         Setting::number(
             field!(Self, weight),
             [0.0, 2.0],
@@ -141,7 +141,7 @@ impl Default for Group {
 
 impl Settings for Group {
     const TABLE: &'static [Setting<Self>] = &[
-        Setting::switch(field!(Self, on), "On", "Switches the layers of the group on or off."),
+        Setting::switch(field!(Self, on), "On", "Turns the layers of the group on or off."),
         Setting::number(
             field!(Self, weight),
             [0.0, 2.0],

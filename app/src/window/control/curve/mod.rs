@@ -89,7 +89,7 @@ impl Curve<'_> {
                 let name = format!("Presets of {}", self.label);
                 let menu = ui.menu_button(ICON_SHOW_CHART, |ui| Self::menu(ui, value, default));
                 menu.response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
-                menu.response.hover_tooltip("Curves that are often needed.");
+                menu.response.hover_tooltip("Common curves.");
             });
         });
     }
@@ -163,12 +163,12 @@ impl Curve<'_> {
         let described = format!("{label}: {root:.0}{unit} at the root, {tip:.0}{unit} at the tip");
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Canvas, true, &described));
         let free = if value.is_free() {
-            "Click to add a point, drag it away or press Delete to remove it. "
+            "Click to add a point; drag it away or press Delete to remove it. "
         } else {
             ""
         };
         let tip = format!(
-            "{}\n\nThe root is at the left, the tip at the right. Drag points, or use the arrow keys. {free}Right click offers \
+            "{}\n\nThe root is at the left, the tip at the right. Drag points, or use the arrow keys. {free}Right-click for \
              presets.",
             self.described(value != default)
         );
@@ -247,9 +247,9 @@ impl Curve<'_> {
             let name = value.name(point);
             let label = ui.label(RichText::new(format!("At ({name})")).small().color(theme::QUIET));
             let mut to = place * 100.0;
-            let tip = "The place of the selected point: 0 % is the root, 100 % the tip.";
+            let tip = "Position of the selected point: 0 % is the root, 100 % the tip.";
             let shown = ui.add_enabled_ui(free, |ui| number(ui, "At", &mut to, 0.0..=100.0, " %")).inner;
-            let fixed = "\n\nThis point stays at its place.";
+            let fixed = "\n\nThis point cannot be moved along the hair.";
             let tip = if free { tip.to_owned() } else { format!("{tip}{fixed}") };
             if shown.labelled_by(label.id).hover_tooltip(&tip).disabled_hover_tooltip(&tip).changed() {
                 value.set(point, [to / 100.0, height]);
@@ -258,7 +258,7 @@ impl Curve<'_> {
             let mut to = height * factor;
             let shown =
                 number(ui, "Value", &mut to, low * factor..=high * factor, unit).labelled_by(label.id);
-            let shown = shown.hover_tooltip("The value at the selected point.");
+            let shown = shown.hover_tooltip("Value at the selected point.");
             if shown.double_clicked() {
                 value.restore(point, default);
             } else if shown.changed() {

@@ -38,8 +38,9 @@ pub(super) fn menu(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
         if menu.is_none() {
             view.search.clear();
         }
-        let tip = "Adds a change of the hair after the selected layer.";
-        let full = format!("There are {} layers, the most.", StyleStack::MAX_LAYERS);
+        let tip = "Adds a layer after the selected one.";
+        let full =
+            format!("The limit of {} layers is reached. Remove a layer first.", StyleStack::MAX_LAYERS);
         button.hover_tooltip(tip).disabled_hover_tooltip(full);
     });
 }

@@ -33,7 +33,7 @@ enum Action {
     Move(Row, usize, Option<u32>),
 }
 
-/// Shows the list and does what is asked of it.
+/// Shows the list and runs the requested action.
 pub(super) fn show(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     let before = ui.spacing().item_spacing;
     let top = ui.cursor().top();
@@ -120,7 +120,7 @@ fn layer_row(
     let (rect, response) = begin(ui, own, view);
     let columns = row::Columns::of(rect, group.is_some());
     row::grip(ui, columns.grip).dnd_set_drag_payload(own);
-    row::eye(ui, columns.eye, &mut layer.on, ("Layer on", "Switches the layer."));
+    row::eye(ui, columns.eye, &mut layer.on, ("Layer on", "Turns the layer on or off."));
     let alpha = if factor > 0.0 { 1.0 } else { 0.4 };
     let disk = view.thumbnails.mesh(id, &layer.mask, columns.picture, alpha);
     row::picture(ui, columns.picture, disk, !layer.mask.is_everywhere());
@@ -134,7 +134,7 @@ fn layer_row(
         };
         row::name(ui, columns.name, text);
     }
-    row::weight(ui, columns.weight, &mut layer.weight, ("Layer weight", "How much the layer acts."));
+    row::weight(ui, columns.weight, &mut layer.weight, ("Layer weight", "Strength of the layer."));
     let heard = soloed == Some(id);
     if row::solo(ui, columns.solo, heard, "Shows this layer alone.") {
         (*solo, *solo_group) = (if heard { None } else { Some(id) }, None);
@@ -154,11 +154,11 @@ fn layer_row(
     drop_on(ui, rect, response.id.with("drop"), place, Some(index + 1), action);
     let what = layer.operation.known().map_or("", |operation| operation.kind().text);
     response.hover_tooltip(format!(
-        "{what}\n\nDouble-click renames. Ctrl+D duplicates, Delete removes, Ctrl+click picks several."
+        "{what}\n\nDouble-click renames, Ctrl+D duplicates, Delete removes, Ctrl+click selects several."
     ));
 }
 
-/// Gives a layer a name; that of its operation is no name of its own.
+/// Names a layer; the name of its operation is the default and is not stored.
 fn set_name(layer: &mut Layer, name: String) {
     layer.name = if name == layer.operation.label() { String::new() } else { name };
 }
@@ -202,7 +202,7 @@ fn group_row(
     let (rect, response) = begin(ui, own, view);
     let columns = row::Columns::of(rect, false);
     row::grip(ui, columns.grip).dnd_set_drag_payload(own);
-    row::eye(ui, columns.eye, &mut group.on, ("Group on", "Switches the layers of the group."));
+    row::eye(ui, columns.eye, &mut group.on, ("Group on", "Turns the layers of the group on or off."));
     let is_folded = view.folded.contains(&id);
     let icon = if is_folded { ICON_CHEVRON_RIGHT } else { ICON_EXPAND_MORE };
     if fold(ui, columns.picture, icon, is_folded) {
@@ -249,7 +249,7 @@ fn group_row(
     let inside = dragged.is_some_and(|row| matches!(*row, Row::Layer(_)));
     let lower = inside.then_some(index);
     drop_into(ui, rect, drop, [(index, None), (lower.unwrap_or(index), inside.then_some(id))], action);
-    response.hover_tooltip("A group of layers. Double-click renames. Drag layers into it or out of it.");
+    response.hover_tooltip("A group of layers. Double-click to rename it. Drag layers into it or out of it.");
 }
 
 /// The triangle that hides the layers of a group.

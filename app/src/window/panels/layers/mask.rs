@@ -15,7 +15,7 @@ pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
             response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, name));
             response.hover_tooltip(tip).clicked()
         };
-        let tip = "Shows the mask on hair and scalp: dark where the layer does nothing, yellow where it acts wholly. Key: K";
+        let tip = "Shows the mask on hair and scalp: dark where the layer has no effect, yellow where it has full effect. Key: K";
         if toggle(ICON_VISIBILITY, "Show mask", view.show_mask, tip) {
             view.toggle_mask();
         }
@@ -71,7 +71,10 @@ fn parts(ui: &mut Ui, mask: &mut Mask) {
                             ui.selectable_value(&mut part.region, region, label);
                         }
                     });
-                combo.response.labelled_by(name.id).hover_tooltip("Which part of the head this is.");
+                combo
+                    .response
+                    .labelled_by(name.id)
+                    .hover_tooltip("The part of the head that the region covers.");
                 let remove = ui.add(egui::Button::new(ICON_CLOSE).frame(false));
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Remove"));
                 if remove.hover_tooltip("Removes the region from the mask.").clicked() {
@@ -99,6 +102,9 @@ fn parts(ui: &mut Ui, mask: &mut Mask) {
         if add.hover_tooltip("Limits the layer to a region of the head.").clicked() {
             mask.parts.push(MaskPart::region(MaskRegion::Front));
         }
-        ui.checkbox(&mut mask.inverted, "Invert all").hover_tooltip("Takes the rest of the head.");
+        ui.checkbox(&mut mask.inverted, "Invert all").hover_tooltip(
+            "Inverts the whole mask: the layer acts on the rest of \
+                                                                     the head.",
+        );
     });
 }

@@ -113,14 +113,14 @@ pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     view.follow(stack);
     add::menu(ui, stack, view);
     if stack.layers.is_empty() {
-        note(ui, "No layers: the hair is as it grows. A layer changes it, wholly or where its mask is.");
+        note(ui, "No layers. A layer changes the hair, everywhere or within its mask.");
         return;
     }
     keyboard::run(ui, stack, view);
     list::show(ui, stack, view);
     view.follow(stack);
     let Some(id) = view.selected else {
-        note(ui, "Click a layer to change it.");
+        note(ui, "Click a layer to edit it.");
         return;
     };
     if let Some(layer) = stack.layer_mut(id) {
@@ -143,12 +143,12 @@ fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView) {
                 });
             }
         }
-        _ => note(ui, "This version does not know the operation. It is kept and does nothing."),
+        _ => note(ui, "This version does not support this operation. The layer is kept and has no effect."),
     }
     let default = Layer::default();
     settings(ui, &["weight", "seed"], layer, &default);
     section(ui, "Along the hair", false, |ui| {
-        let tip = "How much the layer acts from the root to the tip.";
+        let tip = "Strength of the layer from the root to the tip.";
         curve(ui, "Strength along the hair", tip, &mut layer.ramp, &default.ramp);
     });
     section(ui, "Mask", view.painting || view.show_mask, |ui| mask::ui(ui, &mut layer.mask, view));

@@ -103,7 +103,7 @@ pub(super) fn rename(ui: &mut Ui, rect: Rect, text: &mut String, longest: usize)
         ui.data_mut(|data| data.remove::<bool>(first));
     }
     let entered = (ends && !canceled).then(|| text.trim().to_owned());
-    response.hover_tooltip("Enter gives the name, Escape keeps the old one.");
+    response.hover_tooltip("Enter renames, Escape cancels.");
     (entered, ends)
 }
 

@@ -84,7 +84,7 @@ impl Bench {
             },
             surroundings: super::surroundings::LoadedSurroundings {
                 picture: Some(surroundings()),
-                notes: vec!["3 pixels negative: taken as 0".to_owned()],
+                notes: vec!["3 pixels negative: set to 0".to_owned()],
             },
             sound: Arc::new(clicks()),
             stages,

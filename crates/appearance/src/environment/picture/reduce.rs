@@ -38,10 +38,10 @@ impl Notes {
                 messages.push(format!("{count} {} {what}", if count == 1 { "pixel" } else { "pixels" }));
             }
         };
-        note(self.not_finite, "not finite: taken as 0, or as 65504 where infinite");
-        note(self.negative, "negative: taken as 0");
-        note(self.too_bright, "brighter than 1e10: taken as that");
-        note(self.missing, "not stored in the file: taken as black");
+        note(self.not_finite, "not finite: set to 0, or to 65504 where infinite");
+        note(self.negative, "negative: set to 0");
+        note(self.too_bright, "brighter than 1e10: set to 1e10");
+        note(self.missing, "not stored in the file: set to black");
         if self.stretched {
             messages.push("the width is not twice the height: stretched over the whole sphere".to_owned());
         }

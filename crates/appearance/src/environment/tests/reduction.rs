@@ -81,7 +81,7 @@ fn values_that_no_light_has_are_replaced_and_counted() {
     assert_eq!((notes.not_finite, notes.negative, notes.too_bright), (3, 1, 1));
     assert!(!notes.stretched);
     assert_eq!(notes.messages().len(), 3);
-    assert_eq!(notes.messages()[1], "1 pixel negative: taken as 0");
+    assert_eq!(notes.messages()[1], "1 pixel negative: set to 0");
     assert!(panorama(8, 4, &[Vec3::ONE; 32]).notes().messages().is_empty());
 }
 

@@ -47,14 +47,15 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     let mut raw = RawHair::new(Vec::new(), Vec::new());
     let space = layer.space()?;
     if !space.is_stated {
-        raw.notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
+        raw.notes
+            .push("The file states no metersPerUnit; centimetres, the default of USD, are used.".to_owned());
     }
     let prims = layer.curves()?;
     if prims.is_empty() {
         return Err(layer.malformed("no curves".to_owned(), "one prim of type BasisCurves or more"));
     }
     if layer.composes() {
-        raw.notes.push("What the file refers to in other files or in variants was not looked at.".to_owned());
+        raw.notes.push("References to other files and variants were ignored.".to_owned());
     }
     let (mut widths, mut colours) = (Vec::new(), Vec::new());
     let (mut all_widths, mut all_colours) = (true, true);

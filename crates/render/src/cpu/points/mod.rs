@@ -105,7 +105,7 @@ struct ShadedFrom<'a> {
 /// The width with which a strand is drawn, pixels.
 ///
 /// Many fine strands below a pixel let through `exp(-opacity * sum of widths)`, whatever their number: one of them is drawn so narrow
-/// that it does the same. From half a pixel on this goes over into the width itself.
+/// that it does the same. From half a pixel on it blends into the width itself.
 #[inline(always)]
 fn thin(width: f32, opacity: f32, fine: bool) -> f32 {
     let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);

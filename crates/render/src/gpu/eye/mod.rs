@@ -348,8 +348,7 @@ impl AreaDepths {
 /// The error for a picture that does not fit.
 pub(super) fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
     GpuError::Input(format!(
-        "an image of this size needs a buffer of {needed} bytes, and {} takes at most {}: draw a smaller one, or by the \
-         processor",
+        "an image of this size needs a buffer of {needed} bytes, and {} takes at most {}: draw a smaller one, or draw on the CPU",
         gpu.info.name,
         gpu.most_storage_bytes()
     ))

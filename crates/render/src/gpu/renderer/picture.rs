@@ -145,5 +145,5 @@ pub struct PendingPicture {
 
 /// The error for a picture whose lists are never long enough.
 pub(super) fn unsettled() -> RenderError {
-    GpuError::Input("the lists of fragments did not settle; draw by the processor".to_owned()).into()
+    GpuError::Input("the lists of fragments did not settle; draw on the CPU".to_owned()).into()
 }

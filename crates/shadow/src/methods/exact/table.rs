@@ -14,7 +14,7 @@ impl Settings for ExactSettings {
             field!(Self, memory_limit_bytes),
             [16 << 20, 32 << 30],
             "Memory limit",
-            "Hair whose shadow needs more memory than this is refused.",
+            "Largest memory for the shadow map. Hair that needs more is refused.",
         )
         .unit(Unit::BYTES_AS_GIB)
         .soft([(1 << 28) as f64, (32_u64 << 30) as f64])

@@ -11,8 +11,8 @@ impl Settings for VoxelMapSettings {
             field!(Self, resolution),
             [32, 512],
             "Map resolution",
-            "Number of cells along each edge of the map. More cells show finer shadows and take \
-             longer; the brightness stays.",
+            "Number of cells along each edge of the map. More cells show finer shadows and take longer; the brightness does \
+             not change.",
         )
         .symbol("N")
         .unit(Unit::CELLS)

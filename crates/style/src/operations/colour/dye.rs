@@ -31,7 +31,7 @@ impl Settings for Dye {
         Setting::color(
             field!(Self, color),
             "Dye",
-            "Colour of the dye: how a head of hair with it looks in white light.",
+            "Colour of the dye, as a head of dyed hair looks in white light.",
         ),
         Setting::number(field!(Self, amount), [0.0, 1.0], "Amount", "How strongly the dye colours the hair.")
             .unit(Unit::FRACTION),
@@ -39,8 +39,8 @@ impl Settings for Dye {
             field!(Self, bleach),
             [0.0, 1.0],
             "Bleach first",
-            "How much of the colour below is bleached away where the dye goes. At 0 % the dye is a tint over it, which can \
-             only darken.",
+            "How much of the colour below is bleached away where the dye is applied. At 0 % the dye is a tint over it, \
+             which can only darken.",
         )
         .unit(Unit::FRACTION),
     ];

@@ -32,7 +32,7 @@ impl Choices for GradientPigment {
     }
 }
 
-/// Goes over into another colour from a place along the strand on.
+/// Blends into another colour toward the tips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     /// What colours the tips.
@@ -45,7 +45,7 @@ pub struct Gradient {
     pub color: Vec3,
     /// The fraction of the strand from the root at which the gradient begins.
     pub start: f32,
-    /// The fraction of the strand over which it goes.
+    /// Length of the blend, as a fraction of the strand.
     pub length: f32,
     /// How much the beginning differs between locks, as a fraction of the strand.
     pub variation: f32,

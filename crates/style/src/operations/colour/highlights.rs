@@ -75,7 +75,7 @@ impl Settings for Highlights {
         Setting::color(
             field!(Self, toner),
             "Toner",
-            "Colour of the toner: how a head of hair with it looks in white light.",
+            "Colour of the toner, as a head of toned hair looks in white light.",
         ),
         Setting::number(
             field!(Self, start),
