@@ -20,6 +20,7 @@ use super::files::{place_of, set_part};
 use super::opening::{Aim, Found};
 use super::page::Page;
 use super::path_dialog::Purpose;
+use super::pointer_tool::PointerTool;
 use super::trial::Trial;
 use super::{Pending, Window, copy, notices};
 
@@ -109,24 +110,15 @@ impl Window {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
-            Command::Scissors => {
-                self.scissors.held = !self.scissors.held;
-                self.brushes.on &= !self.scissors.held;
-            }
+            Command::Scissors => self.pointer_tool.toggle(PointerTool::Scissors),
             Command::ShowMask => self.layers.toggle_mask(),
             Command::PaintMask => {
-                self.layers.toggle_painting();
-                self.brushes.on &= !self.layers.painting;
+                self.pointer_tool.toggle(PointerTool::Mask);
+                self.layers.show_mask |= self.pointer_tool == PointerTool::Mask;
             }
             Command::BrushSmaller => self.resize_brush(1.0 / BRUSH_STEP),
             Command::BrushLarger => self.resize_brush(BRUSH_STEP),
-            Command::Brushes => {
-                self.brushes.on = !self.brushes.on;
-                self.scissors.held &= !self.brushes.on;
-                if self.brushes.on && self.layers.painting {
-                    self.layers.toggle_painting();
-                }
-            }
+            Command::Brushes => self.pointer_tool.toggle(PointerTool::Brush),
             Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {
@@ -209,7 +201,7 @@ impl Window {
 
     /// Resizes the brush that is in use: that of the hair, otherwise that of masks.
     fn resize_brush(&mut self, factor: f32) {
-        if self.brushes.on {
+        if self.pointer_tool == PointerTool::Brush {
             self.brushes.scale_radius(factor, &mut self.layout.brushes);
         } else {
             self.layers.resize_brush(factor);

@@ -29,6 +29,7 @@ mod palette;
 mod panels;
 mod path_dialog;
 mod picker;
+mod pointer_tool;
 mod ramp;
 mod recorder;
 mod screenshot;
@@ -72,6 +73,7 @@ use overlay::scissors::Scissors;
 use page::Page;
 use palette::Palette;
 use path_dialog::PathDialog;
+use pointer_tool::PointerTool;
 use recorder::Recorder;
 use screenshot::Screenshot;
 use serde::{Deserialize, Serialize};
@@ -192,6 +194,8 @@ pub(crate) struct Window {
     /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
+    /// The tool that has the pointer in the image.
+    pointer_tool: PointerTool,
     /// The shown record of the database of clusters.
     record: panels::records::RecordView,
     gestures: Gestures,
@@ -322,6 +326,7 @@ impl Window {
             scalp: overlay::scalp::ScalpTool::default(),
             ties_shown: false,
             scissors: Scissors::default(),
+            pointer_tool: PointerTool::default(),
             record: panels::records::RecordView::default(),
             gestures: Gestures::default(),
             overdub: Overdub::default(),
@@ -433,11 +438,13 @@ impl Window {
             Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take is playing."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
             Command::ShowMask => because(self.layers.selected.is_none(), NO_LAYER),
-            Command::PaintMask if takes && !self.layers.painting => Some(TAKE_PLAYS),
-            Command::PaintMask => because(!self.layers.painting && self.layers.selected.is_none(), NO_LAYER),
-            Command::BrushSmaller | Command::BrushLarger => {
-                because(!(self.layers.painting || self.brushes.on), "No brush is in use.")
-            }
+            Command::PaintMask if self.pointer_tool == PointerTool::Mask => None,
+            Command::PaintMask if takes => Some(TAKE_PLAYS),
+            Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::BrushSmaller | Command::BrushLarger => because(
+                !matches!(self.pointer_tool, PointerTool::Mask | PointerTool::Brush),
+                "No brush is in use.",
+            ),
             Command::ExportCurves => because(self.recorder.is_running(), "A recording is already running."),
             _ => None,
         }

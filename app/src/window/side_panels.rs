@@ -8,6 +8,7 @@ use lovelock_render::HairDrawing;
 
 use super::control::{enter_pane, leave_pane, section, section_with};
 use super::path_dialog::Purpose;
+use super::pointer_tool::PointerTool;
 use super::{Window, camera_control, panels};
 
 impl Window {
@@ -43,10 +44,11 @@ impl Window {
                 });
                 self.tell_again(problems, clicked);
                 section(ui, "Layers", self.layers.is_revealed(), |ui| {
-                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers);
+                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers, &mut self.pointer_tool);
                 });
-                section(ui, "Brushes", self.brushes.on, |ui| {
-                    match super::brushes::ui(ui, &mut self.brushes, &mut self.layout.brushes) {
+                section(ui, "Brushes", self.pointer_tool == PointerTool::Brush, |ui| {
+                    let brushes = (&mut self.brushes, &mut self.pointer_tool);
+                    match super::brushes::ui(ui, brushes, &mut self.layout.brushes) {
                         Some(super::brushes::BrushRequest::Thaw) => {
                             self.session.worker().thaw();
                             self.brushes.forget_frozen();
@@ -59,7 +61,7 @@ impl Window {
                 let unfolded = section(ui, "Ties and scissors", false, |ui| {
                     let scalp = self.session.scene.as_ref().map(|scene| &*scene.usual_scalp);
                     panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);
-                    panels::ties::scissors(ui, &mut project.hair.cut, &mut self.scissors.held);
+                    panels::ties::scissors(ui, &mut project.hair.cut, &mut self.pointer_tool);
                 });
                 self.ties_shown = unfolded.is_some();
                 section(ui, "Simulation", true, |ui| {
@@ -81,10 +83,11 @@ impl Window {
                 });
                 let unfolded = section(ui, "Scalp", false, |ui| {
                     let found = self.session.scene.as_ref().is_none_or(|scene| scene.skull.is_some());
-                    panels::scalp::ui(ui, &mut project.body.scalp, &mut self.scalp, found);
+                    let tools = (&mut self.scalp, &mut self.pointer_tool);
+                    panels::scalp::ui(ui, &mut project.body.scalp, tools, found);
                 });
                 if unfolded.is_none() {
-                    self.scalp.painting = false;
+                    self.pointer_tool.set(PointerTool::Scalp, false);
                 }
                 if !curves {
                     asked = asked.or(self.body_section(ui, project, false));

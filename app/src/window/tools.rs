@@ -9,7 +9,9 @@ use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_style::BrushMode;
 
 use super::overlay::colliders::Wires;
+use super::overlay::scissors::Scissors;
 use super::overlay::{self, View};
+use super::pointer_tool::PointerTool;
 use super::{Window, notices, theme};
 
 impl Window {
@@ -28,17 +30,16 @@ impl Window {
             self.end_stroke();
             return true;
         }
-        if !self.scissors.held
-            && !self.layers.painting
-            && self.brush_hair(ui, response, (view, painted), project)
-        {
+        let tool = self.pointer_tool;
+        if tool == PointerTool::Brush && self.brush_hair(ui, response, (view, painted), project) {
             return false;
         }
         // Below the circle of the brush.
         let painter = ui.painter_at(view.place);
         let colors = painter.add(Shape::Noop);
-        let painted_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
-        if let Some(mask) = self.layers.shown_mask(&project.hair.stack).filter(|_| self.layers.painting) {
+        let paints_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
+        if let Some(mask) = self.layers.shown_mask(&project.hair.stack).filter(|_| tool == PointerTool::Mask)
+        {
             let shown = ShownMask { mask: mask.clone(), scale: theme::mask_colors() };
             let snapshot = &painted.snapshot;
             let head = overlay::head::Head {
@@ -48,14 +49,16 @@ impl Window {
             let new = overlay::mask::changed(view, head, &mut self.brushes.seen, painted, &shown);
             painter.set(colors, Shape::Vec(new));
         }
-        let held = self.scissors.held;
-        if let Some(line) = self.scissors.drag(ui, view, response) {
+        let cuts = tool == PointerTool::Scissors;
+        if !cuts {
+            self.scissors = Scissors::default();
+        } else if let Some(line) = self.scissors.drag(ui, view, response) {
             self.cut(view, painted, line, project);
         }
         let snapshot = &painted.snapshot;
         let world_from_head = &snapshot.guides.world_from_head;
         let ties = &mut project.hair.ties;
-        if self.ties_shown && !held && !self.layers.painting {
+        if self.ties_shown && !matches!(tool, PointerTool::Scissors | PointerTool::Mask) {
             // Ties are placed on a head of the usual size.
             let scale = Affine3A::from_scale(Vec3::splat(snapshot.scene.hair_scale));
             let world_from_usual = *world_from_head * scale;
@@ -65,14 +68,14 @@ impl Window {
             };
             overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
         }
-        let mut free = !((held || painted_mask) && response.dragged_by(PointerButton::Primary));
+        let mut free = !((cuts || paints_mask) && response.dragged_by(PointerButton::Primary));
         if self.scalp.shown
-            && !held
-            && !self.layers.painting
+            && !matches!(tool, PointerTool::Scissors | PointerTool::Mask)
             && let Some(skull) = &snapshot.scene.skull
         {
             let head = overlay::head::Head { world_from_head, scalp: &snapshot.scene.style.scalp };
-            let edited = (self.scalp, &mut project.body.scalp);
+            let paints = tool == PointerTool::Scalp;
+            let edited = (self.scalp, paints, &mut project.body.scalp);
             free &= !overlay::scalp::edit(ui, response, view, head, skull, edited);
         }
         free
@@ -87,7 +90,7 @@ impl Window {
         project: &mut Project,
     ) -> bool {
         let layer = self.layers.selected.and_then(|id| project.hair.stack.layer_mut(id));
-        let Some(layer) = layer.filter(|_| self.layers.painting && !self.scissors.held) else {
+        let Some(layer) = layer.filter(|_| self.pointer_tool == PointerTool::Mask) else {
             self.stroke.end();
             return false;
         };
@@ -151,7 +154,7 @@ impl Window {
         }
         overlay::colliders::paint(ui, view, &shapes, Some(self.colliders.selected));
         let Some(fitted) = snapshot.scene.fitted.get(self.colliders.selected) else { return };
-        if project.take.file.is_some() || self.scissors.held {
+        if project.take.file.is_some() || self.pointer_tool == PointerTool::Scissors {
             return;
         }
         let edit = edits.of(&fitted.name);

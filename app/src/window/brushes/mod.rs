@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use panel::{BrushRequest, ui};
 pub(crate) use pick::SeenHair;
+use super::pointer_tool::PointerTool;
 use pointer::PointerStroke;
 use strokes::Strokes;
 
@@ -53,8 +54,6 @@ impl Kept {
 #[derive(Default)]
 #[expect(clippy::struct_excessive_bools, reason = "independent switches")]
 pub(crate) struct Brushes {
-    /// Whether the pointer brushes hair instead of moving the camera.
-    pub(crate) on: bool,
     /// The tool.
     pub(crate) tool: Tool,
     /// Whether the hair is shown at rest, without its simulation.
@@ -109,8 +108,7 @@ impl crate::window::Window {
     /// Starts to paint where an operation acts. The pointer does not brush hair meanwhile.
     pub(in crate::window) fn paint_map(&mut self, project: &mut lovelock_project::Project, id: &str) {
         if self.layers.paint_map(&mut project.hair.stack, id) {
-            self.brushes.on = false;
-            self.scissors.held = false;
+            self.pointer_tool = PointerTool::Mask;
         } else {
             let why = "The layer limit is reached. Remove a layer first.";
             self.notices.push(crate::window::notices::Kind::Warning, why.to_owned());

@@ -8,6 +8,7 @@ use lovelock_brush::{BrushSettings, Tool};
 use super::{Brushes, Kept};
 use crate::window::control::HoverTooltip;
 use crate::window::control::{context_popup, curve, note, restore_all, section, settings};
+use crate::window::pointer_tool::PointerTool;
 
 /// What the panel requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +31,11 @@ const MAPS: [(&str, &str, &str); 5] = [
 ];
 
 /// The switches of brushes and the settings of the tool.
-pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<BrushRequest> {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    (brushes, pointer): (&mut Brushes, &mut PointerTool),
+    kept: &mut Kept,
+) -> Option<BrushRequest> {
     let mut request = None;
     ui.horizontal_wrapped(|ui| {
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: &mut bool, tip: &str| {
@@ -41,7 +46,9 @@ pub(crate) fn ui(ui: &mut Ui, brushes: &mut Brushes, kept: &mut Kept) -> Option<
             }
         };
         let tip = "Brushes the hair with the pointer, even during playback. Drag outside the hair to move the camera. Key: H";
-        toggle(ICON_BRUSH, "Brush", &mut brushes.on, tip);
+        let mut used = *pointer == PointerTool::Brush;
+        toggle(ICON_BRUSH, "Brush", &mut used, tip);
+        pointer.set(PointerTool::Brush, used);
         let tip = "Shows the hairstyle without its simulation. Pause (Space) instead to brush one pose of the moving hair.";
         toggle(ICON_PAUSE, "No physics", &mut brushes.still, tip);
         if brushes.strokes.frozen.contains(&true) {
@@ -111,9 +118,6 @@ pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
 impl Brushes {
     /// The menu of the brush, opened by a right click on the image.
     pub(in crate::window) fn menu(&mut self, response: &egui::Response, kept: &mut Kept) {
-        if !self.on {
-            return;
-        }
         context_popup(response, |ui| {
             ui.set_width(260.0);
             ui.label(RichText::new(self.tool.names().1).strong());

@@ -38,10 +38,6 @@ impl Window {
         project: &mut Project,
     ) -> bool {
         self.brushes.handled = true;
-        if !self.brushes.on {
-            self.end_stroke();
-            return false;
-        }
         self.brushes.bar(ui, view.place);
         self.brushes.menu(response, &mut self.layout.brushes);
         let snapshot = &*painted.snapshot;

@@ -14,8 +14,6 @@ use crate::window::theme;
 pub(crate) struct ScalpTool {
     /// Whether area, outline and handles are shown.
     pub(crate) shown: bool,
-    /// Whether dragging in the image paints.
-    pub(crate) painting: bool,
     /// Whether the other side is painted alike.
     pub(crate) mirrored: bool,
     /// Angle of the brush, seen from the middle of the skull, radians.
@@ -24,21 +22,21 @@ pub(crate) struct ScalpTool {
 
 impl Default for ScalpTool {
     fn default() -> Self {
-        Self { shown: false, painting: false, mirrored: true, brush: 0.2 }
+        Self { shown: false, mirrored: true, brush: 0.2 }
     }
 }
 
 /// The mask at the outline.
 const LINE: f32 = 0.5;
 
-/// Shows the scalp of a head and edits it. Returns whether it uses the pointer.
+/// Shows the scalp of a head and edits it; a drag paints it if `paints`. Returns whether it uses the pointer.
 pub(crate) fn edit(
     ui: &Ui,
     response: &Response,
     view: View,
     head: Head<'_>,
     skull: &Skull,
-    (tool, fit): (ScalpTool, &mut ScalpFit),
+    (tool, paints, fit): (ScalpTool, bool, &mut ScalpFit),
 ) -> bool {
     let painter = ui.painter_at(view.place);
     area(&painter, view, head);
@@ -56,7 +54,7 @@ pub(crate) fn edit(
             grip(ui, &painter, view, head, skull, fit, (i, side * degrees.to_radians(), &words));
         }
     }
-    tool.painting && paint(ui, response, view, head, skull, tool, fit)
+    paints && paint(ui, response, view, head, skull, tool, fit)
 }
 
 /// A handle of the hairline.

@@ -14,18 +14,12 @@ const SHORTEST: f32 = 12.0;
 /// The line that is being drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Scissors {
-    /// Whether the tool is active.
-    pub(crate) held: bool,
     from: Option<Pos2>,
 }
 
 impl Scissors {
     /// Shows the line while the pointer is dragged over the image; returns its ends when the pointer is released.
     pub(crate) fn drag(&mut self, ui: &Ui, view: View, response: &Response) -> Option<[Pos2; 2]> {
-        if !self.held {
-            self.from = None;
-            return None;
-        }
         if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }

@@ -7,9 +7,15 @@ use lovelock_motion::ScalpFit;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, note, settings};
 use crate::window::overlay::scalp::ScalpTool;
+use crate::window::pointer_tool::PointerTool;
 
 /// The controls of the scalp of a body. `found` is whether the body has one.
-pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: bool) {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    fit: &mut ScalpFit,
+    (tool, pointer): (&mut ScalpTool, &mut PointerTool),
+    found: bool,
+) {
     if !found {
         note(ui, "This body has no surface on which hair can grow.");
     }
@@ -17,13 +23,19 @@ pub(crate) fn ui(ui: &mut Ui, fit: &mut ScalpFit, tool: &mut ScalpTool, found: b
         ui.checkbox(&mut tool.shown, "Show scalp").hover_tooltip(
             "Shows where hair grows. Drag the handles of its outline in the image; double-click one to restore it.",
         );
-        let before = tool.painting;
-        ui.checkbox(&mut tool.painting, "Paint scalp")
+        if !tool.shown {
+            pointer.set(PointerTool::Scalp, false);
+        }
+        let mut paints = *pointer == PointerTool::Scalp;
+        let paint = ui
+            .checkbox(&mut paints, "Paint scalp")
             .hover_tooltip("Drag over the head to add hair, Ctrl+drag to remove it.");
-        tool.shown |= tool.painting && !before;
-        tool.painting &= tool.shown;
+        if paint.changed() {
+            pointer.set(PointerTool::Scalp, paints);
+            tool.shown |= paints;
+        }
     });
-    if tool.painting {
+    if *pointer == PointerTool::Scalp {
         Number::new(
             "Brush",
             0.03..=0.8,

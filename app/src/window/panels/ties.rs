@@ -12,6 +12,7 @@ use lovelock_project::project::HairSection;
 use crate::window::aim::Aim;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, choice, entry, note, setting, settings};
+use crate::window::pointer_tool::PointerTool;
 
 const FULL: &str = "The tie limit is reached. Remove a tie first.";
 
@@ -67,15 +68,15 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
 }
 
 /// The scissors, and the button that undoes their cuts.
-pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, held: &mut bool) {
+pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, pointer: &mut PointerTool) {
     ui.separator();
     ui.horizontal_wrapped(|ui| {
-        let button = ui.selectable_label(*held, "Scissors").hover_tooltip(
+        let button = ui.selectable_label(*pointer == PointerTool::Scissors, "Scissors").hover_tooltip(
             "Drag a line across the hair in the image to cut off what is beyond it, seen from the head. Works while the hair moves. \
              Shortcut: X.",
         );
         if button.clicked() {
-            *held = !*held;
+            pointer.toggle(PointerTool::Scissors);
         }
         let grow = ui.add_enabled(!cut.is_empty(), egui::Button::new("Grow back"));
         let grow = grow.hover_tooltip("Undoes all cuts.").disabled_hover_tooltip("There are no cuts.");

@@ -12,12 +12,13 @@ use lovelock_testkit::suite::is_long;
 use super::tools::{drag_over, view, with_picture};
 use super::whole::{CTRL, Whole, go, key, of, project, wait};
 use super::{control, press};
+use crate::window::pointer_tool::PointerTool;
 
 /// The window with brushes on, and the place of hair in the image.
 fn brushing() -> Option<(Whole, Pos2)> {
     let mut harness = with_picture()?;
     key(&mut harness, Modifiers::NONE, Key::H);
-    assert!(of(&harness).brushes.on);
+    assert_eq!(of(&harness).pointer_tool, PointerTool::Brush);
     for tool in Tool::ALL {
         let settings =
             BrushSettings { radius: 0.07, strength: 1.0, front_only: false, ..BrushSettings::default() };

@@ -12,6 +12,7 @@ use super::whole::{CTRL, Whole, go, key, of, project, wait};
 use crate::window::brushes::SeenHair;
 use crate::window::overlay;
 use crate::window::overlay::head::Head;
+use crate::window::pointer_tool::PointerTool;
 
 /// The window with a layer that is selected, and its mask being painted.
 fn painting() -> Option<Whole> {
@@ -23,7 +24,7 @@ fn painting() -> Option<Whole> {
     window.layers.selected = id;
     go(&mut harness);
     key(&mut harness, Modifiers::SHIFT, Key::K);
-    assert!(of(&harness).layers.painting && of(&harness).shown_mask.is_some());
+    assert!(of(&harness).pointer_tool == PointerTool::Mask && of(&harness).shown_mask.is_some());
     Some(harness)
 }
 
@@ -124,8 +125,7 @@ fn a_map_is_painted_into_a_layer_of_its_own() {
         go(harness);
     };
     start(&mut harness);
-    assert!(of(&harness).layers.painting, "a click on the map starts painting");
-    assert!(!of(&harness).brushes.on, "and ends the brush");
+    assert_eq!(of(&harness).pointer_tool, PointerTool::Mask, "painting takes the place of the brush");
     let layers = project(&harness).hair.stack.layers.clone();
     assert_eq!(layers.iter().map(|layer| layer.operation.id()).collect::<Vec<_>>(), ["density"]);
     assert_eq!(mask_at(&harness, FOREHEAD), 0.0, "it acts nowhere yet");

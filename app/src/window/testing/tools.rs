@@ -12,6 +12,7 @@ use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use super::{Shown, click_at, control, press};
 use crate::window::Window;
 use crate::window::overlay::View;
+use crate::window::pointer_tool::PointerTool;
 
 /// The window with an image, paused at the start; `None` if nothing can draw.
 pub(super) fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
@@ -82,7 +83,7 @@ fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
             && window.session.drawn.as_ref().is_some_and(|drawn| drawn.project.camera == before.camera)
     });
     key(&mut harness, Modifiers::NONE, Key::X);
-    assert!(of(&harness).scissors.held);
+    assert_eq!(of(&harness).pointer_tool, PointerTool::Scissors);
     let points =
         |window: &Window| window.session.frame.as_ref().map_or(0, |frame| frame.scene.style.strands.points());
     let whole = points(of(&harness));

@@ -19,6 +19,7 @@ use super::keyboard::entry;
 use super::{Shown, control, controls, drag, screen_of};
 use crate::window::actions::Opened;
 use crate::window::page::Page;
+use crate::window::pointer_tool::PointerTool;
 use crate::window::{Layout, Window};
 
 /// The window on an off-screen display.
@@ -340,7 +341,7 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     let mut harness = playing_window();
     let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
         let window = of(harness);
-        (window.layout.page, window.scissors.held, window.overdub.is_armed())
+        (window.layout.page, window.pointer_tool, window.overdub.is_armed())
     };
     let before = state(&harness);
     // The keys come in the same pass as the one that opens the dialog, and after its text is refused.
@@ -364,7 +365,7 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     assert!(of(&harness).dialog.is_none());
     // The control: without a dialog the same key works.
     key(&mut harness, Modifiers::NONE, Key::X);
-    assert!(of(&harness).scissors.held);
+    assert_eq!(of(&harness).pointer_tool, PointerTool::Scissors);
 
     // The list of keys and the palette hold it too, and close by the key that opened them.
     for (modifiers, opens) in [(Modifiers::SHIFT, Key::Questionmark), (CTRL, Key::K)] {

@@ -72,7 +72,6 @@ impl LayersView {
         };
         let Some(layer) = layer.or_else(|| new(stack)) else { return false };
         self.reveal(Some(layer));
-        self.painting = true;
         true
     }
 }

@@ -7,8 +7,9 @@ use lovelock_style::{Mask, MaskBrush, MaskPart, MaskRegion};
 use super::LayersView;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{note, settings};
+use crate::window::pointer_tool::PointerTool;
 
-pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
+pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView, pointer: &mut PointerTool) {
     ui.horizontal(|ui| {
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: bool, tip: &str| {
             let response = ui.add(egui::Button::selectable(on, (icon.rich_text(), name)));
@@ -21,11 +22,13 @@ pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView) {
         }
         let tip = "Paints the mask in the image: drag over the head. Ctrl erases, Shift smooths, [ and ] change the radius. Key: \
                    Shift+K";
-        if toggle(ICON_BRUSH, "Paint", view.painting, tip) {
-            view.toggle_painting();
+        if toggle(ICON_BRUSH, "Paint", *pointer == PointerTool::Mask, tip) {
+            pointer.toggle(PointerTool::Mask);
+            // The mask is shown while it is painted.
+            view.show_mask |= *pointer == PointerTool::Mask;
         }
     });
-    if view.painting {
+    if *pointer == PointerTool::Mask {
         painting(ui, mask, view);
     }
     parts(ui, mask);

@@ -16,6 +16,7 @@ use lovelock_style::{Layer, Mask, MaskBrush, Operation, StyleStack};
 use super::pigments::pigments;
 use crate::window::control::{all_settings, curve, note, section, settings};
 use crate::window::picker::Picker;
+use crate::window::pointer_tool::PointerTool;
 use list::Row;
 use thumbnail::Thumbnails;
 
@@ -28,8 +29,6 @@ pub(crate) struct LayersView {
     also: BTreeSet<u32>,
     /// Whether the image shows the mask of the selected layer.
     pub(crate) show_mask: bool,
-    /// Whether the pointer paints the mask of the selected layer.
-    pub(crate) painting: bool,
     /// The brush that paints it.
     pub(crate) brush: MaskBrush,
     /// The row that is being renamed, and the text so far.
@@ -67,12 +66,6 @@ impl LayersView {
         self.show_mask = !self.show_mask;
     }
 
-    /// Starts or ends painting; the mask is shown while it is painted.
-    pub(crate) fn toggle_painting(&mut self) {
-        self.painting = !self.painting;
-        self.show_mask |= self.painting;
-    }
-
     /// Makes the brush smaller or larger.
     pub(crate) fn resize_brush(&mut self, factor: f32) {
         let radius = self.brush.radius * factor;
@@ -105,7 +98,7 @@ impl LayersView {
 }
 
 /// The list of layers and the controls of the one that is selected.
-pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
+pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView, pointer: &mut PointerTool) {
     if view.revealed > 0 {
         view.revealed -= 1;
         ui.scroll_to_cursor(Some(egui::Align::TOP));
@@ -125,12 +118,12 @@ pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     };
     if let Some(layer) = stack.layer_mut(id) {
         ui.separator();
-        ui.push_id(id, |ui| controls(ui, layer, view));
+        ui.push_id(id, |ui| controls(ui, layer, view, pointer));
     }
 }
 
 /// The controls of one layer.
-fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView) {
+fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView, pointer: &mut PointerTool) {
     let fresh = Operation::new(layer.operation.id());
     match (layer.operation.known_mut(), fresh.as_ref().and_then(Operation::known)) {
         (Some(operation), Some(default)) => {
@@ -151,5 +144,6 @@ fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView) {
         let tip = "Strength of the layer from the root to the tip.";
         curve(ui, "Strength along the hair", tip, &mut layer.ramp, &default.ramp);
     });
-    section(ui, "Mask", view.painting || view.show_mask, |ui| mask::ui(ui, &mut layer.mask, view));
+    let open = *pointer == PointerTool::Mask || view.show_mask;
+    section(ui, "Mask", open, |ui| mask::ui(ui, &mut layer.mask, view, pointer));
 }

@@ -9,6 +9,7 @@ use lovelock_style::operations::{Curl, Dye, Length, Melanin, Wave};
 use lovelock_style::{Layer, MaskRegion, Operation, Ramp, StyleStack};
 
 use super::{Bench, panel};
+use crate::window::pointer_tool::PointerTool;
 use crate::window::search::{best_first, fit};
 use crate::window::testing::{
     Shown, click_at, control, controls, double_click, drag, is_marked, type_at, unfold,
@@ -395,7 +396,10 @@ fn the_mask_is_shown_and_filled() {
     click(&mut harness, "Show mask");
     assert_eq!(shown(&harness), None);
     click(&mut harness, "Paint");
-    assert!(harness.state().state.layers.painting && shown(&harness).is_some(), "painting shows it");
+    assert!(
+        harness.state().state.pointer_tool == PointerTool::Mask && shown(&harness).is_some(),
+        "painting shows it"
+    );
     click(&mut harness, "Fill");
     let part = &stack(&harness).layers[2].mask.parts[0];
     assert_eq!((&part.region, part.map.at(glam::Vec3::Y)), (&MaskRegion::Painted, 1.0));

@@ -30,6 +30,7 @@ use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation};
 use super::recording::State;
 use crate::window::control::section;
 use crate::window::overlay::scalp::ScalpTool;
+use crate::window::pointer_tool::PointerTool;
 use crate::window::soundtrack::Loaded;
 use crate::window::testing::{Shown, screen, unfold};
 
@@ -48,7 +49,7 @@ pub(super) struct Bench {
     pub(super) colliders: super::colliders::Shown,
     pub(super) selected_tie: usize,
     pub(super) layers: super::layers::LayersView,
-    pub(super) scissors: bool,
+    pub(super) pointer_tool: PointerTool,
     pub(super) scalp: ScalpTool,
     pub(super) styles: crate::window::styles::Browser,
     pub(super) kept: crate::window::styles::Kept,
@@ -93,7 +94,7 @@ impl Bench {
             colliders: super::colliders::Shown::default(),
             selected_tie: 0,
             layers: super::layers::LayersView::default(),
-            scissors: false,
+            pointer_tool: PointerTool::default(),
             scalp: ScalpTool::default(),
             styles: crate::window::styles::Browser::default(),
             kept: crate::window::styles::Kept::default(),
@@ -134,7 +135,9 @@ pub(super) const PANELS: [(&str, Show); 14] = [
     ("Body and motion", |ui, b| {
         super::body::ui(ui, &mut b.project, &b.body);
     }),
-    ("Scalp", |ui, b| super::scalp::ui(ui, &mut b.project.body.scalp, &mut b.scalp, true)),
+    ("Scalp", |ui, b| {
+        super::scalp::ui(ui, &mut b.project.body.scalp, (&mut b.scalp, &mut b.pointer_tool), true);
+    }),
     ("Colliders", |ui, b| {
         let edits = &mut b.project.body.colliders;
         // The skin replaces the skull's shape until that shape is edited.
@@ -144,11 +147,11 @@ pub(super) const PANELS: [(&str, Show); 14] = [
         super::colliders::ui(ui, edits, &fitted, &mut b.colliders);
     }),
     ("Layers", |ui, b| {
-        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.layers);
+        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.layers, &mut b.pointer_tool);
     }),
     ("Ties and scissors", |ui, b| {
         super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
-        super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.scissors);
+        super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.pointer_tool);
     }),
     ("Shadow", |ui, b| {
         let default = b.project.hair.groom.look;

@@ -6,6 +6,7 @@ use lovelock_motion::ScalpFit;
 use lovelock_project::Project;
 
 use super::panel;
+use crate::window::pointer_tool::PointerTool;
 use crate::window::testing::{control, type_at};
 
 #[test]
@@ -14,13 +15,13 @@ fn the_scalp_is_shown_corrected_and_fitted_again() {
     assert!(!harness.state().state.scalp.shown);
     control(&harness, Role::CheckBox, "Paint scalp").click();
     harness.run();
-    let tool = harness.state().state.scalp;
-    assert!(tool.shown && tool.painting, "what is painted is shown");
+    let bench = &harness.state().state;
+    assert!(bench.scalp.shown && bench.pointer_tool == PointerTool::Scalp, "what is painted is shown");
     assert!(harness.query_all_by_label("Brush").next().is_some());
     control(&harness, Role::CheckBox, "Show scalp").click();
     harness.run();
-    let tool = harness.state().state.scalp;
-    assert!(!tool.shown && !tool.painting, "{tool:?}");
+    let bench = &harness.state().state;
+    assert!(!bench.scalp.shown && bench.pointer_tool == PointerTool::Camera, "{:?}", bench.pointer_tool);
     let at = control(&harness, Role::SpinButton, "Temples").rect().center();
     type_at(&mut harness, at, "10");
     let fit = harness.state().state.project.body.scalp.clone();
