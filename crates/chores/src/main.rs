@@ -1,4 +1,4 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, soak, reference, count and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, soak, reference, pictures, count and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
@@ -8,6 +8,7 @@ mod count;
 mod interchange;
 mod latency;
 mod layers;
+mod pictures;
 mod python;
 mod reference;
 mod soak;
@@ -42,6 +43,11 @@ enum Chore {
     Soak(soak::Arguments),
     /// Renders hair beside a path tracer, and compares
     Reference(reference::Arguments),
+    /// Renders the images of the documents again
+    Pictures {
+        /// Only images whose names start with one of these
+        names: Vec<String>,
+    },
     /// Counts instructions by valgrind and compares them with the counts in the tree
     Count {
         /// Replace the counts in the tree
@@ -64,6 +70,7 @@ fn main() -> ExitCode {
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::Reference(arguments) => reference::run(&arguments),
+        Chore::Pictures { names } => pictures::run(&names),
         Chore::Count { write } => count::run(write),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };

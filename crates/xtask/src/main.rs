@@ -1,4 +1,4 @@
-//! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, count and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, pictures, count and assets. `cargo xtask` lists them.
 //!
 //! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
@@ -95,6 +95,12 @@ enum Chore {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
+    /// Renders the images of the documents again, with a virtual screen, Chromium and ffmpeg where an image needs them (Linux)
+    Pictures {
+        /// Only images whose names start with one of these, such as `styling` or `window`; all if none is given
+        #[arg(value_name = "NAME")]
+        names: Vec<OsString>,
+    },
     /// Counts the instructions of the inner loops by valgrind, and names counts that differ from those in the tree by over 5 % (Linux)
     Count {
         /// Replace the counts in the tree instead
@@ -152,6 +158,7 @@ fn run(wanted: Chore) -> anyhow::Result<()> {
         }
         Chore::Soak { arguments } => chore("soak", arguments),
         Chore::Reference { arguments } => chore("reference", arguments),
+        Chore::Pictures { names } => chore("pictures", names),
         Chore::Count { write } => chore("count", write.then(|| "--write".into())),
         Chore::Assets { preview } => chore(
             "assets",

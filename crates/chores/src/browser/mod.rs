@@ -1,6 +1,6 @@
 //! `cargo xtask test --browser`: checks the page of a comparison in Chromium.
 
-mod chromium;
+pub(crate) mod chromium;
 mod facts;
 
 use anyhow::{Context as _, bail, ensure};

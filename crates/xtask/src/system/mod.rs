@@ -5,7 +5,7 @@ mod plan;
 mod probe;
 
 use anyhow::bail;
-use needs::{BROWSER, COUNT, INTERCHANGE, NEEDS, Need, SCREEN};
+use needs::{BROWSER, COUNT, FILM, INTERCHANGE, NEEDS, Need, SCREEN};
 use plan::{Plan, Rights, Step, plan};
 use probe::Here;
 use std::process::Command;
@@ -38,12 +38,20 @@ pub fn prepare_browser() -> anyhow::Result<()> {
     get(&BROWSER)
 }
 
-/// Installs the system packages for `cargo xtask latency`.
+/// Installs the system packages for windows on a virtual screen, as `cargo xtask latency` opens them.
 ///
 /// # Errors
 /// If a compiler is missing and cannot be installed.
 pub fn prepare_screen() -> anyhow::Result<()> {
     get(&SCREEN)
+}
+
+/// Installs the system packages for the images that `cargo xtask pictures` takes out of films.
+///
+/// # Errors
+/// If ffmpeg is missing and cannot be installed.
+pub fn prepare_film() -> anyhow::Result<()> {
+    get(&FILM)
 }
 
 /// Installs the system packages for `cargo xtask count`.

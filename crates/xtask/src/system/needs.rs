@@ -83,6 +83,14 @@ pub(crate) const SCREEN: [Need; 1] = [Need {
     packages: ["xvfb", "xorg-x11-server-Xvfb", "xorg-server-xvfb", "xorg-x11-server-Xvfb", "xvfb"],
 }];
 
+/// The additional requirement of `cargo xtask pictures` for images out of films.
+pub(crate) const FILM: [Need; 1] = [Need {
+    what: "ffmpeg",
+    test: Test::Program("ffmpeg"),
+    to_build: true,
+    packages: ["ffmpeg", "ffmpeg-free", "ffmpeg", "ffmpeg", "ffmpeg"],
+}];
+
 /// The additional requirement of `cargo xtask count`.
 pub(crate) const COUNT: [Need; 1] = [Need {
     what: "valgrind",
