@@ -15,9 +15,9 @@ use lovelock_base::settings::{Choices as _, Settings as _};
 use lovelock_brush::{BrushMirror, BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
+use super::pointer_tool::PointerTool;
 pub(crate) use panel::{BrushRequest, ui};
 pub(crate) use pick::SeenHair;
-use super::pointer_tool::PointerTool;
 use pointer::PointerStroke;
 use strokes::Strokes;
 
