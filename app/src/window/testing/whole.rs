@@ -43,6 +43,7 @@ fn window_of(backend: Backend, playing: bool) -> Whole {
     let mut project = Project::default();
     project.picture.backend = backend;
     project.picture.strands = StrandCount::Stored;
+    project.timeline.preroll_secs = 0.1;
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
     project.shadow.voxel_map.resolution = 32;
