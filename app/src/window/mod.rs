@@ -437,10 +437,9 @@ impl Window {
             ),
             Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take is playing."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
-            Command::ShowMask => because(self.layers.selected.is_none(), NO_LAYER),
             Command::PaintMask if self.pointer_tool == PointerTool::Mask => None,
             Command::PaintMask if takes => Some(TAKE_PLAYS),
-            Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::ShowMask | Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
             Command::BrushSmaller | Command::BrushLarger => because(
                 !matches!(self.pointer_tool, PointerTool::Mask | PointerTool::Brush),
                 "No brush is in use.",

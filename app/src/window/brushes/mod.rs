@@ -52,7 +52,6 @@ impl Kept {
 
 /// The brushes of the window.
 #[derive(Default)]
-#[expect(clippy::struct_excessive_bools, reason = "independent switches")]
 pub(crate) struct Brushes {
     /// The tool.
     pub(crate) tool: Tool,

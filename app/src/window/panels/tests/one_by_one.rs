@@ -12,6 +12,7 @@ use lovelock_simulation::SimulationSettings;
 
 use super::{Bench, panel};
 use crate::window::panels::{body, hair};
+use crate::window::pointer_tool::PointerTool;
 use crate::window::testing::{Shown, control, drag, is_on, screen, texts, tooltip_at, type_at};
 
 /// Chooses an entry of a combo box.
@@ -228,7 +229,7 @@ fn ties_are_added_chosen_and_removed() {
     assert_eq!(kinds(&harness).len(), HairTie::MAX);
     harness.get_by_label("Scissors").click();
     harness.run();
-    assert!(harness.state().state.scissors);
+    assert_eq!(harness.state().state.pointer_tool, PointerTool::Scissors);
     harness.state_mut().state.project.hair.cut.kept = vec![0.5];
     harness.run();
     control(&harness, Role::Button, "Grow back").click();
