@@ -275,7 +275,7 @@ fn the_right_panel_edits_the_pane_that_is_selected() {
 fn a_tick_that_changes_nothing_says_so() {
     let mut harness = comparing();
     let said = |harness: &Whole| {
-        super::texts(harness).iter().any(|(text, ..)| text.contains("has the settings of pane 3 already"))
+        super::texts(harness).iter().any(|(text, ..)| text.contains("already has the settings of pane 3"))
     };
     press_button(&mut harness, "Use pane 3");
     assert!(!said(&harness));
