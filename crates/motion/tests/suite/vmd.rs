@@ -226,7 +226,7 @@ fn a_dance_stands_on_the_floor_of_the_dancer() {
 fn files_without_a_dance_are_refused_in_a_sentence() {
     let sound = Vmd::default().key("頭", 3, [0.0; 3], Quat::IDENTITY).bytes();
     for (bytes, found) in [
-        (Vmd::default().bytes(), "contains keys of a camera, a face, or 0 other bones alone"),
+        (Vmd::default().bytes(), "contains only keys of a camera, a face, or 0 other bones"),
         (Vmd::default().key("スカート", 0, [0.0; 3], Quat::IDENTITY).bytes(), "1 other bones"),
         (sound[..60].to_vec(), "byte 50: 1 keys of bones of 111 bytes in 6 bytes"),
         (sound[..20].to_vec(), "byte 0: 20 bytes left"),
