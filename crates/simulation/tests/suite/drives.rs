@@ -13,7 +13,7 @@ fn bytes(seed: u64, count: usize) -> Vec<u8> {
 }
 
 #[test]
-fn random_sequences_of_actions_do_not_break_the_hair() {
+fn random_sequences_of_actions_do_not_break_the_hair_long_suite() {
     let mut all = Coverage::default();
     for seed in 0..80 {
         all.add(&drive(&bytes(seed, 700)));

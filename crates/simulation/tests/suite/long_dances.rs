@@ -84,7 +84,7 @@ fn the_shipped_dance_keeps_its_lengths_at_60_hertz() {
 }
 
 #[test]
-fn the_shipped_dance_keeps_its_lengths_at_144_hertz() {
+fn the_shipped_dance_keeps_its_lengths_at_144_hertz_long_suite() {
     shipped(|_| 1.0 / 144.0);
 }
 
@@ -94,7 +94,7 @@ fn the_shipped_dance_keeps_its_lengths_in_uneven_steps() {
 }
 
 #[test]
-fn a_captured_dance_keeps_its_lengths_at_30_hertz() {
+fn a_captured_dance_keeps_its_lengths_at_30_hertz_long_suite() {
     captured(|_| 1.0 / 30.0);
 }
 
