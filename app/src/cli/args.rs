@@ -57,15 +57,15 @@ pub(crate) enum Task {
     /// Converts a hair file to another format.
     Convert(Convert),
     /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
-    Farm(super::farm::Farm),
+    Farm(Farm),
     /// Lists the shipped hairstyles and your own, and draws contact sheets of them.
     Presets(Presets),
     /// Lists every setting of a project: name, label, range, default, and what it changes.
     Settings(SettingsTask),
     /// Joins the parts that a farm has rendered into one image sequence.
-    Assemble(super::farm::Assemble),
+    Assemble(Assemble),
     /// Builds the database for drawing hair as clusters.
-    Satf(Satf),
+    Satf(super::satf::Satf),
     /// Plays recorded brush strokes on the hair of a project and writes the result as a new project.
     Style(StyleTask),
 }
@@ -427,30 +427,36 @@ pub(crate) struct StyleTask {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Satf {
-    #[command(subcommand)]
-    pub(crate) task: SatfTask,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum SatfTask {
-    /// Writes the database to a file, with the same bytes on every run. The program builds its own at first use, in the user's cache
-    /// folder.
-    Build(SatfBuild),
+pub(crate) struct Farm {
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+    /// Folder for the job, new or empty: template.json and the project with its files.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) film: FilmArguments,
+    /// Frames per task; 10, or more if that would make more than 1024 tasks.
+    #[arg(long, value_name = "N")]
+    pub(crate) chunk: Option<u64>,
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct SatfBuild {
-    /// The file.
-    #[arg(short, long, value_name = "FILE")]
+pub(crate) struct Assemble {
+    /// Folder whose subfolders contain the parts.
+    pub(crate) parts: PathBuf,
+    /// Folder for the joined sequence.
+    #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Replace the file even if it is not a database.
+    /// Frames of the whole sequence, half open.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Range<u64>,
+    /// Replace images that this program did not make.
     #[arg(long)]
     pub(crate) force: bool,
 }
 
 /// `A..B`, half open and not empty.
-pub(super) fn frames(text: &str) -> Result<Range<u64>, String> {
+fn frames(text: &str) -> Result<Range<u64>, String> {
     let wanted = || format!("found `{text}`; must be A..B with A below B, such as 0..240");
     let (start, end) = text.split_once("..").ok_or_else(wanted)?;
     let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());

@@ -1,46 +1,13 @@
 //! `lovelock farm` and `lovelock assemble`.
 
-use std::ops::Range;
-use std::path::PathBuf;
-
-use clap::Args;
 use lovelock_base::words::counted;
 use lovelock_jobs::farm::{FarmReport, FarmRequest, assemble, farm};
 use lovelock_project::error::ProjectError;
 
-use super::args::{FilmArguments, SourceArguments, frames};
+use super::args::{Assemble, Farm};
 use super::output::Output;
 use super::replace::{self, Holds};
 use super::source::Source;
-
-#[derive(Debug, Args)]
-pub(crate) struct Farm {
-    #[command(flatten)]
-    pub(crate) source: SourceArguments,
-    /// Folder for the job, new or empty: template.json and the project with its files.
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    #[command(flatten)]
-    pub(crate) film: FilmArguments,
-    /// Frames per task; 10, or more if that would make more than 1024 tasks.
-    #[arg(long, value_name = "N")]
-    pub(crate) chunk: Option<u64>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Assemble {
-    /// Folder whose subfolders contain the parts.
-    pub(crate) parts: PathBuf,
-    /// Folder for the joined sequence.
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    /// Frames of the whole sequence, half open.
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub(crate) frames: Range<u64>,
-    /// Replace images that this program did not make.
-    #[arg(long)]
-    pub(crate) force: bool,
-}
 
 /// Writes the folder of a job.
 pub(crate) fn run(task: &Farm, output: Output) -> Result<(), ProjectError> {

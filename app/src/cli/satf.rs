@@ -1,18 +1,42 @@
 //! `lovelock satf`.
 
 use std::io::IsTerminal;
+use std::path::PathBuf;
 use std::sync::Once;
 
+use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use lovelock_jobs::satf::build_satf;
 use lovelock_project::error::ProjectError;
 
-use super::args::{Satf, SatfTask};
 use super::output::Output;
 use super::replace::{self, Holds};
 
 /// Resolution of the progress bar.
 const TICKS: f32 = 1000.0;
+
+#[derive(Debug, Args)]
+pub(crate) struct Satf {
+    #[command(subcommand)]
+    pub(crate) task: SatfTask,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum SatfTask {
+    /// Writes the database to a file, with the same bytes on every run. The program builds its own at first use, in the user's cache
+    /// folder.
+    Build(SatfBuild),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SatfBuild {
+    /// The file.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Replace the file even if it is not a database.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
 
 /// Makes the database of hair clusters.
 pub(crate) fn run(task: &Satf, output: Output) -> Result<(), ProjectError> {
