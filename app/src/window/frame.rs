@@ -473,26 +473,3 @@ fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &s
     cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Cancel: {text}")));
     cancel.hover_tooltip(tip).clicked()
 }
-
-/// The name of the part that differs, for the undo history.
-pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
-    let parts = [
-        (before.camera != after.camera, "camera"),
-        (before.hair != after.hair, "hairstyle"),
-        (before.look != after.look, "look"),
-        (before.simulation != after.simulation, "simulation"),
-        (before.shadow != after.shadow, "shadow"),
-        (before.lights != after.lights, "light"),
-        (before.surroundings != after.surroundings, "surroundings"),
-        (before.sound != after.sound, "sound"),
-        (before.picture != after.picture, "picture"),
-        (before.body != after.body, "body"),
-        (before.motion != after.motion, "motion"),
-        (before.recording != after.recording, "recording"),
-        (before.compare != after.compare, "compare"),
-        (before.timeline.markers != after.timeline.markers, "marker"),
-        (before.timeline.preroll_secs != after.timeline.preroll_secs, "pre-roll"),
-        (before.timeline.tracks != after.timeline.tracks, "track"),
-    ];
-    parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
-}

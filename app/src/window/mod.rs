@@ -61,6 +61,7 @@ use gesture::Gestures;
 use images::Textures;
 use lovelock_project::Project;
 use lovelock_project::animation::{Moment, Overdub};
+use lovelock_project::document::changed_part;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_project::history::History;
@@ -397,7 +398,7 @@ impl Window {
             held: ctx.input(|input| input.pointer.any_down()),
             clock_secs: ctx.input(|input| input.time),
         };
-        let label = frame::changed_part(seen, &edited);
+        let label = changed_part(seen, &edited);
         let project = self.overdub.edit(self.history.project(), seen, edited, now);
         self.edit(label, project);
         if let Some(control) = self.overdub.take_refused() {

@@ -6,22 +6,9 @@ mod common;
 
 use std::hint::black_box;
 
-use common::{CURLY, EXTINCTION, HEAD, SMOOTH, Style, grow, strands};
+use common::{CURLY, SMOOTH, Style, grow, lit, strands};
 use criterion::{Criterion, criterion_group, criterion_main};
-use glam::Vec3;
-use lovelock_groom::Strands;
-use lovelock_shadow::{LightFrame, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow};
-
-fn input(strands: &Strands) -> ShadowInput<'_> {
-    ShadowInput {
-        strands,
-        strand_width: 80e-6 * 100_000.0 / strands.count() as f32,
-        extinction_scale: EXTINCTION,
-        light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
-        anchor: HEAD,
-        maps: 1,
-    }
-}
+use lovelock_shadow::{ShadowMethod, ShadowSettings, cpu_shadow};
 
 fn methods(c: &mut Criterion) {
     let styles = [("100k", SMOOTH), ("curly-200k", CURLY), ("1m", Style { strands_per_wisp: 241, ..SMOOTH })];
@@ -36,7 +23,7 @@ fn methods(c: &mut Criterion) {
         for &method in ShadowMethod::ALL {
             let mut map = cpu_shadow(method);
             group.bench_function(format!("{method}/build"), |b| {
-                b.iter(|| map.build(black_box(&input(&hair)), &settings).expect("fits"));
+                b.iter(|| map.build(black_box(&lit(&hair)), &settings).expect("fits"));
             });
             group.bench_function(format!("{method}/lookup"), |b| {
                 b.iter(|| map.transmittance_at(&hair.x, &hair.y, &hair.z, black_box(&mut out)));

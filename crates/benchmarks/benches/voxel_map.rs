@@ -6,29 +6,16 @@ mod common;
 
 use std::hint::black_box;
 
-use common::{EXTINCTION, HEAD, SMOOTH, Style, grow, strands};
+use common::{SMOOTH, Style, grow, lit, strands};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use glam::Vec3;
-use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::VoxelMap;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
-use lovelock_shadow::{CpuShadow, LightFrame, ShadowInput, ShadowSettings};
+use lovelock_shadow::{CpuShadow, ShadowSettings};
 
 fn settings(resolution: u32) -> ShadowSettings {
     let mut settings = ShadowSettings::default();
     settings.voxel_map.resolution = resolution;
     settings
-}
-
-fn input(strands: &Strands) -> ShadowInput<'_> {
-    ShadowInput {
-        strands,
-        strand_width: 80e-6 * 100_000.0 / strands.count() as f32,
-        extinction_scale: EXTINCTION,
-        light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
-        anchor: HEAD,
-        maps: 1,
-    }
 }
 
 fn stages(c: &mut Criterion, name: &str, style: Style) {
@@ -39,14 +26,14 @@ fn stages(c: &mut Criterion, name: &str, style: Style) {
         let mut map = VoxelMap::default();
         let mut group = c.benchmark_group(format!("{name}/{resolution}"));
         group.bench_function("build", |b| {
-            b.iter(|| map.build(black_box(&input(&hair)), &settings).expect("fits"));
+            b.iter(|| map.build(black_box(&lit(&hair)), &settings).expect("fits"));
         });
         group.bench_function("lookup", |b| {
             b.iter(|| map.transmittance_at(&hair.x, &hair.y, &hair.z, black_box(&mut out)));
         });
         group.bench_function("both", |b| {
             b.iter(|| {
-                map.build(black_box(&input(&hair)), &settings).expect("fits");
+                map.build(black_box(&lit(&hair)), &settings).expect("fits");
                 map.transmittance_at(&hair.x, &hair.y, &hair.z, black_box(&mut out));
             });
         });
@@ -68,7 +55,7 @@ fn plain(c: &mut Criterion) {
             BenchmarkId::new("build", resolution),
             &settings(resolution),
             |b, settings| {
-                b.iter(|| DenseMap::build(black_box(&input(&hair)), settings, Addressing::Window));
+                b.iter(|| DenseMap::build(black_box(&lit(&hair)), settings, Addressing::Window));
             },
         );
     }

@@ -35,6 +35,17 @@ pub(crate) struct Ran {
 pub(crate) fn run(suite: &Suite) -> anyhow::Result<()> {
     system::prepare()?;
     build(suite)?;
+    if suite.long {
+        // Nothing else builds the benchmarks: their libraries are not among those of the tests.
+        run_tool(&mut cargo(&[
+            "build",
+            "--release",
+            "-p",
+            "lovelock-benchmarks",
+            "--benches",
+            "--all-features",
+        ]))?;
+    }
     let Ran { totals, times, outcome } = tests(suite)?;
     println!("{}{totals}", times.report());
     outcome

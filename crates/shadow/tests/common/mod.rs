@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
-use lovelock_shadow::{MapKind, ShadowMethod};
+use lovelock_shadow::{LightFrame, MapKind, ShadowInput, ShadowMethod};
 
 pub use lovelock_base::random::SplitMix64;
 
@@ -52,6 +52,18 @@ pub const CURLY: Style = Style { wisps: 134, strands_per_wisp: 25, segments: 60,
 
 /// The centre of the head that [`grow`] grows on.
 pub const HEAD: Vec3 = Vec3::new(0.0, 1.6, 0.0);
+
+/// Strands that together have as much hair as 100,000 of 80 µm, in a light from above and in front.
+pub fn lit(strands: &Strands) -> ShadowInput<'_> {
+    ShadowInput {
+        strands,
+        strand_width: 80e-6 * 100_000.0 / strands.count() as f32,
+        extinction_scale: EXTINCTION,
+        light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
+        anchor: HEAD,
+        maps: 1,
+    }
+}
 
 /// Tufts on the upper part of a head of 9 cm around [`HEAD`], which bend down and curl.
 pub fn grow(style: Style, seed: u64) -> Vec<Vec<Vec3>> {
