@@ -71,6 +71,10 @@ impl Scene {
     ) -> Option<Result<Picture, RenderError>> {
         let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let mut picture = Picture::default();
+        // The axes of a light's map follow the light from image to image. An image without light forgets those of the tests before, which
+        // have other lights and not all draw by both backends. If it fails, so does the image that is asked for.
+        let dark = FrameInput { lights: &[], ..self.input() };
+        let _ = renderer.picture(&dark, 16, 16, &mut picture);
         Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
     }
 
