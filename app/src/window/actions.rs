@@ -1,7 +1,6 @@
 //! The effects of commands.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
@@ -21,8 +20,7 @@ use super::opening::{Aim, Found};
 use super::page::Page;
 use super::path_dialog::Purpose;
 use super::pointer_tool::PointerTool;
-use super::trial::Trial;
-use super::{Pending, Window, copy, notices};
+use super::{Pending, Window, notices};
 
 /// Factor by which a key changes the radius of the brush.
 const BRUSH_STEP: f32 = 1.15;
@@ -43,8 +41,8 @@ pub(super) struct Opened {
     pub(super) project_path: Option<PathBuf>,
     pub(super) picked: Vec<PathBuf>,
     pub(super) problems: Vec<Problem>,
-    /// The file that it was started with, as a part of the project.
-    pub(super) trial: Option<Trial>,
+    /// The file that it was started with as a part of the project, and the project without it.
+    pub(super) part: Option<(Place, PathBuf, Project)>,
 }
 
 /// Opens the file that is named on the command line, or the default project, and changes settings of it.
@@ -54,7 +52,7 @@ pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<
     if let (Some(place), Some(path)) = (place, path) {
         let mut before = Project::default();
         crate::cli::apply(set, &mut before)?;
-        opened.trial = Some(Trial::new(place, path, Arc::new(before)));
+        opened.part = Some((place, path.to_owned(), before));
     }
     Ok(opened)
 }
@@ -102,7 +100,7 @@ impl Window {
             Command::JumpToEnd => {
                 let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
                 // A looping clip starts again at its end, whereas a take ends with its last frame.
-                let takes = self.history.project().take.file.is_some();
+                let takes = self.document.project().take.file.is_some();
                 let last = if takes { duration } else { duration - lovelock_session::clock::STEP_SECS };
                 self.session.worker().seek(last.max(0.0));
             }
@@ -141,8 +139,8 @@ impl Window {
                 self.session.set_playing(true);
             }
             Command::WriteTracks => {
-                let armed = !self.overdub.is_armed();
-                self.overdub.set_armed(armed);
+                let armed = !self.document.overdub().is_armed();
+                self.document.overdub_mut().set_armed(armed);
             }
             Command::AddMarker => self.add_marker(),
             Command::MarkIn | Command::MarkOut => self.mark_end(command == Command::MarkIn),
@@ -163,16 +161,14 @@ impl Window {
                 self.change_seen(ctx, |project| project.camera = CameraSection::default());
             }
             Command::Undo => {
-                self.overdub.let_go();
-                self.history.undo();
+                self.document.undo();
             }
             Command::Redo => {
-                self.overdub.let_go();
-                self.history.redo();
+                self.document.redo();
             }
             Command::NewProject => self.unless_modified(Pending::New, ctx),
             Command::Open => self.open_path_dialog(Purpose::Open),
-            Command::Save => match self.project_path.clone() {
+            Command::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => {
                     if let Err(error) = self.save_to(&path) {
                         self.fail(error);
@@ -210,23 +206,16 @@ impl Window {
 
     /// Makes a change that is one undo step.
     pub(super) fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
-        let mut project = copy(self.history.project());
-        change(&mut project);
-        self.gestures.next();
-        self.edit(label, project);
-        self.gestures.next();
+        if self.document.change(label, change) {
+            tracing::debug!(label, "edited");
+        }
     }
 
     /// Like [`Window::change`], for values that a track may animate: the change is treated as an edit in a panel.
     fn change_seen(&mut self, ctx: &egui::Context, change: impl FnOnce(&mut Project)) {
-        let seen = self.seen();
-        let mut project = copy(&seen);
-        change(&mut project);
-        self.gestures.next();
-        self.take_edit(&seen, project, ctx);
-        if self.overdub.writes().next().is_none() {
-            self.gestures.next();
-        }
+        let now = self.moment(ctx);
+        let refused = self.document.change_seen(now, change);
+        self.report_refused(refused);
     }
 
     /// Starts recording a take to a new file, or ends the one that is being recorded.
@@ -235,7 +224,7 @@ impl Window {
             self.session.worker().finish_take();
             return;
         }
-        match new_take(self.project_path.as_deref()) {
+        match new_take(self.document.path()) {
             Ok(path) => {
                 self.session.set_playing(true);
                 self.session.worker().record_take(path);
@@ -328,7 +317,7 @@ impl Window {
                 let panes =
                     (self.layout.page == Page::Compare && pictures).then(|| self.layout.compare.sheet());
                 let resume = purpose == Purpose::Resume;
-                self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
+                self.recorder.start(self.document.project().clone(), access, path, panes, resume, ctx);
             }
             Purpose::ExportStyle => self.export_style(path)?,
             Purpose::SaveStrokes => self.save_strokes(path)?,
@@ -354,7 +343,7 @@ impl Window {
     }
 
     fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
-        if self.history.is_modified() {
+        if self.document.is_modified() {
             self.pending = Some(pending);
         } else {
             self.go_on(pending, ctx);
@@ -368,17 +357,9 @@ impl Window {
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Pending::New => {
-                self.let_go_of_controls();
-                self.cancel_strokes();
-                // They were opened for the project that goes.
+                // They were opened for the project that is closed.
                 self.openings.cancel();
-                self.framing = None;
-                self.trials.clear();
-                self.told.clear();
-                self.history = lovelock_project::history::History::new(Project::default());
-                self.rest_all();
-                self.project_path = None;
-                self.session.set_project_path(None);
+                self.replace_document(Project::default(), None);
             }
             Pending::Open(path) => {
                 if let Err(error) = self.open_project(&path) {
@@ -408,7 +389,7 @@ impl Window {
         let (save, lose, stay) = modal.inner;
         if save {
             self.pending = None;
-            if let Some(path) = self.project_path.clone() {
+            if let Some(path) = self.document.path().map(Path::to_owned) {
                 match self.save_to(&path) {
                     Ok(()) => self.go_on(pending, ctx),
                     Err(error) => self.fail(error),
@@ -432,7 +413,7 @@ impl Window {
     /// Handles a request to close the window: asks first if changes would be lost.
     pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && !self.quitting && !self.display.is_reopening && self.history.is_modified() {
+        if asked && !self.quitting && !self.display.is_reopening && self.document.is_modified() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.pending = Some(Pending::Quit);
         }

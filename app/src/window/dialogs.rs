@@ -73,8 +73,8 @@ impl Window {
     /// Opens the dialog for a path.
     pub(super) fn open_path_dialog(&mut self, purpose: Purpose) {
         let folder = self
-            .project_path
-            .as_deref()
+            .document
+            .path()
             .and_then(std::path::Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
@@ -84,10 +84,10 @@ impl Window {
             | Purpose::Motion
             | Purpose::Surroundings
             | Purpose::Sound => folder.join(""),
-            Purpose::SaveProject => self
-                .project_path
-                .clone()
-                .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
+            Purpose::SaveProject => self.document.path().map_or_else(
+                || folder.join("hair").with_extension(PROJECT_EXTENSION),
+                std::path::Path::to_owned,
+            ),
             Purpose::Film if self.layout.page == Page::Compare => folder.join("out").join("comparison.mp4"),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
@@ -103,7 +103,9 @@ impl Window {
             Purpose::Report => folder.join("out").join("report"),
         };
         let recent = self.layout.files.iter().chain(&self.layout.recent).cloned();
-        let dialog = PathDialog::new(purpose, &suggestion).own(self.project_path.clone()).recent(recent);
+        let dialog = PathDialog::new(purpose, &suggestion)
+            .own(self.document.path().map(std::path::Path::to_owned))
+            .recent(recent);
         self.dialog = Some(match purpose {
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
                 dialog.about(self.recording_in_words())
@@ -132,7 +134,7 @@ impl Window {
 
     /// Describes the recording that would start now.
     fn recording_in_words(&self) -> String {
-        let recording = &self.history.project().recording;
+        let recording = &self.document.project().recording;
         let clip = self.session.frames(recording.fps);
         let first = recording.first_frame;
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);

@@ -207,14 +207,14 @@ impl Window {
 
     /// Writes unsaved changes to a file beside the project, or in the folder of the program's data. Returns its path.
     fn rescue(&self) -> Option<PathBuf> {
-        if !self.history.is_modified() {
+        if !self.document.is_modified() {
             return None;
         }
-        let path = match &self.project_path {
+        let path = match self.document.path() {
             Some(path) => path.with_extension(format!("rescued.{PROJECT_EXTENSION}")),
             None => eframe::storage_dir("lovelock")?.join("rescued").with_extension(PROJECT_EXTENSION),
         };
-        save_project(&path, self.history.project()).ok().map(|()| path)
+        save_project(&path, self.document.project()).ok().map(|()| path)
     }
 
     /// Closes the window in order to open it again if its graphics device was lost.

@@ -13,7 +13,6 @@ use lovelock_session::scene::{Scene, camera_for_size};
 
 use super::opening::{Aim, Found, Opened};
 use super::page::Page;
-use super::trial::Trial;
 use super::{Pending, Window, notices, remember};
 
 /// A body that was opened and is not loaded yet.
@@ -73,7 +72,7 @@ impl Window {
 
     /// Starts to look into a file that a dialog has picked.
     pub(super) fn look_into(&mut self, path: &Path, aim: Aim) -> Result<(), String> {
-        let hair = self.history.project().hair.clone();
+        let hair = self.document.project().hair.clone();
         self.openings
             .start(path, aim, hair, &self.ctx)
             .map_err(|error| format!("{}: could not start a thread to read it: {error}", path.display()))
@@ -126,13 +125,13 @@ impl Window {
                 self.warn(problems.into_iter().map(|problem| problem.message));
                 if aim == Aim::Open {
                     // Saving must not write the take's project to the file of the previous project.
-                    self.project_path = None;
-                    self.session.set_project_path(None);
+                    self.document.detach();
+                    self.follow_path();
                 }
             }
             (_, Found::Curves(curves)) => self.play(path, |project| curves.played_in(project)),
             (_, Found::Document(FileKind::Style)) => self.open_style(path)?,
-            (_, Found::Document(_)) if self.history.is_modified() => {
+            (_, Found::Document(_)) if self.document.is_modified() => {
                 self.pending = Some(Pending::Open(path.to_owned()));
             }
             (_, Found::Document(_)) => self.open_project(path)?,
@@ -152,10 +151,10 @@ impl Window {
     pub(super) fn open_body(&mut self, path: &Path) {
         self.open_part(Place::Body, path, |project| project.set_body_file(path));
         self.framing = Some(Framing {
-            body: self.history.project().body.clone(),
-            gesture: self.gestures.id() - 1,
+            body: self.document.project().body.clone(),
+            gesture: self.document.gesture() - 1,
             before: self.session.scene.clone(),
-            camera: self.history.project().camera,
+            camera: self.document.project().camera,
         });
     }
 
@@ -172,7 +171,7 @@ impl Window {
             }
             return;
         };
-        let (gesture, project) = (framing.gesture, self.history.project());
+        let (gesture, project) = (framing.gesture, self.document.project());
         let before_scale = before.map_or(1.0, |before| before.hair_scale);
         let camera = camera_for_size(&project.camera, before_scale, scene.hair_scale);
         // Undone or replaced meanwhile, or seen from a place that the user chose.
@@ -180,7 +179,7 @@ impl Window {
         let camera = camera.filter(|_| is_same);
         if let Some(camera) = camera {
             let framed = Project { camera, ..(**project).clone() };
-            self.history.edit("file", Some(gesture), framed);
+            self.document.edit_in(gesture, "file", framed);
         }
         self.framing = None;
     }
@@ -188,21 +187,17 @@ impl Window {
     /// Makes a file that the user picked a part of the project. One that cannot be loaded leaves the project again.
     pub(super) fn open_part(&mut self, place: Place, path: &Path, set: impl FnOnce(&mut Project)) {
         self.session.pick(path);
-        let before = Arc::clone(self.history.project());
-        self.change("file", set);
-        self.trials.push(Trial::new(place, path, before));
+        self.document.try_file("file", place, path, set);
         // The project may have named the file before without having access to it.
-        let project = self.history.project().clone();
+        let project = self.document.project().clone();
         self.session.reload(&project);
     }
 
     /// Plays a take or curves: `made` returns the project that does. One undo step restores the previous one.
     fn play(&mut self, path: &Path, made: impl FnOnce(&Project) -> Project) {
         self.session.pick(path);
-        let before = Arc::clone(self.history.project());
-        self.change("take", |project| *project = made(project));
-        self.trials.push(Trial::new(Place::Take, path, before).saved_in(self.project_path.clone()));
-        let project = self.history.project().clone();
+        self.document.try_file("take", Place::Take, path, |project| *project = made(project));
+        let project = self.document.project().clone();
         self.session.reload(&project);
     }
 
@@ -231,25 +226,25 @@ impl Window {
         let mut access = self.session.access().clone();
         access.set_project(Some(path));
         let (project, problems) = load_project_with(path, &mut access).map_err(|error| error.to_string())?;
-        self.let_go_of_controls();
-        self.cancel_strokes();
-        self.framing = None;
-        self.trials.clear();
-        self.told.clear();
-        self.history = lovelock_project::history::History::new(project);
-        self.rest_all();
-        self.project_path = Some(path.to_owned());
-        self.session.set_project_path(self.project_path.as_ref());
+        self.replace_document(project, Some(path.to_owned()));
         remember(&mut self.layout.recent, path);
         self.warn(problems.into_iter().map(|problem| problem.message));
         Ok(())
     }
 
+    /// Puts another project in place of this one.
+    pub(super) fn replace_document(&mut self, project: Project, path: Option<PathBuf>) {
+        self.cancel_strokes();
+        self.framing = None;
+        self.document.replace(project, path);
+        self.rest_all();
+        self.follow_path();
+    }
+
     pub(super) fn save_to(&mut self, path: &Path) -> Result<(), String> {
-        save_project(path, self.history.project()).map_err(|error| error.to_string())?;
-        self.history.mark_saved();
-        self.project_path = Some(path.to_owned());
-        self.session.set_project_path(self.project_path.as_ref());
+        save_project(path, self.document.project()).map_err(|error| error.to_string())?;
+        self.document.mark_saved(path);
+        self.follow_path();
         remember(&mut self.layout.recent, path);
         self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
         Ok(())

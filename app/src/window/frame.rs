@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, vec2};
 use lovelock_base::settings::Info;
 use lovelock_project::Project;
+use lovelock_project::document::Shown;
 use lovelock_project::error::Place;
 use lovelock_project::tracks::Track;
 use lovelock_session::render_thread::ShownMask;
@@ -15,7 +16,7 @@ use super::focus::{Area, Focus};
 use super::page::Page;
 use super::path_dialog::Purpose;
 use super::viewport::{self, Viewport};
-use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline, title};
+use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline};
 use crate::window::control::HoverTooltip;
 
 /// Files and sounds that are read faster show no progress bar, seconds.
@@ -25,7 +26,9 @@ impl Window {
     /// One pass.
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
+        if !self.gestures.continues(&ctx, self.document.overdub().writes().next().is_some()) {
+            self.document.end_gesture();
+        }
         let said = self.session.update();
         self.warn(said);
         for failed in std::mem::take(&mut self.session.failed) {
@@ -85,7 +88,7 @@ impl Window {
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
-        let keying = Keying::of(&project, self.now_secs(), &self.overdub.writes());
+        let keying = Keying::of(&project, self.now_secs(), &self.document.overdub().writes());
         control::begin_keying(&ctx, keying);
         let begin = Focus::begin_area(ui);
         let playback = self.timeline(ui, &mut project);
@@ -116,7 +119,8 @@ impl Window {
             // Another page, another tool, or no image.
             self.end_stroke();
         }
-        self.take_edit(&seen, project, &ctx);
+        let refused = self.document.edit_seen(&seen, project, self.moment(&ctx));
+        self.report_refused(refused);
         self.answer_styles();
         let said = control::said(&ctx);
         self.warn(said);
@@ -143,7 +147,8 @@ impl Window {
         // The single image is not visible while panes are shown.
         let page = self.layout.page;
         self.rest_hidden_pages();
-        let (shown, seen) = self.shown();
+        let Shown { project: shown, drawn: seen } =
+            self.document.shown(self.now_secs(), self.styles.preview());
         let size = if page == Page::Image { self.viewport.wanted } else { [0, 0] };
         self.brushes.send(self.session.worker());
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
@@ -160,7 +165,7 @@ impl Window {
         if page == Page::Wall {
             self.send_wall();
         }
-        let title = title(self.project_path.as_deref(), self.history.is_modified());
+        let title = format!("{} · Lovelock", self.document.title());
         // Any command to the window makes it paint again.
         if title != self.display.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
@@ -226,7 +231,7 @@ impl Window {
                                 );
                             });
                         });
-                        if let Some(label) = self.history.undo_label() {
+                        if let Some(label) = self.document.history().undo_label() {
                             ui.label(
                                 RichText::new(format!("last change: {label}")).small().color(theme::QUIET),
                             );
@@ -251,9 +256,9 @@ impl Window {
         let frame = session.frame.as_ref();
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
         let (project_and_access, painted) =
-            ((self.history.project(), session.access()), session.painted.as_ref());
+            ((self.document.project(), session.access()), session.painted.as_ref());
         // A style that is only shown leaves no thumbnails.
-        let painted = painted.filter(|_| self.preview.is_none());
+        let painted = painted.filter(|_| !self.document.is_preview());
         let shown = (self.layout.timeline, duration_secs, ui.available_width());
         self.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
@@ -272,9 +277,13 @@ impl Window {
             can_play_take: session.saved_take.is_some(),
             thumbs: self.thumbnails.shown(),
             writing: timeline::Writing {
-                armed: self.overdub.is_armed(),
-                only: self.overdub.only().map(|target| Track::new(target).label_in(&project.hair.stack)),
-                targets: self.overdub.writes().map(str::to_owned).collect(),
+                armed: self.document.overdub().is_armed(),
+                only: self
+                    .document
+                    .overdub()
+                    .only()
+                    .map(|target| Track::new(target).label_in(&project.hair.stack)),
+                targets: self.document.overdub().writes().map(str::to_owned).collect(),
             },
             sound: project.sound.file.as_ref().map(|file| timeline::SoundLane {
                 name: file.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -295,7 +304,7 @@ impl Window {
 
     /// Reads the sound of the project and plays it in step with the image.
     fn follow_sound(&mut self, ctx: &egui::Context) {
-        let project = Arc::clone(self.history.project());
+        let project = Arc::clone(self.document.project());
         let said = self.soundtrack.update(&project.sound, self.session.access(), ctx);
         self.judge_sound(said);
         let rate = if self.session.backwards { -self.session.rate } else { self.session.rate };

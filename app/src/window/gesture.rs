@@ -1,17 +1,15 @@
 //! Groups changes into undo steps: a drag, a number that is typed, or a turn of the wheel is one step.
 
 use egui::{Id, Pos2, Vec2};
-use lovelock_project::history::GestureId;
 
 /// The longest time between the two clicks of a double-click, seconds.
 const DOUBLE_CLICK_SECS: f64 = 0.3;
 /// The largest distance that the pointer may move between them, points.
 const DOUBLE_CLICK_REACH: f32 = 6.0;
 
-/// Numbers the gestures of the user.
-#[derive(Clone, Debug)]
+/// What the user did in the last pass.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Gestures {
-    id: GestureId,
     /// The control that had the keyboard focus in the last pass.
     focused: Option<Id>,
     /// Whether the wheel turned in the last pass.
@@ -20,26 +18,10 @@ pub(crate) struct Gestures {
     pressed: Option<(f64, Pos2)>,
 }
 
-impl Default for Gestures {
-    fn default() -> Self {
-        Self { id: 1, focused: None, scrolled: false, pressed: None }
-    }
-}
-
 impl Gestures {
-    /// The number of the current gesture.
-    pub(crate) fn id(&self) -> GestureId {
-        self.id
-    }
-
-    /// Ends the current gesture: the next change starts a new one.
-    pub(crate) fn next(&mut self) {
-        self.id += 1;
-    }
-
-    /// Starts the next gesture unless that of the last pass continues. Must be called at the start of each pass, before anything
-    /// changes. `riding` says that a control is still being written to its track.
-    pub(crate) fn begin_pass(&mut self, ctx: &egui::Context, riding: bool) {
+    /// Whether the gesture of the last pass continues. Must be called at the start of each pass, before anything changes. `riding` says that
+    /// a control is still being written to its track.
+    pub(crate) fn continues(&mut self, ctx: &egui::Context, riding: bool) -> bool {
         let focused = ctx.memory(egui::Memory::focused);
         let (pressed, held, scrolled) = ctx.input(|input| {
             let pointer = &input.pointer;
@@ -61,11 +43,9 @@ impl Gestures {
                     || (focused.is_some() && focused == self.focused)
             }
         };
-        if !lasts {
-            self.next();
-        }
         self.focused = focused;
         self.scrolled = scrolled;
         self.pressed = pressed.or(self.pressed);
+        lasts
     }
 }

@@ -59,7 +59,7 @@ impl Window {
     /// The ring around the place of the selected gauge.
     pub(super) fn paint_marked_gauge(&self, ui: &Ui, view: View, painted: &RenderedImage) {
         let Some(asked) = &self.marked_gauge else { return };
-        let gauges = self.gauges(self.history.project());
+        let gauges = self.gauges(self.document.project());
         let Some(now) = gauges.iter().find(|gauge| gauge.kind == asked.kind) else { return };
         // The selected value stays, also if a worse one follows.
         let gauge = if asked.found.is_some() { asked } else { now };

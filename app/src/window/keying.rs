@@ -7,14 +7,6 @@ use super::control::KeyRequest;
 use super::{Window, notices};
 
 impl Window {
-    /// Ends the recording of controls of a project that is closed.
-    pub(super) fn let_go_of_controls(&mut self) {
-        self.overdub.let_go();
-        if self.overdub.only().is_some() {
-            self.overdub.set_armed(false);
-        }
-    }
-
     /// Sets or removes a key of `project`, the one that the panels edit, at the current time, or records a control.
     pub(super) fn key(&mut self, request: KeyRequest, project: &mut Project) {
         let secs = self.now_secs();
@@ -31,7 +23,7 @@ impl Window {
                 project.remove_key(&target, secs);
             }
             KeyRequest::Record { target, label } => {
-                self.overdub.arm_only(target);
+                self.document.overdub_mut().arm_only(target);
                 let what = if self.session.playing {
                     "Hold and move the control to write its track"
                 } else {

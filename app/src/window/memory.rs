@@ -37,7 +37,7 @@ impl Window {
         self.session.forget_images();
         self.thumbnails.rest();
         self.viewport.forget_image();
-        (self.seen, self.preview, self.morphed, self.shown_mask) = (None, None, None, None);
+        self.shown_mask = None;
         self.display.textures.sweep();
     }
 
@@ -79,7 +79,7 @@ impl Window {
             (
                 "Undo steps",
                 "Projects kept for undo and redo. Beyond the limit the oldest steps are dropped.",
-                self.history.bytes(),
+                self.document.history().bytes(),
                 History::MAX_BYTES,
             ),
             (

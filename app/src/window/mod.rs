@@ -19,6 +19,7 @@ mod images;
 mod keying;
 mod keys;
 mod light_sphere;
+mod load_ends;
 mod manual;
 mod memory;
 mod notices;
@@ -44,7 +45,6 @@ mod testing;
 mod theme;
 mod timeline;
 mod tools;
-mod trial;
 mod viewport;
 mod wall;
 mod work;
@@ -60,11 +60,10 @@ use display::Display;
 use gesture::Gestures;
 use images::Textures;
 use lovelock_project::Project;
-use lovelock_project::animation::{Moment, Overdub};
-use lovelock_project::document::changed_part;
+use lovelock_project::animation::Moment;
+use lovelock_project::document::Document;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_project::history::History;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
@@ -137,21 +136,13 @@ enum Pending {
     Open(PathBuf),
 }
 
-/// A project at a time of its timeline.
-struct Seen {
-    of: Arc<Project>,
-    secs: f64,
-    project: Arc<Project>,
-}
-
 /// The window and its state.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each is a dialog or an overlay that is open or not, beside the others"
 )]
 pub(crate) struct Window {
-    history: History,
-    project_path: Option<PathBuf>,
+    document: Document,
     session: Session,
     viewport: Viewport,
     compare: Compare,
@@ -167,9 +158,6 @@ pub(crate) struct Window {
     ctx: egui::Context,
     /// The body that was opened last, until it is loaded.
     framing: Option<files::Framing>,
-    /// Files that were opened and are not loaded yet, and the failures of the last load.
-    trials: Vec<trial::Trial>,
-    told: Vec<lovelock_project::error::Problem>,
     /// Whether what the command line names is not loaded yet: its errors are printed too.
     starting: bool,
     pending: Option<Pending>,
@@ -200,18 +188,11 @@ pub(crate) struct Window {
     /// The shown record of the database of clusters.
     record: panels::records::RecordView,
     gestures: Gestures,
-    overdub: Overdub,
     thumbnails: timeline::Thumbnails,
     soundtrack: soundtrack::Soundtrack,
     styles: styles::Browser,
-    /// The project with the style that is shown and not applied.
-    preview: Option<styles::Preview>,
-    /// The displayed project, and the same with the colours of its morph.
-    morphed: Option<(Arc<Project>, Arc<Project>)>,
     /// The style that is exported, while its path is asked for.
     exported: Option<Box<lovelock_project::styles::Style>>,
-    /// The project at the current time, with the project and the time from which it was computed.
-    seen: Option<Seen>,
     quitting: bool,
     screenshot: Option<Screenshot>,
     display: Display,
@@ -280,19 +261,21 @@ impl Window {
 
     /// Starts the session behind the window.
     fn start(ctx: &egui::Context, layout: Layout, opened: actions::Opened) -> Result<Self, ProjectError> {
-        let actions::Opened { project, project_path, picked, problems, trial } = opened;
+        let actions::Opened { project, project_path, picked, problems, part } = opened;
         let mut access = Access::new();
         for path in &picked {
             access.pick(path);
         }
         access.set_project(project_path.as_deref());
         let framing = files::Framing::at_start(&project, project_path.as_ref());
-        let history = History::new(project);
+        let mut document = Document::new(project, project_path);
+        if let Some((place, file, before)) = part {
+            document.try_part(place, &file, Arc::new(before));
+        }
         let (device, textures) = (WindowDevice::default(), Textures::default());
-        let session = Session::start(history.project(), access, ctx, &device)?;
+        let session = Session::start(document.project(), access, ctx, &device)?;
         let mut window = Self {
-            history,
-            project_path,
+            document,
             session,
             viewport: Viewport::default(),
             compare: Compare::default(),
@@ -306,8 +289,6 @@ impl Window {
             openings: opening::Openings::default(),
             ctx: ctx.clone(),
             framing,
-            trials: trial.into_iter().collect(),
-            told: Vec::new(),
             starting: true,
             pending: None,
             after_saving: None,
@@ -330,15 +311,11 @@ impl Window {
             pointer_tool: PointerTool::default(),
             record: panels::records::RecordView::default(),
             gestures: Gestures::default(),
-            overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
             soundtrack: soundtrack::Soundtrack::default(),
             styles: styles::Browser::default(),
-            preview: None,
-            morphed: None,
             exported: None,
             display: Display::new(device, textures),
-            seen: None,
             quitting: false,
             screenshot: None,
         };
@@ -364,49 +341,29 @@ impl Window {
         self.notices.push(notices::Kind::Failed, sentence);
     }
 
-    /// Applies a changed project. The changes of one gesture are one undo step.
-    fn edit(&mut self, label: &str, project: Project) {
-        if self.history.edit(label, Some(self.gestures.id()), project) {
-            tracing::debug!(label, "edited");
-        }
-    }
-
-    /// The project at the current time, with its tracks applied. Cached until something changes.
+    /// The project at the current time, with its tracks applied.
     fn seen(&mut self) -> Arc<Project> {
-        let (of, secs) = (Arc::clone(self.history.project()), self.now_secs());
-        let writes = self.overdub.writes().next().is_some();
-        if !of.is_animated() && !writes {
-            self.seen = None;
-            return of;
-        }
-        if let Some(seen) = &self.seen
-            && Arc::ptr_eq(&seen.of, &of)
-            && seen.secs.to_bits() == secs.to_bits()
-        {
-            return Arc::clone(&seen.project);
-        }
-        let project = Arc::new(self.overdub.shown(&of, secs));
-        self.seen = Some(Seen { of, secs, project: Arc::clone(&project) });
-        project
+        self.document.at(self.now_secs())
     }
 
-    /// Applies the edits of the panels to the project at the current time. Values with a track are written to the track.
-    fn take_edit(&mut self, seen: &Project, edited: Project, ctx: &egui::Context) {
-        let now = Moment {
+    /// The time of a change.
+    fn moment(&self, ctx: &egui::Context) -> Moment {
+        Moment {
             secs: self.now_secs(),
             playing: self.session.playing,
             held: ctx.input(|input| input.pointer.any_down()),
             clock_secs: ctx.input(|input| input.time),
-        };
-        let label = changed_part(seen, &edited);
-        let project = self.overdub.edit(self.history.project(), seen, edited, now);
-        self.edit(label, project);
-        if let Some(control) = self.overdub.take_refused() {
-            self.warn([format!(
-                "{control} follows its track while the dance plays. Pause to set a key, press W to rewrite the track, or \
-                 mute it on the timeline."
-            )]);
         }
+    }
+
+    /// Says that a control was moved although its track plays.
+    fn report_refused(&mut self, control: Option<String>) {
+        self.warn(control.map(|control| {
+            format!(
+                "{control} follows its track while the dance plays. Pause to set a key, press W to rewrite the track, or mute it \
+                 on the timeline."
+            )
+        }));
     }
 
     /// Whether a command is available now.
@@ -416,12 +373,12 @@ impl Window {
 
     /// Why a command is not available now; `None` if it is.
     fn why_not(&self, command: Command) -> Option<&'static str> {
-        let takes = self.history.project().take.file.is_some();
+        let takes = self.document.project().take.file.is_some();
         let loaded = self.session.frame.is_some();
         let because = |holds: bool, why: &'static str| holds.then_some(why);
         match command {
-            Command::Undo => because(self.history.undo_len() == 0, "There is nothing to undo."),
-            Command::Redo => because(self.history.redo_len() == 0, "There is nothing to redo."),
+            Command::Undo => because(self.document.history().undo_len() == 0, "There is nothing to undo."),
+            Command::Redo => because(self.document.history().redo_len() == 0, "There is nothing to redo."),
             Command::SavePicture if self.layout.page == Page::Wall => {
                 Some("The wall cannot be saved as an image. Close it to save the image of the viewport.")
             }
@@ -460,14 +417,6 @@ pub(crate) fn sheet_of_panes() -> lovelock_panes::sheet::Sheet {
     lovelock_panes::sheet::Sheet { figures: false, ..CompareLayout::default().sheet() }
 }
 
-/// A title that names the project and marks unsaved changes.
-fn title(path: Option<&Path>, modified: bool) -> String {
-    let name = path
-        .and_then(Path::file_stem)
-        .map_or_else(|| "untitled".to_owned(), |s| s.to_string_lossy().into_owned());
-    format!("{}{name} · Lovelock", if modified { "● " } else { "" })
-}
-
 /// Puts `path` first and removes duplicates.
 fn remember(recent: &mut Vec<PathBuf>, path: &Path) {
     recent.retain(|known| known != path);
@@ -483,12 +432,6 @@ fn copy(project: &Arc<Project>) -> Project {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_title_marks_what_is_not_saved() {
-        assert_eq!(title(None, false), "untitled · Lovelock");
-        assert_eq!(title(Some(Path::new("/a/my hair.ron")), true), "● my hair · Lovelock");
-    }
 
     #[test]
     fn recent_projects_are_few_and_newest_first() {

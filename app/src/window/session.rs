@@ -1,7 +1,7 @@
 //! The threads behind the window: simulation and rendering, with their latest results.
 
 use lovelock_base::words::counted;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -180,13 +180,13 @@ impl Session {
     }
 
     /// Grants access to a file that the user picked.
-    pub(crate) fn pick(&mut self, path: &std::path::Path) {
+    pub(crate) fn pick(&mut self, path: &Path) {
         self.access.pick(path);
     }
 
     /// Sets the path of the open project file, if any.
-    pub(crate) fn set_project_path(&mut self, path: Option<&PathBuf>) {
-        self.access.set_project(path.map(PathBuf::as_path));
+    pub(crate) fn set_project_path(&mut self, path: Option<&Path>) {
+        self.access.set_project(path);
     }
 
     /// Starts or pauses playback.

@@ -101,7 +101,7 @@ impl Window {
         let done = self.stroke.paint(ui, place, (head, snapshot), &self.layers.brush, layer);
         if done.begins {
             // Each stroke is an undo step of its own, however soon it follows the last one.
-            self.gestures.next();
+            self.document.end_gesture();
         }
         if let Some(mode) = done.in_vain {
             let why = match mode {

@@ -74,7 +74,7 @@ impl Window {
         settings: BrushSettings,
     ) -> u64 {
         // Each stroke is an undo step of its own, however soon it follows the last one.
-        self.gestures.next();
+        self.document.end_gesture();
         let strokes = &mut self.brushes.strokes;
         let left = project.hair.stack.hand(layer).cloned().unwrap_or_default();
         // What an earlier stroke did may still be on its way: the simulation has it already.
@@ -83,7 +83,7 @@ impl Window {
         strokes.last += 1;
         let id = strokes.last;
         let (edits, before) = (left.clone(), left.clone());
-        let gesture = self.gestures.id();
+        let gesture = self.document.gesture();
         let added = if is_new { Some(gesture) } else { added };
         if strokes.recorded.len() < StrokeFile::MAX_STROKES && strokes.samples < MAX_SAMPLES {
             let settings = settings.clone();
@@ -145,7 +145,7 @@ impl Window {
             strokes.freezes = Some(brushed.stroke);
         }
         let Some(at) = strokes.open.iter().position(|open| open.id == brushed.stroke) else { return };
-        let now = self.history.project().hair.stack.hand(brushed.layer);
+        let now = self.document.project().hair.stack.hand(brushed.layer);
         if now != Some(&strokes.open[at].left) {
             // An undo or another edit: what the stroke does from now on is lost with it.
             self.cancel_strokes();
@@ -168,11 +168,11 @@ impl Window {
         if brushed.ended {
             strokes.open.remove(at);
         }
-        let mut project = (**self.history.project()).clone();
+        let mut project = (**self.document.project()).clone();
         if let Some(layer) = project.hair.stack.layer_mut(brushed.layer) {
             layer.operation = Operation::Hand(Hand { edits: brushed.edits });
         }
-        self.history.edit(&label, Some(gesture), project);
+        self.document.edit_in(gesture, &label, project);
     }
 
     /// Ends a stroke that has written nothing: it makes no undo step, and a layer that was added for it is removed.
@@ -180,7 +180,7 @@ impl Window {
         let strokes = &self.brushes.strokes;
         let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);
         if let Some(added) = stroke.added.filter(|_| is_last) {
-            self.history.take_back_gesture(added);
+            self.document.take_back_gesture(added);
         }
         if stroke.tool == Tool::Freeze && self.brushes.strokes.freezes == Some(stroke.id) {
             return;

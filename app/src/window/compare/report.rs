@@ -218,7 +218,7 @@ impl Window {
             self.warn(["A report is being written. Wait for it, or cancel it above the image.".to_owned()]);
             return;
         }
-        let project = self.history.project();
+        let project = self.document.project();
         let recording = &project.recording;
         let clip = self.session.frames(recording.fps);
         let now = ((self.now_secs() * recording.fps).round().max(0.0) as u64).min(clip.saturating_sub(1));
@@ -235,7 +235,7 @@ impl Window {
 
     /// Shows the dialog of a report.
     pub(in crate::window) fn report_dialog(&mut self, ctx: &egui::Context) {
-        let clip = self.session.frames(self.history.project().recording.fps);
+        let clip = self.session.frames(self.document.project().recording.fps);
         let reporting = &mut self.compare.reporting;
         let Some(options) = reporting.options.as_mut().filter(|_| reporting.is_open) else { return };
         let modal = Modal::new(egui::Id::unique("report")).show(ctx, |ui| options_ui(ui, options, clip));
@@ -253,9 +253,9 @@ impl Window {
     /// Starts to write the report to a folder.
     pub(in crate::window) fn export_report(&mut self, out: &Path, ctx: &egui::Context) {
         let Some(options) = &self.compare.reporting.options else { return };
-        let project = Arc::clone(self.history.project());
+        let project = Arc::clone(self.document.project());
         let clip = self.session.frames(project.recording.fps);
-        let name = self.project_path.as_ref().and_then(|path| path.file_name());
+        let name = self.document.path().and_then(std::path::Path::file_name);
         let mut request = options.request(out, clip);
         request.access = self.session.access().clone();
         if let Some(name) = name {

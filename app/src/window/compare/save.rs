@@ -69,7 +69,7 @@ impl Window {
     /// Starts to write the panes that are on the screen, with their labels.
     pub(in crate::window) fn save_panes(&mut self, path: &Path, ctx: &egui::Context) {
         let layout = &self.layout.compare;
-        let panes = layout.visible(self.history.project().compare.panes.len());
+        let panes = layout.visible(self.document.project().compare.panes.len());
         let columns = grid::columns(panes.len(), self.compare.page, header::HEIGHT);
         let sheet = layout.sheet();
         self.compare.save(sheet, columns, &panes, path, ctx);

@@ -25,7 +25,6 @@ use super::search::{best_first, fit};
 use dialogs::Dialog;
 pub(crate) use panel::ui;
 use shelf::Shelf;
-pub(crate) use window::Preview;
 
 /// What of the browser is stored between runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@ use egui::{Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_project::Project;
-use lovelock_project::history::History;
+use lovelock_project::document::Document;
 use lovelock_project::styles::{OwnStyles, Style, StyleParts, shipped};
 use lovelock_testkit::wait::wait_until;
 
@@ -13,7 +13,7 @@ use crate::window::testing::{Shown, click, control, screen, tooltip_at};
 
 /// The browser with the window's handling of edits.
 struct Edited {
-    history: History,
+    document: Document,
     gestures: Gestures,
     browser: Browser,
     kept: Kept,
@@ -23,7 +23,7 @@ type Shelf = Harness<'static, Shown<Edited>>;
 
 fn shelf(own: Option<(OwnStyles, std::path::PathBuf)>) -> Shelf {
     let state = Edited {
-        history: History::new(Project::default()),
+        document: Document::new(Project::default(), None),
         gestures: Gestures::default(),
         browser: Browser::default(),
         kept: Kept::default(),
@@ -33,10 +33,12 @@ fn shelf(own: Option<(OwnStyles, std::path::PathBuf)>) -> Shelf {
         if let Some((own, cache)) = own.take() {
             edited.browser = Browser::new(Some(own), Some(cache), ui.ctx());
         }
-        edited.gestures.begin_pass(ui.ctx(), false);
-        let mut project = (**edited.history.project()).clone();
+        if !edited.gestures.continues(ui.ctx(), false) {
+            edited.document.end_gesture();
+        }
+        let mut project = (**edited.document.project()).clone();
         super::ui(ui, &mut project, &mut edited.browser, &mut edited.kept);
-        edited.history.edit("style", Some(edited.gestures.id()), project);
+        edited.document.edit("style", project);
     })
 }
 
@@ -50,7 +52,7 @@ fn tile(harness: &Shelf, name: &str) -> egui::Pos2 {
 }
 
 fn project(harness: &Shelf) -> Project {
-    (**harness.state().state.history.project()).clone()
+    (**harness.state().state.document.project()).clone()
 }
 
 #[test]
@@ -128,9 +130,9 @@ fn a_click_applies_a_style_in_one_undo_step() {
     let mut wanted = before.clone();
     wanted.apply_style(style, StyleParts::ALL);
     assert_eq!(project(&harness), wanted);
-    let history = &mut harness.state_mut().state.history;
-    assert_eq!(history.undo_len(), 1);
-    history.undo();
+    let document = &mut harness.state_mut().state.document;
+    assert_eq!(document.history().undo_len(), 1);
+    document.undo();
     assert_eq!(project(&harness), before);
 }
 
@@ -175,7 +177,7 @@ fn a_style_is_previewed_after_a_rest_of_the_pointer() {
     assert_eq!(preview(&harness), None, "not while the pointer passes over");
     harness.run_steps(20);
     assert_eq!(preview(&harness).as_deref(), Some("curly"));
-    assert_eq!((project(&harness), harness.state().state.history.undo_len()), (before, 0));
+    assert_eq!((project(&harness), harness.state().state.document.history().undo_len()), (before, 0));
     click(&mut harness, at);
     harness.run_steps(20);
     assert_eq!(preview(&harness), None, "it is applied");
@@ -197,7 +199,7 @@ fn favourites_are_kept_and_shown_alone() {
     harness.run_steps(2);
     let star = control(&harness, Role::CheckBox, "Favourite Red curls").rect().center();
     click(&mut harness, star);
-    assert_eq!(harness.state().state.history.undo_len(), 0, "a star applies nothing");
+    assert_eq!(harness.state().state.document.history().undo_len(), 0, "a star applies nothing");
     control(&harness, Role::Button, "Favourites only").click();
     harness.run();
     assert_eq!(names(&harness), ["Red curls"]);
@@ -227,7 +229,7 @@ fn own_styles_are_saved_renamed_and_deleted() {
     assert!(harness.query_by_label_contains("cut.lovelockstyle: line 1").is_some());
     let mut project = Project::default();
     (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (20, 3);
-    harness.state_mut().state.history.edit("few", None, project.clone());
+    harness.state_mut().state.document.change("few", |now| *now = project.clone());
     harness.run_steps(2);
     control(&harness, Role::Button, "Save as style…").click();
     harness.run_steps(3);
@@ -324,7 +326,7 @@ fn saved(dir: &std::path::Path, name: &str) -> (Shelf, OwnStyles) {
     let mut project = Project::default();
     (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (20, 3);
     project.hair.groom.length *= 0.7;
-    harness.state_mut().state.history.edit("few", None, project);
+    harness.state_mut().state.document.change("few", |now| *now = project);
     harness.run_steps(2);
     save_as(&mut harness, name);
     wait(&mut harness, "the style", |harness| names(harness).iter().any(|listed| listed == name));
@@ -369,7 +371,7 @@ fn a_style_is_updated_and_a_name_in_use_is_asked_for() {
     let longer = |harness: &mut Shelf| {
         let mut project = project(harness);
         project.hair.groom.length *= 1.1;
-        harness.state_mut().state.history.edit("longer", None, project.clone());
+        harness.state_mut().state.document.change("longer", |now| *now = project.clone());
         harness.run_steps(2);
         project.hair.groom.length
     };
@@ -405,7 +407,7 @@ fn layers_of_the_user_stay_when_a_style_is_applied() {
     let mut before = project(&harness);
     before.hair.stack.push(Layer::of(Wave::default()));
     let id = before.hair.stack.layers[0].id;
-    harness.state_mut().state.history.edit("layer", None, before.clone());
+    harness.state_mut().state.document.change("layer", |now| *now = before.clone());
     harness.run_steps(2);
     let at = tile(&harness, "Red curls");
     click(&mut harness, at);
@@ -416,7 +418,7 @@ fn layers_of_the_user_stay_when_a_style_is_applied() {
     assert!(after.hair.stack.layer(id).is_some(), "it stays, under its number");
     let requests = harness.state_mut().state.browser.requests();
     assert!(matches!(&requests[..], [Request::Done(said)] if said.contains("Red curls")), "{requests:?}");
-    let history = &mut harness.state_mut().state.history;
-    history.undo();
-    assert_eq!(**history.project(), before, "one step brings all back");
+    let document = &mut harness.state_mut().state.document;
+    document.undo();
+    assert_eq!(**document.project(), before, "one step brings all back");
 }

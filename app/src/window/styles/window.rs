@@ -1,68 +1,14 @@
-//! What the window does for the browser: the project with a style that is only shown, and files of styles.
+//! What the window does for the browser with files of styles.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use lovelock_project::Project;
 use lovelock_project::styles::{Style, StyleParts, own_id};
 
 use super::Request;
 use crate::window::path_dialog::Purpose;
 use crate::window::{Window, notices};
 
-/// The project with a style that is shown without being applied, and what it was made of.
-pub(crate) struct Preview {
-    of: Arc<Project>,
-    id: String,
-    parts: StyleParts,
-    project: Arc<Project>,
-    /// The project at a time of its timeline, seconds.
-    seen: (f64, Arc<Project>),
-}
-
 impl Window {
-    /// The project that is simulated, and the one at the current time that is drawn: with the style on whose tile the pointer rests,
-    /// and with the colours of the morph.
-    pub(in crate::window) fn shown(&mut self) -> (Arc<Project>, Arc<Project>) {
-        let (shown, seen) = self.previewed();
-        let Some(look) = seen.morphed_look() else {
-            self.morphed = None;
-            return (shown, seen);
-        };
-        // The same allocation as long as nothing changes, so that nothing is drawn again.
-        let known = self.morphed.take().filter(|(of, _)| Arc::ptr_eq(of, &seen));
-        let (_, drawn) = self.morphed.insert(known.unwrap_or_else(|| {
-            let drawn = Arc::new(Project { look, ..(*seen).clone() });
-            (seen, drawn)
-        }));
-        (shown, Arc::clone(drawn))
-    }
-
-    /// The project with the style on whose tile the pointer rests, and the same at the current time.
-    fn previewed(&mut self) -> (Arc<Project>, Arc<Project>) {
-        let of = Arc::clone(self.history.project());
-        let Some((id, style, parts)) = self.styles.preview() else {
-            self.preview = None;
-            return (of, self.seen());
-        };
-        let secs = self.now_secs();
-        let same = |known: &Preview| Arc::ptr_eq(&known.of, &of) && known.id == id && known.parts == parts;
-        let known = self.preview.take().filter(same);
-        let mut preview = known.unwrap_or_else(|| {
-            let mut project = (*of).clone();
-            project.apply_style_below_layers(style, parts);
-            let project = Arc::new(project);
-            let seen = (f64::NAN, Arc::clone(&project));
-            Preview { of, id: id.to_owned(), parts, project, seen }
-        });
-        if preview.project.is_animated() && preview.seen.0.to_bits() != secs.to_bits() {
-            preview.seen = (secs, Arc::new(self.overdub.shown(&preview.project, secs)));
-        }
-        let shown = (Arc::clone(&preview.project), Arc::clone(&preview.seen.1));
-        self.preview = Some(preview);
-        shown
-    }
-
     /// Does what the browser asks for.
     pub(in crate::window) fn answer_styles(&mut self) {
         for request in self.styles.requests() {

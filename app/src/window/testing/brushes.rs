@@ -67,7 +67,7 @@ fn done(harness: &mut Whole) {
 fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
     let Some((mut harness, at)) = brushing() else { return };
     let before = project(&harness);
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     let few = [Tool::Comb, Tool::Curl, Tool::Part, Tool::Freeze];
     for tool in Tool::ALL.iter().filter(|tool| is_long() || few.contains(tool)) {
         let (_, name) = tool.names();
@@ -81,7 +81,7 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
         if *tool == Tool::Freeze {
             assert!(of(&harness).brushes.has_frozen(), "{name}");
-            let redo = of(&harness).history.redo_len();
+            let redo = of(&harness).document.history().redo_len();
             assert!(redo > 0, "the tool before can be done again");
             // A stroke on frozen hair is no undo step, and says so.
             control(&harness, egui::accesskit::Role::RadioButton, Tool::Comb.names().1).click();
@@ -90,13 +90,17 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
             done(&mut harness);
             assert!(harness.query_by_label_contains("changes no hair").is_some());
             assert_eq!(project(&harness), before, "what is frozen is no part of the project");
-            assert_eq!(of(&harness).history.undo_len(), steps);
-            assert_eq!(of(&harness).history.redo_len(), redo, "what was undone can still be done again");
+            assert_eq!(of(&harness).document.history().undo_len(), steps);
+            assert_eq!(
+                of(&harness).document.history().redo_len(),
+                redo,
+                "what was undone can still be done again"
+            );
             harness.state_mut().state.as_mut().expect("a window").session.worker().thaw();
             continue;
         }
         assert!(!edits(&harness).expect("a layer").is_empty(), "{name} did nothing");
-        assert_eq!(of(&harness).history.undo_len(), steps + 1, "{name}: one step");
+        assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "{name}: one step");
         key(&mut harness, CTRL, Key::Z);
         assert_eq!(project(&harness), before, "{name}");
         wait(&mut harness, "the image of the hair of before", |window| {
@@ -137,7 +141,7 @@ fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
     harness.run_steps(2);
     harness.hover_at(at + vec2(20.0, 5.0));
     wait(&mut harness, "the stroke", |window| {
-        let layers = &window.history.project().hair.stack.layers;
+        let layers = &window.document.project().hair.stack.layers;
         layers.iter().any(|layer| matches!(&layer.operation, Operation::Hand(hand) if !hand.edits.is_empty()))
     });
     key(&mut harness, CTRL, Key::Z);

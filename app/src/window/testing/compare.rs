@@ -22,7 +22,7 @@ fn comparing() -> Whole {
 
 /// Whether that many panes are drawn with the project's current settings.
 fn drawn(window: &Window, panes: usize) -> bool {
-    let wanted = &window.history.project().compare.panes;
+    let wanted = &window.document.project().compare.panes;
     wanted.len() == panes
         && wanted.iter().enumerate().all(|(index, wanted)| {
             window.compare.pane(index).is_some_and(|pane| pane.contender == *wanted && pane.problem.is_none())
@@ -68,14 +68,14 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     assert_eq!(before.len(), 4);
     press_button(&mut harness, "Swap pane 1");
     assert_eq!(methods(&harness)[..2], [before[1], before[0]]);
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     press_button(&mut harness, "Remove pane 4");
     assert_eq!(methods(&harness).len(), 3);
     press_button(&mut harness, "Add pane");
     let added = methods(&harness)[3];
     assert!(!methods(&harness)[..3].contains(&added), "a method that no pane shows");
     wait(&mut harness, "the new pane", |window| drawn(window, 4));
-    assert_eq!(of(&harness).history.undo_len(), 3);
+    assert_eq!(of(&harness).document.history().undo_len(), 3);
     for _ in 0..2 {
         press_button(&mut harness, "Add pane");
     }
@@ -85,7 +85,7 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
         key(&mut harness, CTRL, Key::Z);
     }
     assert_eq!(methods(&harness), before);
-    assert_eq!(of(&harness).history.undo_len(), 0);
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
 
     let (shadow, look) = (project(&harness).shadow, project(&harness).look);
     press_button(&mut harness, "Use pane 3");
@@ -93,7 +93,7 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     assert_eq!(used.shadow.method, before[2]);
     assert_eq!(used.look, look);
     assert_eq!(used.compare.panes.len(), 4);
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).shadow, shadow);
 }
@@ -111,7 +111,7 @@ fn a_wipe_shows_two_panes_and_its_line_can_be_dragged() {
     let split = of(&harness).layout.compare.split;
     assert!((split - 0.25).abs() < 0.02, "{split}");
     assert_eq!(project(&harness).camera, camera, "the line was dragged and not the camera");
-    assert_eq!(of(&harness).history.undo_len(), 0, "a line is no part of the project");
+    assert_eq!(of(&harness).document.history().undo_len(), 0, "a line is no part of the project");
     // A drag beside the line turns the camera of both panes.
     drag(&mut harness, page.lerp_inside(egui::vec2(0.7, 0.5)), page.lerp_inside(egui::vec2(0.8, 0.5)));
     go(&mut harness);
@@ -136,7 +136,7 @@ fn errors_are_shown_in_colour_and_a_click_probes_hair() {
         let guides = &frame.guides.guides;
         let Some(&x) = guides.x.get(point) else { break };
         let at = glam::Vec3::new(x, guides.y[point], guides.z[point]).extend(1.0);
-        let camera = frame.camera(&window.history.project().camera);
+        let camera = frame.camera(&window.document.project().camera);
         let clip = camera.clip_from_world(pane.width() / pane.height()) * at;
         let share = egui::vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
         if !(0.0..=1.0).contains(&share.x) || !(0.0..=1.0).contains(&share.y) {
@@ -215,7 +215,7 @@ fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     assert!(side(16) >= 2 * pane.width && side(20) >= 2 * pane.height, "four panes and their labels");
 
     let window = of_mut(&mut harness);
-    let mut changed = (**window.history.project()).clone();
+    let mut changed = (**window.document.project()).clone();
     (changed.recording.width, changed.recording.height, changed.recording.end_frame) = (320, 240, Some(2));
     window.edit("recording", changed);
     go(&mut harness);
@@ -257,7 +257,7 @@ fn the_right_panel_edits_the_pane_that_is_selected() {
     let after = project(&harness);
     assert_eq!(after.compare.panes[1].shadow.method, ShadowMethod::OpacityMaps);
     assert_eq!((&after.shadow, &after.picture), (&before.shadow, &before.picture), "not the project's own");
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     wait(&mut harness, "the pane", |window| drawn(window, 4));
     go(&mut harness);
     let shown = super::texts(&harness);
@@ -281,7 +281,7 @@ fn a_tick_that_changes_nothing_says_so() {
     assert!(!said(&harness));
     press_button(&mut harness, "Use pane 3");
     assert!(said(&harness));
-    assert_eq!(of(&harness).history.undo_len(), 1, "no step that changes nothing");
+    assert_eq!(of(&harness).document.history().undo_len(), 1, "no step that changes nothing");
 }
 
 #[test]

@@ -93,8 +93,8 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     assert!(kept.expect("a gauge").value >= asked.value && asked.value > 0.0);
     assert_ne!(project(&harness).camera, before.camera);
     assert!(project(&harness).camera.distance < before.camera.distance, "it goes nearer");
-    assert_eq!(of(&harness).history.undo_label(), Some("camera"));
+    assert_eq!(of(&harness).document.history().undo_label(), Some("camera"));
     press_button(&mut harness, "Show: Largest stretch");
-    assert_eq!((pointed(of(&harness)), of(&harness).history.undo_len()), (None, 1));
+    assert_eq!((pointed(of(&harness)), of(&harness).document.history().undo_len()), (None, 1));
     go(&mut harness);
 }

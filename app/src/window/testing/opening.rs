@@ -1,7 +1,7 @@
 //! Files that are opened in the whole window: what they are is found out on a thread.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use egui::Key;
@@ -16,7 +16,6 @@ use lovelock_testkit::wait::wait_until;
 use super::whole::{CTRL, go, key, of, project, wait, window};
 use crate::window::Window;
 use crate::window::session::LoadEnd;
-use crate::window::trial::Trial;
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
 fn write_curves(path: &Path, grows: bool) {
@@ -65,7 +64,7 @@ fn curves_play_with_their_unit_in_the_panel_and_refused_ones_are_still_with_the_
     assert!(!is_idle(of(&harness)));
     wait(&mut harness, "the curves", |window| !window.session.take_notes.is_empty());
     assert_eq!(project(&harness).take.file.as_ref().map(|file| file.path.clone()), Some(moves));
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     assert!(harness.query_by_label_contains("Unit: read from the file").is_some());
     // The controls are those of the hair's import, here for the curves.
     let ups: Vec<_> = harness.query_all_by_role_and_label(Role::ComboBox, "Up axis").collect();
@@ -80,7 +79,7 @@ fn curves_play_with_their_unit_in_the_panel_and_refused_ones_are_still_with_the_
     assert_eq!(project(&harness), before);
 
     harness.state_mut().state.as_mut().expect("a window").open_any(&grows);
-    wait(&mut harness, "the hair", |window| window.history.project().hair.source == HairSource::File);
+    wait(&mut harness, "the hair", |window| window.document.project().hair.source == HairSource::File);
     assert_eq!(project(&harness).take.file, None, "it does not play");
     assert!(harness.query_by_label_contains("cannot be played").is_some(), "and says why");
     assert!(harness.query_all_by_label_contains("grows.usda").next().is_some());
@@ -132,7 +131,7 @@ fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file(
         is_shown && window.session.worker().load_progress().is_none()
     });
     harness.get_by_role_and_label(Role::Button, "Cancel: Opening slow.usda").click();
-    wait(&mut harness, "the curves", |window| window.history.project().take.file.is_some());
+    wait(&mut harness, "the curves", |window| window.document.project().take.file.is_some());
     assert_eq!(project(&harness).take.file.as_ref().map(|file| file.path.clone()), Some(moves));
     assert!(is_idle(of(&harness)));
     end_pipe(&slow);
@@ -179,7 +178,7 @@ fn the_camera_follows_the_size_of_an_opened_body_in_the_same_undo_step() {
     println!("hair_scale {scale}, distance {}", framed.distance);
     assert!((framed.distance - (new.distance * scale).min(30.0)).abs() < 1e-4, "{framed:?}");
     assert_eq!(project(&harness).body.source, BodySource::File);
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 
@@ -213,11 +212,11 @@ fn a_broken_file_leaves_the_project_and_its_error_stays() {
         harness.state_mut().state.as_mut().expect("a window").open_any(path);
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         wait(&mut harness, "the error", |window| {
-            window.notices.errors().iter().any(|error| error.contains(&name)) && window.trials.is_empty()
+            window.notices.errors().iter().any(|error| error.contains(&name)) && !window.document.has_trials()
         });
         assert_eq!(project(&harness), before, "{name}");
-        assert_eq!(of(&harness).history.undo_len(), 0, "{name}");
-        assert_eq!(of(&harness).history.redo_len(), 0, "it cannot be redone");
+        assert_eq!(of(&harness).document.history().undo_len(), 0, "{name}");
+        assert_eq!(of(&harness).document.history().redo_len(), 0, "it cannot be redone");
     }
     assert_eq!(of(&harness).notices.errors().len(), 2);
     wait(&mut harness, "the project of before without problems", |window| {
@@ -236,7 +235,7 @@ fn a_broken_file_that_was_changed_after_it_was_opened_leaves_the_change() {
     window.open_part(Place::Hair, &path, |project| project.set_hair_file(&path));
     window.change("camera", |project| project.camera.distance *= 0.5);
     let distance = project(&harness).camera.distance;
-    wait(&mut harness, "the error", |window| window.trials.is_empty());
+    wait(&mut harness, "the error", |window| !window.document.has_trials());
     let after = project(&harness);
     assert_eq!((after.hair.source, &after.hair.file), (HairSource::Grown, &before.hair.file));
     assert!((after.camera.distance - distance).abs() < 1e-6);
@@ -247,12 +246,13 @@ fn a_take_that_is_not_loaded_gives_the_project_its_file_back() {
     let mut harness = window();
     wait(&mut harness, "the scene", |window| !window.session.worker().is_loading());
     let window = harness.state_mut().state.as_mut().expect("a window");
-    let (before, path) = (Arc::clone(window.history.project()), Path::new("/missing/dance.take"));
-    let saved = Some(PathBuf::from("/missing/hair.lovelock"));
-    window.change("take", |project| project.set_take(path));
-    window.trials.push(Trial::new(Place::Take, path, Arc::clone(&before)).saved_in(saved.clone()));
+    let (before, path) = (Arc::clone(window.document.project()), Path::new("/missing/dance.take"));
+    let saved = Path::new("/missing/hair.lovelock");
+    window.document.mark_saved(saved);
+    window.document.try_file("take", Place::Take, path, |project| project.set_take(path));
+    window.document.detach();
     window.session.load_ends.push(LoadEnd::Nothing);
     window.take_load_ends();
-    assert!(window.trials.is_empty() && Arc::ptr_eq(window.history.project(), &before));
-    assert_eq!(window.project_path, saved);
+    assert!(!window.document.has_trials() && Arc::ptr_eq(window.document.project(), &before));
+    assert_eq!(window.document.path(), Some(saved));
 }

@@ -20,7 +20,7 @@ fn painting() -> Option<Whole> {
     let mut changed = (*project(&harness)).clone();
     let id = changed.hair.stack.push(Layer::of(Lift::default()));
     let window = harness.state_mut().state.as_mut().expect("a window");
-    window.history.edit("layer", None, changed);
+    window.document.change("layer", |project| *project = changed);
     window.layers.selected = id;
     go(&mut harness);
     key(&mut harness, Modifiers::SHIFT, Key::K);
@@ -53,7 +53,7 @@ fn set_brush(harness: &mut Whole, change: impl FnOnce(&mut lovelock_style::MaskB
 fn a_stroke_paints_the_mask_in_one_undo_step() {
     let Some(mut harness) = painting() else { return };
     let before = project(&harness);
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.03, 1.0));
     let middle = on_screen(&harness, FOREHEAD);
     drag_over(&mut harness, middle - egui::vec2(6.0, 0.0), middle + egui::vec2(6.0, 0.0));
@@ -61,7 +61,7 @@ fn a_stroke_paints_the_mask_in_one_undo_step() {
     assert!(!part.map.is_empty(), "nothing is painted");
     assert!(mask_at(&harness, FOREHEAD) > 0.9, "{}", mask_at(&harness, FOREHEAD));
     assert_eq!(mask_at(&harness, -FOREHEAD), 0.0);
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one stroke is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one stroke is one step");
     assert_eq!(project(&harness).camera, before.camera, "the camera stands while it paints");
     // Hair and image follow.
     let shown = of(&harness).shown_mask.clone().expect("a mask");
@@ -74,7 +74,7 @@ fn a_stroke_paints_the_mask_in_one_undo_step() {
         harness.run_steps(2);
     }
     go(&mut harness);
-    assert_eq!(of(&harness).history.undo_len(), steps + 2);
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 2);
     assert!(mask_at(&harness, FOREHEAD) < 0.1, "{}", mask_at(&harness, FOREHEAD));
     key(&mut harness, CTRL, Key::Z);
     key(&mut harness, CTRL, Key::Z);
@@ -170,11 +170,11 @@ fn strange_strokes_are_safe() {
     }
     assert_eq!(project(&harness).camera, before.camera);
     // Beside the head a drag moves the camera.
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     let corner = super::control(&harness, egui::accesskit::Role::Image, "Viewport").rect().left_bottom();
     drag_over(&mut harness, corner + egui::vec2(30.0, -40.0), corner + egui::vec2(60.0, -60.0));
     assert_ne!(project(&harness).camera, before.camera);
-    assert_eq!(of(&harness).history.undo_len(), steps + 1);
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1);
 }
 
 /// Presses and releases the pointer at a place with modifiers held, as a stroke of one dab.
@@ -198,20 +198,20 @@ fn a_stroke_that_changes_nothing_says_so_and_is_no_undo_step() {
     dab(&mut harness, right, Modifiers::NONE);
     key(&mut harness, CTRL, Key::Z);
     let before = project(&harness);
-    let steps = [of(&harness).history.undo_len(), of(&harness).history.redo_len()];
+    let steps = [of(&harness).document.history().undo_len(), of(&harness).document.history().redo_len()];
     // Erasing what is not painted, and painting what is.
     for (at, modifiers, says) in
         [(right, CTRL, "The mask is empty here"), (left, Modifiers::NONE, "The mask is full here")]
     {
         dab(&mut harness, at, modifiers);
         assert_eq!(project(&harness), before, "{says}");
-        let now = [of(&harness).history.undo_len(), of(&harness).history.redo_len()];
+        let now = [of(&harness).document.history().undo_len(), of(&harness).document.history().redo_len()];
         assert_eq!(now, steps, "{says}: no step, and the stroke that was undone can be done again");
         assert!(harness.query_by_label_contains(says).is_some(), "{says}");
     }
     // Control: erasing what is painted is a step.
     dab(&mut harness, left, CTRL);
-    assert_eq!(of(&harness).history.undo_len(), steps[0] + 1);
+    assert_eq!(of(&harness).document.history().undo_len(), steps[0] + 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 }

@@ -19,12 +19,12 @@ fn a_style_under_the_pointer_is_shown_and_leaves_no_trace() {
     let is_shown = move |window: &Window| Some(window.session.hair.counts[1] as u64) == curly;
     wait(&mut harness, "the preview", is_shown);
     assert_eq!(project(&harness), before);
-    assert_eq!(of(&harness).history.undo_len(), 0);
-    assert!(!of(&harness).history.is_modified());
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
+    assert!(!of(&harness).document.is_modified());
     harness.remove_cursor();
     wait(&mut harness, "the project's own hair", move |window| window.session.hair.counts == few);
-    assert!(of(&harness).preview.is_none());
-    assert_eq!(of(&harness).history.undo_len(), 0);
+    assert!(!of(&harness).document.is_preview());
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn a_style_file_is_imported_and_applied() {
     wanted.apply_style(style, StyleParts::ALL);
     assert_eq!((&after.hair.groom, after.look), (&wanted.hair.groom, wanted.look));
     assert_eq!(after.hair.style, "own/A friend's");
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     assert!(own.folder().join("A friend's.lovelockstyle").is_file());
     // A file that is none changes nothing and is told.
     std::fs::write(&path, "(version: 3, hair: (").expect("a file");

@@ -10,7 +10,7 @@ fn a_take_is_recorded_played_backwards_and_left() {
     let mut harness = playing_window();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("p.lovelock");
-    harness.state_mut().state.as_mut().expect("a window").project_path = Some(path);
+    harness.state_mut().state.as_mut().expect("a window").document.mark_saved(&path);
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     key(&mut harness, Modifiers::NONE, Key::R);
     wait(&mut harness, "some frames", |window| {

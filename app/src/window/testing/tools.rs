@@ -91,7 +91,7 @@ fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
     let cut = project(&harness);
     assert_eq!(cut.camera, before.camera, "the camera stands while they cut");
     assert!(cut.hair.cut.kept.iter().any(|kept| (0.05..0.98).contains(kept)), "{:?}", cut.hair.cut);
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     wait(&mut harness, "shorter hair", |window| points(window) < whole);
     // A line beside the hair cuts nothing.
     let corner = control(&harness, Role::Image, "Viewport").rect().left_bottom() + egui::vec2(30.0, -40.0);
@@ -123,7 +123,7 @@ fn a_tie_can_be_dragged_in_the_viewport() {
     drag_over(&mut harness, at, at + egui::vec2(0.0, -30.0));
     let moved = project(&harness).hair.ties[0];
     assert!(moved.at.y > tie.at.y + 0.01, "{:?} from {:?}", moved.at, tie.at);
-    assert_eq!(of(&harness).history.undo_len(), 2, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), 2, "one drag is one step");
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut to_side = (*project(&harness)).clone();
     (to_side.camera.azimuth, to_side.camera.elevation) = (std::f32::consts::FRAC_PI_2, 0.1);
     let window = harness.state_mut().state.as_mut().expect("a window");
-    window.history.edit("camera", None, to_side);
+    window.document.change("camera", |project| *project = to_side);
     go(&mut harness);
     wait(&mut harness, "the picture from the side", |window| {
         let now = window.session.painted.as_ref();
@@ -188,7 +188,7 @@ fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let back = project(&harness).hair.ties[0];
     assert!(back.axis.z < -0.8 && back.axis.x.abs() < 0.2, "it aims back: {}", back.axis);
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     // Drags the ring to the middle of the side of the head that faces the camera.
     let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     let world_from_head = |harness: &Harness<'_, _>| {
@@ -200,7 +200,7 @@ fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     let side = project(&harness).hair.ties[0];
     assert!(side.at.x > 0.05, "not on the surface of the head: {}", side.at);
     assert!(side.axis.x > 0.6 && side.axis.z.abs() < 0.4, "it aims to the side: {}", side.axis);
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
     // The arrow points toward the camera; its end is dragged upward.
     let aim = "Direction of tie 1 in the image";
     let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
@@ -210,7 +210,7 @@ fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     let aimed = project(&harness).hair.ties[0];
     if clear == end {
         assert!(aimed.axis.y > side.axis.y + 0.3 && aimed.at == side.at, "{} from {}", aimed.axis, side.axis);
-        assert_eq!(of(&harness).history.undo_len(), steps + 2);
+        assert_eq!(of(&harness).document.history().undo_len(), steps + 2);
     }
     key(&mut harness, CTRL, Key::Z);
     key(&mut harness, CTRL, Key::Z);
@@ -222,7 +222,7 @@ fn a_tie_behind_the_head_stays_behind_it() {
     let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let mut other = (*project(&harness)).clone();
     other.hair.ties[0].at = glam::Vec3::new(-0.09, 0.12, 0.0);
-    harness.state_mut().state.as_mut().expect("a window").history.edit("tie", None, other);
+    harness.state_mut().state.as_mut().expect("a window").document.change("tie", |project| *project = other);
     go(&mut harness);
     let from = control(&harness, Role::Button, "Tie 1 in the image").rect().center();
     drag_over(&mut harness, from, from + egui::vec2(25.0, -20.0));
@@ -238,7 +238,7 @@ fn a_patch_is_resized_and_moved_in_the_viewport() {
     (tie.reach, tie.sphere_radius) = (TieReach::InSphere, 0.06);
     let ring = tie.at;
     let edit = |harness: &mut Harness<'_, Shown<Option<Window>>>, to| {
-        harness.state_mut().state.as_mut().expect("a window").history.edit("tie", None, to);
+        harness.state_mut().state.as_mut().expect("a window").document.change("tie", |project| *project = to);
         go(harness);
     };
     edit(&mut harness, parted.clone());
@@ -251,11 +251,11 @@ fn a_patch_is_resized_and_moved_in_the_viewport() {
         "a patch that follows its ring has a handle"
     );
     let (at, rim_at) = (place(&harness, "Tie 1 in the image"), place(&harness, rim));
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
     let sized = project(&harness).hair.ties[0];
     assert!((sized.sphere_radius - 0.09).abs() < 0.006 && sized.at == ring, "{sized:?}");
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
     // With its own centre, at first that of the ring, the patch is dragged over the visible side of the head.
     parted.hair.ties[0].sphere_at_ring = false;
     parted.hair.ties[0].sphere_centre = ring;
@@ -263,12 +263,12 @@ fn a_patch_is_resized_and_moved_in_the_viewport() {
     let painted = of(&harness).session.painted.clone().expect("a picture");
     let side = painted.snapshot.guides.world_from_head.transform_point3(glam::Vec3::new(0.0, 0.12, 0.0));
     let to = view(&harness).to_screen(side).expect("in the picture");
-    let (from, steps) = (place(&harness, middle), of(&harness).history.undo_len());
+    let (from, steps) = (place(&harness, middle), of(&harness).document.history().undo_len());
     drag_over(&mut harness, from, to);
     let moved = project(&harness).hair.ties[0];
     assert!(moved.sphere_centre.x > 0.05, "{}", moved.sphere_centre);
     assert!(moved.at == ring && moved.sphere_radius == 0.06, "{moved:?}");
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
 }
 
 #[test]
@@ -292,14 +292,14 @@ fn a_collider_is_moved_and_resized_in_the_viewport() {
     assert!(moved.offset[1] > 0.01 && moved.scale == 1.0 && moved.enabled, "{moved:?}");
     let shift = place(&harness, middle) - at;
     assert!((shift - egui::vec2(0.0, -30.0)).length() < 2.0, "the shape goes with the pointer: {shift:?}");
-    assert_eq!(of(&harness).history.undo_len(), 1, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), 1, "one drag is one step");
     // Dragging the rim to 1.5 times its distance scales the radius by 1.5.
     let [at, rim_at] = [place(&harness, middle), place(&harness, rim)];
     assert!(((rim_at - at) - (out - first)).length() < 2.0, "as large as before");
     drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
     let sized = edit(&harness);
     assert!((sized.scale - 1.5).abs() < 0.1 && sized.offset == moved.offset, "{sized:?}");
-    assert_eq!(of(&harness).history.undo_len(), 2);
+    assert_eq!(of(&harness).document.history().undo_len(), 2);
     wait(&mut harness, "the changed shape", |window| {
         let now = window.session.scene.as_ref();
         now.is_some_and(|now| now.colliders.iter().any(|collider| collider.name == name))
@@ -321,11 +321,11 @@ fn the_hairline_is_dragged_and_the_scalp_painted_in_the_viewport() {
     go(&mut harness);
     let name = "Hairline at the front";
     let at = control(&harness, Role::Button, name).rect().center();
-    let steps = of(&harness).history.undo_len();
+    let steps = of(&harness).document.history().undo_len();
     drag_over(&mut harness, at, at - egui::vec2(0.0, 12.0));
     let raised = project(&harness).body.scalp.clone();
     assert!(raised.raise.front > 0.02, "{:?}", raised.raise);
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).body.scalp, automatic);
     into_view(&mut harness, Role::CheckBox, "Paint scalp");
@@ -341,7 +341,7 @@ fn the_hairline_is_dragged_and_the_scalp_painted_in_the_viewport() {
     let fit = project(&harness).body.scalp.clone();
     assert!(fit.is_painted() && !fit.moves_outline(), "{fit:?}");
     assert_eq!(project(&harness).camera, camera, "the camera stands while it paints");
-    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one stroke is one step");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one stroke is one step");
     wait(&mut harness, "hair on the cheek", |window| {
         window.session.frame.as_ref().is_some_and(|frame| frame.scene.style.scalp.hairy_area(0.5) > 0.0)
             && window.session.scene.as_ref().is_some_and(|scene| {

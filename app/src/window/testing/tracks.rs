@@ -37,7 +37,7 @@ fn a_slider_moved_during_playback_becomes_a_track() {
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let before = project(&harness);
     key(&mut harness, Modifiers::NONE, Key::W);
-    assert!(of(&harness).overdub.is_armed());
+    assert!(of(&harness).document.overdub().is_armed());
     ride(&mut harness);
     let written = project(&harness);
     let [track] = written.timeline.tracks.as_slice() else { panic!("{:?}", written.timeline.tracks) };
@@ -45,20 +45,20 @@ fn a_slider_moved_during_playback_becomes_a_track() {
     let [low, high] = track.range()[0];
     assert!(high > low && track.keys.len() >= 3, "{track:?}");
     assert_eq!(written.look, before.look, "the project's own value stays");
-    assert_eq!(of(&harness).history.undo_len(), 1, "not one undo step");
+    assert_eq!(of(&harness).document.history().undo_len(), 1, "not one undo step");
 
     // The image and the panel follow the track.
     key(&mut harness, Modifiers::NONE, Key::W);
     wait(&mut harness, "a picture at another value", |window| {
         window.session.drawn.as_ref().is_some_and(|drawn| {
-            let track = &window.history.project().timeline.tracks[0];
+            let track = &window.document.project().timeline.tracks[0];
             let at = track.value_at(drawn.snapshot.position_secs).map_or(0.0, |value| value[0]);
             (f64::from(drawn.project.look.extinction_scale) - at).abs() < 1e-5
                 && at > low + 0.5 * (high - low)
         })
     });
-    let shown = of(&harness).seen.as_ref().map(|seen| seen.project.look.extinction_scale);
-    assert!(shown.is_some_and(|shown| shown != before.look.extinction_scale));
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    assert_ne!(window.seen().look.extinction_scale, before.look.extinction_scale);
 
     // A control whose track plays cannot be moved, and the window says so.
     ride(&mut harness);
@@ -94,26 +94,28 @@ fn turning_the_wheel_during_playback_is_one_recording_pass() {
         wait_until("playback", || {
             for points in [40.0, -40.0] {
                 turn_wheel(&mut harness, points);
-                assert_eq!(of(&harness).overdub.writes().collect::<Vec<_>>(), ["camera/distance"]);
+                assert_eq!(of(&harness).document.overdub().writes().collect::<Vec<_>>(), ["camera/distance"]);
             }
             (position(of(&harness)) - now).abs() >= 0.04
         });
     }
-    wait(&mut harness, "the recording pass to end", |window| window.overdub.writes().next().is_none());
+    wait(&mut harness, "the recording pass to end", |window| {
+        window.document.overdub().writes().next().is_none()
+    });
     let written = project(&harness);
     let [track] = written.timeline.tracks.as_slice() else { panic!("{:?}", written.timeline.tracks) };
     let [low, high] = track.range()[0];
     assert!(high > 1.01 * low && track.keys.len() >= 3, "{track:?}");
     assert_eq!(written.camera, before.camera, "the project's own value stays");
-    assert_eq!(of(&harness).history.undo_len(), 1, "not one undo step");
+    assert_eq!(of(&harness).document.history().undo_len(), 1, "not one undo step");
     // Undo during a recording pass discards it.
     turn_wheel(&mut harness, 60.0);
     // egui spreads a wheel notch over several passes, and the recording pass ends twelve passes after them.
     harness.run_steps(8);
-    assert!(of(&harness).overdub.writes().next().is_some());
+    assert!(of(&harness).document.overdub().writes().next().is_some());
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), written);
-    assert!(of(&harness).overdub.writes().next().is_none());
+    assert!(of(&harness).document.overdub().writes().next().is_none());
 }
 
 #[test]
@@ -129,7 +131,7 @@ fn commands_that_move_the_camera_are_edits_like_any_other() {
     }];
     let window = harness.state_mut().state.as_mut().expect("a window");
     window.edit("camera", tracked.clone());
-    window.gestures.next();
+    window.document.end_gesture();
 
     // During playback the distance follows its track, and the window says so; values without a track change.
     key(&mut harness, Modifiers::NONE, Key::F);
@@ -160,7 +162,9 @@ fn commands_that_move_the_camera_are_edits_like_any_other() {
     key(&mut harness, Modifiers::NONE, Key::Space);
     key(&mut harness, Modifiers::NONE, Key::W);
     key(&mut harness, Modifiers::NONE, Key::F);
-    wait(&mut harness, "the recording pass to end", |window| window.overdub.writes().next().is_none());
+    wait(&mut harness, "the recording pass to end", |window| {
+        window.document.overdub().writes().next().is_none()
+    });
     let written = project(&harness);
     let track = written.timeline.tracks.iter().find(|track| track.target == "camera/distance");
     assert!(track.is_some_and(|track| track.keys.len() > 2 && track.range()[0][0] < 7.0), "{track:?}");

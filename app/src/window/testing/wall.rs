@@ -41,13 +41,13 @@ fn a_click_adopts_a_variant_in_one_undo_step() {
     let adopted = project(&harness);
     assert_eq!((&adopted.hair, adopted.look), (&variant.hair, variant.look));
     assert_eq!((adopted.camera, &adopted.lights), (before.camera, &before.lights));
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     assert_eq!(of(&harness).wall.variants()[4].hair, adopted.hair, "the present style is in the middle");
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).hair, before.hair);
     // The present style itself changes nothing.
     click_with(&mut harness, "Present style", Modifiers::NONE);
-    assert_eq!(of(&harness).history.undo_len(), 0);
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
 }
 
 #[test]
@@ -56,11 +56,11 @@ fn shift_and_two_clicks_breed_in_one_undo_step() {
     let before = project(&harness);
     let parents = [0, 8].map(|index| Arc::clone(&of(&harness).wall.variants()[index]));
     click_with(&mut harness, "Variant 1", Modifiers::SHIFT);
-    assert_eq!(of(&harness).history.undo_len(), 0);
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
     assert_eq!(project(&harness).hair, before.hair);
     click_with(&mut harness, "Variant 9", Modifiers::SHIFT);
     let child = project(&harness);
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     let between = |f: &dyn Fn(&lovelock_project::Project) -> f32| {
         let [a, b] = [f(&parents[0]), f(&parents[1])];
         let child = f(&child);
@@ -84,7 +84,7 @@ fn locks_hold_and_other_variants_come() {
     press_button(&mut harness, "Variants before");
     control(&harness, Role::CheckBox, "Lock Colour").click();
     go(&mut harness);
-    assert_eq!(of(&harness).history.undo_len(), 0, "looking changes nothing");
+    assert_eq!(of(&harness).document.history().undo_len(), 0, "looking changes nothing");
     key(&mut harness, Modifiers::NONE, Key::N);
     assert!(harness.query_by_role_and_label(Role::Image, "Viewport").is_some());
 }

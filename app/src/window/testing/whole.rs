@@ -67,7 +67,7 @@ pub(super) fn of<'h>(harness: &'h Harness<'_, Shown<Option<Window>>>) -> &'h Win
 }
 
 pub(super) fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Project> {
-    Arc::clone(of(harness).history.project())
+    Arc::clone(of(harness).document.project())
 }
 
 /// Runs passes until a condition holds.
@@ -139,10 +139,10 @@ fn changes_by_menu_and_key_can_be_undone() {
     let before = project(&harness);
     menu(&mut harness, Command::PresetCurly);
     assert_eq!(project(&harness).hair.preset, Preset::Curly, "the menu's change stays");
-    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
     menu(&mut harness, Command::Undo);
     assert_eq!(project(&harness), before);
-    assert_eq!(of(&harness).history.redo_len(), 1, "what was undone can be done again");
+    assert_eq!(of(&harness).document.history().redo_len(), 1, "what was undone can be done again");
     key(&mut harness, CTRL | Modifiers::SHIFT, Key::Z);
     assert_eq!(project(&harness).hair.preset, Preset::Curly);
     key(&mut harness, CTRL, Key::Z);
@@ -153,8 +153,8 @@ fn changes_by_menu_and_key_can_be_undone() {
     drag(&mut harness, rail.left_center(), rail.right_center());
     go(&mut harness);
     assert_ne!(project(&harness).hair, before.hair);
-    assert_eq!(of(&harness).history.undo_len(), 1);
-    assert_eq!(of(&harness).history.undo_label(), Some("hairstyle"));
+    assert_eq!(of(&harness).document.history().undo_len(), 1);
+    assert_eq!(of(&harness).document.history().undo_label(), Some("hairstyle"));
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 
@@ -165,7 +165,7 @@ fn changes_by_menu_and_key_can_be_undone() {
     go(&mut harness);
     assert_eq!(project(&harness).hair.preset, Preset::Long);
     go(&mut harness);
-    assert_eq!(of(&harness).history.undo_len(), 1, "passes alone change nothing");
+    assert_eq!(of(&harness).document.history().undo_len(), 1, "passes alone change nothing");
 }
 
 #[test]
@@ -228,11 +228,11 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("mein Projekt ü").with_extension(PROJECT_EXTENSION);
     key(&mut harness, Modifiers::ALT, Key::Num2);
-    assert!(of(&harness).history.is_modified());
+    assert!(of(&harness).document.is_modified());
     key(&mut harness, CTRL, Key::S);
     answer(&mut harness, &path.with_extension(""));
     assert!(path.is_file(), "the ending was added");
-    assert!(!of(&harness).history.is_modified());
+    assert!(!of(&harness).document.is_modified());
     assert_eq!(of(&harness).layout.recent, std::slice::from_ref(&path));
     let (saved, problems) = load_project(&path).expect("a project");
     assert!(problems.is_empty() && saved == *project(&harness), "{problems:?}");
@@ -259,8 +259,8 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     answer(&mut harness, &path);
     wait(&mut harness, "the project", |window| window.openings.running().is_none());
     assert_eq!(*project(&harness), saved);
-    assert_eq!(of(&harness).project_path.as_deref(), Some(path.as_path()));
-    assert_eq!(of(&harness).history.undo_len(), 0);
+    assert_eq!(of(&harness).document.path(), Some(path.as_path()));
+    assert_eq!(of(&harness).document.history().undo_len(), 0);
 }
 
 #[test]
@@ -342,7 +342,7 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     let mut harness = playing_window();
     let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
         let window = of(harness);
-        (window.layout.page, window.pointer_tool, window.overdub.is_armed())
+        (window.layout.page, window.pointer_tool, window.document.overdub().is_armed())
     };
     let before = state(&harness);
     // The keys come in the same pass as the one that opens the dialog, and after its text is refused.

@@ -125,7 +125,7 @@ impl Window {
             self.start_wall(&ctx);
         }
         self.wall.update();
-        self.wall.rounds.follow(self.history.project(), &self.layout.wall);
+        self.wall.rounds.follow(self.document.project(), &self.layout.wall);
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let rounds = self.wall.wall.as_ref().and_then(|wall| wall.rounds().latest());
             let asked = Panel::top("wall bar")

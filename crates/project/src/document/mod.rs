@@ -1,12 +1,16 @@
 //! The document: the project that is edited, with its history, its file, and what of it is shown at a time.
 
+mod trial;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::animation::{Moment, Overdub};
+use crate::error::Problem;
 use crate::history::{GestureId, History};
 use crate::project::Project;
 use crate::styles::{Style, StyleParts};
+use trial::Trial;
 
 /// A project that is edited.
 #[derive(Clone, Debug)]
@@ -21,6 +25,10 @@ pub struct Document {
     preview: Option<Preview>,
     /// A project at a time, and the same with the colours of its morph.
     morphed: Option<(Arc<Project>, Arc<Project>)>,
+    /// Files that were opened and are not loaded yet.
+    trials: Vec<Trial>,
+    /// The problems of the last load.
+    problems: Vec<Problem>,
 }
 
 /// A project at a time of its timeline, seconds.
@@ -62,12 +70,15 @@ impl Document {
             at_time: None,
             preview: None,
             morphed: None,
+            trials: Vec::new(),
+            problems: Vec::new(),
         }
     }
 
-    /// Puts another project in place of this one: no undo step leads back. Gestures keep their numbers.
+    /// Puts another project in place of this one: no undo step leads back. Gestures continue to be counted, and moved controls
+    /// continue to write keys, unless only one control of the previous project did.
     pub fn replace(&mut self, project: Project, path: Option<PathBuf>) {
-        let (gesture, armed) = (self.gesture + 1, self.overdub.is_armed());
+        let (gesture, armed) = (self.gesture + 1, self.overdub.is_armed() && self.overdub.only().is_none());
         *self = Self { gesture, ..Self::new(project, path) };
         self.overdub.set_armed(armed);
     }
@@ -145,6 +156,11 @@ impl Document {
         self.history.edit(label, Some(gesture), project)
     }
 
+    /// Takes the newest step back as if it had never been made, if it is that of `gesture`. Returns whether it was.
+    pub fn take_back_gesture(&mut self, gesture: GestureId) -> bool {
+        self.history.take_back_gesture(gesture)
+    }
+
     /// Makes a change that is one undo step. Returns whether anything changed.
     pub fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) -> bool {
         self.end_gesture();
@@ -203,7 +219,8 @@ impl Document {
         Arc::clone(&self.at_time.insert(at_time).project)
     }
 
-    /// What is simulated and drawn at a time in seconds: with the style that is tried, by its id, and with the colours of the morph.
+    /// What is simulated and drawn at a time in seconds: with the style that is tried, by its id, below the layers of the user, and with
+    /// the colours of the morph.
     pub fn shown(&mut self, secs: f64, tried: Option<(&str, &Style, StyleParts)>) -> Shown {
         let Shown { project, drawn } = self.tried(secs, tried);
         let Some(look) = drawn.morphed_look() else {
@@ -234,7 +251,7 @@ impl Document {
         let known = self.preview.take().filter(same);
         let mut preview = known.unwrap_or_else(|| {
             let mut project = (*of).clone();
-            project.apply_style(style, parts);
+            project.apply_style_below_layers(style, parts);
             let project = Arc::new(project);
             let at_time = (f64::NAN, Arc::clone(&project));
             Preview { of, id: id.to_owned(), parts, project, at_time }

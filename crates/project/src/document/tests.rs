@@ -1,4 +1,5 @@
 use super::*;
+use crate::error::Place;
 use crate::styles::shipped;
 use crate::tracks::{Key, Track};
 
@@ -98,4 +99,77 @@ fn another_project_has_no_steps_back_and_numbers_its_gestures_on() {
     assert!(document.gesture() > gesture && document.overdub().is_armed());
     assert!(!document.undo() && !document.is_modified());
     assert_eq!(document.path(), Some(Path::new("/a/b.lovelock")));
+    document.overdub_mut().arm_only("camera/distance".to_owned());
+    document.replace(Project::default(), None);
+    assert!(!document.overdub().is_armed(), "one control alone was recorded, of the project before");
+}
+
+#[test]
+fn a_file_that_is_not_loaded_leaves_the_project_and_its_undo_steps() {
+    let path = Path::new("/missing/body.glb");
+    let mut document = Document::new(Project::default(), None);
+    document.change("camera", |project| project.camera.distance = 3.0);
+    document.undo();
+    let before = Arc::clone(document.project());
+    document.try_file("file", Place::Body, path, |project| project.set_body_file(path));
+    let loaded = Arc::clone(document.project());
+    let problem =
+        Problem::new(Place::Body, ProblemKind::NotLoaded, "/missing/body.glb: not found".to_owned());
+    // A load of the project before says nothing about the file.
+    assert_eq!(document.take_problems(&before, &problems), problems);
+    assert_eq!(document.take_problems(&before, &[]), []);
+    assert!(Arc::ptr_eq(document.project(), &loaded));
+    assert_eq!(document.take_problems(&loaded, &problems), problems);
+    assert!(Arc::ptr_eq(document.project(), &before));
+    assert_eq!((document.history().undo_len(), document.history().redo_len()), (0, 1));
+    // Opened again, it is reported again.
+    document.try_file("file", Place::Body, path, |project| project.set_body_file(path));
+    let loaded = Arc::clone(document.project());
+    assert_eq!(document.take_problems(&loaded, &problems), problems);
+    // One that was loaded stays whatever follows.
+    document.try_file("file", Place::Body, path, |project| project.set_body_file(path));
+    let loaded = Arc::clone(document.project());
+    document.take_problems(&loaded, &[]);
+    document.refuse_unloaded();
+    assert!(Arc::ptr_eq(document.project(), &loaded));
+}
+
+#[test]
+fn a_file_that_the_program_was_started_with_leaves_no_step() {
+    let path = Path::new("/missing/hair.abc");
+    let mut project = Project::default();
+    project.set_hair_file(path);
+    let mut document = Document::new(project, None);
+    document.try_part(Place::Hair, path, Arc::new(Project::default()));
+    document.refuse_unloaded();
+    assert_ne!(document.project().hair.file.as_ref().map(|file| file.path.as_path()), Some(path));
+    assert!(!document.undo() && !document.is_modified());
+}
+
+#[test]
+fn a_take_that_is_not_loaded_gives_the_project_its_file_back() {
+    let (path, saved) = (Path::new("/missing/dance.take"), Path::new("/missing/hair.lovelock"));
+    let mut document = Document::new(Project::default(), Some(saved.to_owned()));
+    let before = Arc::clone(document.project());
+    document.try_file("take", Place::Take, path, |project| project.set_take(path));
+    document.detach();
+    document.refuse_unloaded();
+    assert!(Arc::ptr_eq(document.project(), &before));
+    assert_eq!(document.path(), Some(saved));
+}
+
+#[test]
+fn a_sound_is_judged_by_itself() {
+    let path = Path::new("/missing/dance.ogg");
+    let mut document = Document::new(Project::default(), None);
+    for stays in [false, true] {
+        document.try_file("file", Place::Sound, path, |project| project.set_sound_file(path));
+        document.refuse_unloaded();
+        assert!(
+            document.project().sound.file.is_some(),
+            "the scene was not loaded, which is no matter of the sound"
+        );
+        document.end_sound_trial(stays);
+        assert_eq!(document.project().sound.file.is_some(), stays);
+    }
 }

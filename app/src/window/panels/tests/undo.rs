@@ -5,25 +5,27 @@ use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::Harness;
 use glam::Vec3;
 use lovelock_project::Project;
-use lovelock_project::history::History;
+use lovelock_project::document::Document;
 
 use crate::window::camera_control;
 use crate::window::gesture::Gestures;
 use crate::window::panels::simulation;
 use crate::window::testing::{Shown, control, double_click, drag, press, screen};
 
-/// A project with its history, as the window holds it.
+/// A document and its gestures, as the window holds them.
 struct Edited {
-    history: History,
+    document: Document,
     gestures: Gestures,
 }
 
 /// The simulation panel above a viewport, with the window's handling of edits.
 fn editor() -> Harness<'static, Shown<Edited>> {
-    let state = Edited { history: History::new(Project::default()), gestures: Gestures::default() };
+    let state = Edited { document: Document::new(Project::default(), None), gestures: Gestures::default() };
     screen(state, |ui, edited: &mut Edited| {
-        edited.gestures.begin_pass(ui.ctx(), false);
-        let mut project = (**edited.history.project()).clone();
+        if !edited.gestures.continues(ui.ctx(), false) {
+            edited.document.end_gesture();
+        }
+        let mut project = (**edited.document.project()).clone();
         simulation::ui(
             ui,
             &mut project.simulation,
@@ -34,28 +36,28 @@ fn editor() -> Harness<'static, Shown<Edited>> {
         let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
         viewport.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         camera_control::apply(&mut project.camera, &viewport);
-        edited.history.edit("change", Some(edited.gestures.id()), project);
+        edited.document.edit("change", project);
     })
 }
 
 fn steps(harness: &Harness<'_, Shown<Edited>>) -> usize {
-    harness.state().state.history.undo_len()
+    harness.state().state.document.history().undo_len()
 }
 
 #[test]
 fn one_drag_is_one_undo_step() {
     let mut harness = editor();
-    let before = harness.state().state.history.project().clone();
+    let before = harness.state().state.document.project().clone();
     let rail = control(&harness, Role::Slider, "Root stiffness").rect();
     drag(&mut harness, rail.left_center(), rail.right_center());
     assert_eq!(steps(&harness), 1);
     let rail = control(&harness, Role::Slider, "Settling").rect();
     drag(&mut harness, rail.right_center(), rail.left_center());
     assert_eq!(steps(&harness), 2, "another drag is another step");
-    let history = &mut harness.state_mut().state.history;
-    history.undo();
-    history.undo();
-    assert_eq!(*history.project(), before);
+    let document = &mut harness.state_mut().state.document;
+    document.undo();
+    document.undo();
+    assert_eq!(*document.project(), before);
 }
 
 #[test]
@@ -84,7 +86,7 @@ fn a_typed_number_is_one_undo_step() {
     }
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().state.history.project().simulation.settle, 12.5);
+    assert_eq!(harness.state().state.document.project().simulation.settle, 12.5);
     assert_eq!(steps(&harness), 1);
     control(&harness, Role::SpinButton, "Hold").click();
     harness.run();
@@ -97,7 +99,7 @@ fn a_typed_number_is_one_undo_step() {
 #[test]
 fn one_turn_of_the_wheel_is_one_undo_step() {
     let mut harness = editor();
-    let before = harness.state().state.history.project().camera.distance;
+    let before = harness.state().state.document.project().camera.distance;
     let at = control(&harness, Role::Image, "Viewport").rect().center();
     harness.hover_at(at);
     harness.run();
@@ -114,18 +116,18 @@ fn one_turn_of_the_wheel_is_one_undo_step() {
         harness.run_steps(20);
         assert_eq!(steps(&harness), turn);
     }
-    let after = harness.state().state.history.project().camera.distance;
+    let after = harness.state().state.document.project().camera.distance;
     assert!(after < before, "{after} is nearer than {before}");
 }
 
 #[test]
 fn an_orbit_of_the_camera_is_one_undo_step() {
     let mut harness = editor();
-    let before = harness.state().state.history.project().camera.azimuth;
+    let before = harness.state().state.document.project().camera.azimuth;
     let rect = control(&harness, Role::Image, "Viewport").rect();
     drag(&mut harness, rect.center(), rect.right_center());
     assert_eq!(steps(&harness), 1);
-    assert_ne!(harness.state().state.history.project().camera.azimuth, before);
+    assert_ne!(harness.state().state.document.project().camera.azimuth, before);
 }
 
 #[test]
@@ -133,14 +135,14 @@ fn a_double_click_undoes_its_first_click() {
     let mut harness = editor();
     let rail = control(&harness, Role::Slider, "Settling").rect();
     double_click(&mut harness, rail.right_center() - vec2(4.0, 0.0));
-    assert_eq!(**harness.state().state.history.project(), Project::default());
+    assert_eq!(**harness.state().state.document.project(), Project::default());
     assert_eq!(steps(&harness), 0, "nothing has changed");
     drag(&mut harness, rail.left_center(), rail.right_center());
     harness.run_steps(20);
     double_click(&mut harness, rail.center());
-    assert_eq!(**harness.state().state.history.project(), Project::default());
+    assert_eq!(**harness.state().state.document.project(), Project::default());
     assert_eq!(steps(&harness), 2, "the drag, and the double-click");
-    harness.state_mut().state.history.undo();
-    let dragged = harness.state().state.history.project().simulation.settle;
+    harness.state_mut().state.document.undo();
+    let dragged = harness.state().state.document.project().simulation.settle;
     assert_eq!(dragged, 20.0, "undo goes back to the end of the drag");
 }
