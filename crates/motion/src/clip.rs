@@ -1,8 +1,11 @@
 //! Motion over time: keyed tracks of joints and morph targets.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
+
+use crate::LoopBlend;
 
 /// How values between keys are interpolated (glTF 2.0, section 3.11 and appendix C).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,14 +61,21 @@ pub struct MorphTrack {
 pub struct Clip {
     /// The name shown in the interface.
     pub name: String,
-    /// Length of one round, seconds. Shorter than the range of the keys if the ends are cross-faded.
+    /// Length of one round, seconds. Shorter than the range of the keys if their start is blended.
     pub duration_secs: f64,
+    /// Time of the first key on the clock of the file, seconds. Times of tracks count from the first key.
+    pub start_secs: f64,
+    /// Seconds that the file's own clock, or the start that the file states, is ahead of the first key; negative if keys lie before it.
+    pub lead_secs: f64,
+    /// Length of the step from the last key of the file back to the first pose, which was added to the end of a cycle, seconds.
+    pub added_secs: f64,
     /// Whether it repeats without a jump.
     pub loops: bool,
     /// First and last second of the keys that play; all keys if `None`.
     pub part_secs: Option<[f64; 2]>,
-    /// Length of the cross-fade from the end of the keys to their start at each start of a round, seconds; 0
-    /// for none.
+    /// Where the ends are blended so that the clip repeats.
+    pub loop_blend: LoopBlend,
+    /// Length of that blend, seconds; 0 for none.
     pub loop_blend_secs: f64,
     /// Tracks of joints, sorted by joint.
     pub joints: Vec<JointTracks>,
@@ -76,6 +86,11 @@ pub struct Clip {
 impl Clip {
     /// Time of the last key, seconds.
     pub fn keys_end_secs(&self) -> f64 {
+        self.times().filter_map(|times| times.last()).fold(0.0_f64, |end, &t| end.max(f64::from(t)))
+    }
+
+    /// The times of each track.
+    fn times(&self) -> impl Iterator<Item = &Arc<[f32]>> {
         let joints = self.joints.iter().flat_map(|j| {
             [
                 j.translation.as_ref().map(|t| &t.times),
@@ -83,12 +98,91 @@ impl Clip {
                 j.scale.as_ref().map(|t| &t.times),
             ]
         });
-        let morphs = self.morphs.iter().map(|m| Some(&m.track.times));
-        joints
-            .chain(morphs)
-            .flatten()
-            .filter_map(|times| times.last())
-            .fold(0.0_f64, |end, &t| end.max(f64::from(t)))
+        joints.flatten().chain(self.morphs.iter().map(|m| &m.track.times))
+    }
+
+    /// The time of which all keys are multiples, seconds: the smallest between two keys. `None` for keys that are spaced unevenly.
+    pub(crate) fn step_secs(&self) -> Option<f64> {
+        let mut all: Vec<f32> = Vec::new();
+        let mut seen: Vec<*const f32> = Vec::new();
+        for times in self.times().filter(|times| times.len() > 1) {
+            // Most tracks share their times, or have the same ones.
+            if !seen.contains(&times.as_ptr()) && !all.ends_with(times) {
+                seen.push(times.as_ptr());
+                all.extend(times.iter());
+            }
+        }
+        all.sort_by(f32::total_cmp);
+        all.dedup();
+        // Keys that close are one key that was rounded differently.
+        let gaps =
+            all.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).filter(|gap| *gap > 1e-4);
+        let least = gaps.reduce(f64::min)?;
+        let first = f64::from(*all.first()?);
+        // The smallest gap is rounded; the later a key, the more exact is its share.
+        let step = all.iter().fold(least, |step, &time| {
+            let count = ((f64::from(time) - first) / step).round();
+            if count >= 1.0 { (f64::from(time) - first) / count } else { step }
+        });
+        let is_multiple = |&time: &f32| {
+            let steps = (f64::from(time) - first) / step;
+            (steps - steps.round()).abs() < 0.02
+        };
+        all.iter().all(is_multiple).then_some(step)
+    }
+
+    /// Times of the first and the last key, seconds. A track with one key holds at all times, so it does not count beside others.
+    fn range(&self) -> Option<[f32; 2]> {
+        let over = |least: usize| {
+            let ends = self.times().filter(|times| times.len() >= least).filter_map(|times| {
+                let (first, last) = (times.first()?, times.last()?);
+                Some([*first, *last])
+            });
+            ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+        };
+        over(2).or_else(|| over(1))
+    }
+
+    /// The same clip with all times later by `secs`. Tracks go on to share their times.
+    fn shifted(mut self, secs: f64) -> Self {
+        let mut known: HashMap<*const f32, Arc<[f32]>> = HashMap::new();
+        let mut shift = |times: &mut Arc<[f32]>| {
+            let new = known.entry(times.as_ptr()).or_insert_with(|| {
+                let single = times.len() == 1;
+                let later = |&t: &f32| if single { 0.0 } else { (f64::from(t) + secs) as f32 };
+                times.iter().map(later).collect()
+            });
+            // The old times are kept by the entry of `kept`, so that no new ones can have their address.
+            std::mem::replace(times, Arc::clone(new))
+        };
+        let mut kept = Vec::new();
+        for joint in &mut self.joints {
+            kept.extend(joint.translation.as_mut().map(|track| shift(&mut track.times)));
+            kept.extend(joint.rotation.as_mut().map(|track| shift(&mut track.times)));
+            kept.extend(joint.scale.as_mut().map(|track| shift(&mut track.times)));
+        }
+        for morph in &mut self.morphs {
+            kept.push(shift(&mut morph.track.times));
+        }
+        drop(kept);
+        self.duration_secs = self.keys_end_secs();
+        self
+    }
+
+    /// The same clip from its first key on, whatever the time of that is. `stated_secs` is the start that the file states on its clock.
+    #[must_use]
+    pub(crate) fn starting_at_first_key(self, stated_secs: f64) -> Self {
+        let first = self.range().map_or(0.0, |[first, _]| f64::from(first));
+        let clip = Self { start_secs: first, lead_secs: first - stated_secs, ..self };
+        clip.shifted(-first)
+    }
+
+    /// The same clip from the start of the file's clock on: it holds its first pose before the first key, and keys before that start
+    /// do not play.
+    #[must_use]
+    pub fn on_file_clock(self) -> Self {
+        let lead = self.lead_secs;
+        if lead == 0.0 { self } else { Self { lead_secs: 0.0, ..self }.shifted(lead) }
     }
 
     /// First and last second of the keys that play.
@@ -110,15 +204,24 @@ impl Clip {
         self
     }
 
-    /// The same clip with its last `blend_secs` cross-faded into its start, so that it repeats without a
-    /// jump. It becomes shorter by that time, which is limited to half its length; 0 removes the cross-fade.
+    /// The same clip with its ends blended over `blend_secs`, which is limited to half its length, so that it repeats without a jump. At
+    /// [`LoopBlend::Start`] it becomes shorter by that time. 0 removes the blend.
     #[must_use]
-    pub fn with_loop_blend(mut self, blend_secs: f64) -> Self {
+    pub fn with_loop_blend(mut self, blend_secs: f64, at: LoopBlend) -> Self {
         let [start, end] = self.part();
         let length = end - start;
+        self.loop_blend = at;
         self.loop_blend_secs = if blend_secs.is_finite() { blend_secs.clamp(0.0, length / 2.0) } else { 0.0 };
-        self.duration_secs = length - self.loop_blend_secs;
+        self.duration_secs = length - if at == LoopBlend::Start { self.loop_blend_secs } else { 0.0 };
         self.loops |= self.loop_blend_secs > 0.0;
+        self
+    }
+
+    /// The same clip for a single round, which ends with its last pose.
+    #[must_use]
+    pub fn played_once(mut self) -> Self {
+        let [start, end] = self.part();
+        (self.duration_secs, self.loop_blend_secs, self.loops) = (end - start, 0.0, false);
         self
     }
 }

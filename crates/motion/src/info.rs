@@ -13,6 +13,10 @@ pub struct ClipInfo {
     pub name: String,
     /// Its duration, seconds.
     pub duration_secs: f64,
+    /// Time of its first key on the clock of the file, seconds.
+    pub start_secs: f64,
+    /// Time of its last key on that clock, seconds.
+    pub end_secs: f64,
     /// Whether it repeats without a jump.
     pub loops: bool,
 }
@@ -62,7 +66,13 @@ impl Character {
             clips: self
                 .clips
                 .iter()
-                .map(|c| ClipInfo { name: c.name.clone(), duration_secs: c.duration_secs, loops: c.loops })
+                .map(|c| ClipInfo {
+                    name: c.name.clone(),
+                    duration_secs: c.duration_secs,
+                    start_secs: c.start_secs,
+                    end_secs: c.start_secs + c.keys_end_secs(),
+                    loops: c.loops,
+                })
                 .collect(),
         }
     }
@@ -83,6 +93,12 @@ pub struct MotionInfo {
     pub frames: usize,
     /// Time between rows, seconds.
     pub frame_secs: f64,
+    /// Time of the first row on the clock of the file, seconds.
+    pub start_secs: f64,
+    /// Time of the last row on that clock, seconds.
+    pub end_secs: f64,
+    /// Whether it repeats without a jump, with or without a last row that repeats the first.
+    pub loops: bool,
     /// Metres per unit of the file.
     pub unit_metres: f32,
     /// Height of the figure as it is posed, metres.
@@ -99,6 +115,9 @@ impl MotionFile {
             joints: self.joints.len(),
             frames: self.frames,
             frame_secs: self.frame_secs,
+            start_secs: self.start_secs,
+            end_secs: self.start_secs + self.frames.saturating_sub(1) as f64 * self.frame_secs,
+            loops: self.loops(),
             unit_metres: self.unit_metres,
             height_m: self.height_metres,
         }

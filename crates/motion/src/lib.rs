@@ -58,5 +58,7 @@ pub use retarget::retarget;
 pub use sample::pose_at;
 pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_place, raise_hairline};
 pub use seam::Seam;
-pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, OwnHair, RootPosition, UpAxis};
+pub use settings::{
+    BodySettings, Facing, LengthUnit, LoopBlend, MotionSettings, OwnHair, RootPosition, UpAxis,
+};
 pub use skinning::{Skin, skin};

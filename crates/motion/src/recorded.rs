@@ -7,8 +7,11 @@ use crate::character::Character;
 use crate::pose::rotation_of;
 use crate::{Clip, MotionError, MotionFile, MotionJoint, Pose, UpAxis, pose_at};
 
-/// Frames per second at which clips are sampled: twice as often as most clips have keys.
+/// Frames per second at which clips are sampled at least: twice as often as most clips have keys.
 const RATE: f64 = 60.0;
+
+/// Most frames per second at which keys are followed exactly.
+const MAX_RATE: f64 = 480.0;
 
 /// Most rotations of a motion: about a gigabyte.
 const LIMIT: usize = 32 << 20;
@@ -50,18 +53,21 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         })
         .collect();
     let duration = playable_secs(clip);
-    let frames = ((duration * RATE).round() as usize).saturating_add(1);
-    let longest = (LIMIT as f64 / joints.len() as f64 / RATE).min(LONGEST_SECS);
+    let rate = rate_of(clip);
+    let frames = ((duration * rate).round() as usize).saturating_add(1);
+    let longest = (LIMIT as f64 / joints.len() as f64 / rate).min(LONGEST_SECS);
     if duration > LONGEST_SECS || frames.saturating_mul(joints.len()) > LIMIT {
         let problem =
             format!("lasts {duration:.0} s with {} joints; must be at most {longest:.0} s", joints.len());
         return Err(MotionError::malformed(file, format!("clip `{}`", clip.name), problem));
     }
-    let frame_secs = if frames > 1 { duration / (frames - 1) as f64 } else { 1.0 / RATE };
+    let frame_secs = if frames > 1 { duration / (frames - 1) as f64 } else { 1.0 / rate };
     let mut motion = MotionFile {
         name: clip.name.clone(),
         frames,
         frame_secs,
+        start_secs: clip.start_secs,
+        lead_secs: clip.lead_secs,
         dropped: figure.dropped,
         notes,
         unit_metres: figure.unit_metres,
@@ -75,7 +81,7 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     motion.rotations.reserve_exact(frames * joints.len());
     motion.positions.reserve_exact(frames * joints.len());
     // The end of a clip would wrap to its start.
-    let held = Clip { duration_secs: duration + 1.0, loop_blend_secs: 0.0, ..(**clip).clone() };
+    let held = Clip { duration_secs: duration + 1.0, ..(**clip).clone().played_once() };
     for frame in 0..frames {
         pose_at(&figure.body, Some(&held), frame as f64 * frame_secs, &mut pose);
         for (j, joint) in joints.iter().enumerate() {
@@ -97,7 +103,17 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     }
     motion.joints = joints;
     motion.height_metres = height_of(&motion);
+    motion.note_shape();
     Ok(motion)
+}
+
+/// Frames per second of samples that meet the keys of a clip, if these are evenly spaced: a multiple of their rate.
+fn rate_of(clip: &Clip) -> f64 {
+    let step = clip.step_secs().filter(|step| *step >= 1.0 / MAX_RATE);
+    step.map_or(RATE, |step| {
+        let rate = 1.0 / step;
+        rate * (RATE / rate - 1e-3).ceil().max(1.0)
+    })
 }
 
 fn position(transform: &Affine3A) -> Vec3 {

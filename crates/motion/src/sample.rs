@@ -2,7 +2,9 @@
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{Body, Clip, Interpolation, Joint, JointTracks, MorphTrack, Pose, Track, pose::rigid_head};
+use crate::{
+    Body, Clip, Interpolation, Joint, JointTracks, LoopBlend, MorphTrack, Pose, Track, pose::rigid_head,
+};
 
 /// A value that a track can hold.
 trait Key: Copy {
@@ -132,8 +134,8 @@ impl Local {
     }
 }
 
-/// The times at which a clip's keys are sampled for one instant: the main time and, during a cross-fade, the
-/// time in the tail together with the main one's weight.
+/// The times at which a clip's keys are sampled for one instant: the main time and, during a blend, the time at the other end together
+/// with the main one's weight.
 struct Instant {
     main: f64,
     fade: Option<(f64, f32)>,
@@ -144,9 +146,14 @@ impl Instant {
         let time = if time_secs.is_finite() && clip.duration_secs > 0.0 { time_secs } else { 0.0 };
         let main = if clip.duration_secs > 0.0 { time.rem_euclid(clip.duration_secs) } else { 0.0 };
         let start = clip.part_secs.map_or(0.0, |[start, _]| start);
-        let fade = (main < clip.loop_blend_secs).then(|| {
-            let u = (main / clip.loop_blend_secs) as f32;
-            (start + clip.duration_secs + main, u * u * (3.0 - 2.0 * u))
+        // At the start the time since, and at the end the time left; both go with the weight of the main time.
+        let (within, other) = match clip.loop_blend {
+            LoopBlend::Start => (main, start + clip.duration_secs + main),
+            LoopBlend::End => (clip.duration_secs - main, start),
+        };
+        let fade = (within < clip.loop_blend_secs).then(|| {
+            let u = (within / clip.loop_blend_secs) as f32;
+            (other, u * u * (3.0 - 2.0 * u))
         });
         Self { main: start + main, fade }
     }
@@ -175,7 +182,7 @@ pub fn pose_at(body: &Body, clip: Option<&Clip>, time_secs: f64, pose: &mut Pose
             Some(tracks) => {
                 let main = Local::at(rest, tracks, instant.main);
                 match instant.fade {
-                    Some((tail, share)) => Local::at(rest, tracks, tail).blend(main, share).affine(),
+                    Some((other, share)) => Local::at(rest, tracks, other).blend(main, share).affine(),
                     None => main.affine(),
                 }
             }
@@ -188,7 +195,7 @@ pub fn pose_at(body: &Body, clip: Option<&Clip>, time_secs: f64, pose: &mut Pose
             let Some(weight) = pose.morph_weights.get_mut(morph.first + lane) else { break };
             let main = morph.at(lane, instant.main);
             *weight =
-                instant.fade.map_or(main, |(tail, share)| f32::linear(morph.at(lane, tail), main, share));
+                instant.fade.map_or(main, |(other, share)| f32::linear(morph.at(lane, other), main, share));
         }
     }
     pose.world_from_head = rigid_head(body, &pose.world_from_joint);

@@ -121,6 +121,17 @@ pub enum RootPosition {
     Added,
 }
 
+/// Where the ends of a clip whose last pose is not its first are blended while it loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LoopBlend {
+    /// Its end is blended into its first pose; all poses before that are those of the file, from its first key on.
+    #[default]
+    End,
+    /// Its end is blended into its start, and the clip is shorter by the blend. Its time is that on the clock of the file.
+    Start,
+}
+
 /// How to interpret a motion file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
@@ -190,6 +201,17 @@ impl Choices for OwnHair {
         match self {
             Self::Hidden => ("hidden", "Hidden"),
             Self::Shown => ("shown", "Shown"),
+        }
+    }
+}
+
+impl Choices for LoopBlend {
+    const ALL: &'static [Self] = &[Self::End, Self::Start];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::End => ("end", "End of the clip"),
+            Self::Start => ("start", "Start of the clip"),
         }
     }
 }

@@ -211,6 +211,11 @@ impl FrameClock {
         Self { step_secs: 1.0 / (fps * steps_per_frame), steps_per_frame: steps_per_frame as u32 }
     }
 
+    /// Frames per second.
+    pub fn fps(&self) -> f64 {
+        1.0 / (self.step_secs * f64::from(self.steps_per_frame))
+    }
+
     /// The step that frame `frame` shows, counted from time zero.
     pub fn step_of_frame(&self, frame: u64) -> u64 {
         frame * u64::from(self.steps_per_frame)

@@ -1,5 +1,7 @@
 //! The source of a recording's frames: a running simulation, or a take.
 
+#[cfg(test)]
+mod once_tests;
 mod seam;
 
 use std::ops::{ControlFlow, Range};
@@ -86,14 +88,30 @@ impl Dance {
     /// Number of frames, at least one.
     pub fn frames(&self) -> u64 {
         match &self.0 {
-            Source::Simulated { scene, clock, .. } => {
-                scene.frames(1.0 / (clock.step_secs * f64::from(clock.steps_per_frame)))
-            }
+            Source::Simulated { scene, clock, .. } => scene.frames(clock.fps()),
             // The last recorded frame also lasts for one frame.
             Source::Take { player, fps, .. } => {
                 ((player.frames() as f64 * player.frame_secs() * fps) + 1e-6).floor().max(1.0) as u64
             }
         }
+    }
+
+    /// Number of frames of one round of a looping motion, at least one; all frames of a take.
+    pub fn frames_of_round(&self) -> u64 {
+        match &self.0 {
+            Source::Simulated { scene, clock, .. } => scene.frames_of_round(clock.fps()),
+            Source::Take { .. } => self.frames(),
+        }
+    }
+
+    /// Plays a looping motion whose last pose is not its first without the blend that its loop needs, if `frames` need no second round.
+    /// Replaces the note about that blend. For frames of a seamless loop, use [`Dance::close`] instead.
+    pub fn play_once(&mut self, frames: &Range<u64>, problems: &mut [Problem]) {
+        let Source::Simulated { scene, project, clock, .. } = &mut self.0 else { return };
+        let Some(once) = scene.played_once(frames, clock.fps()) else { return };
+        replace_loop_note(scene, problems);
+        project.motion.looping = false;
+        *scene = Arc::new(once);
     }
 
     /// Number of the first available frame.
@@ -315,6 +333,15 @@ impl Dance {
             Source::Simulated { clock, .. } => clock.steps_per_frame,
             Source::Take { .. } => 0,
         }
+    }
+}
+
+/// Says of a motion that plays once what was said of it while it loops.
+pub fn replace_loop_note(scene: &Scene, problems: &mut [Problem]) {
+    for problem in problems.iter_mut().filter(|problem| scene.is_loop_note(problem)) {
+        let how =
+            "the motion plays once, from its first pose to its last, without the blend by which it loops";
+        *problem = Problem::new(Place::Motion, ProblemKind::Note, how);
     }
 }
 

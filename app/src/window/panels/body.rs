@@ -6,7 +6,7 @@ use lovelock_project::Project;
 use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
 use crate::window::control::HoverTooltip;
-use crate::window::control::{note, row, section, setting, settings};
+use crate::window::control::{note, row, section, settings};
 
 /// What the panel shows of the body that is loaded.
 #[derive(Clone, Debug, Default)]
@@ -143,7 +143,7 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
     }
     settings(ui, &["speed", "looping"], motion, &default);
     if motion.looping {
-        setting(ui, "loop_blend_secs", motion, &default);
+        settings(ui, &["loop_blend_secs", "loop_blend"], motion, &default);
     }
     request
 }

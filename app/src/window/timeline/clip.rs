@@ -66,6 +66,6 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Timelin
         ui.label(RichText::new(format!("From {:.2} s to {end}", motion.start_secs)).color(theme::QUIET));
     }
     ui.separator();
-    settings(ui, &["speed", "looping", "loop_blend_secs"], motion, &d);
+    settings(ui, &["speed", "looping", "loop_blend_secs", "loop_blend"], motion, &d);
     request
 }

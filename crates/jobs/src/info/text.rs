@@ -39,21 +39,29 @@ impl fmt::Display for Info {
                     line(f, "morphs", character.morph_targets)?;
                 }
                 for clip in &character.clips {
-                    let loops = if clip.loops { ", loops" } else { "" };
+                    let loops = if clip.loops { ", loops" } else { ", its end is blended while it loops" };
                     let name = if clip.name.is_empty() { "(no name)" } else { &clip.name };
-                    line(f, "clip", format_args!("{name}, {:.2} s{loops}", clip.duration_secs))?;
+                    let (secs, start, end) = (clip.duration_secs, clip.start_secs, clip.end_secs);
+                    line(
+                        f,
+                        "clip",
+                        format_args!("{name}, {secs:.2} s from {start:.2} s to {end:.2} s{loops}"),
+                    )?;
                 }
                 remarks(f, &character.dropped, &character.notes)
             }
             Content::Motion(motion) => {
                 line(f, "kind", format_args!("motion, {}", motion.format))?;
                 line(f, "joints", motion.joints)?;
-                let duration = motion.frames as f64 * motion.frame_secs;
-                line(
-                    f,
-                    "frames",
-                    format_args!("{} of {:.5} s, {duration:.2} s in all", motion.frames, motion.frame_secs),
-                )?;
+                line(f, "frames", format_args!("{}, one every {:.5} s", motion.frames, motion.frame_secs))?;
+                let (start, end) = (motion.start_secs, motion.end_secs);
+                line(f, "time", format_args!("{:.2} s, from {start:.2} s to {end:.2} s", end - start))?;
+                let ends = if motion.loops {
+                    "repeats without a jump"
+                } else {
+                    "the last pose is not the first; the end is blended into the first pose while it loops"
+                };
+                line(f, "loop", ends)?;
                 line(f, "unit", format_args!("{} m", motion.unit_metres))?;
                 line(f, "height", format_args!("{:.2} m", motion.height_m))?;
                 remarks(f, &motion.dropped, &motion.notes)

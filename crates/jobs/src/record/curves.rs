@@ -117,13 +117,17 @@ pub fn record_curves(
     let source = request.curves.unwrap_or(usual);
 
     let (mut dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
-    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
-    let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(dance.frames()));
+    let seamless = request.seamless || project.recording.seamless;
+    let whole = if seamless { dance.frames_of_round() } else { dance.frames() };
+    let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(whole));
     check_frames(&frames)?;
     dance.check(&frames)?;
-    if request.seamless || project.recording.seamless {
+    if seamless {
         dance.close(&frames)?;
+    } else {
+        dance.play_once(&frames, &mut problems);
     }
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     dance.begin(frames.start, dance.secs_of(frames.start), progress)?;
 
     let watch = Stopwatch::start();

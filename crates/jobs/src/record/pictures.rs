@@ -46,17 +46,20 @@ pub fn record(
 ) -> Result<RecordReport, ProjectError> {
     let mut job = Job::new(project, request)?;
     let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
-    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     if request.dance_time {
         dance.count_on_dance();
     }
+    let frames = job.frames(&dance)?;
+    if !job.project.recording.seamless {
+        dance.play_once(&frames, &mut problems);
+    }
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     if request.frame_body
         && let Some(camera) = camera_for_size(&job.project.camera, 1.0, dance.scene().hair_scale)
     {
         job.project.camera = camera;
     }
 
-    let frames = job.frames(&dance)?;
     let sound = if job.kind == OutputKind::Preview {
         let heard = job.project.sound.is_heard();
         problems
@@ -230,7 +233,8 @@ impl<'a> Job<'a> {
         let recording = &self.project.recording;
         let frames = self.request.frames.clone().unwrap_or_else(|| {
             let first = recording.first_frame.max(dance.first_frame());
-            let end = dance.first_frame() + dance.frames();
+            let count = if recording.seamless { dance.frames_of_round() } else { dance.frames() };
+            let end = dance.first_frame() + count;
             first..recording.end_frame.unwrap_or_else(|| end.max(first + 1))
         });
         check_frames(&frames)?;

@@ -9,6 +9,7 @@ use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_record::{FrameRate, TAKE_EXTENSION, TakeReport};
 use lovelock_session::clock::FrameClock;
+use lovelock_session::dance::replace_loop_note;
 use lovelock_session::health::{Gauge, health};
 use lovelock_session::prepare::{check_frames, load, settled_at};
 use lovelock_session::progress::{Progress, report_progress};
@@ -64,7 +65,7 @@ pub fn record_take(
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<TakeRecordReport, ProjectError> {
-    let (project, _) = project.sanitised();
+    let (mut project, _) = project.sanitised();
     if let Some(file) = &project.take.file {
         return Err(ProjectError::option(format!(
             "{}: the project already plays a take: {}",
@@ -84,10 +85,16 @@ pub fn record_take(
     if let Some(frames) = &request.frames {
         check_frames(frames)?;
     }
-    let (scene, problems) = load(&project, &request.access, progress)?;
-    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
+    let (mut scene, mut problems) = load(&project, &request.access, progress)?;
     let frames = request.frames.clone().unwrap_or_else(|| project.recording.frame_range(scene.frames(fps)));
     check_frames(&frames)?;
+    if let Some(once) = scene.played_once(&frames, fps) {
+        replace_loop_note(&scene, &mut problems);
+        // The take plays the motion of the project that it stores.
+        project.motion.looping = false;
+        scene = Arc::new(once);
+    }
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     let clock = FrameClock::new(fps);
     let first = clock.step_of_frame(frames.start);
     let mut engine = settled_at(&scene, &project, &clock, [first, first], progress)?;

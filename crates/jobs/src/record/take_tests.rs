@@ -43,6 +43,30 @@ fn without_a_window_every_step_is_recorded_and_a_cancelled_take_leaves_nothing()
 }
 
 #[test]
+fn a_take_of_a_motion_with_open_ends_has_its_last_pose() {
+    let (_folder, path) = folder();
+    let mut project = small_project();
+    (project.motion.start_secs, project.motion.end_secs) = (1.0, Some(1.2));
+    let request = RecordRequest { out: path.clone(), fps: Some(30.0), ..RecordRequest::default() };
+    let report = record_take(&project, &request, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    // Seven frames of two steps.
+    assert_eq!(report.frames, 14);
+    assert!(report.notes.iter().any(|note| note.contains("plays once")), "{:?}", report.notes);
+    let (stored, _) = project_of_take(&path).expect("a project");
+    assert!(!stored.motion.looping && project.motion.looping);
+    let mut player = played(&path);
+    let last = player.snapshot(0.2).expect("the last frame");
+    let clip = player.scene().clip.clone().expect("a clip");
+    assert!((clip.duration_secs - 0.2).abs() < 1e-6);
+    let mut pose = lovelock_motion::Pose::default();
+    let plain = (*clip).clone().played_once();
+    lovelock_motion::pose_at(&player.scene().body, Some(&plain), 0.2_f64.next_down(), &mut pose);
+    let off = last.pose.world_from_joint.iter().zip(&pose.world_from_joint);
+    let off = off.map(|(a, b)| (a.translation - b.translation).length()).fold(0.0, f32::max);
+    assert!(off < 1e-3, "{off} m");
+}
+
+#[test]
 fn info_counts_the_guides_from_each_frame_where_they_change() {
     let (_folder, path) = folder();
     let frames = regrown(&path);

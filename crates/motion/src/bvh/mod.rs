@@ -1,10 +1,11 @@
 //! Motion capture from BVH files.
 //!
-//! The text is parsed tolerantly ([`parse`]). The meaning of its numbers (unit, axis, whether positions are
+//! The text is parsed tolerantly ([`parse`]), its table of frames row by row ([`rows`]). The meaning of its numbers (unit, axis, whether positions are
 //! added to offsets) is decided in [`interpret`].
 
 mod interpret;
 mod parse;
+mod rows;
 
 use std::collections::BTreeMap;
 
@@ -38,6 +39,10 @@ pub struct MotionFile {
     pub frames: usize,
     /// Time between frames, seconds.
     pub frame_secs: f64,
+    /// Time of the first frame on the clock of the file, seconds.
+    pub start_secs: f64,
+    /// As [`crate::Clip::lead_secs`].
+    pub lead_secs: f64,
     /// Rotation of each joint relative to its parent: frame by frame, joint by joint.
     pub rotations: Vec<Quat>,
     /// Position of each joint relative to its parent, metres, in the same order.
@@ -74,10 +79,26 @@ impl MotionFile {
 
     /// The roles of the joints.
     pub(crate) fn humanoid(&self) -> Humanoid {
-        Humanoid::new(
-            &self.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
-            &self.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
-        )
+        let names: Vec<&str> = self.joints.iter().map(|j| j.name.as_str()).collect();
+        let parents: Vec<Option<usize>> = self.joints.iter().map(|j| j.parent).collect();
+        let figure = Humanoid::new(&names, &parents).or_by_shape(&names, &parents, &self.rest());
+        if self.rotations.len() < names.len() {
+            return figure;
+        }
+        // A zero pose may be no pose of a figure; the first frame is one.
+        let mut first = Vec::new();
+        self.world(0, &mut first);
+        let places: Vec<Vec3> = first.iter().map(|world| world.translation.into()).collect();
+        figure.or_by_shape(&names, &parents, &places)
+    }
+
+    /// Adds a note if the names of the joints do not tell which bones they are.
+    pub(crate) fn note_shape(&mut self) {
+        if self.humanoid().is_by_shape {
+            let note =
+                "the names of the joints do not tell all limbs; they are told by the shape of the skeleton";
+            self.notes.push(note.into());
+        }
     }
 
     /// Positions of all joints with zero rotations, metres.
@@ -93,5 +114,7 @@ impl MotionFile {
 /// Reads a BVH file from bytes; `name` is used in messages.
 pub(crate) fn read(name: &str, bytes: &[u8], settings: MotionSettings) -> Result<MotionFile, MotionError> {
     let raw = parse::parse(name, bytes)?;
-    Ok(interpret::interpret(name, &raw, settings))
+    let mut motion = interpret::interpret(name, &raw, settings);
+    motion.note_shape();
+    Ok(motion)
 }

@@ -88,7 +88,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-fn quote(word: Option<&str>) -> String {
+pub(super) fn quote(word: Option<&str>) -> String {
     word.map_or_else(
         || "the file ends here".into(),
         |w| format!("found `{}`", w.chars().take(40).collect::<String>()),
@@ -184,11 +184,15 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
 }
 
 fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Result<[f32; 3], MotionError> {
-    let mut offset = [0.0; 3];
-    for value in &mut offset {
+    let (mut offset, mut known) = ([0.0_f32; 3], 0);
+    while known < offset.len() {
         let word = cursor.word();
-        let number = word.and_then(|w| w.parse::<f32>().ok());
-        *value = number.ok_or_else(|| cursor.error(format!("{}; must be a number", quote(word))))?;
+        let refuse = || cursor.error(format!("{}; must be a number", quote(word)));
+        for part in super::rows::numbers_of(word.ok_or_else(refuse)?) {
+            let value = offset.get_mut(known).ok_or_else(refuse)?;
+            *value = part.parse().map_err(|_| refuse())?;
+            known += 1;
+        }
     }
     if offset.iter().all(|v| v.is_finite() && v.abs() < 1e9) {
         Ok(offset)
@@ -255,60 +259,9 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
             1.0 / 30.0
         }
     };
-    if raw.channels == 0 {
-        return Ok(());
-    }
-    let first_line = cursor.rest.lines().next().unwrap_or_default();
-    if first_line.split_whitespace().count() == raw.channels {
-        read_lines(cursor.rest, raw);
-    } else {
-        read_stream(cursor.rest, raw);
-    }
-    raw.frames = raw.rows.len() / raw.channels;
-    if let Some(promised_frames) = promised_frames.filter(|&n| n != raw.frames as u64) {
-        raw.notes.push(format!(
-            "the header promises {promised_frames} frames; the {} in the file are used",
-            raw.frames
-        ));
+    if raw.channels > 0 {
+        cursor.skip_space();
+        super::rows::read(cursor.file, cursor.rest, cursor.line, promised_frames, raw)?;
     }
     Ok(())
-}
-
-/// Parses a number of a row. Invalid numbers are counted and replaced by that of the previous row.
-fn number(word: &str, raw: &mut RawMotion) -> f32 {
-    match word.parse::<f32>() {
-        Ok(value) if value.is_finite() && value.abs() < 1e9 => value,
-        _ => {
-            *raw.dropped.entry("numbers".into()).or_default() += 1;
-            raw.rows.len().checked_sub(raw.channels).map_or(0.0, |i| raw.rows[i])
-        }
-    }
-}
-
-/// One row per line; lines of another length are dropped and counted.
-fn read_lines(text: &str, raw: &mut RawMotion) {
-    for line in text.lines() {
-        let count = line.split_whitespace().count();
-        if count == raw.channels {
-            for word in line.split_whitespace() {
-                let value = number(word, raw);
-                raw.rows.push(value);
-            }
-        } else if count > 0 {
-            *raw.dropped.entry("rows".into()).or_default() += 1;
-        }
-    }
-}
-
-/// Rows split over lines: all numbers are concatenated; an incomplete row is dropped and counted.
-fn read_stream(text: &str, raw: &mut RawMotion) {
-    for word in text.split_whitespace() {
-        let value = number(word, raw);
-        raw.rows.push(value);
-    }
-    let left = raw.rows.len() % raw.channels;
-    if left > 0 {
-        raw.rows.truncate(raw.rows.len() - left);
-        *raw.dropped.entry("rows".into()).or_default() += 1;
-    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
-use ufbx::{AllocatorOpts, BakeOpts, BakedAnim, Scene};
+use ufbx::{AllocatorOpts, AnimStack, BakeOpts, BakedAnim, ElementType, Scene};
 
 use super::mesh::{MorphsOfChannels, weights_of_shapes};
 use super::nodes::Nodes;
@@ -30,7 +30,6 @@ pub(super) fn read_clips(
         let options = BakeOpts {
             temp_allocator: allocator(),
             result_allocator: allocator(),
-            trim_start_time: true,
             resample_rate: RATE,
             ..BakeOpts::default()
         };
@@ -43,32 +42,53 @@ pub(super) fn read_clips(
             }
         };
         let mut clip = Clip { name: stack.element.name.to_string(), ..Clip::default() };
-        clip.joints = joints(&baked, nodes);
+        let keyed = keyed_range(stack, nodes, morphs)
+            .unwrap_or([baked.playback_time_begin, baked.playback_time_end].map(|secs| secs as f32));
+        clip.joints = joints(&baked, nodes, keyed);
         clip.morphs = morph_tracks(&baked, morphs);
         if clip.joints.is_empty() && clip.morphs.is_empty() {
             notes.push(format!("the animation `{}` moves nothing", clip.name));
             continue;
         }
-        clip.duration_secs = clip.keys_end_secs();
-        clips.push(clip);
+        // The start of a stack is where a timeline begins to show it; only one after 0 was a choice.
+        clips.push(clip.starting_at_first_key(stack.time_begin.max(0.0)));
     }
     clips
 }
 
-fn joints(baked: &BakedAnim, nodes: &Nodes) -> Vec<JointTracks> {
+/// Times of the first and the last key of the curves that move joints or morph targets, seconds. What does not change is sampled at
+/// the ends of the stack's timeline, where no key needs to be.
+fn keyed_range(stack: &AnimStack, nodes: &Nodes, morphs: &MorphsOfChannels) -> Option<[f32; 2]> {
+    let props = stack.layers.iter().flat_map(|layer| &layer.anim_props);
+    let moving = props.filter(|prop| {
+        nodes.joint(prop.element.typed_id).is_some() && prop.element.type_ == ElementType::Node
+            || morphs.contains_key(&prop.element.element_id)
+    });
+    let curves = moving.flat_map(|prop| prop.anim_value.curves.iter().flatten());
+    let ends = curves.filter_map(|curve| Some([curve.keyframes.first()?.time, curve.keyframes.last()?.time]));
+    let ends = ends.filter(|ends| ends.iter().all(|time| time.abs() < LATEST_SECS));
+    ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|ends| ends.map(|secs| secs as f32))
+}
+
+fn joints(baked: &BakedAnim, nodes: &Nodes, keyed: [f32; 2]) -> Vec<JointTracks> {
     let mut joints = BTreeMap::new();
     for node in &baked.nodes {
         let Some(joint) = nodes.joint(node.typed_id) else { continue };
-        let vectors = |keys: &[ufbx::BakedVec3]| {
-            track(keys.iter().map(|key| (key.time, vec3(key.value))))
-                .filter(|track: &Track<Vec3>| track.values.iter().all(|v| v.is_finite()))
+        let vectors = |keys: &[ufbx::BakedVec3], is_constant: bool| {
+            let track = track(keys.iter().map(|key| (key.time, vec3(key.value))))?;
+            let track = if is_constant { held(&track, keyed) } else { track };
+            track.values.iter().all(|v: &Vec3| v.is_finite()).then_some(track)
         };
+        let rotation = track(node.rotation_keys.iter().map(|key| (key.time, quat(key.value))));
         let tracks = JointTracks {
             joint,
-            translation: vectors(&node.translation_keys),
-            rotation: track(node.rotation_keys.iter().map(|key| (key.time, quat(key.value))))
-                .map(|track: Track<Quat>| track),
-            scale: vectors(&node.scale_keys),
+            translation: vectors(&node.translation_keys, node.constant_translation),
+            rotation: rotation.map(
+                |track: Track<Quat>| {
+                    if node.constant_rotation { held(&track, keyed) } else { track }
+                },
+            ),
+            scale: vectors(&node.scale_keys, node.constant_scale),
         };
         joints.insert(joint, tracks);
     }
@@ -94,11 +114,20 @@ fn morph_tracks(baked: &BakedAnim, morphs: &MorphsOfChannels) -> Vec<MorphTrack>
     tracks
 }
 
-/// Keys as a track: times from 0 on, increasing.
+/// Times further from 0 are errors, seconds.
+const LATEST_SECS: f64 = 1e6;
+
+/// A track of one value over the range of the keys.
+fn held<T: Copy>(track: &Track<T>, keyed: [f32; 2]) -> Track<T> {
+    let values = track.values.iter().take(1).cycle().take(2).copied().collect();
+    Track { times: keyed.into(), values, interpolation: track.interpolation }
+}
+
+/// Keys as a track: times increasing.
 fn track<T>(keys: impl Iterator<Item = (f64, T)>) -> Option<Track<T>> {
     let (mut times, mut values): (Vec<f32>, Vec<T>) = (Vec::new(), Vec::new());
-    for (time, value) in keys.filter(|(time, _)| time.is_finite() && *time < 1e6) {
-        let time = time.max(0.0) as f32;
+    for (time, value) in keys.filter(|(time, _)| time.is_finite() && time.abs() < LATEST_SECS) {
+        let time = time as f32;
         // Two keys at one time are a step; the later holds.
         if times.last().is_some_and(|&last| time < last) {
             continue;

@@ -6,6 +6,7 @@
 mod clip;
 mod mesh;
 mod nodes;
+mod rest;
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::watch::{Cancelled, Watch};
@@ -94,7 +95,10 @@ pub(crate) fn read(
     let usual_unit_metres = if stated.is_finite() && stated > 0.0 { stated as f32 } else { 0.01 };
     let skins = scene.skin_deformers.len();
     let joints = nodes.joints_of_skins(&scene);
-    let skeleton = nodes.into_skeleton();
+    let mut skeleton = nodes.skeleton().clone();
+    if !needs_mesh {
+        notes.extend(rest::choose(&scene, &nodes, &mut skeleton, &clips));
+    }
     let draft = Draft { file, skeleton, mesh, skin, clips, joints, skins, dropped, notes };
     let mut character = draft.finish(Axes { settings, usual_unit_metres })?;
     character.format = format;

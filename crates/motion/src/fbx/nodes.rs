@@ -137,8 +137,8 @@ impl Nodes {
         if used.is_empty() { self.skeleton.joints.len() } else { used.len() }
     }
 
-    pub(super) fn into_skeleton(self) -> Skeleton {
-        self.skeleton
+    pub(super) fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
     }
 }
 

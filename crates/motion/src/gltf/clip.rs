@@ -74,8 +74,8 @@ pub(super) fn read_clip(
         .into_values()
         .filter(|t| t.translation.is_some() || t.rotation.is_some() || t.scale.is_some())
         .collect();
-    clip.duration_secs = clip.keys_end_secs();
-    Ok(clip)
+    // The clock of glTF starts at 0, but files of animations with a pre-roll have keys before that.
+    Ok(clip.starting_at_first_key(0.0))
 }
 
 /// One sampler with verified times.
@@ -105,7 +105,7 @@ impl<'a> Source<'a> {
             Entry::Vacant(new) => {
                 let keys: Vec<f32> = accessors.read::<1>(sampler.input)?.into_iter().map(|[t]| t).collect();
                 let usable = !keys.is_empty()
-                    && keys.iter().all(|t| t.is_finite() && *t >= 0.0 && *t < 1e6)
+                    && keys.iter().all(|t| t.is_finite() && t.abs() < 1e6)
                     && keys.is_sorted();
                 new.insert(usable.then(|| keys.into())).clone()
             }

@@ -1,14 +1,18 @@
-//! The roles of the joints of a figure, derived from their names and their tree.
+//! The roles of the joints of a figure, derived from their names and their tree, and from its shape where names do not tell them.
 
 #[cfg(test)]
 mod families;
 mod names;
+mod shape;
 
 use std::collections::BTreeMap;
 
+use glam::Vec3;
+
 use crate::Skeleton;
-use names::{Label, Part, label};
+use names::{Label, Part, label, labels_of, side_of};
 pub(crate) use names::{Side, is_twist};
+use shape::Shape;
 
 /// The role of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -66,6 +70,8 @@ pub(crate) struct Humanoid {
     pub(crate) spine: Vec<usize>,
     /// Joints of the neck, from the bottom.
     pub(crate) neck: Vec<usize>,
+    /// Whether the shape of the skeleton told the roles, because the names do not.
+    pub(crate) is_by_shape: bool,
 }
 
 impl Humanoid {
@@ -76,6 +82,45 @@ impl Humanoid {
             (0..skeleton.joints.len()).map(|j| skeleton.named.get(&j).map_or("", String::as_str)).collect()
         };
         Self::new(&names, &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>())
+    }
+
+    /// As [`Humanoid::of_skeleton`], by the shape where names do not tell the roles.
+    pub(crate) fn of_any_skeleton(skeleton: &Skeleton) -> Self {
+        let places: Vec<Vec3> = (0..skeleton.joints.len()).map(|j| skeleton.rest_position(j)).collect();
+        let names: Vec<&str> = skeleton.joints.iter().map(|j| j.name.as_str()).collect();
+        let parents: Vec<Option<usize>> = skeleton.joints.iter().map(|j| j.parent).collect();
+        Self::of_skeleton(skeleton).or_by_shape(&names, &parents, &places)
+    }
+
+    /// The roles by the shape of a skeleton with joints at `places`, if these roles are not those of a whole figure.
+    pub(crate) fn or_by_shape(self, names: &[&str], parents: &[Option<usize>], places: &[Vec3]) -> Self {
+        if self.is_whole(parents) {
+            return self;
+        }
+        let roles = Shape::new(parents, places).roles(&|joint| side_of(names[joint]));
+        if roles.is_empty() {
+            return self;
+        }
+        let mut figure = Self { joints: roles.into_iter().collect(), is_by_shape: true, ..Self::default() };
+        figure.complete(&labels_of(names), parents);
+        figure
+    }
+
+    /// Whether all limbs have their roles, each below the one that it belongs to.
+    fn is_whole(&self, parents: &[Option<usize>]) -> bool {
+        let depth = depths(parents);
+        let is_limb = |upper: Role, lower: Role| match (self.get(upper), self.get(lower)) {
+            (Some(upper), Some(lower)) => {
+                upper != lower && common_ancestor(parents, &depth, upper, lower) == Some(upper)
+            }
+            _ => false,
+        };
+        self.get(Role::Hips).is_some()
+            && self.get(Role::Head).is_some()
+            && Side::BOTH.into_iter().all(|side| {
+                is_limb(Role::Thigh(side), Role::Shin(side))
+                    && is_limb(Role::UpperArm(side), Role::Forearm(side))
+            })
     }
 
     /// The joint of a role.
@@ -90,7 +135,7 @@ impl Humanoid {
 
     /// Finds the roles of joints by their names and parents.
     pub(crate) fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
-        let mut labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
+        let mut labels = labels_of(names);
         // Of a whole rig of Rigify only the joints that deform the surface are a figure; the rest are controls.
         let deforms = |name: &str| name.starts_with("DEF-");
         if names.iter().filter(|name| deforms(name)).count() >= 10 {
@@ -113,6 +158,16 @@ impl Humanoid {
                         key(a).cmp(&key(b))
                     })
             })
+        };
+        let is_below = |joint: Option<usize>, above: Option<usize>| match (joint, above) {
+            (Some(joint), Some(above)) => {
+                joint != above && common_ancestor(parents, &depth, joint, above) == Some(above)
+            }
+            _ => false,
+        };
+        // The joint at the end of a limb has one of two names, or is the upper of two joints with both.
+        let end_of_limb = |joint: Option<usize>, extremity: Option<usize>| {
+            if is_below(joint, extremity) { extremity } else { joint.or(extremity) }
         };
         let mut joints = BTreeMap::new();
         let mut put = |role: Role, joint: Option<usize>| {
@@ -138,40 +193,48 @@ impl Humanoid {
                 ),
             );
             put(Role::Forearm(side), best(&[Part::Forearm], s));
-            put(Role::Hand(side), best(&[Part::Hand], s));
+            put(Role::Hand(side), end_of_limb(best(&[Part::Wrist], s), best(&[Part::Hand], s)));
             let has_thigh = best(&[Part::Thigh], s).is_some();
             put(Role::Thigh(side), best(&[Part::Thigh, Part::Leg], s));
             put(Role::Shin(side), best(if has_thigh { &[Part::Shin, Part::Leg] } else { &[Part::Shin] }, s));
-            put(Role::Foot(side), best(&[Part::Foot], s));
-            put(Role::Toe(side), best(&[Part::Toe], s));
+            // In some families the foot is what carries the toes, below the ankle; in others it is the ankle.
+            let (ankle, foot, toe) = (best(&[Part::Ankle], s), best(&[Part::Foot], s), best(&[Part::Toe], s));
+            put(Role::Foot(side), end_of_limb(ankle, foot));
+            put(Role::Toe(side), if is_below(foot, ankle) { foot } else { toe });
         }
-        let meet =
-            |a: Option<usize>, b: Option<usize>| Some(common_ancestor(parents, &depth, a?, b?)).flatten();
-        let find = |joints: &BTreeMap<Role, usize>, role| joints.get(&role).copied();
-        let legs = meet(find(&joints, Role::Thigh(Side::Left)), find(&joints, Role::Thigh(Side::Right)));
-        let arms =
-            meet(find(&joints, Role::UpperArm(Side::Left)), find(&joints, Role::UpperArm(Side::Right)));
-        if let (None, Some(arms)) = (find(&joints, Role::Head), arms)
+        let arms = meet(&joints, parents, Role::UpperArm);
+        if let (None, Some(arms)) = (joints.get(&Role::Head), arms)
             && let Some(head) = end_of_spine(&labels, parents, arms)
         {
             joints.insert(Role::Head, head);
         }
-        let head = find(&joints, Role::Head).or_else(|| best(&[Part::Neck], None));
-        let hips = meet(legs, head).or_else(|| best(&[Part::Hips], None));
+        let neck = best(&[Part::Neck], None);
+        let head = joints.get(&Role::Head).copied().or(neck);
+        let legs = meet(&joints, parents, Role::Thigh);
+        let trunk = legs.zip(head).and_then(|(legs, head)| common_ancestor(parents, &depth, legs, head));
+        if let Some(hips) = trunk.or_else(|| best(&[Part::Hips], None)) {
+            joints.insert(Role::Hips, hips);
+        }
         let mut figure = Self { joints, ..Self::default() };
-        if let Some(hips) = hips {
-            figure.joints.insert(Role::Hips, hips);
-        }
-        if let Some(legs) = legs.filter(|&legs| Some(legs) != hips) {
-            figure.joints.insert(Role::Pelvis, legs);
-        }
-        if let Some(arms) = arms {
-            figure.joints.insert(Role::Chest, arms);
-        }
-        if let (Some(hips), Some(head)) = (hips, head) {
-            figure.split_trunk(&labels, parents, hips, head);
+        figure.complete(&labels, parents);
+        if let (None, Some(hips), Some(neck)) = (figure.get(Role::Head), figure.get(Role::Hips), neck) {
+            figure.split_trunk(&labels, parents, hips, neck);
         }
         figure
+    }
+
+    /// Adds the roles of the trunk that follow from those of the limbs, hips and head.
+    fn complete(&mut self, labels: &[Option<Label>], parents: &[Option<usize>]) {
+        let hips = self.get(Role::Hips);
+        if let Some(legs) = meet(&self.joints, parents, Role::Thigh).filter(|&legs| Some(legs) != hips) {
+            self.joints.insert(Role::Pelvis, legs);
+        }
+        if let Some(arms) = meet(&self.joints, parents, Role::UpperArm) {
+            self.joints.insert(Role::Chest, arms);
+        }
+        if let (Some(hips), Some(head)) = (hips, self.get(Role::Head)) {
+            self.split_trunk(labels, parents, hips, head);
+        }
     }
 
     /// Splits the joints between hips and head into spine and neck.
@@ -223,6 +286,16 @@ fn end_of_spine(labels: &[Option<Label>], parents: &[Option<usize>], arms: usize
     let of_spine = (0..labels.len()).filter(|&j| is_spine(j));
     let (joints, head) = of_spine.filter_map(|j| Some((above(j)?, j))).max()?;
     (joints >= 2).then_some(head)
+}
+
+/// The joint in which the limbs of both sides meet.
+fn meet(
+    joints: &BTreeMap<Role, usize>,
+    parents: &[Option<usize>],
+    role: impl Fn(Side) -> Role,
+) -> Option<usize> {
+    let [left, right] = Side::BOTH.map(|side| joints.get(&role(side)).copied());
+    common_ancestor(parents, &depths(parents), left?, right?)
 }
 
 fn depths(parents: &[Option<usize>]) -> Vec<usize> {

@@ -1,6 +1,7 @@
 //! Parsing of joint names: side, numbers, and body part.
 
 mod japanese;
+mod prefix;
 
 /// Left or right from the figure's own view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,12 +32,16 @@ pub(crate) enum Part {
     Shoulder,
     UpperArm,
     Forearm,
+    /// What is below the wrist, or the wrist.
     Hand,
+    Wrist,
     Thigh,
     /// The shin if the thigh has a name of its own, otherwise the thigh.
     Leg,
     Shin,
+    /// What is below the ankle, or the ankle.
     Foot,
+    Ankle,
     Toe,
     /// A joint of the trunk; rigs that number it from the hips to the head name no head.
     Spine,
@@ -131,19 +136,61 @@ const OTHERS: [&str; 42] = [
 
 /// Parses a name; `None` if it names no limb, hips, neck or head.
 pub(crate) fn label(name: &str) -> Option<Label> {
-    let local = name.rsplit([':', '|']).next().unwrap_or(name);
+    let local = local(name);
+    label_of(local, tokens(local))
+}
+
+/// Parses the names of a skeleton. Words that most of them begin with are left out.
+pub(crate) fn labels_of(names: &[&str]) -> Vec<Option<Label>> {
+    let words: Vec<Vec<String>> = names.iter().map(|name| tokens(local(name))).collect();
+    let has_meaning = |word: &str| {
+        side_word(word).is_some()
+            || OTHERS.contains(&word)
+            || part(word, true).or_else(|| part(word, false)).is_some()
+            || ["upper", "lower", "up", "lo", "low", "fore"].contains(&word)
+    };
+    let prefix = prefix::common(&words, has_meaning);
+    let labels = names.iter().zip(words).map(|(name, words)| {
+        let rest = words.strip_prefix(prefix.as_slice()).filter(|rest| !rest.is_empty());
+        label_of(local(name), rest.map_or_else(|| words.clone(), <[String]>::to_vec))
+    });
+    labels.collect()
+}
+
+/// The side that a name states, whatever else it means.
+pub(crate) fn side_of(name: &str) -> Option<Side> {
+    let local = local(name);
+    tokens(local).iter().find_map(|word| side_word(word)).or_else(|| japanese::side(local))
+}
+
+/// A name without namespaces.
+fn local(name: &str) -> &str {
+    name.rsplit([':', '|']).next().unwrap_or(name)
+}
+
+fn side_word(word: &str) -> Option<Side> {
+    match word {
+        "l" | "left" | "lft" | "lt" => Some(Side::Left),
+        "r" | "right" | "rgt" | "rt" => Some(Side::Right),
+        _ => None,
+    }
+}
+
+fn label_of(local: &str, tokens: Vec<String>) -> Option<Label> {
     if let Some(label) = japanese::label(local) {
         return Some(label);
     }
     let (mut side, mut numbers, mut words) = (None, Vec::new(), Vec::new());
-    for token in tokens(local) {
+    for token in tokens {
         if let Ok(number) = token.parse::<u32>() {
             numbers.push(number);
             continue;
         }
+        if let Some(found) = side_word(&token) {
+            side = Some(found);
+            continue;
+        }
         match token.as_str() {
-            "l" | "left" => side = Some(Side::Left),
-            "r" | "right" => side = Some(Side::Right),
             noise if NOISE.contains(&noise) => {}
             other if OTHERS.contains(&other) => return None,
             _ => words.push(token),
@@ -180,13 +227,19 @@ fn part(word: &str, sided: bool) -> Option<Part> {
         ("head" | "skull", false) => Part::Head,
         ("clavicle" | "clav" | "collar" | "collarbone" | "scapula", true) => Part::Clavicle,
         ("shoulder" | "shldr", true) => Part::Shoulder,
-        ("upperarm" | "uparm" | "arm" | "armupper" | "bicep" | "uarm", true) => Part::UpperArm,
-        ("forearm" | "lowerarm" | "loarm" | "lowarm" | "armlower" | "elbow", true) => Part::Forearm,
-        ("hand" | "wrist", true) => Part::Hand,
+        ("upperarm" | "uparm" | "arm" | "armupper" | "bicep" | "uarm" | "humerus", true) => Part::UpperArm,
+        ("forearm" | "lowerarm" | "loarm" | "lowarm" | "armlower" | "elbow" | "farm" | "radius", true) => {
+            Part::Forearm
+        }
+        ("hand", true) => Part::Hand,
+        ("wrist", true) => Part::Wrist,
         ("thigh" | "upleg" | "upperleg" | "legupper" | "femur" | "hip", true) => Part::Thigh,
         ("leg", true) => Part::Leg,
-        ("shin" | "calf" | "knee" | "lowerleg" | "loleg" | "lowleg" | "leglower", true) => Part::Shin,
-        ("foot" | "ankle", true) => Part::Foot,
+        ("shin" | "calf" | "knee" | "lowerleg" | "loleg" | "lowleg" | "leglower" | "tibia", true) => {
+            Part::Shin
+        }
+        ("foot", true) => Part::Foot,
+        ("ankle", true) => Part::Ankle,
         ("toe" | "toes" | "ball", true) => Part::Toe,
         _ => return None,
     })
@@ -241,7 +294,7 @@ mod tests {
             ("UpArm_L", UpperArm, l),
             ("LoLeg_R", Shin, r),
             ("lowerarm01.L", Forearm, l),
-            ("wrist.R", Hand, r),
+            ("wrist.R", Wrist, r),
             ("LeftToeBase", Toe, l),
             ("b_Head_05", Head, None),
             ("Head", Head, None),

@@ -14,9 +14,8 @@ use std::sync::Arc;
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::humanoid::{Humanoid, Role, Side};
-use crate::{
-    Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Pose, Skeleton, Track, pose_at,
-};
+use crate::seam::MIN_CYCLE;
+use crate::{Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Skeleton, Track};
 use align::Alignment;
 
 /// The source of a target joint's rotation: a source joint, or an interpolation between two.
@@ -48,7 +47,7 @@ struct Plan<'a> {
 /// = 0. Rest poses may differ (T-pose, A-pose, or implausible poses).
 ///
 /// # Errors
-/// If hips, head, thighs or upper arms cannot be found by name; the error contains the side.
+/// If hips, head, thighs or upper arms cannot be found by name or shape; the error contains the side.
 pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
     let plan = Plan::new(motion, body)?;
     let mut turns = plan.turns();
@@ -60,6 +59,7 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
         driven[joint] = true;
     }
     let mut clip = plan.clip(&driven, &turns, &hips);
+    (clip.start_secs, clip.lead_secs) = (motion.start_secs, motion.lead_secs);
     ground::set_on_ground(body, &plan.target, &mut clip);
     close_loop(body, &mut clip, motion.frame_secs);
     Ok(clip)
@@ -68,7 +68,7 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
 impl<'a> Plan<'a> {
     fn new(motion: &'a MotionFile, body: &'a Body) -> Result<Self, MotionError> {
         let skeleton = &body.skeleton;
-        let (source, target) = (motion.humanoid(), Humanoid::of_skeleton(skeleton));
+        let (source, target) = (motion.humanoid(), Humanoid::of_any_skeleton(skeleton));
         let needed = Side::BOTH
             .iter()
             .flat_map(|&s| [Role::Thigh(s), Role::Shin(s), Role::UpperArm(s), Role::Forearm(s)]);
@@ -82,7 +82,8 @@ impl<'a> Plan<'a> {
             .map(|(role, _, of)| format!("{} of {of}", role.label()))
             .collect();
         if !missing.is_empty() {
-            let problem = format!("no joint name matches the {}", missing.join(", the "));
+            let problem =
+                format!("neither the name nor the place of any joint tells the {}", missing.join(", the "));
             return Err(MotionError::Retarget {
                 motion: motion.name.clone(),
                 body: body.name.clone(),
@@ -302,20 +303,7 @@ fn leg_length(figure: &Humanoid, rest: impl Fn(usize) -> Vec3) -> f32 {
 fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
     clip.detect_loop(body);
     let frames = clip.joints.first().and_then(|j| j.rotation.as_ref()).map_or(0, |r| r.values.len());
-    if clip.loops || frames < 8 {
-        return;
-    }
-    let seam = clip.seam(body);
-    let (mut before, mut last) = (Pose::default(), Pose::default());
-    pose_at(body, Some(clip), clip.duration_secs.next_down(), &mut last);
-    pose_at(body, Some(clip), clip.duration_secs - frame_secs, &mut before);
-    let step = last
-        .world_from_joint
-        .iter()
-        .zip(&before.world_from_joint)
-        .map(|(a, b)| Vec3::from(a.translation - b.translation).length())
-        .fold(0.0, f32::max);
-    if seam.distance > 1.5 * step {
+    if clip.loops || frames < MIN_CYCLE || !clip.seam(body).is_step_like(clip.last_step(body, frame_secs)) {
         return;
     }
     let Some(times) = clip.joints.first().and_then(|j| j.rotation.as_ref()).map(|r| r.times.clone()) else {
@@ -333,5 +321,6 @@ fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
         }
     }
     clip.duration_secs = clip.keys_end_secs();
+    clip.added_secs = frame_secs;
     clip.loops = true;
 }

@@ -43,7 +43,7 @@ pub(super) fn read_clips(
     }
     let mut clips = Vec::new();
     for group in groups {
-        let clip = Reader::new(file, layer, &group)?.read(layer, &group, shapes)?;
+        let clip = Reader::new(file, layer)?.read(layer, &group, shapes)?;
         if !clip.joints.is_empty() || !clip.morphs.is_empty() {
             clips.push(clip);
         }
@@ -54,35 +54,22 @@ pub(super) fn read_clips(
 /// The clock of one clip.
 struct Reader<'a> {
     file: &'a str,
-    start: f64,
+    /// The time code at which the stage states to start; 0 where it states none.
+    stated: f64,
     codes_per_second: f64,
 }
 
-/// The attributes of an animation that have samples.
-const SAMPLED: [&str; 4] = ["translations", "rotations", "scales", "blendShapeWeights"];
-
 impl<'a> Reader<'a> {
-    fn new(
-        file: &'a str,
-        layer: &mut dyn Layer,
-        group: &[(usize, &OneSkeleton)],
-    ) -> Result<Self, MotionError> {
+    fn new(file: &'a str, layer: &mut dyn Layer) -> Result<Self, MotionError> {
         let mut number = |name: &str| -> Result<Option<f64>, MotionError> {
             let value = layer.metadata(name)?;
             Ok(value.and_then(|value| value.numbers().first().copied()).filter(|n| n.is_finite()))
         };
         let rate = number("timeCodesPerSecond")?.or(number("framesPerSecond")?);
         let stated = number("startTimeCode")?;
-        let mut first = f64::INFINITY;
-        for &(animation, _) in group {
-            for name in SAMPLED {
-                first = layer.sample_times(animation, name)?.first().copied().unwrap_or(first).min(first);
-            }
-        }
-        let start = stated.filter(|start| *start <= first).unwrap_or(first);
         Ok(Self {
             file,
-            start: if start.is_finite() { start } else { 0.0 },
+            stated: stated.unwrap_or(0.0),
             codes_per_second: rate.filter(|rate| (1e-3..=1e6).contains(rate)).unwrap_or(24.0),
         })
     }
@@ -129,8 +116,7 @@ impl<'a> Reader<'a> {
         clip.joints.retain(|t| t.translation.is_some() || t.rotation.is_some() || t.scale.is_some());
         clip.joints.sort_by_key(|tracks| tracks.joint);
         clip.joints.dedup_by_key(|tracks| tracks.joint);
-        clip.duration_secs = clip.keys_end_secs();
-        Ok(clip)
+        Ok(clip.starting_at_first_key(self.stated / self.codes_per_second))
     }
 
     /// All samples of an attribute with `lanes` values each; its default as one sample if it has none; `None` if it is missing or of
@@ -151,9 +137,8 @@ impl<'a> Reader<'a> {
         }
         let (mut times, mut values) = (Vec::new(), Vec::with_capacity(codes.len() * lanes));
         for (k, code) in codes.iter().enumerate() {
-            let time = ((code - self.start) / self.codes_per_second) as f32;
-            let is_next =
-                time.is_finite() && (0.0..1e6).contains(&time) && times.last().is_none_or(|&t| t < time);
+            let time = (code / self.codes_per_second) as f32;
+            let is_next = time.is_finite() && time.abs() < 1e6 && times.last().is_none_or(|&t| t < time);
             let Some(value) = layer.sample(animation, name, k, lanes)?.filter(|_| is_next) else { continue };
             let value = make(value);
             if value.len() == lanes {

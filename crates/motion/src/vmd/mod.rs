@@ -31,7 +31,8 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     let mut raw = parse::parse(name, bytes)?;
     let unknown = drop_unknown(&mut raw);
     let last = raw.bones.values().filter_map(|keys| keys.last()).map(|key| key.frame).max();
-    let Some(last) = last else {
+    let first = raw.bones.values().filter_map(|keys| keys.first()).map(|key| key.frame).min();
+    let (Some(first), Some(last)) = (first, last) else {
         let found = if raw.dropped.is_empty() && unknown == 0 {
             "no key".to_owned()
         } else {
@@ -43,8 +44,12 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     // A frame without keys has no bytes, so a small file could otherwise claim a huge number of transforms. A file of any
     // size may last 23 minutes.
     let most = (bytes.len().max(1 << 20) / BONES.len()).min(MAX_FRAMES as usize);
-    if last as usize >= most {
-        let problem = format!("a key at frame {last}; must be before {most}, by the size of the file");
+    let frames = (last - first) as usize + 1;
+    if frames > most {
+        let problem = format!(
+            "a key at frame {last}, {} after the first; must be less than {most} after it, by the size of the file",
+            last - first
+        );
         return Err(MotionError::malformed(name, "the keys", problem));
     }
     let stem =
@@ -53,10 +58,12 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     let mut motion = MotionFile {
         name: stem,
         joints,
-        frames: last as usize + 1,
+        frames,
         frame_secs: 1.0 / 30.0,
-        rotations: Vec::with_capacity(BONES.len() * (last as usize + 1)),
-        positions: Vec::with_capacity(BONES.len() * (last as usize + 1)),
+        start_secs: f64::from(first) / 30.0,
+        lead_secs: f64::from(first) / 30.0,
+        rotations: Vec::with_capacity(BONES.len() * frames),
+        positions: Vec::with_capacity(BONES.len() * frames),
         unit_metres: UNIT_METRES,
         up: UpAxis::Y,
         height_metres: (place(8) + CROWN).y * UNIT_METRES,
@@ -65,7 +72,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     };
     let figure = Figure::new(&raw);
     let mut locals = Vec::with_capacity(BONES.len());
-    for frame in 0..=last {
+    for frame in first..=last {
         figure.pose(frame, &mut locals);
         for (bone, (rotation, position)) in locals.iter().enumerate() {
             // On the same side of the sphere as in the frame before, so that interpolation does not jump.

@@ -19,21 +19,21 @@ pub struct Node {
     pub children: Vec<Node>,
 }
 
-fn node(name: &'static str, values: Vec<Value>, children: Vec<Node>) -> Node {
+pub fn node(name: &'static str, values: Vec<Value>, children: Vec<Node>) -> Node {
     Node { name, values, children }
 }
 
-fn word(text: &'static str) -> Value {
+pub fn word(text: &'static str) -> Value {
     Text(text, "")
 }
 
-fn p(name: &'static str, kind: &'static str, values: Vec<Value>) -> Node {
+pub fn p(name: &'static str, kind: &'static str, values: Vec<Value>) -> Node {
     let mut all = vec![word(name), word(kind), word(""), word("A")];
     all.extend(values);
     node("P", all, vec![])
 }
 
-fn properties(children: Vec<Node>) -> Node {
+pub fn properties(children: Vec<Node>) -> Node {
     node("Properties70", vec![], children)
 }
 

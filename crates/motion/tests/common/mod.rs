@@ -1,5 +1,6 @@
 //! The location of the real files, and files that tests write.
 
+pub mod dance;
 pub mod fbx;
 
 use std::path::PathBuf;

@@ -44,7 +44,7 @@ fn rotations_multiply_in_listed_order() {
 #[test]
 fn tolerant_of_what_people_write() {
     let motion = load(
-        &arm("3 zrotation YROTATION Xrotation", "\t\t0 0 0 \r\n\r\n10 nan 0\n1 2\n0 0 360")
+        &arm("3 zrotation YROTATION Xrotation", "\t\t0 0 0 \r\n\r\n10 nan 0\n0 0 360\n1 2")
             .replace('\n', "\r\n"),
     );
     assert_eq!(motion.joints[0].name, "root of all");
@@ -54,7 +54,7 @@ fn tolerant_of_what_people_write() {
     // A full turn between two frames is no rotation.
     assert!(motion.rotations[2 * 2].dot(motion.rotations[0]) > 0.999_999);
     // Rows split over lines.
-    assert_eq!(load(&arm("3 Zrotation Yrotation Xrotation", "0\n0\n0 0\n0 0")).frames, 2);
+    assert_eq!(load(&arm("3 Zrotation Yrotation Xrotation", "0\n0 0\n\n0 0\n0")).frames, 2);
     // No frame time.
     let timeless = arm("3 Zrotation Yrotation Xrotation", "0 0 0").replace("0.1", "-1");
     assert!((load(&timeless).frame_secs - 1.0 / 30.0).abs() < 1e-9);

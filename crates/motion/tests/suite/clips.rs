@@ -6,7 +6,7 @@ use std::{f32::consts::FRAC_PI_2, sync::Arc};
 
 use glam::{Quat, Vec3};
 use lovelock_motion::{
-    Body, Clip, Interpolation, Joint, JointTracks, Pose, Skeleton, Track, load_character, pose_at,
+    Body, Clip, Interpolation, Joint, JointTracks, LoopBlend, Pose, Skeleton, Track, load_character, pose_at,
 };
 
 fn track<T>(times: &[f32], values: Vec<T>, interpolation: Interpolation) -> Track<T> {
@@ -113,13 +113,30 @@ fn a_cross_faded_clip_repeats_without_a_jump() {
     };
     // Negative control: without the cross-fade it jumps by 4 m.
     assert!(jump(&open) > 3.9);
-    let faded = open.clone().with_loop_blend(0.5);
+    let faded = open.clone().with_loop_blend(0.5, LoopBlend::Start);
     assert!(faded.loops && (faded.duration_secs - 1.5).abs() < 1e-12);
     assert!(jump(&faded) < 2e-3, "{}", jump(&faded));
     // Outside the cross-fade the clip is unchanged.
     assert_eq!(place(&faded, 0.75), place(&open, 0.75));
-    let again = faded.with_loop_blend(0.0);
+    let again = faded.with_loop_blend(0.0, LoopBlend::Start);
     assert_eq!(again.duration_secs, 2.0);
+}
+
+#[test]
+fn a_blend_at_the_end_keeps_all_poses_before_it_and_the_length() {
+    let open =
+        moving(track(&[0.0, 1.0, 2.0], vec![Vec3::X, Vec3::ZERO, Vec3::X * 4.0], Interpolation::Linear));
+    let blended = open.clone().with_loop_blend(0.5, LoopBlend::End);
+    assert!(blended.loops && blended.duration_secs == 2.0);
+    for secs in [0.0, 0.1, 0.4, 1.0, 1.5] {
+        assert_eq!(place(&blended, secs), place(&open, secs), "{secs}");
+    }
+    assert!(place(&blended, 1.75).distance(Vec3::X * 2.0) < 1e-6, "half way to the first pose");
+    let jump = place(&blended, 2.0 - 1e-4).distance(place(&blended, 2.0 + 1e-4));
+    assert!(jump < 2e-3, "{jump}");
+    let once = blended.played_once();
+    assert!(place(&once, 2.0_f64.next_down()).distance(Vec3::X * 4.0) < 1e-6, "the last pose");
+    assert!(!once.loops);
 }
 
 #[test]
@@ -174,7 +191,7 @@ fn a_trimmed_clip_is_a_part_of_the_whole_one() {
     }
     assert!((x(&part, 2.0) - x(&part, 0.0)).abs() < 1e-5, "it repeats");
     // With its end cross-faded into its start it reads only keys of the range.
-    let faded = part.with_loop_blend(0.5);
+    let faded = part.with_loop_blend(0.5, LoopBlend::Start);
     assert_eq!(faded.duration_secs, 1.5);
     assert!((x(&faded, 0.0) - start - 2.5).abs() < 1e-5, "the round starts in the tail");
     assert!((x(&faded, 0.5) - start - 1.5).abs() < 1e-5, "the tail has no effect after the cross-fade");

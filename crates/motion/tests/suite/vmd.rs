@@ -189,6 +189,18 @@ fn switches_and_curves_apply_from_their_frame_on() {
 }
 
 #[test]
+fn a_dance_begins_with_its_first_key() {
+    let from = |first: u32| {
+        let vmd = Vmd::default().key("センター", first, [0.0; 3], Quat::IDENTITY);
+        vmd.key("センター", first + 30, [3.0, 0.0, 0.0], Quat::IDENTITY).load()
+    };
+    let (early, late) = (from(0), from(150));
+    assert_eq!((late.frames, &late.positions), (31, &early.positions));
+    let info = late.info();
+    assert!((info.start_secs - 5.0).abs() < 1e-9 && (info.end_secs - 6.0).abs() < 1e-9);
+}
+
+#[test]
 fn a_dance_stands_on_the_floor_of_the_dancer() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
     if !path.is_file() {

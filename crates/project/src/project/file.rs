@@ -4,11 +4,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use lovelock_motion::LoopBlend;
 use serde::Deserialize;
 
 use super::generic::unknown_fields;
 use super::version_1::Version1;
-use super::{PROJECT_VERSION, Project, version_2};
+use super::{PROJECT_VERSION, Project, loop_blend, version_2};
 use crate::error::{Place, Problem, ProblemKind, ProjectError};
 use crate::files::{Access, folder_of, write_whole};
 
@@ -138,6 +139,9 @@ pub(crate) fn parse_text(
     }
     if header.version < 3 {
         version_2::migrate(&mut project);
+    }
+    if loop_blend::is_at_start(&options, text) {
+        project.motion.loop_blend = LoopBlend::Start;
     }
     let mut problems = Vec::new();
     let known = options

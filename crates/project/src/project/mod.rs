@@ -7,6 +7,7 @@
 mod contender;
 mod file;
 mod generic;
+mod loop_blend;
 mod memory;
 mod sanitise;
 mod sections;
@@ -34,6 +35,7 @@ pub use sound::SoundSection;
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
 use lovelock_groom::{GroomSettings, HairLook, Preset};
+use lovelock_motion::LoopBlend;
 use lovelock_render::{Light, PictureSettings, ShadowSettings, StrandCount};
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
@@ -126,6 +128,7 @@ impl Project {
         self.body.switch(Some(FileRef::new(path)));
         if self.motion.source == MotionSource::Clip {
             self.motion.clip.clear();
+            self.motion.loop_blend = LoopBlend::End;
         }
     }
 
@@ -133,6 +136,7 @@ impl Project {
     pub fn set_motion_file(&mut self, path: impl Into<std::path::PathBuf>) {
         self.motion.source = MotionSource::File;
         self.motion.file = Some(FileRef::new(path));
+        self.motion.loop_blend = LoopBlend::End;
     }
 
     /// Takes the light from all directions from a picture that the user picked.
@@ -165,6 +169,7 @@ impl Project {
             Place::Motion => {
                 self.motion.source = other.motion.source;
                 self.motion.file.clone_from(&other.motion.file);
+                self.motion.loop_blend = other.motion.loop_blend;
             }
             Place::Surroundings => self.surroundings.file.clone_from(&other.surroundings.file),
             Place::Sound => self.sound.file.clone_from(&other.sound.file),

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairLook, HairShading, HairTie, Haircut, ImportSettings, Preset};
-use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings, ScalpFit};
+use lovelock_motion::{BodySettings, ColliderEdits, LoopBlend, MotionSettings, ScalpFit};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_simulation::SimulationSettings;
@@ -116,7 +116,9 @@ pub struct MotionSection {
     pub end_secs: Option<f32>,
     /// Whether the clip starts again at its end; it holds its last pose otherwise.
     pub looping: bool,
-    /// Duration over which the end of a clip that does not loop by itself is blended into its start, seconds.
+    /// Where the ends of a clip that does not loop by itself are blended while it loops.
+    pub loop_blend: LoopBlend,
+    /// Duration of that blend, seconds.
     pub loop_blend_secs: f32,
 }
 
@@ -131,6 +133,7 @@ impl Default for MotionSection {
             start_secs: 0.0,
             end_secs: None,
             looping: true,
+            loop_blend: LoopBlend::End,
             loop_blend_secs: 0.5,
         }
     }

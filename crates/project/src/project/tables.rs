@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
 use lovelock_groom::{HairShading, HairTie, Preset};
+use lovelock_motion::LoopBlend;
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, Transparency};
 
@@ -181,10 +182,16 @@ impl Settings for MotionSection {
             field!(Self, loop_blend_secs),
             [0.0, 2.0],
             "Loop blend",
-            "Duration of the blend from the end of the clip into its start, for clips that do not loop by themselves.",
+            "Duration of the blend between the ends of a clip that does not loop by itself.",
         )
         .unit(Unit::SECONDS)
         .decimals(2),
+        Setting::choice::<LoopBlend>(
+            field!(Self, loop_blend),
+            "Loop blend at",
+            "Where the ends of a clip that does not loop by itself are blended. At its end, every pose before the blend is that of the \
+             file; at its start, the clip is shorter by the blend, and counts from the zero of its file.",
+        ),
     ];
 
     fn parts(&self) -> Vec<Part<'_>> {

@@ -237,6 +237,7 @@ impl SeamOfTake {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
+    use lovelock_motion::LoopBlend;
     use lovelock_project::Project;
     use lovelock_project::files::Access;
 
@@ -256,8 +257,9 @@ mod tests {
         (project.motion.start_secs, project.motion.end_secs) = (1.0, Some(2.5));
         (project.simulation.wind.speed, project.simulation.wind.gusts) = (6.0, 1.0);
         project.simulation.wind.turbulence = 1.0;
-        // The stiffness at which the values below were measured.
+        // The stiffness and the length of the round at which the values below were measured.
         project.simulation.stiffness_root = 14.0;
+        project.motion.loop_blend = LoopBlend::Start;
         project
     }
 

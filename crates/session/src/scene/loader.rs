@@ -124,6 +124,7 @@ impl SceneLoader {
             clip: motion.clip.clone(),
             speed: f64::from(project.motion.speed),
             looping,
+            loop_blend: project.motion.loop_blend,
             colliders,
             sheltering,
             fitted: Arc::clone(&body.colliders),

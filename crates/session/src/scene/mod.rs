@@ -27,7 +27,8 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_appearance::environment::Panorama;
 use lovelock_groom::{Hairstyle, Obstacle, Scalp};
-use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance, Skull};
+use lovelock_motion::{Body, BodyField, Clip, Collider, LoopBlend, RestDistance, Skull};
+use lovelock_project::error::Problem;
 use lovelock_simulation::BodyPart;
 
 /// The body at rest as the obstacle around which hair is combed.
@@ -60,6 +61,8 @@ pub struct Scene {
     pub speed: f64,
     /// Whether the clip starts again at its end.
     pub looping: bool,
+    /// Where the ends of a clip are blended while it loops.
+    pub loop_blend: LoopBlend,
     /// The shapes that hair collides with, in addition to the field.
     pub colliders: Arc<[Collider]>,
     /// The shapes that the field replaces for collisions; they still block the wind.
@@ -85,7 +88,7 @@ pub struct Scene {
     /// The picture of the surroundings that gives light from all directions, if there is one.
     pub surroundings: Option<Arc<Panorama>>,
     /// Notes about the files of body, motion, hair and surroundings: guesses, and ignored contents.
-    pub notes: Arc<[lovelock_project::error::Problem]>,
+    pub notes: Arc<[Problem]>,
 }
 
 impl Scene {
@@ -150,10 +153,54 @@ impl Scene {
         self.looping && self.clip.as_ref().is_none_or(|clip| clip.loops || clip.duration_secs <= 0.0)
     }
 
-    /// Number of frames of the motion at `fps` frames per second, at least one.
+    /// Number of frames of a film of the motion at `fps` frames per second, at least one: one round of a motion that repeats by itself,
+    /// otherwise all frames up to the one that shows the last pose.
     pub fn frames(&self, fps: f64) -> u64 {
+        let secs = self.duration_secs();
+        if secs > 0.0 && self.ends_with_last_pose() {
+            frames_to(secs, fps)
+        } else {
+            self.frames_of_round(fps)
+        }
+    }
+
+    /// Number of frames of one round of the motion at `fps` frames per second, at least one. The first pose of the next round is not one
+    /// of them.
+    pub fn frames_of_round(&self, fps: f64) -> u64 {
         frames_in(self.duration_secs(), fps)
     }
+
+    /// Whether a film of the motion ends with its last pose, instead of before the pose with which it repeats.
+    fn ends_with_last_pose(&self) -> bool {
+        let repeats =
+            self.looping && self.clip.as_ref().is_none_or(|clip| clip.loops && clip.loop_blend_secs <= 0.0);
+        self.loop_blend == LoopBlend::End && !repeats
+    }
+
+    /// The scene for a film of `frames` that need no second round of a motion whose last pose is not its first: it plays once, without the
+    /// blend by which it loops. `None` if the scene is right for them as it is.
+    pub fn played_once(&self, frames: &std::ops::Range<u64>, fps: f64) -> Option<Self> {
+        let clip = self.clip.as_ref().filter(|_| self.looping && self.ends_with_last_pose())?;
+        if frames.end > self.frames(fps) {
+            return None;
+        }
+        let clip = Arc::new((**clip).clone().played_once());
+        let head_path = Arc::new(HeadPath::new(&self.body, Some(&clip), false));
+        let notes = self.notes.iter().filter(|note| !self.is_loop_note(note)).cloned().collect();
+        Some(Self { clip: Some(clip), looping: false, head_path, notes, ..self.clone() })
+    }
+
+    /// Whether a note is that about the ends of the looping motion.
+    pub fn is_loop_note(&self, note: &Problem) -> bool {
+        self.clip.as_ref().is_some_and(|clip| parts::loop_note(clip) == *note)
+    }
+}
+
+/// Number of frames up to the first that is not before `end_secs`.
+fn frames_to(end_secs: f64, fps: f64) -> u64 {
+    // Times of frames are rounded in files: 0.033333 s is meant as a thirtieth. The last pose does not differ within so little of a frame.
+    const ROUNDING: f64 = 0.05;
+    (end_secs * fps - ROUNDING).ceil().max(0.0) as u64 + 1
 }
 
 /// Number of frames that start before `duration_secs`, at least one.
@@ -177,7 +224,26 @@ mod styling_tests;
 mod surroundings_tests;
 #[cfg(test)]
 mod tests {
-    use super::frames_in;
+    use super::{frames_in, frames_to};
+
+    #[test]
+    fn the_last_pose_has_a_frame_at_any_rate() {
+        for (rows, row_secs, fps, frames) in [
+            (59, 0.033_333, 30.0, 59),
+            (59, 0.033_333_4, 30.0, 59),
+            (59, 0.033_333, 60.0, 117),
+            // The end lies between two frames.
+            (59, 0.033_333, 24.0, 48),
+            (1007, 0.01, 100.0, 1007),
+            (3000, 0.008_333, 120.0, 3000),
+            (1, 0.04, 30.0, 1),
+        ] {
+            let end = f64::from(rows - 1) * row_secs;
+            assert_eq!(frames_to(end, fps), frames, "{rows} rows of {row_secs} s at {fps}");
+            let last = (frames - 1) as f64 / fps;
+            assert!(last > end - 0.1 / fps, "{last} s of {end} s");
+        }
+    }
 
     #[test]
     fn rounding_to_single_precision_adds_no_frame() {

@@ -7,9 +7,9 @@ use std::sync::{Arc, OnceLock};
 use std::time::SystemTime;
 
 use lovelock_motion::{
-    Body, BodyField, BodySettings, Character, Clip, Collider, MotionError, MotionFile, MotionSettings,
-    RestDistance, Skeleton, fit_colliders, joint_paths, load_character_watched, load_motion_watched,
-    retarget,
+    Body, BodyField, BodySettings, Character, Clip, Collider, LoopBlend, MotionError, MotionFile,
+    MotionSettings, RestDistance, Skeleton, fit_colliders, joint_paths, load_character_watched,
+    load_motion_watched, retarget,
 };
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -172,34 +172,64 @@ pub(super) enum MotionKey {
     },
 }
 
-/// The part of a clip that is played, and the blend at its end.
+/// The part of a clip that is played, and how it repeats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Shape {
     /// Start, and end if it is not the clip's own, seconds.
     part: (f32, Option<f32>),
+    looping: bool,
+    blend: LoopBlend,
     blend_secs: f32,
 }
 
 impl Shape {
     fn of(section: &MotionSection) -> Self {
-        let blend_secs = if section.looping { section.loop_blend_secs } else { 0.0 };
-        Self { part: (section.start_secs, section.end_secs), blend_secs }
+        Self {
+            part: (section.start_secs, section.end_secs),
+            looping: section.looping,
+            blend: section.loop_blend,
+            blend_secs: section.loop_blend_secs,
+        }
     }
 
-    /// The trimmed clip, with its end blended into its start if it does not loop by itself.
-    fn applied(self, clip: &Arc<Clip>, body: &Body) -> Arc<Clip> {
+    /// The trimmed clip, with its ends blended if it loops but does not do so by itself, and a note if its ends differ.
+    fn applied(self, clip: &Arc<Clip>, body: &Body) -> (Arc<Clip>, Option<Problem>) {
         let mut clip = Arc::clone(clip);
-        let (start, end) = self.part;
+        if self.blend == LoopBlend::Start && clip.lead_secs != 0.0 {
+            clip = Arc::new((*clip).clone().on_file_clock());
+        }
+        let (start, mut end) = self.part;
+        if !self.looping && clip.added_secs > 0.0 && end.is_none() {
+            // The step back to the first pose is none of the file.
+            end = Some((clip.duration_secs - clip.added_secs) as f32);
+        }
         if start > 0.0 || end.is_some() {
             let mut part = (*clip).clone().trimmed(f64::from(start), end.map(f64::from));
             part.detect_loop(body);
             clip = Arc::new(part);
         }
-        if clip.loops || self.blend_secs <= 0.0 || clip.duration_secs <= 0.0 {
-            return clip;
+        if !self.looping || clip.loops || clip.duration_secs <= 0.0 {
+            return (clip, None);
         }
-        Arc::new((*clip).clone().with_loop_blend(f64::from(self.blend_secs)))
+        let blended = (*clip).clone().with_loop_blend(f64::from(self.blend_secs), self.blend);
+        let note = loop_note(&blended);
+        (Arc::new(blended), Some(note))
     }
+}
+
+/// What a clip whose last pose is not its first does while it loops.
+pub(super) fn loop_note(clip: &Clip) -> Problem {
+    let secs = clip.loop_blend_secs;
+    let how = match clip.loop_blend {
+        _ if secs <= 0.0 => "the body jumps when the motion starts again".to_owned(),
+        LoopBlend::End => {
+            format!("while the motion loops, its last {secs:.2} s are blended into the first pose")
+        }
+        LoopBlend::Start => format!(
+            "the motion is {secs:.2} s shorter, and its first {secs:.2} s are blended with its end, by the setting Loop blend at"
+        ),
+    };
+    Problem::new(Place::Motion, ProblemKind::Note, format!("the last pose is not the first: {how}"))
 }
 
 /// A motion of one body.
@@ -275,10 +305,10 @@ impl MotionKey {
                             format!("{} has no clip called `{name}`; it has {has}", part.body.name),
                         ))
                     }
-                    clip => Ok(MotionPart {
-                        clip: clip.map(|clip| shape.applied(clip, &part.body)),
-                        notes: Vec::new(),
-                    }),
+                    clip => {
+                        let (clip, note) = clip.map(|clip| shape.applied(clip, &part.body)).unzip();
+                        Ok(MotionPart { clip, notes: note.flatten().into_iter().collect() })
+                    }
                 }
             }
             Self::File { shape, .. } => {
@@ -286,10 +316,10 @@ impl MotionKey {
                 let Some(file) = file else { return Ok(MotionPart { clip: None, notes: Vec::new() }) };
                 let file = file.map_err(refuse)?;
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
-                Ok(MotionPart {
-                    clip: Some(shape.applied(&Arc::new(clip), &part.body)),
-                    notes: file_notes(Place::Motion, &file.dropped, &file.notes),
-                })
+                let (clip, note) = shape.applied(&Arc::new(clip), &part.body);
+                let mut notes = file_notes(Place::Motion, &file.dropped, &file.notes);
+                notes.extend(note);
+                Ok(MotionPart { clip: Some(clip), notes })
             }
         }
     }

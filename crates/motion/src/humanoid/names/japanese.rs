@@ -26,6 +26,11 @@ pub(super) fn label(name: &str) -> Option<Label> {
     Some(Label { part, side, numbers: vec![u32::from(!is_copy)], helper: false })
 }
 
+/// The side that a name states.
+pub(super) fn side(name: &str) -> Option<Side> {
+    side_of(name).0
+}
+
 /// The side, and the name without it.
 fn side_of(name: &str) -> (Option<Side>, &str) {
     let ends = |ends: [&str; 3]| ends.into_iter().find_map(|end| name.strip_suffix(end));
