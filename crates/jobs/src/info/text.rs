@@ -56,12 +56,14 @@ impl fmt::Display for Info {
                 line(f, "frames", format_args!("{}, one every {:.5} s", motion.frames, motion.frame_secs))?;
                 let (start, end) = (motion.start_secs, motion.end_secs);
                 line(f, "time", format_args!("{:.2} s, from {start:.2} s to {end:.2} s", end - start))?;
-                let ends = if motion.loops {
-                    "repeats without a jump"
-                } else {
-                    "the last pose is not the first; the end is blended into the first pose while it loops"
-                };
-                line(f, "loop", ends)?;
+                if motion.frames > 1 {
+                    let ends = if motion.loops {
+                        "repeats without a jump"
+                    } else {
+                        "the last pose is not the first; the end is blended into the first pose while it loops"
+                    };
+                    line(f, "loop", ends)?;
+                }
                 line(f, "unit", format_args!("{} m", motion.unit_metres))?;
                 line(f, "height", format_args!("{:.2} m", motion.height_m))?;
                 remarks(f, &motion.dropped, &motion.notes)

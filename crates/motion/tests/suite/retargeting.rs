@@ -155,12 +155,31 @@ fn a_pose_of_the_same_rig_is_reproduced() {
 fn figures_that_do_not_correspond_are_refused() {
     let Some(data) = common::data_dir() else { return };
     let motion = load_motion(&data.join("motion/mh_walk1.bvh")).unwrap();
-    let man = load_character(&data.join("characters/CesiumMan.glb")).unwrap();
-    let error = retarget(&motion, &man.body).unwrap_err();
+    let fox = load_character(&data.join("characters/Fox.glb")).unwrap();
+    let error = retarget(&motion, &fox.body).unwrap_err();
     assert!(
         matches!(error, MotionError::Retarget { .. }) && error.to_string().contains("of the body"),
         "{error}"
     );
+}
+
+#[test]
+fn a_body_without_a_named_head_is_told_by_its_shape() {
+    let Some(data) = common::data_dir() else { return };
+    let motion = load_motion(&data.join("motion/mh_walk1.bvh")).unwrap();
+    let man = load_character(&data.join("characters/CesiumMan.glb")).unwrap().body;
+    let clip = retarget(&motion, &man).unwrap();
+    let (mut pose, mut moved) = (Pose::default(), 0.0_f32);
+    for k in 0..14 {
+        pose_at(&man, Some(&clip), f64::from(k) * motion.frame_secs, &mut pose);
+        let heights = pose.world_from_joint.iter().map(|world| world.translation.y / man.height());
+        let lowest = heights.fold(f32::MAX, f32::min);
+        let head = pose.world_from_joint[man.head_joint].translation;
+        assert!(head.y > 0.75 * man.height() && (-0.05..0.2).contains(&lowest), "{k}: {head}, {lowest}");
+        let feet = pose.world_from_joint.iter().map(|world| (world.translation - head).z);
+        moved = moved.max(feet.fold(0.0, f32::max));
+    }
+    assert!(moved > 0.05 * man.height(), "it walks: {moved}");
 }
 
 /// Joints of the dancer whose motion every figure has.

@@ -242,7 +242,13 @@ fn files_without_a_dance_are_refused_in_a_sentence() {
         (Vmd::default().key("スカート", 0, [0.0; 3], Quat::IDENTITY).bytes(), "1 other bones"),
         (sound[..60].to_vec(), "byte 50: 1 keys of bones of 111 bytes in 6 bytes"),
         (sound[..20].to_vec(), "byte 0: 20 bytes left"),
-        (Vmd::default().key("頭", 4_000_000_000, [0.0; 3], Quat::IDENTITY).bytes(), "frame 4000000000"),
+        (
+            Vmd::default()
+                .key("頭", 7, [0.0; 3], Quat::IDENTITY)
+                .key("頭", 4_000_000_000, [0.0; 3], Quat::IDENTITY)
+                .bytes(),
+            "frame 4000000000",
+        ),
     ] {
         let error = load(&bytes).expect_err(found).to_string();
         assert!(
