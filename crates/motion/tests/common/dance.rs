@@ -66,11 +66,13 @@ pub struct Dance {
     pub frames: usize,
     /// Number of the first frame; 30 frames are a second.
     pub first: i64,
+    /// Whether joints of an FBX file have axes of their own, so that their zero rotations are no pose of a figure.
+    pub own_axes: bool,
 }
 
 impl Dance {
     pub fn new(names: &Names) -> Self {
-        Self { names: *names, frames: 20, first: 0 }
+        Self { names: *names, frames: 20, first: 0, own_axes: false }
     }
 
     fn offset(joint: usize) -> Vec3 {
@@ -293,12 +295,18 @@ impl Dance {
     /// As FBX without a mesh, in centimetres. The transforms of its nodes are those in the middle of the dance.
     pub fn fbx(&self) -> Vec<Node> {
         const SECOND: i64 = 46_186_158_000;
+        let axes = |joint: usize| {
+            let k = if self.own_axes { joint as f32 } else { 0.0 };
+            Quat::from_rotation_z(0.7 * k) * Quat::from_rotation_x(0.4 * k)
+        };
+        let above = |joint: usize| axes(JOINTS[joint].0).inverse();
         let degrees = |joint: usize, frame: usize| {
-            let (z, y, x) = Self::turn(joint, frame).to_euler(EulerRot::ZYX);
+            let local = above(joint) * Self::turn(joint, frame) * axes(joint);
+            let (z, y, x) = local.to_euler(EulerRot::ZYX);
             [x, y, z].map(|angle| f64::from(angle.to_degrees()))
         };
         let place = |joint: usize, frame: usize| {
-            let p = if joint == 0 { Self::hips(frame) } else { Self::offset(joint) };
+            let p = if joint == 0 { Self::hips(frame) } else { above(joint) * Self::offset(joint) };
             p.to_array().map(|v| f64::from(v) * 100.0)
         };
         let lcl = |name: &'static str, values: [f64; 3]| p(name, name, values.map(Value::Number).into());

@@ -270,4 +270,10 @@ fn a_file_without_a_skin_rests_in_the_pose_nearest_to_a_standing_figure() {
     let at = |name: &str| rest[motion.joints.iter().position(|j| j.name == name).expect(name)];
     let arm = at("LeftHand") - at("LeftArm");
     assert!(arm.normalize_or_zero().distance(Vec3::X) < 1e-3, "{arm}");
+    // Where joints have axes of their own, zero rotations are no pose of a figure, but the first key is a T-pose.
+    let turned = load("a.fbx", &fbx::binary(&Dance { own_axes: true, ..Dance::new(&MIXAMO) }.fbx()));
+    assert!(turned.notes.iter().any(|note| note.contains("that of the first key")), "{:?}", turned.notes);
+    let Some(body) = dancer() else { return };
+    let reference = retarget(&load("a.bvh", Dance::new(&MIXAMO).bvh().as_bytes()), &body).expect("a clip");
+    assert_same(&body, &turned, &reference, "joints with axes of their own");
 }

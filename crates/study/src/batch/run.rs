@@ -44,10 +44,11 @@ pub fn compare(
     let entrants = entrants(&project, asked, &backends, &request.sweeps)?;
     let folder = Folder::new(&request.out)?;
 
-    let (mut dance, problems) = Dance::open(&project, &request.access, fps, progress)?;
+    let (mut dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
+    let frames = frames(&project, request, &dance, fps)?;
+    dance.play_once(&frames, &mut problems);
     report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     notes.extend(problems.iter().map(ToString::to_string));
-    let frames = frames(&project, request, &dance, fps)?;
     let mut report = CompareReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         machine: machine(),
