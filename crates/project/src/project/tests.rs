@@ -422,3 +422,25 @@ fn hair_moves_from_one_character_to_another_and_each_keeps_its_scalp() {
     let read: crate::project::BodySection = ron::from_str(&text).expect("a section");
     assert_eq!(read, project.body);
 }
+
+#[test]
+fn projects_saved_before_the_place_of_the_loop_blend_keep_it_at_the_start() {
+    use lovelock_motion::LoopBlend;
+    let place = |text: &str| {
+        let (project, problems) = parse_project(Path::new("p"), text).expect("a project");
+        assert!(problems.is_empty(), "{problems:?}");
+        project.motion.loop_blend
+    };
+    // What an earlier version saved has the duration; what a person wrote has neither.
+    assert_eq!(place("(version: 3, motion: (looping: true, loop_blend_secs: 0.5))"), LoopBlend::Start);
+    assert_eq!(place("(version: 3, motion: (speed: 0.5))"), LoopBlend::End);
+    assert_eq!(place("(version: 3, motion: (loop_blend_secs: 0.5, loop_blend: end))"), LoopBlend::End);
+    let mut project = Project::default();
+    assert_eq!(project.motion.loop_blend, LoopBlend::End);
+    project.motion.loop_blend = LoopBlend::Start;
+    let text = text_of_project(Path::new("p"), &project).expect("text");
+    assert_eq!(place(&text), LoopBlend::Start);
+    // A motion that is imported into an old project plays all its keys.
+    project.set_motion_file("other.bvh");
+    assert_eq!(project.motion.loop_blend, LoopBlend::End);
+}
