@@ -1,8 +1,10 @@
 //! Reads sound files: WAV, MP3, Ogg Vorbis and FLAC.
 
 mod counted;
+mod end;
 mod mix;
 mod resample;
+mod wav;
 
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -20,6 +22,7 @@ use symphonia::core::meta::MetadataOptions;
 use crate::error::SoundError;
 use crate::sound::{RATE, Sound};
 use counted::Counted;
+use end::{End, Next};
 use mix::Mix;
 use resample::Resampler;
 
@@ -39,7 +42,7 @@ const LONGEST_PACKET: usize = 1 << 20;
 const MAX_DAMAGED: u32 = 2000;
 
 /// Names of sound files end in one of these.
-pub const SOUND_EXTENSIONS: [&str; 5] = ["wav", "mp3", "ogg", "oga", "flac"];
+pub const SOUND_EXTENSIONS: [&str; 6] = ["wav", "wave", "mp3", "ogg", "oga", "flac"];
 
 /// What a file contained before it was brought to [`RATE`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,10 +60,8 @@ pub struct Source {
 /// Whether the first bytes of a file are those of a sound that [`read_sound`] may read. 12 bytes suffice.
 pub fn is_sound(start: &[u8]) -> bool {
     match start {
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'A', b'V', b'E', ..]
-        | [b'O', b'g', b'g', b'S', ..]
-        | [b'f', b'L', b'a', b'C', ..]
-        | [b'I', b'D', b'3', ..] => true,
+        _ if wav::is_wav(start) => true,
+        [b'O', b'g', b'g', b'S', ..] | [b'f', b'L', b'a', b'C', ..] | [b'I', b'D', b'3', ..] => true,
         // The sync word of MPEG, with layer 3 and a valid rate.
         [0xFF, second, third, ..] => second & 0xE6 == 0xE2 && third & 0xF0 != 0xF0 && third & 0x0C != 0x0C,
         _ => false,
@@ -72,8 +73,8 @@ pub fn is_sound(start: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`SoundError::Refused`] for what is no sound, has no channel or no sample, a rate outside [`RATES`], or lasts longer than
-/// [`LONGEST_SECS`]; [`SoundError::Io`] if the file cannot be read; [`SoundError::Cancelled`]. A file that ends early is read up to
-/// there, and a note says so.
+/// [`LONGEST_SECS`]; [`SoundError::Io`] if the file cannot be read; [`SoundError::Cancelled`]. A file that ends early, or whose header
+/// states a wrong length, is read up to its end, and a note says so.
 pub fn read_sound(
     path: &Path,
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
@@ -97,16 +98,25 @@ fn read(
     progress: &mut dyn FnMut(f32) -> ControlFlow<()>,
 ) -> Result<(Sound, Source), SoundError> {
     let io = |source| SoundError::Io { path: path.to_owned(), source };
-    let file = File::open(path).map_err(io)?;
-    let (counted, read) = Counted::new(file).map_err(io)?;
+    let mut file = File::open(path).map_err(io)?;
+    let data = file.metadata().map_err(io)?;
+    if !data.is_file() {
+        return Err(io(std::io::Error::other("it is not a file")));
+    }
     let refused = |found: &str, wanted: &str| SoundError::Refused {
         path: path.to_owned(),
         found: found.to_owned(),
         wanted: wanted.to_owned(),
     };
-    if counted.length() == 0 {
+    if data.len() == 0 {
         return Err(refused("found an empty file", WANTED));
     }
+    let (head, part, notes) = match wav::parts(&mut file, data.len()).map_err(io)? {
+        Some(Ok(parts)) => (parts.head, parts.samples, parts.notes),
+        Some(Err([found, wanted])) => return Err(refused(found, wanted)),
+        None => (Vec::new(), 0..data.len(), Vec::new()),
+    };
+    let (counted, read) = Counted::new(file, head, part).map_err(io)?;
     let stream = MediaSourceStream::new(Box::new(counted), MediaSourceStreamOptions::default());
     // Pictures of the cover are not used.
     let meta = MetadataOptions::default().limit_visual_bytes(Limit::Maximum(0));
@@ -115,21 +125,19 @@ fn read(
         .map_err(|error| refused(&format!("found no sound ({error})"), WANTED))?;
     let (track, mut decoder) = open(reader.as_ref()).map_err(|found| refused(&found, WANTED))?;
 
-    let mut source = Source {
-        format: format_name(reader.as_ref(), decoder.as_ref()),
-        rate: 0,
-        channels: 0,
-        notes: Vec::new(),
-    };
+    let mut source =
+        Source { format: format_name(reader.as_ref(), decoder.as_ref()), rate: 0, channels: 0, notes };
+    let mut end = End::of(reader.as_ref());
     let mut chain: Option<(Mix, Resampler)> = None;
     let (mut packet_samples, mut damaged, mut in_a_row) = (Vec::<f32>::new(), 0_u64, 0);
     loop {
         if progress(read.fraction()).is_break() {
             return Err(SoundError::Cancelled);
         }
-        let packet = match reader.next_packet() {
-            Ok(Some(packet)) => packet,
-            Ok(None) => break,
+        let packet = match end.next(reader.as_mut(), track) {
+            Ok(Next::Packet(packet)) => packet,
+            Ok(Next::Waiting) => continue,
+            Ok(Next::End) => break,
             Err(Error::ResetRequired) => {
                 source.notes.push("another sound follows in the file and was left out".to_owned());
                 break;
@@ -141,9 +149,6 @@ fn read(
                 break;
             }
         };
-        if packet.track_id != track {
-            continue;
-        }
         let decoded = match decoder.decode(&packet) {
             Ok(decoded) => decoded,
             Err(Error::DecodeError(_) | Error::IoError(_)) if in_a_row < MAX_DAMAGED => {
@@ -200,6 +205,11 @@ fn read(
     if damaged > 0 {
         source.notes.push(format!("{damaged} damaged packets were left out"));
     }
+    if end.is_wrong() {
+        source
+            .notes
+            .push("its header states a shorter length; it is played to the end of the file".to_owned());
+    }
     let sound = Sound::new(resampler.finish(), mix.channels());
     if sound.frames() == 0 {
         return Err(refused("found no samples", "a sound of at least one sample"));
@@ -233,7 +243,9 @@ fn open(reader: &dyn FormatReader) -> Result<(u32, Box<dyn AudioDecoder>), Strin
             RATES.end()
         ));
     }
-    let longest = parameters.sample_rate.map(|rate| LONGEST_SECS * f64::from(rate));
+    // Other headers may state any length; these sounds are measured as they are read.
+    let is_measured = reader.format_info().short_name == "wave";
+    let longest = parameters.sample_rate.filter(|_| is_measured).map(|rate| LONGEST_SECS * f64::from(rate));
     if let (Some(frames), Some(longest)) = (track.num_frames, longest)
         && frames as f64 > longest
     {

@@ -250,3 +250,149 @@ fn reading_reports_progress_and_can_be_cancelled() {
     });
     assert!(matches!(stopped, Err(SoundError::Cancelled)));
 }
+
+/// A WAV file of a sine of one second whose lengths are replaced; `after` follows the samples.
+fn with_lengths(form: &[u8], riff: u32, data: u32, after: &[u8]) -> Vec<u8> {
+    let mut bytes = wav(1, 1, 22_050, 16, &bytes_16(&sine(22_050, 1.0, 1, 0.5)));
+    bytes[..4].copy_from_slice(form);
+    bytes[4..8].copy_from_slice(&riff.to_le_bytes());
+    bytes[40..44].copy_from_slice(&data.to_le_bytes());
+    bytes.extend(after);
+    bytes
+}
+
+#[test]
+fn headers_that_state_no_or_a_wrong_length_are_played_to_the_end() {
+    const SAMPLES: u32 = 44_100;
+    let list = b"LIST\x0c\0\0\0INFOISFT\0\0\0\0";
+    for (what, bytes, note) in [
+        ("RIFF 0", with_lengths(b"RIFF", 0, SAMPLES, &[]), ""),
+        ("RIFF 0, chunks after", with_lengths(b"RIFF", 0, SAMPLES, list), ""),
+        ("data 0", with_lengths(b"RIFF", 0, 0, &[]), "no length"),
+        ("data ffffffff", with_lengths(b"RIFF", u32::MAX, u32::MAX, &[]), "no length"),
+        ("data 7fffffff", with_lengths(b"RIFF", 0x7fff_fff0, 0x7fff_ff00, &[]), "of which 44100 are there"),
+        ("RIFF too short", with_lengths(b"RIFF", 40, SAMPLES, &[]), ""),
+        ("RF64 without ds64", with_lengths(b"RF64", u32::MAX, u32::MAX, &[]), "no length"),
+        ("BW64", with_lengths(b"BW64", u32::MAX, SAMPLES, &[]), ""),
+        ("odd end", with_lengths(b"RIFF", 0, 0, &[0]), "no length"),
+        ("no chunk after", with_lengths(b"RIFF", 0, SAMPLES, &[0; 9]), "9 bytes after the sound"),
+    ] {
+        assert!(is_sound(&bytes[..12]), "{what}");
+        let (sound, source) = read(&bytes).expect(what);
+        assert_eq!(sound.frames(), 48_000, "{what}: {:?}", source.notes);
+        assert!(error_of(&sound, 0.5) < 0.002, "{what}");
+        assert_eq!(source.notes.len(), usize::from(!note.is_empty()), "{what}: {:?}", source.notes);
+        assert!(source.notes.iter().all(|found| found.contains(note)), "{what}: {:?}", source.notes);
+    }
+    // Negative controls: half of the samples stated, none there, none of any length.
+    let (half, _) = read(&with_lengths(b"RIFF", 0, SAMPLES / 2, &[])).expect("half");
+    assert_eq!(half.frames(), 24_000);
+    for bytes in [wav(1, 1, 22_050, 16, &[]), [&wav(1, 1, 22_050, 16, &[]), &list[..]].concat()] {
+        let error = read(&bytes).expect_err("no samples").to_string();
+        assert!(error.contains("the `data` chunk is empty"), "{error}");
+    }
+    let error = read(&with_lengths(b"RIFX", 0, 0, &[])).expect_err("big-endian").to_string();
+    assert!(error.contains("RIFX"), "{error}");
+}
+
+#[test]
+fn sizes_of_64_bits_odd_chunks_and_other_formats_of_a_wav_file() {
+    let samples = bytes_16(&sine(22_050, 1.0, 1, 0.5));
+    let plain = wav(1, 1, 22_050, 16, &samples);
+    let (format, data) = (&plain[12..36], &plain[36..]);
+    let size = (samples.len() as u64).to_le_bytes();
+    let large = [
+        b"RF64\xff\xff\xff\xffWAVEds64\x1c\0\0\0",
+        &[0; 8][..],
+        &size,
+        &[0; 12],
+        format,
+        b"data\xff\xff\xff\xff",
+    ];
+    let large = [&large.concat()[..], &samples, b"LIST\x04\0\0\0INFO"].concat();
+    let odd = |padding: &[u8]| [b"RIFF\0\0\0\0WAVEbext\x03\0\0\0abc", padding, format, data].concat();
+    let mut floats = wav(
+        0xfffe,
+        1,
+        22_050,
+        32,
+        &sine(22_050, 1.0, 1, 0.5).iter().flat_map(|s| s.to_le_bytes()).collect::<Vec<u8>>(),
+    );
+    floats[16] = 40;
+    // Extensible, with a wrong size of the extension and no number of valid bits.
+    let extension =
+        [&[0, 0, 0, 0, 4, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0x10, 0][..], &[0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71]]
+            .concat();
+    floats.splice(36..36, extension);
+    let mut packed = plain.clone();
+    packed[34] = 12;
+    for (what, bytes) in [
+        ("RF64", large),
+        ("padded", odd(&[0])),
+        ("unpadded", odd(&[])),
+        ("extensible", floats),
+        ("12 bits in 16", packed),
+        ("MP3", [&wav(0x55, 1, 44_100, 0, &[])[..40], &0_u32.to_le_bytes(), TONES[0].1].concat()),
+    ] {
+        let (sound, source) = read(&bytes).expect(what);
+        let frames = if what == "MP3" { 24_000 } else { 48_000 };
+        assert!(sound.frames().abs_diff(frames) < 1400, "{what}: {} {:?}", sound.frames(), source.notes);
+        assert!(what == "MP3" || error_of(&sound, 0.5) < 0.002, "{what}");
+    }
+}
+
+#[test]
+fn wrong_lengths_in_mp3_ogg_and_flac_do_not_cut_the_sound() {
+    let [mp3, ogg, flac] = TONES.map(|(_, bytes)| bytes.to_vec());
+    let frames = |bytes: &[u8]| read(bytes).map(|(sound, source)| (sound.frames(), source.notes));
+    let whole = [&mp3, &ogg, &flac].map(|bytes| frames(bytes).expect("a sound").0);
+    // The number of frames in the tag of MP3: none, one, and more than there are.
+    let tag = mp3.windows(4).position(|four| four == b"Xing" || four == b"Info").expect("a tag");
+    for count in [0_u32, 1, 5, u32::MAX] {
+        let mut bytes = mp3.clone();
+        bytes[tag + 8..tag + 12].copy_from_slice(&count.to_be_bytes());
+        let (found, notes) = frames(&bytes).expect("a sound");
+        assert!(found >= whole[0] && found < whole[0] + 2400, "{count}: {found} of {} {notes:?}", whole[0]);
+        assert_eq!(notes.len(), usize::from(count < 6), "{count}: {notes:?}");
+    }
+    // The position at the end of every page of Ogg.
+    for position in [0_u64, 10] {
+        let mut bytes = ogg.clone();
+        let mut at = 0;
+        while let Some(page) = bytes[at..].windows(4).position(|four| four == b"OggS") {
+            bytes[at + page + 6..at + page + 14].copy_from_slice(&position.to_le_bytes());
+            at += page + 4;
+        }
+        let (found, notes) = frames(&with_checksums(bytes)).expect("a sound");
+        assert!(
+            found + 100 >= whole[1] && found < whole[1] + 2400,
+            "{position}: {found} of {} {notes:?}",
+            whole[1]
+        );
+    }
+    // The total of FLAC: unknown, one, and an hour.
+    for total in [0_u64, 1, 44_100 * 3600] {
+        let mut bytes = flac.clone();
+        bytes[21] &= 0xf0;
+        bytes[22..26].copy_from_slice(&(total as u32).to_be_bytes());
+        let (found, notes) = frames(&bytes).expect("a sound");
+        assert_eq!(found, whole[2], "{total}: {notes:?}");
+    }
+}
+
+#[test]
+fn recordings_with_wrong_headers_last_as_long_as_they_do() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    for name in ["riff_size_0_data_ok.wav", "data_size_0.wav"] {
+        let path = data.join("reports").join(name);
+        let (sound, _) = read_sound(&path, &mut |_| ControlFlow::Continue(())).expect(name);
+        assert!((sound.secs() - 2.0).abs() < 0.01, "{name}: {} s", sound.secs());
+        for (from, to, clicks) in
+            [(0.49, 0.53, true), (0.99, 1.03, true), (1.49, 1.53, true), (0.6, 0.95, false)]
+        {
+            let frames = (from * 48_000.0) as i64..(to * 48_000.0) as i64;
+            let loudest = frames.map(|frame| sound.stereo(frame)[0].abs()).fold(0.0, f32::max);
+            assert_eq!(loudest > 0.05, clicks, "{name} from {from} s: {loudest}");
+        }
+    }
+}
