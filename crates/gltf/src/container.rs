@@ -50,9 +50,13 @@ impl<'a> Container<'a> {
         let (mut json, mut bin, mut at) = (None, None, 12_usize);
         // Some writers leave a few bytes of padding at the end.
         while json.is_none() || bin.is_none() && at + 8 <= bytes.len() {
-            let (length, kind) = (word(at)? as usize, word(at + 4)?);
+            let (mut length, kind) = (word(at)? as usize, word(at + 4)?);
+            let left = bytes.len().saturating_sub(at + 8);
+            // Writers that are cut off leave no true length. The bytes that are there are used; what lies beyond them is refused when it is read.
+            if kind == BIN && (length > left || length == 0) {
+                length = left;
+            }
             let data = bytes.get(at + 8..).and_then(|tail| tail.get(..length)).ok_or_else(|| {
-                let left = bytes.len() - at - 8;
                 let found = format!("a chunk of {length} bytes, of which the file contains {left}");
                 malformed(at, found, "the whole chunk: the file is truncated")
             })?;
@@ -79,5 +83,21 @@ mod tests {
         assert!(Container::open("f", &glb).is_err());
         assert!(Container::open("f", b"glTF\x01\0\0\0").is_err());
         assert_eq!(Container::open("f", b"\xef\xbb\xbf{}").unwrap().json, b"{}");
+    }
+
+    #[test]
+    fn a_binary_chunk_that_states_a_wrong_length_has_the_bytes_that_are_there() {
+        for total in [0_u32, 44, u32::MAX] {
+            for length in [0_u32, 16, 17, u32::MAX] {
+                let head = [b"glTF\x02\0\0\0", &total.to_le_bytes(), b"\x04\0\0\0JSON{}  "].concat();
+                let glb = [&head[..], &length.to_le_bytes(), b"BIN\0", &[7; 16]].concat();
+                let container = Container::open("f", &glb).expect("a container");
+                assert_eq!(
+                    (container.json, container.bin),
+                    (&b"{}  "[..], Some(&[7; 16][..])),
+                    "{total} {length}"
+                );
+            }
+        }
     }
 }
