@@ -14,7 +14,7 @@ pub struct HairFormat {
     pub label: &'static str,
     /// Extensions of file names, without the dot, the most common one first.
     pub extensions: &'static [&'static str],
-    /// The start of its files, for error messages.
+    /// The start of its files, for error messages; empty if that of another format says it.
     pub(super) signature: &'static str,
     /// Whether its files state their unit and axes; their points are then read in metres with Y up.
     pub(super) states_unit: bool,
@@ -24,6 +24,9 @@ pub struct HairFormat {
     pub(super) magics: &'static [&'static [u8]],
     /// Whether a file that begins with these bytes may have this format, for formats without a magic number.
     pub(super) may_begin: fn(&[u8]) -> bool,
+    /// Whether files of other formats often begin in the same way. Under the name of another format, such a file is of this one only if it
+    /// can be read.
+    pub(super) by_chance: bool,
     /// Reads a file. The name is used in messages.
     pub(super) read: fn(&str, Source<'_>) -> Result<RawHair, HairFileError>,
     /// Writes hair that is in metres with Y up ([`HairFile::in_metres`]); `None` for formats that this crate only reads.

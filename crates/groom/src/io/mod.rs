@@ -1,5 +1,5 @@
-//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, curves of USD and Alembic, lines of glTF and OBJ, curves of pbrt, and
-//! USC-HairSalon's `.data`.
+//! Hair files: Cem Yuksel's `.hair` and that of `MonoHair`, AMD's TressFX `.tfx`, curves of USD and Alembic, lines of glTF and OBJ, curves of
+//! pbrt, strands in PLY and in arrays of `NumPy`, USC-HairSalon's `.data` and `CT2Hair`'s `.bin`.
 //!
 //! A [`HairFile`] contains the strands of a file, in the file's own unit and axes, without those that cannot be drawn
 //! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
@@ -17,8 +17,11 @@ mod format;
 mod frames;
 mod gltf;
 mod guess;
+mod headless;
+mod numpy;
 mod obj;
 mod pbrt;
+mod ply;
 mod registry;
 mod root_shape;
 mod source;

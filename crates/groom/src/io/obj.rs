@@ -1,4 +1,6 @@
 //! Polylines of Wavefront OBJ: the records `v` and `l`. The rest of a file is ignored.
+//!
+//! `#` begins a comment wherever a word may begin, and a backslash at the end of a line continues it. Lines end as in Unix, Windows or old Macs.
 
 use lovelock_base::words::counted;
 use std::fmt::Write as _;
@@ -22,6 +24,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[],
     may_begin: |start| begins_with_word(start, &RECORDS),
+    by_chance: false,
     read,
     write: Some(write),
 };
@@ -35,8 +38,10 @@ const LONGEST_LINE: u64 = 1 << 20;
 #[derive(Default)]
 struct Content {
     positions: Vec<Vec3>,
-    /// One per vertex, as long as every vertex has one.
+    /// Those of the vertices that have one; not numbers for the others. As long as the last vertex that has one.
     colours: Vec<[f32; 3]>,
+    /// The record of a line with the largest index of a vertex, which may follow it.
+    largest: Option<(u32, u64, String)>,
     /// Vertices of the polylines of three points or more, and how many each has.
     long: Vec<u32>,
     long_counts: Vec<u32>,
@@ -49,16 +54,20 @@ struct Content {
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let mut reader = source.into_reader();
+    let io = |source| HairFileError::Io { name: name.to_owned(), source };
     let (mut content, mut line, mut offset) = (Content::default(), Vec::new(), 0_u64);
     loop {
         line.clear();
         let start = offset;
-        // A backslash continues a record on the next line.
+        // A backslash continues a record on the next line, but no comment: paths of Windows end in one.
         loop {
-            let room = LONGEST_LINE.saturating_sub(line.len() as u64);
-            let read = std::io::Read::take(&mut reader, room).read_until(b'\n', &mut line);
-            let read = read.map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
-            offset += read as u64;
+            let begin = line.len();
+            let read = read_line(&mut *reader, &mut line).map_err(io)?;
+            offset += read;
+            if let Some(comment) = comment_in(&line[begin..]) {
+                line.truncate(begin + comment);
+                break;
+            }
             let trimmed = line.trim_ascii_end();
             if read > 0 && trimmed.ends_with(b"\\") {
                 line.truncate(trimmed.len() - 1);
@@ -75,12 +84,53 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
                 "shorter lines",
             ));
         }
-        if line.is_empty() && offset == start {
+        if offset == start {
             break;
+        }
+        if start == 0 && line.starts_with(b"\xef\xbb\xbf") {
+            line.drain(..3);
         }
         content.record(name, start, &line)?;
     }
     content.finish(name)
+}
+
+/// Appends a line without its end, and returns the bytes that were read. It stops where the line becomes too long.
+fn read_line(reader: &mut dyn BufRead, line: &mut Vec<u8>) -> std::io::Result<u64> {
+    let mut read = 0;
+    while (line.len() as u64) < LONGEST_LINE {
+        let buffer = reader.fill_buf()?;
+        if buffer.is_empty() {
+            break;
+        }
+        let room = buffer.len().min(LONGEST_LINE as usize - line.len());
+        let end = buffer[..room].iter().position(|&byte| byte == b'\n' || byte == b'\r');
+        let taken = end.unwrap_or(room);
+        line.extend_from_slice(&buffer[..taken]);
+        let is_return = end.is_some_and(|end| buffer[end] == b'\r');
+        let consumed = taken + usize::from(end.is_some());
+        reader.consume(consumed);
+        read += consumed as u64;
+        if is_return && reader.fill_buf()?.first() == Some(&b'\n') {
+            reader.consume(1);
+            read += 1;
+        }
+        if end.is_some() {
+            break;
+        }
+    }
+    Ok(read)
+}
+
+/// Where a comment begins in a line. What Microsoft's library writes for no number, `-1.#IND`, is none.
+fn comment_in(line: &[u8]) -> Option<usize> {
+    (0..line.len()).find(|&at| line[at] == b'#' && (at == 0 || line[at - 1] != b'.'))
+}
+
+/// The number of a word. `1.#QNAN` and `-1.#IND` are no numbers, as is `1.#INF`.
+fn number(word: &[u8]) -> Option<f32> {
+    let word = std::str::from_utf8(word).ok()?;
+    word.parse().ok().or_else(|| word.contains(".#").then_some(f32::NAN))
 }
 
 fn malformed(name: &str, offset: u64, found: String, wanted: &str) -> HairFileError {
@@ -94,9 +144,8 @@ impl Content {
             Some(b"v") => {
                 let mut numbers = [0.0_f32; 7];
                 let mut count = 0;
-                for (number, word) in numbers.iter_mut().zip(&mut words) {
-                    let parsed = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-                    *number = parsed.ok_or_else(|| {
+                for (place, word) in numbers.iter_mut().zip(&mut words) {
+                    *place = number(word).ok_or_else(|| {
                         malformed(name, offset, format!("`{}`", start_of(line)), "the numbers of a vertex")
                     })?;
                     count += 1;
@@ -110,7 +159,8 @@ impl Content {
                     ));
                 }
                 // Red, green and blue may follow, as in MeshLab and Blender; a single fourth number is a weight.
-                if count >= 6 && self.colours.len() == self.positions.len() {
+                if count >= 6 {
+                    self.colours.resize(self.positions.len(), [f32::NAN; 3]);
                     self.colours.push([numbers[3], numbers[4], numbers[5]]);
                 }
                 self.positions.push(Vec3::new(numbers[0], numbers[1], numbers[2]));
@@ -118,7 +168,8 @@ impl Content {
             Some(b"l") => {
                 let begin = self.long.len();
                 for word in words {
-                    self.long.push(self.vertex(name, offset, line, word)?);
+                    let vertex = self.vertex(name, offset, line, word)?;
+                    self.long.push(vertex);
                 }
                 match self.long[begin..] {
                     [a, b] => {
@@ -139,25 +190,37 @@ impl Content {
     }
 
     /// The vertex of `3`, `3/7` or `-1`, the last one so far.
-    fn vertex(&self, name: &str, offset: u64, line: &[u8], word: &[u8]) -> Result<u32, HairFileError> {
+    fn vertex(&mut self, name: &str, offset: u64, line: &[u8], word: &[u8]) -> Result<u32, HairFileError> {
         let index = word.split(|&byte| byte == b'/').next().unwrap_or_default();
         let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<i64>().ok());
         let known = self.positions.len() as i64;
         let place = match index {
-            Some(index) if index > 0 => Some(index - 1),
-            Some(index) if index < 0 => index.checked_add(known),
+            Some(index) if index > 0 => u32::try_from(index - 1).ok().filter(|place| *place < u32::MAX),
+            Some(index) if index < 0 => index.checked_add(known).and_then(|place| u32::try_from(place).ok()),
             _ => None,
         };
-        place.filter(|place| (0..known).contains(place)).map(|place| place as u32).ok_or_else(|| {
-            let wanted = format!("vertices from 1 to {known}, of the records `v` before it");
-            malformed(name, offset, format!("`{}`", start_of(line)), &wanted)
-        })
+        let place = place.ok_or_else(|| self.no_vertex(name, offset, &start_of(line)))?;
+        // Some programs write the lines before their vertices.
+        if i64::from(place) >= known && self.largest.as_ref().is_none_or(|(largest, ..)| place > *largest) {
+            self.largest = Some((place, offset, start_of(line)));
+        }
+        Ok(place)
+    }
+
+    fn no_vertex(&self, name: &str, offset: u64, line: &str) -> HairFileError {
+        let wanted = format!("vertices from 1 to {}, of the records `v`", self.positions.len());
+        malformed(name, offset, format!("`{line}`"), &wanted)
     }
 
     fn finish(self, name: &str) -> Result<RawHair, HairFileError> {
         if self.long_counts.is_empty() && self.pairs.is_empty() {
             let found = format!("{} vertices, {} faces and no line", self.positions.len(), self.faces);
             return Err(malformed(name, 0, found, "records `l` of two vertices or more"));
+        }
+        if let Some((largest, offset, line)) = &self.largest
+            && *largest as usize >= self.positions.len()
+        {
+            return Err(self.no_vertex(name, *offset, line));
         }
         let mut notes = Vec::new();
         if self.faces > 0 {
@@ -177,10 +240,37 @@ impl Content {
             long.take(&mut counts, &mut vertices);
         }
         first_listed.for_each(|_| joined.take(&mut counts, &mut vertices));
-        let coloured = self.colours.len() == self.positions.len();
-        let colours = coloured.then(|| vertices.iter().map(|&v: &u32| self.colours[v as usize]).collect());
+        let colours = self.colours_of(&vertices, &mut notes);
         let points = vertices.iter().map(|&v| self.positions[v as usize]).collect();
         Ok(RawHair { colours, notes, ..RawHair::new(counts, points) })
+    }
+
+    /// The colours of the vertices of strands. Those without one get the mean of the others. Vertices of other objects, such as a head, do not
+    /// count.
+    fn colours_of(&self, vertices: &[u32], notes: &mut Vec<String>) -> Option<Vec<[f32; 3]>> {
+        let colour = |v: u32| {
+            self.colours.get(v as usize).copied().filter(|colour| colour.iter().all(|v| !v.is_nan()))
+        };
+        let (mut sum, mut known, mut largest) = ([0.0_f64; 3], 0_usize, 0.0_f32);
+        for colour in vertices.iter().filter_map(|&v| colour(v)) {
+            sum.iter_mut().zip(colour).for_each(|(sum, value)| *sum += f64::from(value));
+            largest = colour.into_iter().fold(largest, f32::max);
+            known += 1;
+        }
+        if known == 0 {
+            return None;
+        }
+        if known < vertices.len() {
+            let others = counted(vertices.len() - known, "vertex has", "vertices have");
+            notes.push(format!("{others} no colour and got the mean of the others."));
+        }
+        // Some programs write bytes.
+        let full = if largest > 1.0 && largest <= 255.0 { 255.0 } else { 1.0 };
+        if full > 1.0 {
+            notes.push("The colours are from 0 to 255.".to_owned());
+        }
+        let mean = sum.map(|sum| (sum / known as f64) as f32);
+        Some(vertices.iter().map(|&v| colour(v).unwrap_or(mean).map(|value| value / full)).collect())
     }
 }
 
@@ -253,6 +343,73 @@ mod tests {
         let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
         assert_eq!((file.strands(), file.points.len()), (10, 50));
         assert_eq!(file.colours.expect("colours")[4], [0.5, 0.25, 0.5]);
+    }
+
+    #[test]
+    fn comments_continuations_and_line_ends_of_every_program() {
+        let lines = [
+            "\u{feff}v 0 0 0# the first",
+            "v\t0 1  0 1\t# with a weight",
+            "# C:\\models\\",
+            "v 0 \\",
+            "  2 0 \\  ",
+            "1",
+            "l 1//1 2/5 \\",
+            "  3/1/1 # three points",
+            "l 4 5 -3 # forward",
+            "v 1 0 0 #",
+            "v 1 1.5e0 +0",
+            "vn 1.#IND 0 0",
+            "#",
+            "",
+        ];
+        let of = |end: &str| load_hair_bytes("a.obj", lines.join(end).as_bytes()).expect("hair");
+        let file = of("\n");
+        assert_eq!(file.first_point, [0, 3, 6]);
+        assert_eq!(file.strand(0), [Vec3::ZERO, Vec3::Y, 2.0 * Vec3::Y]);
+        assert_eq!(file.strand(1), [Vec3::X, Vec3::new(1.0, 1.5, 0.0), Vec3::ZERO]);
+        assert_eq!((of("\r\n").points, of("\r").points), (file.points.clone(), file.points.clone()));
+        // Negative control: without the backslash the second record of three numbers is not one.
+        assert!(load_hair_bytes("a.obj", b"v 0 \n 2 0\nl 1 1\n").is_err());
+        // A vertex that is no number takes its strand with it.
+        let text = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 -1.#IND 0\nl 1 2\nl 3 4\n";
+        let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
+        assert_eq!((file.strands(), file.dropped["non_finite_strands"]), (1, 1));
+    }
+
+    #[test]
+    fn one_vertex_without_colour_does_not_drop_those_of_the_others() {
+        let head = "v 9 9 9\nv 9 8 9\nv 8 8 9\nf 1 2 3\n";
+        let hair = "v 0 0 0 0.4 0.2 0.1\nv 0 1 0 0.4 0.2 0.1\nv 0 2 0 0.4 0.2 0.1\n";
+        for text in [format!("{head}{hair}l 4 5 6\n"), format!("{hair}{head}l 1 2 3\n")] {
+            let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
+            assert_eq!(file.colours.as_deref(), Some(&[[0.4, 0.2, 0.1]; 3][..]), "{text}");
+        }
+        let text = format!("{head}{hair}v 0 3 0\nl 4 5 6 7\n");
+        let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
+        assert_eq!(file.colours.expect("colours")[3].map(|v| (v * 1000.0).round()), [400.0, 200.0, 100.0]);
+        assert!(file.notes.iter().any(|note| note.contains("1 vertex has no colour")), "{:?}", file.notes);
+        // Bytes, with an alpha.
+        let text = "v 0 0 0 255 0 51 255\nv 0 1 0 255 0 51 255\nl 1 2\n";
+        let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
+        assert_eq!(file.colours.as_deref(), Some(&[[1.0, 0.0, 0.2]; 2][..]));
+        // Negative control: colours of the head only are none of the hair.
+        let text = "v 0 0 0\nv 0 1 0\nv 9 9 9 1 0 0\nl 1 2\n";
+        assert!(load_hair_bytes("a.obj", text.as_bytes()).expect("hair").colours.is_none());
+    }
+
+    #[test]
+    fn spellings_of_other_programs_mean_the_same() {
+        let Some(data) = lovelock_testkit::data_dir() else { return };
+        let read = |name: &str| crate::load_hair(&data.join("reports").join(name)).expect(name);
+        let (spelled, plain) = (read("spellings.obj"), read("spellings_reference.obj"));
+        assert_eq!((spelled.strands(), &spelled.first_point), (60, &plain.first_point));
+        let off = spelled.points.iter().zip(&plain.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(off < 1e-6, "{off}");
+        let coloured = read("two_point_lines_with_head.obj");
+        assert_eq!(coloured.strands(), 60);
+        let colours = coloured.colours.expect("colours");
+        assert!(colours.iter().all(|colour| *colour == [0.4, 0.2, 0.1]), "{:?}", colours[0]);
     }
 
     #[test]

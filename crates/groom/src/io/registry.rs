@@ -8,10 +8,10 @@ use super::clean::clean;
 use super::file::HairFile;
 use super::format::HairFormat;
 use super::source::Source;
-use super::{HairFileError, alembic, gltf, obj, pbrt, tressfx, usc, usd, yuksel};
+use super::{HairFileError, alembic, gltf, headless, numpy, obj, pbrt, ply, tressfx, usc, usd, yuksel};
 
 /// Every hair format that can be read. A new format is a file or folder beside this one, and an entry here.
-pub static HAIR_FORMATS: [&HairFormat; 9] = [
+pub static HAIR_FORMATS: [&HairFormat; 14] = [
     &yuksel::FORMAT,
     &tressfx::FORMAT,
     &usd::FORMAT,
@@ -20,7 +20,12 @@ pub static HAIR_FORMATS: [&HairFormat; 9] = [
     &gltf::TEXT,
     &obj::FORMAT,
     &pbrt::FORMAT,
+    &ply::FORMAT,
+    &numpy::ARRAY,
+    &numpy::ARCHIVE,
+    &headless::FORMAT,
     &usc::FORMAT,
+    &usc::BIN,
 ];
 
 impl HairFormat {
@@ -36,11 +41,18 @@ impl HairFormat {
     }
 
     /// The format of a hair file of this name that begins with `start`. Where the start fits several formats, the name
-    /// decides.
+    /// decides. A format that the start fits by chance comes last.
     fn of_start(name: &str, start: &[u8]) -> Option<&'static Self> {
-        let fits = |format: &&'static Self| (format.may_begin)(start);
-        let by_name = || Self::of_path(Path::new(name)).filter(fits);
-        Self::of_magic(start).or_else(by_name).or_else(|| HAIR_FORMATS.into_iter().find(fits))
+        let fitting = || HAIR_FORMATS.into_iter().filter(|format| (format.may_begin)(start));
+        let named = Self::of_path(Path::new(name));
+        let by_name = |by_chance: bool| {
+            fitting().find(|format| named == Some(format) && (by_chance || !format.by_chance))
+        };
+        Self::of_magic(start)
+            .or_else(|| by_name(false))
+            .or_else(|| fitting().find(|format| !format.by_chance))
+            .or_else(|| by_name(true))
+            .or_else(|| fitting().next())
     }
 
     /// The extensions of all formats, without the dot.
@@ -78,16 +90,38 @@ pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileErro
 }
 
 fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
-    let Some(format) = HairFormat::of_start(name, source.start()) else {
-        let found = match source.start().first_chunk::<4>() {
-            Some(start) => format!("`{}`", start.escape_ascii()),
-            None => format!("a file of {} bytes", source.start().len()),
-        };
-        let [first @ .., last] = HAIR_FORMATS.map(|format| format.signature);
-        let wanted = format!("{}, or {last}", first.join(", "));
-        return Err(HairFileError::Malformed { name: name.to_owned(), offset: 0, found, wanted });
+    let named = HairFormat::of_path(Path::new(name));
+    let start = source.start();
+    let Some(format) = HairFormat::of_start(name, start) else {
+        return Err(unknown(name, start, named));
     };
+    let other = named.filter(|named| *named != format);
+    if let Some(other) = other.filter(|_| format.by_chance) {
+        let start = start[..start.len().min(4)].to_vec();
+        let data = source.into_bytes(name)?;
+        return match (format.read)(name, Source::Memory(&data)) {
+            Ok(raw) => clean(name, format, raw),
+            // What is said of another format would mislead.
+            Err(_) => Err(unknown(name, &start, Some(other))),
+        };
+    }
     clean(name, format, (format.read)(name, source)?)
+}
+
+/// The error for a file whose start fits no format, or not the one of its name.
+fn unknown(name: &str, start: &[u8], named: Option<&HairFormat>) -> HairFileError {
+    let found = match start.first_chunk::<4>() {
+        Some(start) => format!("`{}`", start.escape_ascii()),
+        None => format!("a file of {} bytes", start.len()),
+    };
+    let wanted = if let Some(format) = named {
+        format.signature.to_owned()
+    } else {
+        let said = HAIR_FORMATS.into_iter().map(|format| format.signature).filter(|said| !said.is_empty());
+        let said: Vec<&str> = said.collect();
+        said.split_last().map_or_else(String::new, |(last, first)| format!("{}, or {last}", first.join(", ")))
+    };
+    HairFileError::Malformed { name: name.to_owned(), offset: 0, found, wanted }
 }
 
 #[cfg(test)]
@@ -120,6 +154,8 @@ mod tests {
         for (name, bytes, settings) in [
             ("a.hair", write("hair", &hair), settings(Unit::Metre, UpAxis::Z, Facing::PlusY)),
             ("a.tfx", write("tfx", &hair), settings(Unit::Centimetre, UpAxis::Y, Facing::PlusZ)),
+            ("a.npy", write("npy", &hair), settings(Unit::Metre, UpAxis::Y, Facing::PlusZ)),
+            ("a.npz", write("npz", &hair), settings(Unit::Metre, UpAxis::Y, Facing::PlusZ)),
         ] {
             let back = load_hair_bytes(name, &bytes.expect(name)).expect(name).in_metres(&settings);
             assert_eq!(back.first_point, hair.first_point, "{name}");
@@ -128,7 +164,7 @@ mod tests {
             if name == "a.hair" {
                 assert_eq!(back.thickness, hair.thickness, "{name}");
             }
-            // The control: read in another unit it is not the same.
+            // The control: read in another unit or without its axes it is not the same.
             assert!(back.in_metres(&usual).points[0].distance(hair.points[1]) > 1e-2, "{name}");
         }
     }

@@ -20,6 +20,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[],
     may_begin: |start| version_of(start).is_some(),
+    by_chance: true,
     read,
     write: Some(write),
 };

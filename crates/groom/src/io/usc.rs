@@ -1,7 +1,9 @@
-//! `.data` files of USC-HairSalon and of works that follow it (<http://www-scf.usc.edu/~liwenhu/SHM/database.html>).
+//! `.data` files of USC-HairSalon and of works that follow it (<http://www-scf.usc.edu/~liwenhu/SHM/database.html>), and `.bin` files of
+//! `CT2Hair` and kenshi84's hairutil.
 //!
-//! An i32 number of strands; for each strand an i32 number of points, then its points, root first. A point is three f32,
-//! or three f32 and an i32 visibility. Only the length of the file tells the two dialects apart.
+//! An i32 number of strands; for each strand an i32 number of points, then its points, root first. A point is three f32 (`.data`), three f32
+//! and an i32 visibility (`.data`), or three f32, a direction or colour of three f32 and a label (`.bin`). Only the length of the file tells
+//! these dialects apart.
 
 use glam::Vec3;
 
@@ -20,12 +22,24 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[],
     may_begin,
-    read,
+    by_chance: true,
+    read: |name, source| read(name, source, [12, 16, 28, 24]),
     write: None,
 };
 
-/// Sizes of a point in the two dialects, bytes.
-const STRIDES: [u64; 2] = [12, 16];
+pub(super) static BIN: HairFormat = HairFormat {
+    label: "CT2Hair .bin",
+    extensions: &["bin"],
+    signature: "the number of strands and of the points of the first one (CT2Hair)",
+    states_unit: false,
+    common_up: UpAxis::Y,
+    magics: &[],
+    may_begin,
+    by_chance: true,
+    read: |name, source| read(name, source, [28, 12, 16, 24]),
+    write: None,
+};
+
 /// More strands or points of a strand than in any head of hair.
 const MAX_STRANDS: i32 = 1 << 24;
 const MAX_STRAND_POINTS: i32 = 1 << 16;
@@ -36,27 +50,25 @@ fn may_begin(start: &[u8]) -> bool {
         && number(4).is_some_and(|points| (0..=MAX_STRAND_POINTS).contains(&points))
 }
 
-fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
+/// Reads strands whose points have one of these sizes, bytes, the first one that fits.
+fn read(name: &str, source: Source<'_>, strides: [u64; 4]) -> Result<RawHair, HairFileError> {
     let data = source.into_bytes(name)?;
     let file = Bytes::new(name, &data);
     file.header(4)?;
-    let ends = STRIDES.map(|stride| walk(&file, stride));
-    let Some(stride) = (0..2).find(|&k| ends[k] == Ok(file.len())).map(|k| STRIDES[k]) else {
-        let place = |end: Result<u64, u64>| match end {
-            Ok(end) => format!("the strands end at byte {end}"),
-            Err(at) => format!("the strand at byte {at} does not fit"),
+    let ends = strides.map(|stride| walk(&file, stride));
+    let Some(stride) = strides.into_iter().zip(&ends).find(|(_, end)| **end == Ok(file.len())) else {
+        let place = |(stride, end): (&u64, &Result<u64, u64>)| match end {
+            Ok(end) => format!("with {stride} bytes per point the strands end at byte {end}"),
+            Err(at) => format!("with {stride} the strand at byte {at} does not fit"),
         };
+        let places: Vec<String> = strides.iter().zip(&ends).take(3).map(place).collect();
         return Err(file.malformed(
             0,
-            format!(
-                "a file of {} bytes: with 12 bytes per point {}, with 16 {}",
-                file.len(),
-                place(ends[0]),
-                place(ends[1])
-            ),
+            format!("a file of {} bytes: {}", file.len(), places.join(", ")),
             "strands that end where the file does",
         ));
     };
+    let stride = stride.0;
     let mut point_counts = Vec::with_capacity(file.u32(0) as usize);
     let mut points: Vec<Vec3> = Vec::with_capacity((file.len() / stride) as usize);
     let mut at = 4;

@@ -13,16 +13,19 @@ use super::units::{Facing, UpAxis, rotation_to_head_axes};
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "Yuksel .hair",
     extensions: &["hair"],
-    signature: "`HAIR` (Yuksel)",
+    signature: "`HAIR` (Yuksel), or the numbers of strands, of points and of the points of each strand (MonoHair)",
     states_unit: false,
     common_up: UpAxis::Z,
-    magics: &[MAGIC],
+    magics: &[MAGIC, SMALL_MAGIC],
     may_begin: |_| false,
+    by_chance: false,
     read,
     write: Some(write),
 };
 
 const MAGIC: &[u8] = b"HAIR";
+/// As some works on the reconstruction of hair write it.
+const SMALL_MAGIC: &[u8] = b"hair";
 
 const HEADER: u64 = 128;
 const SEGMENTS: u32 = 1;

@@ -184,3 +184,37 @@ fn damaged_hair_compressed() {
 fn damaged_hair_usc() {
     run("data", &[usc(3), usc(4)]);
 }
+
+#[test]
+fn damaged_hair_headless() {
+    let strands = [3_u16, 5, 2];
+    let mut bytes = [3_u32.to_le_bytes(), 10_u32.to_le_bytes()].concat();
+    bytes.extend(strands.iter().flat_map(|count| count.to_le_bytes()));
+    bytes.extend((0..30).flat_map(|i| (i as f32 * i as f32).to_le_bytes()));
+    let counts = run("hair", &[bytes]);
+    assert!(counts.accepted > 0, "{counts:?}");
+}
+
+#[test]
+fn damaged_hair_ct2hair() {
+    run("bin", &[usc(7), usc(3)]);
+}
+
+#[test]
+fn damaged_hair_ply() {
+    let text = "ply\nformat ascii 1.0\ncomment a\nelement vertex 6\nproperty float x\nproperty double y\nproperty float z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int strand_id\nend_header\n\
+        0 0 0 1 2 3 0\n0 1 0 1 2 3 0\n0 2 1 1 2 3 0\n1 0 0 1 2 3 1\n1 1 0 1 2 3 1\n1 2 0 9 9 9 1\n";
+    let lines = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement line 2\n\
+        property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+        0 0 0\n0 1 0\n0 2 1\n1 0 0\n2 0 1\n2 2 3\n0 3\n";
+    let counts = run("ply", &[written("ply"), text.into(), lines.into()]);
+    assert!(counts.accepted > 0, "{counts:?}");
+}
+
+#[test]
+fn damaged_hair_numpy() {
+    let counts = run("npy", &[written("npy")]);
+    assert!(counts.accepted > 0, "{counts:?}");
+    run("npz", &[written("npz")]);
+}

@@ -122,7 +122,9 @@ impl FileKind {
     /// The kind of a file that begins as `kind` does, by what it holds. A file that cannot be read keeps it: its reader says why.
     fn of_parts(path: &Path, start: &[u8], kind: Self) -> Result<Self, ProjectError> {
         let is_stage = start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda");
-        let holds = if is_stage || is_fbx(start) || start.starts_with(b"PK\x03\x04") {
+        // Archives are packages of USD, or of arrays with hair.
+        let is_package = kind == Self::Character && start.starts_with(b"PK\x03\x04");
+        let holds = if is_stage || is_fbx(start) || is_package {
             figure_content(path).ok().flatten()
         } else if kind == Self::Character {
             gltf_content(path).map(|content| match content {

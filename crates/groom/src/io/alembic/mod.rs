@@ -31,6 +31,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     // The older form is recognised too, so that the refusal can name it.
     magics: &[OGAWA_MAGIC, HDF5_MAGIC],
     may_begin: |_| false,
+    by_chance: false,
     read,
     write: None,
 };

@@ -33,6 +33,7 @@ pub(super) static BINARY: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[MAGIC],
     may_begin: |_| false,
+    by_chance: false,
     read,
     write: Some(write::binary),
 };
@@ -46,6 +47,7 @@ pub(super) static TEXT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[],
     may_begin: |start| without_mark(start).trim_ascii_start().starts_with(b"{"),
+    by_chance: false,
     read,
     write: Some(write::text),
 };

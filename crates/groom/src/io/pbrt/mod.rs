@@ -24,6 +24,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[tokens::GZIP],
     may_begin: |start| begins_with_word(start, &DIRECTIVES),
+    by_chance: false,
     read,
     write: Some(write::write),
 };

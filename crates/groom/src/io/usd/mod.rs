@@ -27,6 +27,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[CRATE_MAGIC, TEXT_MAGIC],
     may_begin: |_| false,
+    by_chance: false,
     read,
     write: None,
 };
