@@ -14,7 +14,7 @@ pub struct HairFormat {
     pub label: &'static str,
     /// Extensions of file names, without the dot, the most common one first.
     pub extensions: &'static [&'static str],
-    /// The start of its files, for error messages; empty if that of another format says it.
+    /// The start of its files, for error messages.
     pub(super) signature: &'static str,
     /// Whether its files state their unit and axes; their points are then read in metres with Y up.
     pub(super) states_unit: bool,

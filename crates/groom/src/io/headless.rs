@@ -14,10 +14,8 @@ use super::units::UpAxis;
 
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "MonoHair .hair",
-    // Files of Yuksel's format have the extension, too, and most files that have it.
-    extensions: &[],
-    // Said with that of Yuksel's format.
-    signature: "",
+    extensions: &["hair"],
+    signature: "the numbers of strands, of points and of the points of each strand (MonoHair)",
     states_unit: false,
     common_up: UpAxis::Y,
     magics: &[],

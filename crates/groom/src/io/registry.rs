@@ -29,10 +29,18 @@ pub static HAIR_FORMATS: [&HairFormat; 14] = [
 ];
 
 impl HairFormat {
-    /// The format whose files have the extension of `path`, in any case.
+    /// The format whose files have the extension of `path`, in any case. Of several, it is the most common one.
     pub fn of_path(path: &Path) -> Option<&'static Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        HAIR_FORMATS.into_iter().find(|format| format.extensions.contains(&extension.as_str()))
+        Self::named(path).next()
+    }
+
+    /// The formats whose files have the extension of `path`.
+    fn named(path: &Path) -> impl Iterator<Item = &'static Self> + use<> {
+        let extension =
+            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        HAIR_FORMATS.into_iter().filter(move |format| {
+            extension.as_ref().is_some_and(|extension| format.extensions.contains(&extension.as_str()))
+        })
     }
 
     /// The format of a file that begins with `start`, if these bytes are unambiguous. TressFX files have no magic number.
@@ -43,21 +51,25 @@ impl HairFormat {
     /// The format of a hair file of this name that begins with `start`. Where the start fits several formats, the name
     /// decides. A format that the start fits by chance comes last.
     fn of_start(name: &str, start: &[u8]) -> Option<&'static Self> {
-        let fitting = || HAIR_FORMATS.into_iter().filter(|format| (format.may_begin)(start));
-        let named = Self::of_path(Path::new(name));
-        let by_name = |by_chance: bool| {
-            fitting().find(|format| named == Some(format) && (by_chance || !format.by_chance))
-        };
+        let fits = |format: &&'static Self| (format.may_begin)(start);
+        let is_sure = |format: &&'static Self| fits(format) && !format.by_chance;
+        let by_name = || Self::named(Path::new(name));
         Self::of_magic(start)
-            .or_else(|| by_name(false))
-            .or_else(|| fitting().find(|format| !format.by_chance))
-            .or_else(|| by_name(true))
-            .or_else(|| fitting().next())
+            .or_else(|| by_name().find(is_sure))
+            .or_else(|| HAIR_FORMATS.into_iter().find(is_sure))
+            .or_else(|| by_name().find(fits))
+            .or_else(|| HAIR_FORMATS.into_iter().find(fits))
     }
 
     /// The extensions of all formats, without the dot.
     pub fn all_extensions() -> Vec<&'static str> {
-        HAIR_FORMATS.into_iter().flat_map(|format| format.extensions).copied().collect()
+        let mut all: Vec<&str> = Vec::new();
+        for &extension in HAIR_FORMATS.into_iter().flat_map(|format| format.extensions) {
+            if !all.contains(&extension) {
+                all.push(extension);
+            }
+        }
+        all
     }
 }
 
@@ -90,36 +102,37 @@ pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileErro
 }
 
 fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
-    let named = HairFormat::of_path(Path::new(name));
     let start = source.start();
     let Some(format) = HairFormat::of_start(name, start) else {
-        return Err(unknown(name, start, named));
+        return Err(unknown(name, start));
     };
-    let other = named.filter(|named| *named != format);
-    if let Some(other) = other.filter(|_| format.by_chance) {
+    let mut named = HairFormat::named(Path::new(name)).peekable();
+    if format.by_chance && named.peek().is_some() && named.all(|named| named != format) {
         let start = start[..start.len().min(4)].to_vec();
         let data = source.into_bytes(name)?;
         return match (format.read)(name, Source::Memory(&data)) {
             Ok(raw) => clean(name, format, raw),
-            // What is said of another format would mislead.
-            Err(_) => Err(unknown(name, &start, Some(other))),
+            // What is said of another format than that of the name would mislead.
+            Err(_) => Err(unknown(name, &start)),
         };
     }
     clean(name, format, (format.read)(name, source)?)
 }
 
-/// The error for a file whose start fits no format, or not the one of its name.
-fn unknown(name: &str, start: &[u8], named: Option<&HairFormat>) -> HairFileError {
+/// The error for a file whose start fits no format, or not one of its name.
+fn unknown(name: &str, start: &[u8]) -> HairFileError {
     let found = match start.first_chunk::<4>() {
         Some(start) => format!("`{}`", start.escape_ascii()),
         None => format!("a file of {} bytes", start.len()),
     };
-    let wanted = if let Some(format) = named {
-        format.signature.to_owned()
-    } else {
-        let said = HAIR_FORMATS.into_iter().map(|format| format.signature).filter(|said| !said.is_empty());
-        let said: Vec<&str> = said.collect();
-        said.split_last().map_or_else(String::new, |(last, first)| format!("{}, or {last}", first.join(", ")))
+    let mut said: Vec<&str> = HairFormat::named(Path::new(name)).map(|format| format.signature).collect();
+    if said.is_empty() {
+        said = HAIR_FORMATS.map(|format| format.signature).to_vec();
+    }
+    let wanted = match &said[..] {
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{}, or {last}", first.join(", ")),
+        [] => String::new(),
     };
     HairFileError::Malformed { name: name.to_owned(), offset: 0, found, wanted }
 }
@@ -178,18 +191,45 @@ mod tests {
     }
 
     #[test]
-    fn no_two_formats_share_an_extension() {
-        let mut all = HairFormat::all_extensions();
-        all.sort_unstable();
-        let count = all.len();
-        all.dedup();
-        assert_eq!(all.len(), count);
-        for format in HAIR_FORMATS {
-            for extension in format.extensions {
-                let name = format!("a.{}", extension.to_ascii_uppercase());
-                assert_eq!(HairFormat::of_path(Path::new(&name)), Some(format), "{name}");
+    fn only_hair_is_the_extension_of_two_formats() {
+        let all = HairFormat::all_extensions();
+        let listed: usize = HAIR_FORMATS.iter().map(|format| format.extensions.len()).sum();
+        assert_eq!(all.len(), listed - 1);
+        for extension in all {
+            let name = format!("a.{}", extension.to_ascii_uppercase());
+            let formats = HAIR_FORMATS.into_iter().filter(|format| format.extensions.contains(&extension));
+            assert_eq!(formats.count(), 1 + usize::from(extension == "hair"), "{extension}");
+            let format = HairFormat::of_path(Path::new(&name)).expect("a format");
+            assert!(format.extensions.contains(&extension), "{name}");
+        }
+        assert_eq!(HairFormat::of_path(Path::new("a.hair")).map(|format| format.label), Some("Yuksel .hair"));
+        assert_eq!(HairFormat::of_path(Path::new("a.stl")), None);
+    }
+
+    #[test]
+    fn a_refusal_speaks_of_the_formats_of_the_name() {
+        for (name, word, other) in [
+            ("a.hair", "`HAIR` (Yuksel), or the numbers of strands", "glTF"),
+            ("a.data", "USC-HairSalon", "HAIR"),
+            ("a.bin", "CT2Hair", "USC"),
+            ("a.ply", "`ply` (PLY)", "USC"),
+            ("a.npz", "ZIP", "HAIR"),
+            ("a.unknown", "(TressFX)", "nothing"),
+            ("unnamed", "USC-HairSalon", "nothing"),
+        ] {
+            // The second could be the start of strands of USC-HairSalon, but they do not end with the file.
+            for bytes in [&b"GIF89a.."[..], &[2, 0, 0, 0, 3, 0, 0, 0, 1, 2, 3]] {
+                let error = load_hair_bytes(name, bytes).expect_err(name).to_string();
+                let is_of_name = bytes[0] == 2
+                    && [".data", ".bin", ".unknown", "unnamed"].iter().any(|end| name.ends_with(end));
+                assert!(is_of_name || (error.contains(word) && !error.contains(other)), "{name}: {error}");
             }
         }
-        assert_eq!(HairFormat::of_path(Path::new("a.stl")), None);
+        // Strands of USC-HairSalon are read under any name.
+        let strand = [1_i32.to_le_bytes(), 2_i32.to_le_bytes()].concat();
+        let points: Vec<u8> =
+            [0.0_f32, 1.0, 0.0, 0.0, 2.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+        let hair = load_hair_bytes("a.obj", &[strand, points].concat()).expect("hair");
+        assert_eq!((hair.strands(), hair.format.as_str()), (1, "USC-HairSalon .data"));
     }
 }

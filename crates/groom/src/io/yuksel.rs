@@ -13,7 +13,7 @@ use super::units::{Facing, UpAxis, rotation_to_head_axes};
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "Yuksel .hair",
     extensions: &["hair"],
-    signature: "`HAIR` (Yuksel), or the numbers of strands, of points and of the points of each strand (MonoHair)",
+    signature: "`HAIR` (Yuksel)",
     states_unit: false,
     common_up: UpAxis::Z,
     magics: &[MAGIC, SMALL_MAGIC],
