@@ -3,7 +3,7 @@
 use lovelock_base::memory::list_bytes;
 use thiserror::Error;
 
-use crate::{Guides, HairLook, MotionFactors, Scalp, StrandColours};
+use crate::{Guides, HairLook, MotionFactors, Scalp, StrandColours, StrandMarks};
 
 /// One wisp: three guide strands, and the consecutive strands that follow them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +63,8 @@ pub struct StrandSet {
     pub shade: Vec<f32>,
     /// What is different from the look in the colour of each strand.
     pub colours: StrandColours,
+    /// Groups and roots as the file of an import states them, for files that are written.
+    pub marks: StrandMarks,
 }
 
 impl StrandSet {
@@ -81,6 +83,7 @@ impl StrandSet {
             + list_bytes(&self.weights)
             + list_bytes(&self.first_point)
             + size_of_val(self.colours.strands()) as u64
+            + self.marks.bytes()
     }
 
     /// Number of strands.
@@ -126,6 +129,7 @@ impl StrandSet {
             }
             wisp.strand_count = out.wisp.len() as u32 - wisp.first_strand;
         }
+        out.marks = self.marks.selected(kept.iter().copied());
         if !self.colours.is_empty() {
             out.colours = self.colours.selected(kept.into_iter());
         }

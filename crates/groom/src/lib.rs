@@ -28,6 +28,7 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strand_colours;
+mod strand_marks;
 mod strands;
 mod ties;
 
@@ -39,7 +40,7 @@ pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, Rope, StrandSet, Wisp};
 pub use import::{
     HairInfo, ImportError, ImportSettings, ImportedInPlace, PlacedGroom, Placement, hair_info, hair_look,
-    import, import_around, import_in_place, place,
+    import, import_around, import_in_place, import_noted, place,
 };
 pub use interpolate::interpolate;
 pub use io::{
@@ -58,5 +59,6 @@ pub use scalp_index::ScalpIndex;
 pub use settings::{GroomSettings, MAX_POINTS};
 pub use strand_bounds::StrandBounds;
 pub use strand_colours::{COLOUR_SAMPLES, ColourSamples, StrandColour, StrandColours, colour_along};
+pub use strand_marks::StrandMarks;
 pub use strands::Strands;
 pub use ties::{HairTie, TieKind, TieReach, tied, tied_where};

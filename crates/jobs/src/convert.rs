@@ -104,6 +104,7 @@ fn write_curves(hair: &HairFile, out: &Path) -> Result<u64, RecordError> {
             .as_ref()
             .map_or_else(|| vec![linear(&usual); points], |colours| colours.iter().map(linear).collect()),
         are_guides: false,
+        marks: hair.marks.clone(),
         body: None,
     };
     let axis = |k: usize| hair.points.iter().map(|point| point[k]).collect::<Vec<_>>();
@@ -122,6 +123,40 @@ fn linear_of(v: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn groups_and_roots_survive_usd_and_alembic() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        let text = "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\ndef BasisCurves \"a\"\n{\n\
+            uniform token type = \"linear\"\nint[] curveVertexCounts = [2, 2, 1, 2]\n\
+            point3f[] points = [(0.1, 0.2, 0), (0, 0.5, 0.3), (0, 0.1, 0), (0.3, 0, 0.2), (0, 0, 0), (0, 0, 0.1), (0, 0, 0.2)]\n\
+            int[] primvars:groom_group_id = [3, 1, 2, 3] (\n interpolation = \"uniform\"\n)\n\
+            string[] primvars:groom_group_name = [\"scalp\", \"fringe\"] (\n interpolation = \"uniform\"\n)\n\
+            int[] primvars:groom_group_name:indices = [0, 1, 0, 0]\n\
+            texCoord2f[] primvars:surface_uv_coordinate = [(0.1, 0.2), (0.3, 0.4), (0, 0), (0.5, 0.75)] (\n interpolation = \"uniform\"\n)\n}\n";
+        std::fs::write(at("a.usda"), text).expect("a file");
+        let first = load_hair(&at("a.usda")).expect("hair");
+        assert_eq!(first.marks.groups, [3, 1, 3], "the strand of one point is left out");
+        assert_eq!(first.marks.root_uvs, [[0.1, 0.2], [0.3, 0.4], [0.5, 0.75]]);
+        assert!(
+            first
+                .notes
+                .iter()
+                .any(|note| note.contains("2 groups of strands: 1 (fringe) has 1 strand, 3 (scalp) has 2")),
+            "{:?}",
+            first.notes
+        );
+        let mut from = at("a.usda");
+        for name in ["b.abc", "c.usdc", "d.abc", "e.usda", "f.usd"] {
+            convert(&from, &at(name), Unit::Auto, UpAxis::Auto).expect(name);
+            from = at(name);
+            assert_eq!(load_hair(&from).expect(name).marks, first.marks, "{name}");
+        }
+        // Negative control: a format without groups.
+        convert(&from, &at("g.obj"), Unit::Auto, UpAxis::Auto).expect("g.obj");
+        assert!(load_hair(&at("g.obj")).expect("hair").marks.groups.is_empty());
+    }
 
     #[test]
     fn hair_goes_through_every_format_and_comes_back() {
@@ -143,6 +178,10 @@ mod tests {
             ("g.pbrt", Unit::Auto, UpAxis::Auto),
             ("h.gltf", Unit::Metre, UpAxis::Y),
             ("i.usda", Unit::Auto, UpAxis::Auto),
+            ("j.ply", Unit::Auto, UpAxis::Auto),
+            ("k.npy", Unit::Auto, UpAxis::Auto),
+            ("l.npz", Unit::Metre, UpAxis::Y),
+            ("m.ply", Unit::Metre, UpAxis::Y),
         ] {
             let report = convert(&from, &at(name), unit, up).expect(name);
             assert_eq!((report.strands, report.points), (2, 4), "{name}");

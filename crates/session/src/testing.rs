@@ -142,6 +142,7 @@ pub fn moving_curves(path: &Path, frames: u64) {
         widths: vec![1e-4; count],
         colors: vec![Vec3::new(0.3, 0.05, 0.02); count],
         are_guides: false,
+        marks: lovelock_groom::StrandMarks::default(),
         body: None,
     };
     let mut writer = CurveWriter::create(path, scene).expect("a file");

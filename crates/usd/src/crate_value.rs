@@ -27,6 +27,9 @@ mod kind {
     pub(crate) const QUATD: u64 = 16;
     pub(crate) const QUATF: u64 = 17;
     pub(crate) const QUATH: u64 = 18;
+    pub(crate) const VEC2D: u64 = 19;
+    pub(crate) const VEC2F: u64 = 20;
+    pub(crate) const VEC2H: u64 = 21;
     pub(crate) const VEC3D: u64 = 23;
     pub(crate) const VEC3F: u64 = 24;
     pub(crate) const VEC3H: u64 = 25;
@@ -234,6 +237,9 @@ impl CrateValues<'_> {
             // Integers have the same size.
             kind::FLOAT | kind::INT => (Number::Float, 1),
             kind::DOUBLE => (Number::Double, 1),
+            kind::VEC2H => (Number::Half, 2),
+            kind::VEC2F => (Number::Float, 2),
+            kind::VEC2D => (Number::Double, 2),
             kind::VEC3H => (Number::Half, 3),
             kind::VEC3F => (Number::Float, 3),
             kind::VEC3D => (Number::Double, 3),
@@ -260,7 +266,8 @@ impl CrateValues<'_> {
                 let turn = |item: &[u8]| [3, 0, 1, 2].map(|k| part(item, k));
                 return Ok(Some(Value::Quaternions(items.map(turn).collect())));
             }
-            Value::Vectors(items.map(|item| Vec3::new(part(item, 0), part(item, 1), part(item, 2))).collect())
+            let third = |item: &[u8]| if per == 2 { 0.0 } else { part(item, 2) };
+            Value::Vectors(items.map(|item| Vec3::new(part(item, 0), part(item, 1), third(item))).collect())
         }))
     }
 

@@ -218,6 +218,7 @@ fn value_of(value: &Sdf) -> Option<Value> {
         Sdf::TokenVec(tokens) => {
             Value::Tokens(tokens.iter().map(|token| token.as_str().to_owned()).collect())
         }
+        Sdf::StringVec(texts) => Value::Tokens(texts.clone()),
         Sdf::Bool(value) => Value::Bool(*value),
         Sdf::IntVec(ints) => Value::Ints(ints.clone()),
         Sdf::Int(v) => Value::Numbers(vec![f64::from(*v)]),
@@ -244,6 +245,11 @@ fn value_of(value: &Sdf) -> Option<Value> {
                 .map(|v| Vec3::new(half(v.x.to_bits()), half(v.y.to_bits()), half(v.z.to_bits())))
                 .collect(),
         ),
+        Sdf::Vec2hVec(v) => Value::Vectors(
+            v.iter().map(|v| Vec3::new(half(v.x.to_bits()), half(v.y.to_bits()), 0.0)).collect(),
+        ),
+        Sdf::Vec2fVec(v) => Value::Vectors(v.iter().map(|v| Vec3::new(v.x, v.y, 0.0)).collect()),
+        Sdf::Vec2dVec(v) => Value::Vectors(v.iter().map(|v| vector(v.x, v.y, 0.0)).collect()),
         Sdf::Vec3fVec(v) => Value::Vectors(v.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect()),
         Sdf::Vec3dVec(v) => Value::Vectors(v.iter().map(|v| vector(v.x, v.y, v.z)).collect()),
         Sdf::QuathVec(v) => Value::Quaternions(

@@ -17,7 +17,7 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// An array of numbers.
     Floats(Vec<f32>),
-    /// An array of vectors of three.
+    /// An array of vectors of three, or of two, whose third component is 0.
     Vectors(Vec<Vec3>),
     /// An array of quaternions, the real part first.
     Quaternions(Vec<[f32; 4]>),

@@ -3,7 +3,7 @@
 use super::archive::Archive;
 use super::headers::{Property, PropertyKind};
 use crate::error::AlembicError;
-use crate::layout;
+use crate::{Pod, layout};
 
 /// Bytes that are read and converted at a time.
 const BLOCK: usize = 1 << 18;
@@ -103,6 +103,28 @@ impl Archive<'_> {
                 take(std::array::from_fn(|i| element[i] as f32));
             }
         })
+    }
+
+    /// The texts of a sample of at most `most` bytes.
+    ///
+    /// # Errors
+    /// As [`Self::elements`], and for numbers or more bytes.
+    pub fn texts(
+        &mut self,
+        property: &Property,
+        sample: u64,
+        most: u64,
+    ) -> Result<Vec<String>, AlembicError> {
+        let (at, size) = self.place(property, sample)?;
+        if property.ty.pod != Pod::String || size > most {
+            let found = format!("{size} bytes of {}", property.name);
+            return Err(AlembicError::malformed(property.group, found, "a few texts"));
+        }
+        let mut bytes = vec![0; size as usize];
+        self.source.read(at, &mut bytes)?;
+        // Each text ends with a zero.
+        let whole = bytes.strip_suffix(&[0]).unwrap_or(&bytes);
+        Ok(whole.split(|&byte| byte == 0).map(|text| String::from_utf8_lossy(text).into_owned()).collect())
     }
 
     /// All numbers of a sample that has at most `most`.

@@ -20,6 +20,7 @@ mod surface;
 
 use glam::Vec3;
 use lovelock_base::settings::Settings;
+use lovelock_base::words::counted;
 use thiserror::Error;
 
 use crate::frame::widest_radii;
@@ -68,8 +69,30 @@ pub fn import_around(
     scalp: &Scalp,
     body: Option<&dyn Obstacle>,
 ) -> Result<Hairstyle, ImportError> {
+    Ok(import_noted(file, settings, scalp, body)?.0)
+}
+
+/// As [`import_around`], with notes on what was moved, as sentences.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_noted(
+    file: &HairFile,
+    settings: &ImportSettings,
+    scalp: &Scalp,
+    body: Option<&dyn Obstacle>,
+) -> Result<(Hairstyle, Vec<String>), ImportError> {
     let groom = place(file, settings, scalp, body)?;
-    Ok(hairstyle_of(file, settings, scalp, &groom).0)
+    let mut notes = Vec::new();
+    let (inside, depth) = groom.inside;
+    if inside > 0 {
+        let begin = counted(inside, "strand began", "strands began");
+        let millimetres = 1000.0 * depth;
+        notes.push(format!(
+            "{begin} inside of the head, up to {millimetres:.0} mm deep, and moved out to the skin."
+        ));
+    }
+    Ok((hairstyle_of(file, settings, scalp, &groom).0, notes))
 }
 
 /// A hairstyle whose strands are moved by others than its guides: see [`import_in_place`].
@@ -117,6 +140,7 @@ pub fn import_in_place(
         metres_per_unit: 1.0,
         fitted_scale: 1.0,
         mean_root_gap_m: 0.0,
+        inside: (0, 0.0),
     };
     let (style, strands, guides) = hairstyle_of(file, settings, scalp, &groom);
     Ok(ImportedInPlace { style, strands, guides })
@@ -152,6 +176,7 @@ fn hairstyle_of(
     let mut strands = express::express(groom, &order, &wisps, &guides);
     strands.taper = colour::taper(file, groom, &order);
     strands.shade = colour::shade(file, &order, settings.seed);
+    strands.marks = file.marks.selected(order.iter().map(|&strand| strand as usize));
     let style = Hairstyle {
         name: std::path::Path::new(&file.name)
             .file_stem()

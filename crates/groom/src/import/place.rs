@@ -25,6 +25,8 @@ pub struct PlacedGroom {
     pub fitted_scale: f32,
     /// Mean distance by which roots were moved onto the skin, metres; 0 if they were not moved.
     pub mean_root_gap_m: f32,
+    /// Number of roots that were inside the head, and the depth of the deepest, metres.
+    pub inside: (usize, f32),
 }
 
 impl PlacedGroom {
@@ -73,11 +75,13 @@ pub fn place(
         metres_per_unit: orientation.metres_per_unit,
         fitted_scale: scale,
         mean_root_gap_m: 0.0,
+        inside: (0, 0.0),
     };
     if settings.snap_roots {
         let strands = groom.strands();
         let roots: Vec<Vec3> = (0..strands).map(|strand| groom.strand(strand)[0]).collect();
         let shifts = shifts(&roots, &skin);
+        groom.inside = inside(&roots, &shifts, body, middle);
         groom.mean_root_gap_m = shifts.iter().map(|shift| shift.length()).sum::<f32>() / strands as f32;
         for (strand, shift) in shifts.into_iter().enumerate() {
             let span = groom.first_point[strand] as usize..groom.first_point[strand + 1] as usize;
@@ -90,6 +94,25 @@ pub fn place(
         push_out(&mut groom, body);
     }
     Ok(groom)
+}
+
+/// A root this far inside the head is counted, metres; less is within the error of a fit.
+const INSIDE: f32 = 0.003;
+
+/// How many roots are inside the head, and the depth of the deepest. `shifts` move them onto the skin; without a body, those that move them away
+/// from the middle of the head start inside.
+fn inside(roots: &[Vec3], shifts: &[Vec3], body: Option<&dyn Obstacle>, middle: Vec3) -> (usize, f32) {
+    let depths = roots.par_iter().zip(shifts).with_min_len(256).map(|(&root, &shift)| {
+        let depth = match body {
+            Some(body) => -body.distance(root).0,
+            None => shift.dot((root + shift - middle).normalize_or_zero()),
+        };
+        // The distance to a body is approximate deep inside; the root moves by its shift.
+        depth.min(shift.length())
+    });
+    let deep = depths.filter(|depth| *depth > INSIDE);
+    deep.fold(|| (0, 0.0_f32), |(count, most), depth| (count + 1, most.max(depth)))
+        .reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)))
 }
 
 /// The centre of the sphere that approximates a scalp.

@@ -208,6 +208,46 @@ fn a_groom_made_on_the_scalp_is_put_back_where_it_was() {
 }
 
 #[test]
+fn strands_that_begin_inside_of_the_head_move_out_and_a_note_says_so() {
+    let scalp = PlainHead.scalp(24);
+    let grown: Vec<usize> = (0..scalp.positions.len()).filter(|&v| scalp.mask[v] > 0.9).collect();
+    let strands = |depth: f32| -> Vec<Vec<Vec3>> {
+        let strand = |(i, &v): (usize, &usize)| {
+            let inward = if i % 10 == 0 { depth } else { 0.0 };
+            let root = scalp.positions[v] - inward * scalp.normals[v];
+            let points = (0..5).map(|k| root + 0.02 * k as f32 * scalp.normals[v]);
+            points.map(|p| Vec3::new(-p.x, p.z, p.y)).collect()
+        };
+        grown.iter().enumerate().map(strand).collect()
+    };
+    let settings = ImportSettings {
+        unit: Unit::Metre,
+        up: UpAxis::Z,
+        facing: crate::Facing::PlusY,
+        fit_scale: false,
+        ..ImportSettings::default()
+    };
+    for body in [None, Some(&PlainHead as &dyn Obstacle)] {
+        let file = hair(&strands(0.02));
+        let (style, notes) = import_noted(&file, &settings, &scalp, body).expect("a place on the head");
+        style.check().expect("whole");
+        let groom = place(&file, &settings, &scalp, body).expect("a place on the head");
+        let (inside, depth) = groom.inside;
+        let deep = grown.len().div_ceil(10);
+        assert!(inside.abs_diff(deep) <= deep / 4, "{inside} of {deep}");
+        assert!((0.012..0.03).contains(&depth), "{depth} m");
+        assert!(notes.len() == 1 && notes[0].contains("inside of the head"), "{notes:?}");
+        let skin = super::surface::Surface::whole(&scalp).expect("triangles");
+        let off = (0..groom.strands()).map(|s| groom.strand(s)[0].distance(skin.closest(groom.strand(s)[0])));
+        assert!(off.fold(0.0, f32::max) < 1e-4, "roots are on the skin");
+    }
+    // Negative control: strands that begin on the skin.
+    let (_, notes) =
+        import_noted(&hair(&strands(0.0)), &settings, &scalp, None).expect("a place on the head");
+    assert!(notes.is_empty(), "{notes:?}");
+}
+
+#[test]
 fn a_strip_of_hair_lands_on_the_head() {
     // A mohawk: a strip a centimetre wide over the crown, forehead to nape.
     let strands: Vec<Vec<Vec3>> = (0..300)

@@ -81,6 +81,7 @@ pub(super) fn clean_keeping(
     }
     drop_by_size(&raw, &mut faults);
 
+    let strands_kept = (0..strands).filter(|&strand| faults[strand].is_none());
     let mut file = HairFile {
         name: name.to_owned(),
         format: match raw.version {
@@ -98,6 +99,7 @@ pub(super) fn clean_keeping(
         default_transparency: raw.default_transparency,
         default_colour: raw.default_colour,
         both_ends_pinned: raw.both_ends_pinned,
+        marks: raw.marks.selected(strands_kept),
         dropped: raw.dropped,
         notes: raw.notes,
         bounds: Bounds::EMPTY,
@@ -150,6 +152,7 @@ pub(super) fn clean_keeping(
     file.transparency.iter_mut().for_each(|values| shorten(values, kept));
     file.colours.iter_mut().for_each(|values| shorten(values, kept));
 
+    file.notes.extend(file.marks.note());
     report(&mut file, &faults, repeated, non_finite, raw.trailing_bytes);
     if file.strands() == 0 {
         let reason = match file.dropped.len() {

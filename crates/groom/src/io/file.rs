@@ -6,6 +6,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::units::UpAxis;
+use crate::StrandMarks;
 
 /// The most points that a file may have by showing the same ones in several places.
 pub(super) const MAX_COPIED_POINTS: usize = 1 << 25;
@@ -62,6 +63,7 @@ pub(super) struct RawHair {
     pub(super) says_metres: bool,
     /// Which points of the file are here, if the reader left some out.
     pub(super) left_out: Option<Vec<bool>>,
+    pub(super) marks: StrandMarks,
 }
 
 impl RawHair {
@@ -83,6 +85,7 @@ impl RawHair {
             notes: Vec::new(),
             says_metres: false,
             left_out: None,
+            marks: StrandMarks::default(),
         }
     }
 }
@@ -119,6 +122,8 @@ pub struct HairFile {
     pub default_colour: Option<[f32; 3]>,
     /// The file marks both ends of its strands as held (TressFX); this program holds only roots.
     pub both_ends_pinned: bool,
+    /// Groups of strands, and places of roots on a surface, if the file states them.
+    pub marks: StrandMarks,
     /// Counts of dropped strands, points and bytes by kind. Empty if nothing was dropped.
     pub dropped: BTreeMap<String, u64>,
     /// Remarks, as sentences.

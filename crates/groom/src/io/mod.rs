@@ -18,6 +18,7 @@ mod frames;
 mod gltf;
 mod guess;
 mod headless;
+mod marks;
 mod numpy;
 mod obj;
 mod pbrt;

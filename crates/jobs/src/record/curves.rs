@@ -9,7 +9,9 @@ use glam::{Affine3A, Vec3};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Settings;
 use lovelock_groom::fine::lock_numbers;
-use lovelock_groom::{ColourSamples, HairLook, Hairstyle, PigmentVariation, Strands, colour_along};
+use lovelock_groom::{
+    ColourSamples, HairLook, Hairstyle, PigmentVariation, StrandMarks, Strands, colour_along,
+};
 use lovelock_motion::Body;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
@@ -239,6 +241,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
         widths: Vec::new(),
         colors: Vec::new(),
         are_guides: source == CurveSource::Guides,
+        marks: StrandMarks::default(),
         body: None,
     };
     let look = look.clamped();
@@ -251,6 +254,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             scene.widths = vec![width; count * per];
             // A guide stands for several locks, and has the colour of most of them.
             let look = HairLook { grey: 0.0, highlights: 0.0, ..look };
+            scene.marks = marks_of_guides(style);
             let colours = colours_of_guides(style);
             for guide in 0..count {
                 let own = colours.get(guide);
@@ -261,6 +265,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             let set = &style.strands;
             let width = look.shadow_width(set.count()) * look.width_scale;
             scene.first_point.clone_from(&set.first_point);
+            scene.marks.clone_from(&set.marks);
             scene.widths = set.taper.iter().map(|taper| taper * width).collect();
             let locks = lock_numbers(set);
             let strands = set.first_point.array_windows().zip(&set.shade).zip(locks).enumerate();
@@ -304,6 +309,21 @@ fn colours_of_guides(style: &Hairstyle) -> Vec<ColourSamples> {
         }
     }
     nearest.into_iter().map(|(_, samples)| samples).collect()
+}
+
+/// The groups of the guides: those of the first strands of their wisps. A guide that follows no strand is in group 0.
+fn marks_of_guides(style: &Hairstyle) -> StrandMarks {
+    let marks = &style.strands.marks;
+    if marks.groups.is_empty() {
+        return StrandMarks::default();
+    }
+    let mut groups = vec![0; style.guides.count()];
+    for wisp in style.wisps.iter().filter(|wisp| wisp.strand_count > 0) {
+        for guide in wisp.guides {
+            groups[guide as usize] = marks.group(wisp.first_strand as usize);
+        }
+    }
+    StrandMarks { groups, group_names: marks.group_names.clone(), root_uvs: Vec::new() }
 }
 
 fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
@@ -394,6 +414,40 @@ mod tests {
                 assert_eq!(of[0], before.colors[0], "roots stay");
             }
         }
+    }
+
+    #[test]
+    fn groups_of_an_imported_file_are_those_of_the_written_curves() {
+        // 60 strands, of which every third is in group 7.
+        let list = |of: &dyn Fn(usize) -> String| (0..60).map(of).collect::<Vec<_>>().join(", ");
+        let points = |i: usize| {
+            let (out, y) =
+                (Vec3::new((i as f32 * 2.4).cos(), 0.0, (i as f32 * 2.4).sin()), 0.1 - 0.0005 * i as f32);
+            let [a, b] = [0.08, 0.12].map(|radius| radius * out);
+            format!("({}, {y}, {}), ({}, {y}, {})", a.x, a.z, b.x, b.z)
+        };
+        let group = |i: usize| if i.is_multiple_of(3) { "7".to_owned() } else { "2".to_owned() };
+        let text = format!(
+            "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\ndef BasisCurves \"a\"\n{{\nuniform token type = \"linear\"\n\
+             int[] curveVertexCounts = [{}]\npoint3f[] points = [{}]\n\
+             int[] primvars:groom_group_id = [{}] (\n interpolation = \"uniform\"\n)\n}}\n",
+            list(&|_| "2".to_owned()),
+            list(&points),
+            list(&group)
+        );
+        let file = lovelock_groom::load_hair_bytes("a.usda", text.as_bytes()).expect("hair");
+        let settings = lovelock_groom::ImportSettings::default();
+        let style = lovelock_groom::import(&file, &settings, &PlainHead.scalp(24)).expect("a style");
+        let strands = curves_of(CurveSource::Strands, &style, &HairLook::default());
+        let in_7 = |scene: &CurveScene| scene.marks.groups.iter().filter(|group| **group == 7).count();
+        assert_eq!((strands.marks.groups.len(), in_7(&strands)), (60, 20));
+        let guides = curves_of(CurveSource::Guides, &style, &HairLook::default());
+        assert_eq!(guides.marks.groups.len(), guides.curves());
+        assert!(in_7(&guides) > 0 && guides.marks.groups.iter().all(|group| [2, 7].contains(group)));
+        // Negative control: grown hair has no groups.
+        let grown = GroomSettings { wisps: 40, strands_per_wisp: 20, ..GroomSettings::default() };
+        let grown = grow(&grown, &PlainHead.scalp(32), &PlainHead).expect("hair");
+        assert!(curves_of(CurveSource::Strands, &grown, &HairLook::default()).marks.groups.is_empty());
     }
 
     #[test]

@@ -48,6 +48,8 @@ pub(super) struct AbcWriter {
     body: Option<(Shape, Samples)>,
     /// Index of the first point of each curve.
     roots: Vec<u32>,
+    /// Where the roots lie on their surface, if that is known.
+    root_uvs: Vec<[f32; 2]>,
     row: Vec<[f32; 3]>,
 }
 
@@ -77,9 +79,20 @@ impl AbcWriter {
                 None => None,
                 Some(body) => Some((Shape::body(&mut archive, times, body)?, Samples::array(POINT, times))),
             };
-            let mut roots = scene.first_point;
+            let (mut roots, root_uvs) = (scene.first_point, scene.marks.root_uvs);
             roots.pop();
-            Ok(Self { expected, archive, frames: 0, times, rate, hair, body, roots, row: Vec::new() })
+            Ok(Self {
+                expected,
+                archive,
+                frames: 0,
+                times,
+                rate,
+                hair,
+                body,
+                roots,
+                root_uvs,
+                row: Vec::new(),
+            })
         };
         create().map_err(|error| RecordError::io(path, "write the file", error))
     }
@@ -91,7 +104,11 @@ impl AbcWriter {
         self.row.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]));
         let mut write = || -> io::Result<()> {
             if self.frames == 0 {
-                let uv = root_uv(self.roots.iter().map(|&root| Vec3::from(self.row[root as usize])));
+                let roots = self.roots.iter().map(|&root| Vec3::from(self.row[root as usize]));
+                let mut uv = std::mem::take(&mut self.root_uvs);
+                if uv.is_empty() {
+                    uv = root_uv(roots);
+                }
                 let ty = DataType::new(Pod::F32, 2);
                 let mut store = Store { archive: &mut self.archive, times: self.times };
                 let samples = store.samples(ty, uv.as_flattened())?;
@@ -181,8 +198,30 @@ impl Shape {
             // The name that other programs look for.
             attribute("Cd", POINT, Scope::Vertex, "rgb", store.shared(POINT, colors)),
             attribute("groom_id", INT, Scope::Uniform, "", store.samples(INT, &ids)?),
-            attribute("groom_group_id", INT, Scope::Constant, "", store.samples(INT, &[0_i32])?),
         ];
+        let marks = &scene.marks;
+        match marks.groups.first() {
+            Some(first) if marks.groups.iter().any(|group| group != first) => {
+                let groups = store.samples(INT, &marks.groups)?;
+                attributes.push(attribute("groom_group_id", INT, Scope::Uniform, "", groups));
+            }
+            first => {
+                let groups = store.samples(INT, &[first.copied().unwrap_or_default()])?;
+                attributes.push(attribute("groom_group_id", INT, Scope::Constant, "", groups));
+            }
+        }
+        if !marks.group_names.is_empty() {
+            let ty = DataType::new(Pod::String, 1);
+            let of = |group: i32| marks.group_names.get(&group).map_or("", String::as_str);
+            let mut names = String::new();
+            for curve in 0..scene.curves() {
+                // Texts end with a zero, so a name cannot contain one.
+                names.extend(of(marks.group(curve)).chars().filter(|c| *c != '\0'));
+                names.push('\0');
+            }
+            let names = store.samples(ty, names.as_bytes())?;
+            attributes.push(attribute("groom_group_name", ty, Scope::Uniform, "", names));
+        }
         if scene.are_guides {
             let guides = vec![1_i16; scene.curves()];
             attributes.push(attribute(

@@ -15,6 +15,7 @@ mod usd;
 use std::path::Path;
 
 use glam::{Affine3A, Vec3};
+use lovelock_groom::StrandMarks;
 
 use crate::partial::{Opener, create_parent, open_file};
 use crate::{FrameRate, RecordError};
@@ -78,6 +79,8 @@ pub struct CurveScene {
     pub colors: Vec<Vec3>,
     /// Whether the curves are guides, which stand for several strands each.
     pub are_guides: bool,
+    /// The groups of the curves, and the places of their roots on a surface, where they are known. glTF has no place for them.
+    pub marks: StrandMarks,
     /// The body, if it is exported.
     pub body: Option<CurveBody>,
 }
@@ -169,6 +172,10 @@ impl CurveScene {
         }
         if self.widths.len() != points || self.colors.len() != points || !body_fits {
             return refuse("the arrays of the curves or of the body differ in length");
+        }
+        let fits = |length: usize| length == 0 || length == self.curves();
+        if !fits(self.marks.groups.len()) || !fits(self.marks.root_uvs.len()) {
+            return refuse("the groups or the roots of the curves differ in number from them");
         }
         self.check_size(path, format)
     }

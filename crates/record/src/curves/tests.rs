@@ -54,6 +54,7 @@ fn dance(frames: u64, curves: u32) -> Dance {
             widths: (0..points).map(|i| 1e-4 + 1e-6 * i as f32).collect(),
             colors: (0..points).map(|i| Vec3::new(0.2, 0.01 * (i % 50) as f32, 0.05)).collect(),
             are_guides: false,
+            marks: lovelock_groom::StrandMarks::default(),
             body: Some(body),
         },
         frames: (0..frames).map(|frame| (0..points).map(|i| at(frame, i)).collect()).collect(),

@@ -181,6 +181,25 @@ fn curves(layer: &mut SpooledLayer, path: sdf::Path, scene: &CurveScene, prim: &
     let colors = curves.attribute("primvars:displayColor", "color3f[]");
     colors.add("default", triples(&scene.colors[points]));
     per_vertex(colors);
+    let marks = &scene.marks;
+    if !marks.groups.is_empty() {
+        let groups = &marks.groups[prim.clone()];
+        let ids = curves.attribute("primvars:groom_group_id", "int[]");
+        ids.add("default", Value::IntVec(groups.to_vec()));
+        per_curve(ids);
+        if !marks.group_names.is_empty() {
+            let name = |group: &i32| Token::from(marks.group_names.get(group).map_or("", String::as_str));
+            let names = curves.attribute("primvars:groom_group_name", "token[]");
+            names.add("default", Value::TokenVec(groups.iter().map(name).collect()));
+            per_curve(names);
+        }
+    }
+    if !marks.root_uvs.is_empty() {
+        let uvs = marks.root_uvs[prim.clone()].iter().map(|&uv| uv.into()).collect();
+        let roots = curves.attribute("primvars:groom_root_uv", "texCoord2f[]");
+        roots.add("default", Value::Vec2fVec(uvs));
+        per_curve(roots);
+    }
     curves.attribute("extent", "float3[]").add("timeSamples", extent);
     curves.finish(Vec::new());
 }
@@ -214,6 +233,10 @@ fn uniform(spec: &mut SpecData, value: &'static str) {
 
 fn per_vertex(spec: &mut SpecData) {
     spec.add("interpolation", Value::Token(Token::from("vertex")));
+}
+
+fn per_curve(spec: &mut SpecData) {
+    spec.add("interpolation", Value::Token(Token::from("uniform")));
 }
 
 fn triples(values: &[Vec3]) -> Value {

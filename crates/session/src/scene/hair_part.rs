@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use lovelock_groom::{
-    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_around,
+    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_noted,
     load_hair, load_hair_watched,
 };
 use lovelock_project::error::{Place, Problem, ProjectError};
@@ -109,11 +109,13 @@ impl HairKey {
                     _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
                 };
                 // Files have a size of their own.
-                let style = import_around(&file, import, &part.placed_scalp, Some(&part.placed_obstacle()))
-                    .map_err(|error| refuse(&error))?;
+                let (style, moved) =
+                    import_noted(&file, import, &part.placed_scalp, Some(&part.placed_obstacle()))
+                        .map_err(|error| refuse(&error))?;
                 let style = if part.scale == 1.0 { style } else { style.scaled(1.0 / part.scale) };
-                // The file's notes describe what was ignored.
-                (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
+                // The file's notes describe what was ignored, those of the import what was moved.
+                let notes = [&file.notes[..], &moved].concat();
+                (style, file_notes(Place::Hair, &BTreeMap::new(), &notes))
             }
         };
         // All later code relies on valid indices.

@@ -4,6 +4,7 @@
 //! archives of this program do, in their description.
 
 mod frames;
+mod marks;
 mod objects;
 mod shape;
 mod transform;
@@ -18,6 +19,7 @@ use super::basis::Spread;
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::frames::{FramesOrReason, OpenedFrames};
+use super::marks::Marks;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use objects::{CurveObject, visit};
@@ -122,6 +124,7 @@ struct Hair {
     colours: Option<Vec<[f32; 3]>>,
     /// Whether each curve is a guide of Unreal's grooms, which stands for others.
     guides: Vec<bool>,
+    marks: Marks,
 }
 
 impl Hair {
@@ -133,6 +136,7 @@ impl Hair {
             widths: Some(Vec::new()),
             colours: Some(Vec::new()),
             guides: Vec::new(),
+            marks: Marks::default(),
         }
     }
 
@@ -203,6 +207,7 @@ impl Hair {
         {
             self.colours = Some(colours);
         }
+        marks::add(&mut self.marks, archive, object, &counts, secs)?;
         self.add_guides(archive, object, counts.len())
     }
 
@@ -249,6 +254,7 @@ impl Hair {
     fn finish(mut self) -> RawHair {
         self.raw.thickness = self.widths;
         self.raw.colours = self.colours;
+        self.raw.marks = self.marks.finish();
         let guides = self.guides.iter().filter(|&&is_guide| is_guide).count();
         if guides == 0 || guides == self.guides.len() {
             return self.raw;
@@ -268,6 +274,7 @@ impl Hair {
         }
         let of_curves: Vec<bool> = self.guides.iter().map(|is_guide| !is_guide).collect();
         keep(&mut self.raw.point_counts, &of_curves);
+        self.raw.marks = self.raw.marks.selected((0..of_curves.len()).filter(|&curve| of_curves[curve]));
         self.raw.left_out = Some(of_points);
         self.raw
     }

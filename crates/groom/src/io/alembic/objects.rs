@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_alembic::{AlembicError, Archive, Compound, Object, Property, metadata_value};
+use lovelock_alembic::{AlembicError, Archive, Compound, Object, Pod, Property, metadata_value};
 
 use super::refused;
 
@@ -16,6 +16,9 @@ const TRANSFORM: &str = "AbcGeom_Xform_v3";
 /// Names of parameters that give curves their colour, the first one that is there.
 const COLOURS: [&str; 6] = ["groom_color", "Cd", "displayColor", "Cs", "color", "rgb"];
 
+/// Names of parameters with the coordinates of roots on their surface.
+const ROOT_UVS: [&str; 2] = ["groom_root_uv", "surface_uv_coordinate"];
+
 /// An object of curves.
 pub(super) struct CurveObject {
     /// Its path, for messages.
@@ -27,6 +30,11 @@ pub(super) struct CurveObject {
     pub(super) width: Option<Parameter>,
     pub(super) colour: Option<Parameter>,
     pub(super) guides: Option<Property>,
+    /// The number and the name of the group of each curve.
+    pub(super) groups: Option<Parameter>,
+    pub(super) group_names: Option<Parameter>,
+    /// The coordinates of each root on its surface.
+    pub(super) root_uvs: Option<Parameter>,
     /// The transforms above it, innermost first.
     pub(super) above: Option<Arc<Ancestor>>,
 }
@@ -142,14 +150,33 @@ fn curves(
         knots: geometry.get(".knots").cloned(),
         width: values(archive, width)?,
         colour: values(archive, colour)?,
+        groups: values(archive, parameters.get("groom_group_id"))?,
+        group_names: match parameters.get("groom_group_name") {
+            Some(property) => texts(archive, property)?,
+            None => None,
+        },
+        root_uvs: match ROOT_UVS.iter().find_map(|name| parameters.get(name)) {
+            Some(property) => values(archive, Some(property))?.filter(|uvs| uvs.values.ty.extent >= 2),
+            None => None,
+        },
         guides: parameters.get("groom_guide").filter(|guides| guides.ty.pod.bytes() > 0).cloned(),
         above,
     }))
 }
 
-/// A parameter as values, or as values and indices.
+/// A parameter of numbers.
 fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Option<Parameter>, AlembicError> {
     let Some(property) = property else { return Ok(None) };
+    Ok(parameter(archive, property)?.filter(|parameter| parameter.values.ty.pod.bytes() > 0))
+}
+
+/// A parameter of texts.
+fn texts(archive: &mut Archive<'_>, property: &Property) -> Result<Option<Parameter>, AlembicError> {
+    Ok(parameter(archive, property)?.filter(|parameter| parameter.values.ty.pod == Pod::String))
+}
+
+/// A parameter as values, or as values and indices.
+fn parameter(archive: &mut Archive<'_>, property: &Property) -> Result<Option<Parameter>, AlembicError> {
     let scope = match metadata_value(&property.metadata, "geoScope") {
         Some("con") => Some("constant"),
         Some("uni") => Some("uniform"),
@@ -159,7 +186,7 @@ fn values(archive: &mut Archive<'_>, property: Option<&Property>) -> Result<Opti
     };
     let inner = archive.compound(property)?;
     let values = inner.get(".vals").unwrap_or(property);
-    if values.samples == 0 || values.ty.pod.bytes() == 0 {
+    if values.samples == 0 {
         return Ok(None);
     }
     let indices = inner.get(".indices").filter(|indices| indices.samples > 0).cloned();

@@ -5,7 +5,9 @@
 //! and variants are ignored, and a note says so.
 
 mod frames;
+mod marks;
 mod stage;
+mod surface;
 
 use glam::Vec3;
 use lovelock_usd::{CRATE_MAGIC, TEXT_MAGIC, Value};
@@ -15,6 +17,7 @@ use super::basis::{Basis, Shape, Spread, Wrap};
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::frames::OpenedFrames;
+use super::marks::Marks;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use stage::Stage;
@@ -36,7 +39,11 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 const MAX_POINTS: usize = 1 << 28;
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
-    read_layer(&mut Stage::open(name, source)?)
+    let mut layer = Stage::open(name, source)?;
+    let mut raw = read_layer(&mut layer)?;
+    let space = layer.space()?;
+    surface::attach(&mut layer, space.metres_from_stage, &mut raw)?;
+    Ok(raw)
 }
 
 /// The curves of a stage over time, and the hair at the first time.
@@ -60,9 +67,11 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     }
     let (mut widths, mut colours) = (Vec::new(), Vec::new());
     let (mut all_widths, mut all_colours) = (true, true);
+    let mut marks = Marks::default();
     for prim in prims {
         let transform = space.metres_from_stage * layer.transform(prim)?;
         let curves = Curves::read(layer, prim, &mut raw.notes)?;
+        marks::add(&mut marks, layer, prim, &curves.controls)?;
         let scale = transform.determinant().abs().cbrt() as f32;
         raw.point_counts.extend(&curves.counts);
         raw.points.extend(curves.points.iter().map(|p| transform.transform_point3(p.as_dvec3()).as_vec3()));
@@ -80,6 +89,7 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
             return Err(layer.malformed(format!("{} points", raw.points.len()), "268435456 at most"));
         }
     }
+    raw.marks = marks.finish();
     raw.thickness = Some(widths).filter(|_| all_widths);
     raw.colours = Some(colours).filter(|_| all_colours);
     Ok(raw)
@@ -88,6 +98,8 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
 /// The polylines of one prim, in its own space.
 struct Curves {
     counts: Vec<u32>,
+    /// Numbers of control points.
+    controls: Vec<usize>,
     points: Vec<Vec3>,
     /// Width of each point, repeated in each component.
     widths: Option<Vec<Vec3>>,
@@ -146,6 +158,7 @@ impl Curves {
             points: shape.spread(Spread::Vertex, &points, &counts),
             widths,
             colours,
+            controls: counts,
         })
     }
 }

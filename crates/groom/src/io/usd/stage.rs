@@ -25,6 +25,12 @@ impl<'a> Stage<'a> {
         Ok(prims.into_iter().map(|(prim, _)| prim).collect())
     }
 
+    /// The active prims of type `Mesh`, in the order of their paths.
+    pub(super) fn meshes(&mut self) -> Result<Vec<usize>, HairFileError> {
+        let prims = self.0.prims(&["Mesh"]).map_err(refused)?;
+        Ok(prims.into_iter().map(|(prim, _)| prim).collect())
+    }
+
     /// Path of a prim, for messages.
     pub(super) fn path(&self, prim: usize) -> String {
         self.0.path(prim)
