@@ -89,7 +89,7 @@ mod tests {
     fn a_binary_chunk_that_states_a_wrong_length_has_the_bytes_that_are_there() {
         for total in [0_u32, 44, u32::MAX] {
             for length in [0_u32, 16, 17, u32::MAX] {
-                let head = [b"glTF\x02\0\0\0", &total.to_le_bytes(), b"\x04\0\0\0JSON{}  "].concat();
+                let head = [&b"glTF\x02\0\0\0"[..], &total.to_le_bytes(), b"\x04\0\0\0JSON{}  "].concat();
                 let glb = [&head[..], &length.to_le_bytes(), b"BIN\0", &[7; 16]].concat();
                 let container = Container::open("f", &glb).expect("a container");
                 assert_eq!(
