@@ -217,7 +217,7 @@ fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     let window = of_mut(&mut harness);
     let mut changed = (**window.document.project()).clone();
     (changed.recording.width, changed.recording.height, changed.recording.end_frame) = (320, 240, Some(2));
-    window.edit("recording", changed);
+    window.document.edit("recording", changed);
     go(&mut harness);
     let film = dir.path().join("film.mp4");
     press_button(&mut harness, "Record comparison");

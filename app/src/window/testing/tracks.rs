@@ -130,7 +130,7 @@ fn commands_that_move_the_camera_are_edits_like_any_other() {
         ..lovelock_project::tracks::Track::new("camera/distance")
     }];
     let window = harness.state_mut().state.as_mut().expect("a window");
-    window.edit("camera", tracked.clone());
+    window.document.edit("camera", tracked.clone());
     window.document.end_gesture();
 
     // During playback the distance follows its track, and the window says so; values without a track change.
