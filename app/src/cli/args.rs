@@ -85,6 +85,11 @@ pub(crate) struct SourceArguments {
     /// Hair file to use instead of the project's hairstyle.
     #[arg(long, value_name = "FILE")]
     pub(crate) hair: Option<PathBuf>,
+    /// Unit of the hair file: auto, m, cm, mm or in.
+    #[arg(long, value_parser = unit)]
+    pub(crate) unit: Option<Unit>,
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = up_axis, help = up_axis_help("the hair file"))]
+    pub(crate) up: Option<UpAxis>,
     /// Character file to use instead of the project's body.
     #[arg(long, value_name = "FILE")]
     pub(crate) body: Option<PathBuf>,
@@ -383,6 +388,14 @@ pub(crate) struct SettingsTask {
 pub(crate) struct Info {
     /// The file.
     pub(crate) file: PathBuf,
+    /// Unit of a hair file: auto, m, cm, mm or in.
+    #[arg(long, default_value = "auto", value_parser = unit)]
+    pub(crate) unit: Unit,
+    #[arg(
+        long, value_name = "AXIS", default_value = "auto", allow_hyphen_values = true, value_parser = up_axis,
+        help = up_axis_help("a hair file")
+    )]
+    pub(crate) up: UpAxis,
 }
 
 #[derive(Debug, Args)]
@@ -397,8 +410,10 @@ pub(crate) struct Convert {
     /// Unit of IN: auto, m, cm, mm or in.
     #[arg(long, default_value = "auto", value_parser = unit)]
     pub(crate) unit: Unit,
-    /// Axis of IN that points up: auto, y or z.
-    #[arg(long, default_value = "auto", value_parser = up_axis)]
+    #[arg(
+        long, value_name = "AXIS", default_value = "auto", allow_hyphen_values = true, value_parser = up_axis,
+        help = up_axis_help("IN")
+    )]
     pub(crate) up: UpAxis,
 }
 
@@ -510,7 +525,11 @@ fn unit(text: &str) -> Result<Unit, String> {
 }
 
 fn up_axis(text: &str) -> Result<UpAxis, String> {
-    UpAxis::from_id(text).ok_or_else(|| format!("found `{text}`; must be auto, y or z"))
+    UpAxis::from_id(text).ok_or_else(|| format!("found `{text}`; must be {}", UpAxis::IDS))
+}
+
+fn up_axis_help(file: &str) -> String {
+    format!("Axis of {file} that points up: {}", UpAxis::IDS)
 }
 
 /// The quality of a film with that id.

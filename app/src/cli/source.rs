@@ -11,7 +11,7 @@ use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::{Access, FileRef};
-use lovelock_project::project::{CompareSection, Contender, load_project_with};
+use lovelock_project::project::{CompareSection, Contender, HairSource, load_project_with};
 use lovelock_project::styles::StyleParts;
 use lovelock_session::progress::Progress;
 use lovelock_session::take::{project_of_cache, project_of_take};
@@ -80,6 +80,7 @@ impl Source {
                 named.push((Place::Sound, required(path, &mut access)?));
                 project.set_sound_file(path);
             }
+            set_import(task, &mut project)?;
             apply(&task.set, &mut project)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
             return Ok(Self { project, access, name, named });
@@ -132,6 +133,7 @@ impl Source {
         if let Some(path) = &task.sound {
             project.set_sound_file(path);
         }
+        set_import(task, &mut project)?;
         apply(&task.set, &mut project)?;
         Ok(Self { project, access, name: names.join(", "), named })
     }
@@ -259,6 +261,23 @@ fn allow(
         }
         access.pick(named);
     }
+    Ok(())
+}
+
+/// Sets the unit and the up axis of the hair file that the project uses.
+fn set_import(task: &SourceArguments, project: &mut Project) -> Result<(), ProjectError> {
+    let is_read =
+        project.plays_curves() || project.take.file.is_none() && project.hair.source == HairSource::File;
+    for (option, given) in [("--unit", task.unit.is_some()), ("--up", task.up.is_some())] {
+        if given && !is_read {
+            return Err(ProjectError::option(format!(
+                "{option}: found no hair file; must be given with one"
+            )));
+        }
+    }
+    let import = &mut project.hair.import;
+    import.unit = task.unit.unwrap_or(import.unit);
+    import.up = task.up.unwrap_or(import.up);
     Ok(())
 }
 

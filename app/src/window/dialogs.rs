@@ -19,6 +19,7 @@ impl Window {
             || self.keys_shown
             || self.compare.reporting.is_open()
             || self.palette.is_open()
+            || self.up_question.is_open()
             || keys::are_held(ctx)
     }
 
@@ -67,6 +68,7 @@ impl Window {
         }
         self.about(ctx);
         self.report_dialog(ctx);
+        self.ask_up_axis(ctx);
         self.confirm_loss(ctx);
     }
 

@@ -141,6 +141,10 @@ impl Window {
                     self.open_body(path);
                 } else {
                     self.open_part(place_of(kind), path, |project| set_part(project, kind, path));
+                    if kind == FileKind::Hair {
+                        let import = self.document.project().hair.import;
+                        self.up_question.look(path, &import, self.document.gesture() - 1, &self.ctx);
+                    }
                 }
             }
         }

@@ -45,6 +45,7 @@ mod testing;
 mod theme;
 mod timeline;
 mod tools;
+mod up_axis;
 mod viewport;
 mod wall;
 mod work;
@@ -156,6 +157,8 @@ pub(crate) struct Window {
     /// The files that are being looked into, and the context that their threads wake.
     openings: opening::Openings,
     ctx: egui::Context,
+    /// The question for the up axis of the hair file that was opened last.
+    up_question: up_axis::UpQuestion,
     /// The body that was opened last, until it is loaded.
     framing: Option<files::Framing>,
     /// Whether what the command line names is not loaded yet: its errors are printed too.
@@ -255,6 +258,7 @@ impl Window {
         let own = lovelock_jobs::presets::own_styles();
         let cache = lovelock_jobs::presets::thumbnail::cache_folder();
         window.styles = styles::Browser::new(own, cache, ctx);
+        window.ask_about_started_hair();
         window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
@@ -287,6 +291,7 @@ impl Window {
             layout,
             dialog: None,
             openings: opening::Openings::default(),
+            up_question: up_axis::UpQuestion::default(),
             ctx: ctx.clone(),
             framing,
             starting: true,

@@ -53,6 +53,11 @@ pub(crate) fn mask_colors() -> ColorScale {
     ColorScale { range: [0.0, 1.0], colors, behind: 1.0, saturation: 1.0, relief: 0.35 }
 }
 
+/// A colour of the screen as linear numbers.
+pub(crate) fn to_linear(color: Color32) -> [f32; 3] {
+    [color.r(), color.g(), color.b()].map(|v| (f32::from(v) / 255.0).powf(2.2))
+}
+
 /// A linear colour on the screen.
 pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
     let [r, g, b] = linear.map(|v| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);

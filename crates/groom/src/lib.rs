@@ -45,7 +45,7 @@ pub use import::{
 pub use interpolate::interpolate;
 pub use io::{
     Bounds, CurveCache, CurveMotion, Facing, GltfContent, HAIR_FORMATS, HairFile, HairFileError, HairFormat,
-    METRES_Y_UP, Unit, UnitGuess, UpAxis, gltf_content, guess_units, load_hair, load_hair_bytes,
+    METRES_Y_UP, SURE, Unit, UnitGuess, UpAxis, gltf_content, guess_units, load_hair, load_hair_bytes,
     load_hair_watched,
 };
 pub use look::{HairLook, HairShading};

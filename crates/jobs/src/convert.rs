@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use glam::Vec3;
-use lovelock_groom::{HAIR_FORMATS, HairFile, HairFormat, ImportSettings, Unit, UpAxis, load_hair};
+use lovelock_groom::{
+    HAIR_FORMATS, HairFile, HairFormat, ImportSettings, SURE, Unit, UpAxis, guess_units, load_hair,
+};
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 use lovelock_record::{CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError};
@@ -44,6 +46,12 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
     let read = load_hair(input).map_err(|error| ProjectError::input(input, error))?;
     let settings = ImportSettings { unit, up, ..ImportSettings::default() };
     let hair = read.in_metres(&settings);
+    let mut notes = hair.notes.clone();
+    notes.extend(read.note_on_up(&settings));
+    let guess = guess_units(&read);
+    if unit == Unit::Auto && guess.unit_confidence < SURE {
+        notes.push(format!("{} `--unit` sets another unit.", guess.reason));
+    }
     let bytes = if let Some(write) = write {
         let bytes =
             write(&hair).map_err(|why| ProjectError::input(input, format!("{}: {why}", input.display())))?;
@@ -64,7 +72,7 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
         strands: hair.strands() as u64,
         points: hair.points.len() as u64,
         bytes,
-        notes: hair.notes,
+        notes,
     })
 }
 

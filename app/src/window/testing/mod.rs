@@ -19,6 +19,7 @@ mod takes;
 mod timeline_height;
 mod tools;
 mod tracks;
+mod up_axis;
 mod wall;
 mod whole;
 

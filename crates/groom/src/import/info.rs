@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::orientation::Orientation;
 use super::settings::ImportSettings;
-use crate::io::{Bounds, HairFile, Unit, guess_units};
+use crate::io::{Bounds, HairFile, Unit, UpAxis, guess_units};
 
 /// Summary of a hair file, in the unit and axes of the settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,12 +25,18 @@ pub struct HairInfo {
     pub unit: String,
     /// Length of one unit of the file, metres.
     pub metres_per_unit: f32,
-    /// `y` or `z`: the axis of the file that points up.
+    /// The axis of the file that points up: `y`, `-z` and so on.
     pub up: String,
+    /// Probability of it, 0 to 1; 1 where the file or the settings state it.
+    pub up_confidence: f32,
     /// The axis of the file that the face looks along: `+y`, `-z` and so on.
     pub facing: String,
+    /// Probability of it, 0 to 1; 1 where the settings state it.
+    pub facing_confidence: f32,
     /// Whether the unit was guessed.
     pub unit_guessed: bool,
+    /// How sure the unit is, 0 to 1; 1 where the file or the settings state it.
+    pub unit_confidence: f32,
     /// Counts of dropped strands, points and bytes by kind.
     pub dropped: BTreeMap<String, u64>,
     /// Remarks as sentences, including the reason for a guess.
@@ -46,6 +52,7 @@ pub fn hair_info(file: &HairFile, settings: &ImportSettings) -> HairInfo {
     }
     let mut notes = file.notes.clone();
     let guess = guess_units(file);
+    notes.extend(file.note_on_up(settings));
     if orientation.unit_guessed {
         notes.push(guess.reason);
     }
@@ -62,8 +69,11 @@ pub fn hair_info(file: &HairFile, settings: &ImportSettings) -> HairInfo {
         unit: unit.to_owned(),
         metres_per_unit: orientation.metres_per_unit,
         up: orientation.up.id().to_owned(),
+        up_confidence: if settings.up == UpAxis::Auto { guess.up_confidence } else { 1.0 },
         facing: orientation.facing.id().to_owned(),
+        facing_confidence: orientation.facing_confidence,
         unit_guessed: orientation.unit_guessed,
+        unit_confidence: if orientation.unit_guessed { guess.unit_confidence } else { 1.0 },
         dropped: file.dropped.clone(),
         notes,
     }

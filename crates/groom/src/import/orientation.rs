@@ -10,10 +10,12 @@ use crate::io::{Bounds, Facing, HairFile, UpAxis, guess_facing, guess_units, rot
 pub(crate) struct Orientation {
     pub(crate) metres_per_unit: f32,
     pub(crate) unit_guessed: bool,
-    /// `Y` or `Z`.
+    /// Never `Auto`.
     pub(crate) up: UpAxis,
     /// An axis perpendicular to `up`.
     pub(crate) facing: Facing,
+    /// Probability of it; 1 if it is set.
+    pub(crate) facing_confidence: f32,
     rotation: Quat,
 }
 
@@ -21,18 +23,20 @@ impl Orientation {
     pub(crate) fn resolve(file: &HairFile, settings: &ImportSettings) -> Self {
         let guess = guess_units(file);
         let up = if settings.up == UpAxis::Auto { guess.up } else { settings.up };
-        let facing = if settings.facing != Facing::Auto && settings.facing.is_square_to(up) {
-            settings.facing
-        } else if up == guess.up {
-            guess.facing
-        } else {
-            guess_facing(file, up)
-        };
+        let (facing, facing_confidence) =
+            if settings.facing != Facing::Auto && settings.facing.is_square_to(up) {
+                (settings.facing, 1.0)
+            } else if up == guess.up {
+                (guess.facing, guess.facing_confidence)
+            } else {
+                guess_facing(file, up)
+            };
         Self {
             metres_per_unit: settings.unit.metres().unwrap_or(guess.metres_per_unit),
             unit_guessed: settings.unit.metres().is_none() && !file.is_in_metres,
             up,
             facing,
+            facing_confidence,
             rotation: rotation_to_head_axes(up, facing),
         }
     }
@@ -44,6 +48,37 @@ impl Orientation {
 }
 
 impl HairFile {
+    /// What a person should know about the up axis that is used with `settings`, as a sentence.
+    pub fn note_on_up(&self, settings: &ImportSettings) -> Option<String> {
+        if settings.up == UpAxis::Auto { guess_units(self).note_on_up() } else { None }
+    }
+
+    /// At most `most` of the strands, evenly spaced, without widths and colours.
+    pub fn some_strands(&self, most: usize) -> Self {
+        let step = self.strands().div_ceil(most.max(1)).max(1);
+        let (mut first_point, mut points, mut bounds) = (vec![0], Vec::new(), Bounds::EMPTY);
+        for strand in (0..self.strands()).step_by(step) {
+            points.extend_from_slice(self.strand(strand));
+            first_point.push(points.len() as u32);
+        }
+        for &point in &points {
+            bounds.include(point);
+        }
+        Self {
+            name: self.name.clone(),
+            format: self.format.clone(),
+            first_point,
+            points,
+            bounds,
+            thickness: None,
+            transparency: None,
+            colours: None,
+            dropped: self.dropped.clone(),
+            notes: self.notes.clone(),
+            ..*self
+        }
+    }
+
     /// The same strands in metres, Y up, the face toward +Z, by the unit and axes of `settings`, about the file's origin.
     pub fn in_metres(&self, settings: &ImportSettings) -> Self {
         let orientation = Orientation::resolve(self, settings);

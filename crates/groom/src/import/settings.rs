@@ -85,14 +85,20 @@ impl Choices for Unit {
 }
 
 impl Choices for UpAxis {
-    const ALL: &'static [Self] = &[Self::Auto, Self::Y, Self::Z];
+    const ALL: &'static [Self] =
+        &[Self::Auto, Self::X, Self::MinusX, Self::Y, Self::MinusY, Self::Z, Self::MinusZ];
 
     fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Auto => ("Auto", "Automatic"),
-            Self::Y => ("Y", "Y"),
-            Self::Z => ("Z", "Z"),
-        }
+        let id = match self {
+            Self::Auto => "Auto",
+            Self::X => "X",
+            Self::MinusX => "MinusX",
+            Self::Y => "Y",
+            Self::MinusY => "MinusY",
+            Self::Z => "Z",
+            Self::MinusZ => "MinusZ",
+        };
+        (id, self.label())
     }
 }
 

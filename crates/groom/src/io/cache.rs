@@ -107,8 +107,7 @@ impl CurveCache {
         let metres_per_unit = unit.metres().unwrap_or(guess.metres_per_unit);
         let mut notes = notes_on_units(unit, up, from_file.then(|| frames.stated()), &guess);
         notes.extend(hair.notes.iter().cloned());
-        // Without a statement Y points up, as is usual in both formats: hair that flies says nothing about it.
-        let up = if up == UpAxis::Z { UpAxis::Z } else { UpAxis::Y };
+        let up = up_or_guess(up, from_file, &guess);
         let mut cache = Self {
             name,
             frames,
@@ -234,19 +233,35 @@ fn notes_on_units(unit: Unit, up: UpAxis, of_file: Option<Stated>, guess: &UnitG
     };
     let up = match up {
         UpAxis::Auto if of_file.is_some_and(|stated| stated.up) => {
-            "Up axis: read from the file; its points have Y up."
+            "Up axis: read from the file; its points have Y up.".to_owned()
         }
-        UpAxis::Auto => "Up axis: Y, the usual one; the file states none.",
-        UpAxis::Y => "Up axis: Y, as set.",
-        UpAxis::Z => "Up axis: Z, as set.",
+        UpAxis::Auto if of_file.is_none() && !guess.is_up_in_doubt() => {
+            format!("Up axis: {}, guessed from the strands.", guess.up.label())
+        }
+        UpAxis::Auto => "Up axis: Y, the usual one; the file states none.".to_owned(),
+        up => format!("Up axis: {}, as set.", up.label()),
     };
-    vec![unit, up.to_owned()]
+    vec![unit, up]
 }
 
-/// A point in metres with Y up. Where Z points up, the face looks along -Y, as in modellers.
+/// The axis that points up. Hair that flies says nothing about it: then it is Y, as is usual in both formats.
+fn up_or_guess(up: UpAxis, is_stated: bool, guess: &UnitGuess) -> UpAxis {
+    match up {
+        UpAxis::Auto if is_stated || guess.is_up_in_doubt() => UpAxis::Y,
+        UpAxis::Auto => guess.up,
+        up => up,
+    }
+}
+
+/// A point in metres with Y up, by the smallest rotation. Where Z points up, the face therefore looks along -Y, as in modellers.
 fn in_metres(point: Vec3, metres_per_unit: f32, up: UpAxis) -> Vec3 {
+    let facing = match up {
+        UpAxis::Z => Facing::MinusY,
+        UpAxis::MinusZ => Facing::PlusY,
+        _ => Facing::PlusZ,
+    };
     let point = point * metres_per_unit;
-    if up == UpAxis::Z { rotation_to_head_axes(UpAxis::Z, Facing::MinusY) * point } else { point }
+    if up == UpAxis::Y { point } else { rotation_to_head_axes(up, facing) * point }
 }
 
 /// The content of a file and its format; `None` for formats without curves over time.

@@ -222,3 +222,68 @@ fn curves_that_stay_need_no_rate() {
     let said = CurveMotion::of(&at("moves.usda")).problem().expect("a reason");
     assert!(said.contains("timeCodesPerSecond 0"), "{said}");
 }
+
+/// An archive of one object of hanging strands with that axis up, as a program writes it.
+fn write_hanging(path: &Path, up: usize, metadata: &str) {
+    let mut writer = ArchiveWriter::create(std::fs::File::create(path).expect("a file")).expect("a file");
+    let times = writer.add_times(Times::uniform(0.5, 0.0));
+    let point = |strand: i32, k: i32| {
+        let mut point = [0.01 * (strand % 10) as f32; 3];
+        point[(up + 1) % 3] = 0.013 * (strand / 10) as f32;
+        point[up] = -0.1 * k as f32;
+        point
+    };
+    let at = (0..100).flat_map(|strand| (0..4).map(move |k| (strand, k)));
+    let bytes: Vec<u8> = at.flat_map(|(strand, k)| point(strand, k)).flat_map(f32::to_le_bytes).collect();
+    let (mut points, mut counts) = (Samples::array(POINT, times), Samples::array(INT, times));
+    for _ in 0..2 {
+        points.push(writer.store(POINT, &bytes).expect("a sample"));
+        let each: Vec<u8> = std::iter::repeat_n(4_i32, 100).flat_map(i32::to_le_bytes).collect();
+        counts.push(writer.store(INT, &each).expect("a sample"));
+    }
+    let mut basis = Samples::scalar(DataType::new(Pod::U8, 4), 0);
+    basis.push(writer.store(basis.ty, &[1, 0, 0, 0]).expect("a sample"));
+    let (mut schema, mut properties) = (CompoundTree::default(), CompoundTree::default());
+    schema.samples("P", "geoScope=vtx", points);
+    schema.samples("nVertices", "", counts);
+    schema.samples("curveBasisAndType", "", basis);
+    properties.compound(".geom", "", schema);
+    let metadata_of_object = "schema=AbcGeom_Curve_v2".to_owned();
+    let object = ObjectTree {
+        name: "hair".to_owned(),
+        metadata: metadata_of_object,
+        properties,
+        children: Vec::new(),
+    };
+    writer.finish(metadata, vec![object]).expect("an archive");
+}
+
+#[test]
+fn the_axis_of_curves_over_time_is_guessed_and_a_known_program_has_its_own() {
+    let (_folder, at) = folder();
+    for (name, up, wanted) in [("x.abc", 0, UpAxis::X), ("y.abc", 1, UpAxis::Y), ("z.abc", 2, UpAxis::Z)] {
+        write_hanging(&at(name), up, "");
+        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto).expect("curves");
+        assert!(
+            cache.notes()[1].starts_with(&format!("Up axis: {}, guessed", wanted.label())),
+            "{:?}",
+            cache.notes()
+        );
+        let strand = cache.hair().strand(0);
+        assert!(strand[3].y < strand[0].y - 0.1, "{name}: it hangs: {strand:?}");
+        assert_eq!(guess_units(&load_hair(&at(name)).expect("hair")).up, wanted, "{name}");
+    }
+    // Without strands that show anything, the program decides; an unknown one leaves it in doubt.
+    for (program, unit, sure) in [
+        ("Maya 2024", Unit::Centimetre, true),
+        ("Blender", Unit::Metre, true),
+        ("Some tool", Unit::Metre, false),
+    ] {
+        let path = at("written.abc");
+        write_abc(&path, &[4, 4], &format!("_ai_Application={program}"));
+        let hair = load_hair(&path).expect("hair");
+        let guess = guess_units(&hair);
+        assert_eq!((guess.up, !guess.is_up_in_doubt()), (UpAxis::Y, sure), "{program}: {guess:?}");
+        assert_eq!(hair.written_unit, sure.then_some(unit), "{program}");
+    }
+}

@@ -89,6 +89,8 @@ pub(super) fn clean_keeping(
             None => format.label.to_owned(),
         },
         common_up: format.common_up,
+        written_up: raw.writer.map(|(_, up)| up),
+        written_unit: raw.writer.map(|(unit, _)| unit),
         is_in_metres: format.states_unit || raw.says_metres,
         first_point: Vec::with_capacity(strands + 1),
         points: raw.points,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::units::UpAxis;
+use super::units::{Unit, UpAxis};
 use crate::StrandMarks;
 
 /// The most points that a file may have by showing the same ones in several places.
@@ -61,6 +61,8 @@ pub(super) struct RawHair {
     pub(super) notes: Vec<String>,
     /// Whether this file says that its points are in metres with Y up, although its format states no unit.
     pub(super) says_metres: bool,
+    /// The unit and the up axis of the program that wrote the file, if it is known.
+    pub(super) writer: Option<(Unit, UpAxis)>,
     /// Which points of the file are here, if the reader left some out.
     pub(super) left_out: Option<Vec<bool>>,
     pub(super) marks: StrandMarks,
@@ -84,6 +86,7 @@ impl RawHair {
             dropped: BTreeMap::new(),
             notes: Vec::new(),
             says_metres: false,
+            writer: None,
             left_out: None,
             marks: StrandMarks::default(),
         }
@@ -101,6 +104,10 @@ pub struct HairFile {
     pub format: String,
     /// The axis that points up in most files of this format.
     pub common_up: UpAxis,
+    /// The axis that points up in most files of the program that wrote this one, if it is known.
+    pub written_up: Option<UpAxis>,
+    /// The unit of most files of that program.
+    pub written_unit: Option<Unit>,
     /// Whether the points are in metres with Y up, because the file or its format states its unit and axes, or the file
     /// was converted.
     pub is_in_metres: bool,

@@ -72,29 +72,68 @@ pub enum UpAxis {
     /// Guessed by [`guess_units`](super::guess_units).
     #[default]
     Auto,
+    /// +X.
+    X,
+    /// -X.
+    MinusX,
     /// +Y, as in TressFX.
     Y,
+    /// -Y.
+    MinusY,
     /// +Z, as in the known `.hair` files.
     Z,
+    /// -Z.
+    MinusZ,
 }
 
 impl UpAxis {
+    /// All axes, without `Auto`.
+    pub const AXES: [Self; 6] = [Self::X, Self::MinusX, Self::Y, Self::MinusY, Self::Z, Self::MinusZ];
+
+    /// The values of an option, for messages.
+    pub const IDS: &str = "auto, x, -x, y, -y, z or -z";
+
     /// Stable name for command lines and reports.
     pub fn id(self) -> &'static str {
         match self {
             Self::Auto => "auto",
+            Self::X => "x",
+            Self::MinusX => "-x",
             Self::Y => "y",
+            Self::MinusY => "-y",
             Self::Z => "z",
+            Self::MinusZ => "-z",
         }
     }
 
     /// The axis with this [`Self::id`].
     pub fn from_id(id: &str) -> Option<Self> {
-        [Self::Auto, Self::Y, Self::Z].into_iter().find(|up| up.id() == id)
+        Self::AXES.into_iter().chain([Self::Auto]).find(|up| up.id() == id)
     }
 
-    pub(super) fn direction(self) -> Vec3 {
-        if self == Self::Z { Vec3::Z } else { Vec3::Y }
+    /// Its name in sentences and menus.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Auto => "Automatic",
+            Self::X => "X",
+            Self::MinusX => "-X",
+            Self::Y => "Y",
+            Self::MinusY => "-Y",
+            Self::Z => "Z",
+            Self::MinusZ => "-Z",
+        }
+    }
+
+    /// The unit vector along it; that of +Y for [`Self::Auto`].
+    pub(crate) fn direction(self) -> Vec3 {
+        match self {
+            Self::X => Vec3::X,
+            Self::MinusX => Vec3::NEG_X,
+            Self::Auto | Self::Y => Vec3::Y,
+            Self::MinusY => Vec3::NEG_Y,
+            Self::Z => Vec3::Z,
+            Self::MinusZ => Vec3::NEG_Z,
+        }
     }
 }
 
@@ -145,7 +184,7 @@ impl Facing {
         self.direction().dot(up.direction()) == 0.0
     }
 
-    pub(super) fn direction(self) -> Vec3 {
+    pub(crate) fn direction(self) -> Vec3 {
         match self {
             Self::PlusX => Vec3::X,
             Self::MinusX => Vec3::NEG_X,
@@ -169,9 +208,9 @@ pub(crate) fn rotation_to_head_axes(up: UpAxis, facing: Facing) -> Quat {
     Quat::from_mat3(&file_from_head.transpose())
 }
 
-/// +Y where Z is up, +Z where Y is.
+/// +Y where Z is vertical, +Z otherwise.
 pub(super) fn usual_facing(up: UpAxis) -> Facing {
-    if up == UpAxis::Z { Facing::PlusY } else { Facing::PlusZ }
+    if matches!(up, UpAxis::Z | UpAxis::MinusZ) { Facing::PlusY } else { Facing::PlusZ }
 }
 
 /// From linear sRGB, as in USD and glTF, to display values, as in hair files.

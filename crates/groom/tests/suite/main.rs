@@ -10,4 +10,5 @@ mod growing;
 mod hair_files;
 mod hair_round_trips;
 mod interpolation;
+mod orientation;
 mod strand_bounds;

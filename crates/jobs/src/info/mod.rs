@@ -96,12 +96,27 @@ pub struct ProjectInfo {
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
 pub fn info(path: &Path) -> Result<Info, ProjectError> {
+    info_as(path, &ImportSettings::default())
+}
+
+/// As [`info`], with hair in the unit and axes of `import`.
+///
+/// # Errors
+/// As [`info`], and for a unit or an axis of a file that is not hair.
+pub fn info_as(path: &Path, import: &ImportSettings) -> Result<Info, ProjectError> {
     let refuse = |error: &dyn std::fmt::Display| ProjectError::input(path, error);
     if let Some(database) = DatabaseInfo::of(path)? {
         let file = path.display().to_string();
         return Ok(Info { file, content: Content::HairClusters(database) });
     }
-    let content = match FileKind::of(path)? {
+    let kind = FileKind::of(path)?;
+    if kind != FileKind::Hair && *import != ImportSettings::default() {
+        let (name, found) = (path.display(), kind.label());
+        return Err(ProjectError::option(format!(
+            "--unit, --up: found the {found} file {name}; must be hair"
+        )));
+    }
+    let content = match kind {
         FileKind::Hair => {
             let mut file = load_hair(path).map_err(|error| refuse(&error))?;
             match CurveMotion::of(path) {
@@ -110,7 +125,7 @@ pub fn info(path: &Path) -> Result<Info, ProjectError> {
                 }
                 motion => file.notes.extend(motion.problem()),
             }
-            Content::Hair(hair_info(&file, &ImportSettings::default()))
+            Content::Hair(hair_info(&file, import))
         }
         FileKind::Character => {
             Content::Character(load_character(path).map_err(|error| refuse(&error))?.info())

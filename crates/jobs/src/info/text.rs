@@ -22,7 +22,12 @@ impl fmt::Display for Info {
                 line(f, "size", format_args!("{:.3} x {:.3} x {:.3} m", size.x, size.y, size.z))?;
                 let guessed = if hair.unit_guessed { " (guessed)" } else { "" };
                 line(f, "unit", format_args!("{}{guessed}, {} m", hair.unit, hair.metres_per_unit))?;
-                line(f, "up, face", format_args!("{}, {}", hair.up, hair.facing))?;
+                let sure = |confidence: f32| match confidence {
+                    1.0.. => String::new(),
+                    _ => format!(" (guessed, {:.0} %)", 100.0 * confidence.min(0.99)),
+                };
+                let (up, facing) = (sure(hair.up_confidence), sure(hair.facing_confidence));
+                line(f, "up, face", format_args!("{}{up}, {}{facing}", hair.up, hair.facing))?;
                 remarks(f, &hair.dropped, &hair.notes)
             }
             Content::Character(character) => {

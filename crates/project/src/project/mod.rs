@@ -34,7 +34,7 @@ pub use sound::SoundSection;
 
 pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
 
-use lovelock_groom::{GroomSettings, HairLook, Preset};
+use lovelock_groom::{Facing, GroomSettings, HairLook, Preset, UpAxis};
 use lovelock_motion::LoopBlend;
 use lovelock_render::{Light, PictureSettings, ShadowSettings, StrandCount};
 use lovelock_simulation::SimulationSettings;
@@ -117,10 +117,14 @@ impl Project {
         project
     }
 
-    /// Switches to a hair file that the user picked.
+    /// Switches to a hair file that the user picked. The axes that were set for another file do not apply to it.
     pub fn set_hair_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        let file = FileRef::new(path);
+        if self.hair.file.as_ref().is_some_and(|before| before.path != file.path) {
+            (self.hair.import.up, self.hair.import.facing) = (UpAxis::Auto, Facing::Auto);
+        }
         self.set_hair_source(HairSource::File);
-        self.hair.file = Some(FileRef::new(path));
+        self.hair.file = Some(file);
     }
 
     /// Switches to a character file that the user picked, with its first clip. Hair and style stay, on the scalp of the new head.

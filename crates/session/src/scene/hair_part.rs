@@ -114,7 +114,8 @@ impl HairKey {
                         .map_err(|error| refuse(&error))?;
                 let style = if part.scale == 1.0 { style } else { style.scaled(1.0 / part.scale) };
                 // The file's notes describe what was ignored, those of the import what was moved.
-                let notes = [&file.notes[..], &moved].concat();
+                let on_up: Vec<String> = file.note_on_up(import).into_iter().collect();
+                let notes = [&file.notes[..], &on_up, &moved].concat();
                 (style, file_notes(Place::Hair, &BTreeMap::new(), &notes))
             }
         };

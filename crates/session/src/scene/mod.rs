@@ -211,6 +211,8 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 }
 
 #[cfg(test)]
+mod axis_tests;
+#[cfg(test)]
 mod collider_tests;
 #[cfg(test)]
 mod head_tests;

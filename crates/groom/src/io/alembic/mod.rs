@@ -21,7 +21,7 @@ use super::format::HairFormat;
 use super::frames::{FramesOrReason, OpenedFrames};
 use super::marks::Marks;
 use super::source::Source;
-use super::units::{UpAxis, display_from_linear};
+use super::units::{Unit, UpAxis, display_from_linear};
 use objects::{CurveObject, visit};
 
 pub(super) static FORMAT: HairFormat = HairFormat {
@@ -95,7 +95,15 @@ fn read_archive(
     }
     let mut raw = hair.finish();
     raw.says_metres = metadata_value(archive.metadata(), "_ai_Description") == Some(METRES_Y_UP);
+    raw.writer = metadata_value(archive.metadata(), "_ai_Application").and_then(custom_of);
     Ok(raw)
+}
+
+/// The unit and the up axis in which a program writes archives, if it is known: Blender turns its Z up to Y up, Houdini works in metres
+/// and Maya stores centimetres.
+fn custom_of(program: &str) -> Option<(Unit, UpAxis)> {
+    let units = [("Blender", Unit::Metre), ("Houdini", Unit::Metre), ("Maya", Unit::Centimetre)];
+    units.into_iter().find(|(name, _)| program.starts_with(name)).map(|(_, unit)| (unit, UpAxis::Y))
 }
 
 /// The error with the name of its file.
