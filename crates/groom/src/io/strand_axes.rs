@@ -99,7 +99,7 @@ impl StrandAxes {
         let scores = UpAxis::AXES.map(|up| {
             let direction = up.direction();
             let custom = if self.written == Some(up) {
-                4.0
+                5.0
             } else if up == self.common {
                 1.0
             } else if matches!(up, UpAxis::Y | UpAxis::Z) {
