@@ -68,6 +68,34 @@ fn hair_files_are_described() {
 }
 
 #[test]
+fn an_up_axis_is_guessed_doubted_and_set() {
+    let dir = tempfile::tempdir().expect("a folder");
+    // Strands along X, too few to be sure of.
+    let lines: String = (0..3)
+        .map(|k| format!("v 0 0.1 0.0{k}\nv -0.1 0.1 0.0{k}\nv -0.2 0.1 0.0{k}\nl -3 -2 -1\n"))
+        .collect();
+    std::fs::write(dir.path().join("a.obj"), lines).expect("a file");
+    let told = run(dir.path(), ["info", "a.obj"]);
+    assert!(told.done().stdout.contains("in doubt") && told.stdout.contains("--up"), "{told:?}");
+    for axis in ["x", "-x", "-y", "-z"] {
+        let json = run(dir.path(), ["info", "--json", "--up", axis, "a.obj"]).done().json();
+        assert_eq!((json["up"].as_str(), json["up_confidence"].as_f64()), (Some(axis), Some(1.0)), "{json}");
+        assert!(!json["notes"].to_string().contains("--up"), "{json}");
+    }
+    let converted = run(dir.path(), ["convert", "a.obj", "b.obj", "--up", "x", "--unit", "m"]);
+    assert!(!converted.done().stdout.contains("in doubt"), "{converted:?}");
+    let b = std::fs::read_to_string(dir.path().join("b.obj")).expect("a file");
+    let heights: Vec<f32> = (b.lines().filter(|line| line.starts_with("v ")))
+        .filter_map(|line| line.split_whitespace().nth(2)?.parse().ok())
+        .collect();
+    assert!(heights[2] < heights[0] - 0.19, "they hang: {heights:?}");
+    let line = run(dir.path(), ["info", "a.obj", "--up", "w"]).refused(2).to_owned();
+    assert!(line.contains("-x, y, -y, z or -z"), "{line}");
+    let line = run(dir.path(), ["record", "--up", "x", "-o", "c.usda"]).refused(2).to_owned();
+    assert!(line.contains("--up: found no hair file"), "{line}");
+}
+
+#[test]
 fn characters_are_described() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let files: [Fact; 9] = [

@@ -238,7 +238,10 @@ fn notes_on_units(unit: Unit, up: UpAxis, of_file: Option<Stated>, guess: &UnitG
         UpAxis::Auto if of_file.is_none() && !guess.is_up_in_doubt() => {
             format!("Up axis: {}, guessed from the strands.", guess.up.label())
         }
-        UpAxis::Auto => "Up axis: Y, the usual one; the file states none.".to_owned(),
+        UpAxis::Auto => {
+            "Up axis: Y, the usual one; the file states none. `--up` or the setting *Up axis* changes it."
+                .to_owned()
+        }
         up => format!("Up axis: {}, as set.", up.label()),
     };
     vec![unit, up]
