@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 
 use super::settings::ImportSettings;
+use crate::StrandMarks;
 use crate::io::{Bounds, Facing, HairFile, UpAxis, guess_facing, guess_units, rotation_to_head_axes};
 
 /// The unit and axes of a file: as set, otherwise as guessed.
@@ -53,7 +54,7 @@ impl HairFile {
         if settings.up == UpAxis::Auto { guess_units(self).note_on_up() } else { None }
     }
 
-    /// At most `most` of the strands, evenly spaced, without widths and colours.
+    /// At most `most` of the strands, evenly spaced, without widths, colours and marks.
     pub fn some_strands(&self, most: usize) -> Self {
         let step = self.strands().div_ceil(most.max(1)).max(1);
         let (mut first_point, mut points, mut bounds) = (vec![0], Vec::new(), Bounds::EMPTY);
@@ -73,6 +74,7 @@ impl HairFile {
             thickness: None,
             transparency: None,
             colours: None,
+            marks: StrandMarks::default(),
             dropped: self.dropped.clone(),
             notes: self.notes.clone(),
             ..*self
