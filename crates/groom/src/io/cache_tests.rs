@@ -283,7 +283,7 @@ fn the_axis_of_curves_over_time_is_guessed_and_a_known_program_has_its_own() {
         write_abc(&path, &[4, 4], &format!("_ai_Application={program}"));
         let hair = load_hair(&path).expect("hair");
         let guess = guess_units(&hair);
-        assert_eq!((guess.up, !guess.is_up_in_doubt()), (UpAxis::Y, sure), "{program}: {guess:?}");
+        assert_eq!(guess.up == UpAxis::Y && !guess.is_up_in_doubt(), sure, "{program}: {guess:?}");
         assert_eq!(hair.written_unit, sure.then_some(unit), "{program}");
     }
 }
