@@ -88,7 +88,10 @@ pub(crate) struct SourceArguments {
     /// Unit of the hair file: auto, m, cm, mm or in.
     #[arg(long, value_parser = unit)]
     pub(crate) unit: Option<Unit>,
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = up_axis, help = up_axis_help("the hair file"))]
+    #[arg(
+        long, value_name = "AXIS", allow_hyphen_values = true, value_parser = up_axis,
+        help = up_axis_help("the hair file")
+    )]
     pub(crate) up: Option<UpAxis>,
     /// Character file to use instead of the project's body.
     #[arg(long, value_name = "FILE")]
