@@ -123,7 +123,8 @@ impl FileKind {
     fn of_parts(path: &Path, start: &[u8], kind: Self) -> Result<Self, ProjectError> {
         let is_stage = start.starts_with(b"PXR-USDC") || start.starts_with(b"#usda");
         // Archives are packages of USD, or of arrays with hair.
-        let is_package = kind == Self::Character && start.starts_with(b"PK\x03\x04");
+        let is_package = start.starts_with(b"PK\x03\x04")
+            && path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("npz"));
         let holds = if is_stage || is_fbx(start) || is_package {
             figure_content(path).ok().flatten()
         } else if kind == Self::Character {
@@ -158,8 +159,8 @@ impl FileKind {
     /// The kind by file extension.
     pub fn by_extension(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        // A glTF is a character unless it holds lines, which its content tells.
-        if ["glb", "gltf"].contains(&ending.as_str()) {
+        // A glTF or a package is a character unless it holds lines or curves, which its content tells.
+        if ["glb", "gltf", "usdz"].contains(&ending.as_str()) {
             return Some(Self::Character);
         }
         Self::ALL.into_iter().find(|kind| kind.extensions().contains(&ending.as_str()))

@@ -40,7 +40,8 @@ pub(super) static ARCHIVE: HairFormat = HairFormat {
     common_up: UpAxis::Y,
     magics: &[],
     may_begin: |start| start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06"),
-    by_chance: false,
+    // Packages of other formats begin in the same way.
+    by_chance: true,
     read: read_archive,
     write: Some(write_archive),
 };

@@ -1,4 +1,4 @@
-//! `BasisCurves` of a USD stage, from text (`.usda`) and binary crates (`.usdc`): one file, its first time sample.
+//! `BasisCurves` of a USD stage, from text (`.usda`), binary crates (`.usdc`) and packages (`.usdz`): one file, its first time sample.
 //!
 //! A stage states its unit and its up axis, so its points are read in metres with Y up, in the space of the stage: the
 //! transforms of all ancestors of a prim are applied. Cubic curves become polylines. References, payloads, sublayers
@@ -6,6 +6,7 @@
 
 mod frames;
 mod marks;
+mod package;
 mod stage;
 mod surface;
 
@@ -24,12 +25,12 @@ use stage::Stage;
 
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "USD BasisCurves",
-    extensions: &["usdc", "usda", "usd"],
+    extensions: &["usdc", "usda", "usd", "usdz"],
     signature: "`#usda` or `PXR-USDC` (USD)",
     states_unit: true,
     common_up: UpAxis::Y,
     magics: &[CRATE_MAGIC, TEXT_MAGIC],
-    may_begin: |_| false,
+    may_begin: package::is_package,
     by_chance: false,
     read,
     write: None,
@@ -39,7 +40,14 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 const MAX_POINTS: usize = 1 << 28;
 
 fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
-    let mut layer = Stage::open(name, source)?;
+    if package::is_package(source.start()) {
+        let data = source.into_bytes(name)?;
+        return read_stage(Stage::open(name, Source::Memory(package::stage(name, &data)?))?);
+    }
+    read_stage(Stage::open(name, source)?)
+}
+
+fn read_stage(mut layer: Stage<'_>) -> Result<RawHair, HairFileError> {
     let mut raw = read_layer(&mut layer)?;
     let space = layer.space()?;
     surface::attach(&mut layer, space.metres_from_stage, &mut raw)?;

@@ -152,3 +152,33 @@ fn text_that_would_abort_the_program_is_refused() {
         assert!(!error.contains('\n') && error.starts_with("a.usda: "), "{error}");
     }
 }
+
+#[test]
+fn a_package_is_read_as_its_stage() {
+    let stage = "#usda 1.0\ndef BasisCurves \"a\"\n{\nuniform token type = \"linear\"\nint[] curveVertexCounts = [2]\n\
+        point3f[] points = [(0, 0, 0), (0, 1, 0)]\n}\n";
+    let package = |entry: &str, method: zip::CompressionMethod| {
+        let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        let options = zip::write::SimpleFileOptions::default().compression_method(method);
+        writer.start_file(entry, options).expect("an entry");
+        std::io::Write::write_all(&mut writer, stage.as_bytes()).expect("memory");
+        writer.finish().expect("memory").into_inner()
+    };
+    let stored = package("hair.usda", zip::CompressionMethod::Stored);
+    for name in ["a.usdz", "a.npz", "a"] {
+        let hair = load_hair_bytes(name, &stored).expect(name);
+        assert_eq!(
+            (hair.strands(), hair.is_in_metres, hair.format.as_str()),
+            (1, true, "USD BasisCurves"),
+            "{name}"
+        );
+    }
+    for (bytes, words) in [
+        (package("hair.usda", zip::CompressionMethod::Deflated), "a compressed stage"),
+        (stored[..60].to_vec(), "a stage that is cut"),
+        (package("hair.txt", zip::CompressionMethod::Stored), "USD"),
+    ] {
+        let error = load_hair_bytes("a.usdz", &bytes).expect_err(words).to_string();
+        assert!(error.contains(words), "{words}: {error}");
+    }
+}
