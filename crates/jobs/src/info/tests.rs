@@ -213,9 +213,13 @@ fn a_database_of_hair_clusters_is_described() {
     std::fs::write(&path, &bytes).expect("written");
     let error = info(&path).expect_err("cut short");
     assert!(error.to_string().contains("a ü.bin") && error.exit_code() == 2, "{error}");
-    // A file that only begins alike is none.
-    std::fs::write(&path, b"LVLKSA").expect("written");
-    assert!(info(&path).is_err_and(|error| error.to_string().contains("found an unknown kind of file")));
+    // A file that only begins alike is none. Files of hair end in `.bin`, too.
+    for (name, said) in [("a ü.bin", "must be the number of strands"), ("a", "found an unknown kind of file")]
+    {
+        let other = dir.path().join(name);
+        std::fs::write(&other, b"LVLKSA").expect("written");
+        assert!(info(&other).is_err_and(|error| error.to_string().contains(said)), "{name}");
+    }
 }
 
 #[test]
