@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec3};
 use lovelock_appearance::environment::Panorama;
+use lovelock_gpu::Gpu;
 use lovelock_groom::{
     GroomSettings, GuideFrame, HairLook, HairShading, Hairstyle, PlainHead, StrandSet, Strands, grow,
     interpolate,
@@ -31,8 +32,8 @@ fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
 
 /// A renderer on a device, and images of that device; `None` without an adapter.
 pub fn on_device() -> Option<(GpuRenderer, DeviceImages)> {
-    let gpu = match Renderer::open(Backend::Gpu) {
-        Ok(renderer) => Arc::clone(renderer.gpu().expect("a device")),
+    let gpu = match Gpu::open() {
+        Ok(gpu) => gpu,
         Err(error) => {
             lovelock_testkit::skip_without_adapter(&error);
             return None;
@@ -69,13 +70,24 @@ impl Scene {
         width: u32,
         height: u32,
     ) -> Option<Result<Picture, RenderError>> {
+        self.with_renderer(backend, |renderer, input| {
+            let mut picture = Picture::default();
+            renderer.picture(input, width, height, &mut picture).map(|_| picture)
+        })
+    }
+
+    /// Calls `draw` with the shared renderer of `backend`; `None` without an adapter.
+    pub fn with_renderer<T>(
+        &self,
+        backend: Backend,
+        draw: impl FnOnce(&mut Renderer, &FrameInput) -> T,
+    ) -> Option<T> {
         let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mut picture = Picture::default();
         // The axes of a light's map follow the light from image to image. An image without light forgets those of the tests before, which
         // have other lights and not all draw by both backends. If it fails, so does the image that is asked for.
         let dark = FrameInput { lights: &[], ..self.input() };
-        let _ = renderer.picture(&dark, 16, 16, &mut picture);
-        Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
+        let _ = renderer.picture(&dark, 16, 16, &mut Picture::default());
+        Some(draw(&mut renderer, &self.input()))
     }
 
     /// The input of the renderer.
@@ -289,6 +301,8 @@ pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     };
     s.lights = Light::default_rig();
     s.shadow = ShadowSettings::default();
+    // Half of the default, which a software adapter draws several times as fast.
+    s.shadow.voxel_map.resolution = 64;
     s.picture = PictureSettings { strands: StrandCount::Stored, ambient: 0.5, ..PictureSettings::default() };
     s
 }

@@ -99,8 +99,13 @@ fn hair_in_a_small_image_is_little_brighter_than_in_a_large_one() {
 }
 
 /// The largest change of the mean of 8 by 8 pixels from image to image, which is what an eye sees as a jump, and the strands of each image.
-/// `change` changes the scene before each.
-fn largest_change(scene: &mut Scene, images: usize, change: impl Fn(&mut Scene, usize)) -> (f64, Vec<f32>) {
+/// `change` changes the scene before each, which has so many pixels along a side.
+fn largest_change(
+    scene: &mut Scene,
+    pixels: u32,
+    images: usize,
+    change: impl Fn(&mut Scene, usize),
+) -> (f64, Vec<f32>) {
     let mut renderer = CpuRenderer::default();
     let (mut before, mut most): (Option<Vec<f64>>, f64) = (None, 0.0);
     let mut counts = Vec::new();
@@ -108,11 +113,12 @@ fn largest_change(scene: &mut Scene, images: usize, change: impl Fn(&mut Scene, 
     for image in 0..images {
         change(scene, image);
         let mut picture = Picture::default();
-        let stats = renderer.picture(&scene.input(), 256, 256, &mut picture).expect("a picture");
+        let stats = renderer.picture(&scene.input(), pixels, pixels, &mut picture).expect("a picture");
         counts.push((stats.segments / segments_per_strand) as f32);
-        let mut blocks = vec![0.0; 32 * 32];
+        let side = pixels as usize;
+        let mut blocks = vec![0.0; side / 8 * side / 8];
         for (i, pixel) in picture.rgba.chunks_exact(4).enumerate() {
-            let block = i / 256 / 8 * 32 + i % 256 / 8;
+            let block = i / side / 8 * (side / 8) + i % side / 8;
             blocks[block] += pixel[..3].iter().map(|&c| f64::from(c)).sum::<f64>() / (3.0 * 64.0);
         }
         if let Some(before) = &before {
@@ -132,9 +138,9 @@ fn nothing_appears_at_once_while_the_camera_comes_closer() {
         let away = Vec3::new(-0.3, 0.15, -0.9).normalize_or_zero();
         scene.camera.eye = scene.camera.target + away * (1.6 - 0.004 * image as f32);
     };
-    let (fixed, _) = largest_change(&mut scene, 12, closer);
+    let (fixed, _) = largest_change(&mut scene, 256, 6, closer);
     scene.picture.strands = StrandCount::BySize;
-    let (by_size, counts) = largest_change(&mut scene, 12, closer);
+    let (by_size, counts) = largest_change(&mut scene, 256, 6, closer);
     println!("largest change of a block: fixed {fixed:.3}, by size {by_size:.3}; strands {counts:?}");
     assert!(counts.windows(2).any(|two| two[0] != two[1]), "the number follows the distance");
     // Measured 1.93 and 2.07 of 255: what moves with the camera changes more than what fades.
@@ -145,15 +151,15 @@ fn nothing_appears_at_once_while_the_camera_comes_closer() {
 fn strands_appear_gradually_as_their_number_grows() {
     let mut scene = wig();
     scene.picture.strands = StrandCount::BySize;
-    let (fading, counts) = largest_change(&mut scene, 12, |scene, image| {
-        scene.picture.strand_detail = 1.0 + 0.005 * image as f32;
+    let (fading, counts) = largest_change(&mut scene, 128, 6, |scene, image| {
+        scene.picture.strand_detail = 1.0 + 0.01 * image as f32;
     });
     // The control: as many strands, of which none fades.
     scene.picture.strands = StrandCount::Fixed;
     let number = |scene: &mut Scene, image: usize| scene.picture.strand_number = counts[image];
-    let (at_once, same) = largest_change(&mut scene, 12, number);
+    let (at_once, same) = largest_change(&mut scene, 128, 6, number);
     println!("largest change of a block: fading {fading:.3}, at once {at_once:.3}; strands {counts:?}");
-    assert!(counts == same && counts[11] > counts[0] + 100.0, "{counts:?}");
+    assert!(counts == same && counts[5] > counts[0] + 25.0, "{counts:?}");
     // Measured 0.23 and 4.2 of 255.
     assert!(fading < 0.5 && at_once > 1.0, "{fading} {at_once}");
 }

@@ -5,21 +5,16 @@ use glam::Vec3;
 use lovelock_render::{
     Backend, CpuRenderer, HairPose, Layers, Picture, Renderer, ShadowMethod, Transparency,
 };
-use lovelock_testkit::{flip, skip_without_adapter};
+use lovelock_testkit::flip;
 
 /// Layers and picture of a scene; `None` without an adapter.
 fn drawn(backend: Backend, s: &Scene, over_background: bool, [w, h]: [u32; 2]) -> Option<(Layers, Picture)> {
-    let mut renderer = match Renderer::open(backend) {
-        Ok(renderer) => renderer,
-        Err(error) => {
-            skip_without_adapter(&error);
-            return None;
-        }
-    };
-    let (mut layers, mut picture) = (Layers::default(), Picture::default());
-    renderer.layers(&s.input(), w, h, over_background, &mut layers).expect("layers");
-    renderer.picture(&s.input(), w, h, &mut picture).expect("a picture");
-    Some((layers, picture))
+    s.with_renderer(backend, |renderer, input| {
+        let (mut layers, mut picture) = (Layers::default(), Picture::default());
+        renderer.layers(input, w, h, over_background, &mut layers).expect("layers");
+        renderer.picture(input, w, h, &mut picture).expect("a picture");
+        (layers, picture)
+    })
 }
 
 /// The difference between the tone-mapped layers and the picture: the fraction of bytes that differ, and the largest difference.

@@ -9,6 +9,7 @@ use lovelock_render::{
     DeviceImage, DeviceImages, Finished, FrameStats, GpuRenderer, LocalShadow, Picture, RenderError,
     ShadowMethod, Shrinker, Traffic, Transparency,
 };
+use lovelock_testkit::suite::sample;
 
 use super::cluster_agreement::wig;
 use crate::common::{Scene, grid, on_device, scene, tuft};
@@ -70,6 +71,10 @@ fn lit(transparency: Transparency, method: ShadowMethod) -> Scene {
     scene.picture.transparency = transparency;
     scene.picture.ground = true;
     scene.shadow.method = method;
+    // Small maps: a software adapter takes most of its time for their texels.
+    scene.shadow.voxel_map.resolution = 48;
+    scene.shadow.occupancy_maps.resolution = 64;
+    scene.shadow.density_clustering.resolution = 64;
     scene
 }
 
@@ -82,42 +87,39 @@ fn sway(scene: &mut Scene, step: u32) {
 #[test]
 fn images_stay_on_the_device_and_nothing_waits_or_is_created() {
     let Some(mut rig) = Rig::new() else { return };
-    for transparency in Transparency::ALL {
-        for method in [ShadowMethod::VoxelMap, ShadowMethod::OccupancyMaps, ShadowMethod::DensityClustering] {
-            let mut scene = lit(transparency, method);
-            rig.settled(&scene);
-            // The textures and bind groups of the first frames.
-            for step in 0..8 {
-                sway(&mut scene, step);
-                rig.image(&scene);
-                rig.finish();
-            }
-            let mut all = Traffic::default();
-            for step in 8..16 {
-                sway(&mut scene, step);
-                let (_, stats) = rig.image(&scene);
-                rig.finish();
-                let Traffic { bytes_up, bytes_back, waits, created } = stats.traffic;
-                all.bytes_up += bytes_up;
-                all.bytes_back += bytes_back;
-                all.waits += waits;
-                all.created += created;
-            }
-            let named = format!("{transparency}, {method}: {all:?}");
-            let has_lists = matches!(transparency, Transparency::Sorted | Transparency::Exact);
-            let back = if has_lists { 8 * HEADS_BYTES } else { 0 };
-            assert_eq!((all.bytes_back, all.waits, all.created), (back, 0, 0), "{named}");
-            // The strands, the body and the grid of light from all directions go up, and little else.
-            let moved = 16 * scene.strands.x.len() as u64 + 32 * 81 + 8 * 32 * 32 * 32;
-            assert!(all.bytes_up >= 8 * moved && all.bytes_up < 8 * (moved + 4096), "{named}");
-            // Control: a picture in memory is waited for and copied.
-            let (_, stats) = rig.picture(&scene);
-            assert!(
-                stats.traffic.waits > 0 && stats.traffic.bytes_back >= PIXEL_BYTES,
-                "{:?}",
-                stats.traffic
-            );
+    let methods = [ShadowMethod::VoxelMap, ShadowMethod::OccupancyMaps, ShadowMethod::DensityClustering];
+    let all = Transparency::ALL.into_iter().flat_map(|of| methods.map(|method| (of, method)));
+    // Every transparency and every method is among each second of them.
+    for (transparency, method) in sample(all, 2) {
+        let mut scene = lit(transparency, method);
+        rig.settled(&scene);
+        // The textures and bind groups of the first frames.
+        for step in 0..6 {
+            sway(&mut scene, step);
+            rig.image(&scene);
+            rig.finish();
         }
+        let mut all = Traffic::default();
+        for step in 6..10 {
+            sway(&mut scene, step);
+            let (_, stats) = rig.image(&scene);
+            rig.finish();
+            let Traffic { bytes_up, bytes_back, waits, created } = stats.traffic;
+            all.bytes_up += bytes_up;
+            all.bytes_back += bytes_back;
+            all.waits += waits;
+            all.created += created;
+        }
+        let named = format!("{transparency}, {method}: {all:?}");
+        let has_lists = matches!(transparency, Transparency::Sorted | Transparency::Exact);
+        let back = if has_lists { 4 * HEADS_BYTES } else { 0 };
+        assert_eq!((all.bytes_back, all.waits, all.created), (back, 0, 0), "{named}");
+        // The strands, the body and the grid of light from all directions go up, and little else.
+        let moved = 16 * scene.strands.x.len() as u64 + 32 * 81 + 8 * 32 * 32 * 32;
+        assert!(all.bytes_up >= 4 * moved && all.bytes_up < 4 * (moved + 4096), "{named}");
+        // Control: a picture in memory is waited for and copied.
+        let (_, stats) = rig.picture(&scene);
+        assert!(stats.traffic.waits > 0 && stats.traffic.bytes_back >= PIXEL_BYTES, "{:?}", stats.traffic);
     }
 }
 
@@ -126,6 +128,7 @@ fn clusters_follow_guides_without_further_traffic() {
     let Some(mut rig) = Rig::new() else { return };
     for shadow in [LocalShadow::Map, LocalShadow::Directional] {
         let mut scene = wig();
+        scene.shadow.voxel_map.resolution = 48;
         scene.picture.clusters.local_shadow = shadow;
         scene.picture.transparency = Transparency::WeightedAverage;
         let mut all = Traffic::default();

@@ -5,7 +5,7 @@ pub mod catenary;
 pub mod reference;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::{
@@ -45,6 +45,33 @@ impl Obstacle for RestBody {
     }
 }
 
+/// The dancer without hair, loaded once: her distances and her field take a second.
+struct Dancer {
+    body: Arc<Body>,
+    dance: Arc<Clip>,
+    scalp: Scalp,
+    obstacle: RestBody,
+    field: Option<Arc<BodyField>>,
+    colliders: Vec<Collider>,
+}
+
+static DANCER: LazyLock<Dancer> = LazyLock::new(|| {
+    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    let character = load_character(&file).expect("the shipped dancer loads");
+    let dance = character.clips.iter().find(|c| c.name == "dance").expect("the shipped dancer dances");
+    let head = head_mesh(&character.body);
+    let scalp = Scalp {
+        positions: head.positions,
+        normals: head.normals,
+        triangles: head.triangles,
+        mask: head.scalp,
+    };
+    let obstacle = RestBody(RestDistance::new(&character.body));
+    let field = BodyField::new(&character.body, &obstacle.0).map(Arc::new);
+    let colliders = ColliderEdits::default().apply(&fit_colliders(&character.body), field.as_deref());
+    Dancer { dance: Arc::clone(dance), scalp, obstacle, field, colliders, body: character.body }
+});
+
 impl Stage {
     /// The dancer with a preset as the program shows it: with its ties, if it has any.
     pub fn new(preset: Preset) -> Self {
@@ -83,36 +110,29 @@ impl Stage {
     }
 
     fn with_hair(hair: impl FnOnce(&Scalp, &RestBody) -> Hairstyle) -> Self {
-        let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
-        let character = load_character(&file).expect("the shipped dancer loads");
-        let dance = character.clips.iter().find(|c| c.name == "dance").expect("the shipped dancer dances");
-        let head = head_mesh(&character.body);
-        let scalp = Scalp {
-            positions: head.positions,
-            normals: head.normals,
-            triangles: head.triangles,
-            mask: head.scalp,
-        };
-        let obstacle = RestBody(RestDistance::new(&character.body));
-        let field = BodyField::new(&character.body, &obstacle.0).map(Arc::new);
-        let colliders = ColliderEdits::default().apply(&fit_colliders(&character.body), field.as_deref());
-        let style = Arc::new(hair(&scalp, &obstacle));
+        let dancer = &*DANCER;
+        let style = Arc::new(hair(&dancer.scalp, &dancer.obstacle));
         Self {
-            dance: Arc::clone(dance),
-            colliders,
-            field,
+            dance: Arc::clone(&dancer.dance),
+            colliders: dancer.colliders.clone(),
+            field: dancer.field.clone(),
             loose: Arc::clone(&style),
             style,
-            body: character.body,
+            body: Arc::clone(&dancer.body),
             pose: Pose::default(),
             placed: Vec::new(),
             field_pose: FieldPose::default(),
         }
     }
 
+    /// The distance of the dancer at rest.
+    pub fn rest_distance() -> &'static RestDistance {
+        &DANCER.obstacle.0
+    }
+
     /// Replaces the ties.
     pub fn tie(&mut self, ties: &[HairTie]) {
-        self.style = Arc::new(tied(&self.loose, ties, &RestBody(RestDistance::new(&self.body))));
+        self.style = Arc::new(tied(&self.loose, ties, &DANCER.obstacle));
         self.style.check().expect("a tied style is sound");
     }
 

@@ -1,7 +1,7 @@
 //! Hair against the skinned surface itself, not against its approximations.
 
 use lovelock_groom::Preset;
-use lovelock_motion::{RestDistance, Skin, SurfaceDistance, skin};
+use lovelock_motion::{Skin, SurfaceDistance, skin};
 use lovelock_simulation::SimulationSettings;
 use lovelock_testkit::suite;
 
@@ -59,7 +59,7 @@ fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance_long_sui
 fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
     let mut stage = Stage::of_wisps(Preset::Smooth, 12);
     stage.play("dance").expect("the motion");
-    let at_rest = RestDistance::new(&stage.body);
+    let at_rest = Stage::rest_distance();
     let mut simulation = stage.simulation(Some(0.0));
     let mut surface = Skin::default();
     // The errors of the body of the last step at places a centimetre outside neck and shoulders, where the body at rest is wrong.
@@ -76,7 +76,8 @@ fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
         let head_from_world = stage.pose.world_from_head.inverse();
         let now = simulation.body_now();
         let at_rest_of_vertices = stage.body.mesh.positions.iter().map(|p| *p - origin);
-        for ((p, normal), own) in surface.positions.iter().zip(&surface.normals).zip(at_rest_of_vertices) {
+        let vertices = surface.positions.iter().zip(&surface.normals).zip(at_rest_of_vertices);
+        for ((p, normal), own) in suite::sample(vertices, 3) {
             let near = *p + 0.01 * *normal;
             let (place, distance) = (head_from_world.transform_point3(near), exact.distance(near));
             let rest = at_rest.distance(place);
@@ -93,5 +94,5 @@ fn the_body_of_the_last_step_is_measured_where_it_has_moved() {
         "{} places where the body at rest is wrong: half within {half:.2} mm, 95 % within {most:.2} mm",
         off.len()
     );
-    assert!(off.len() > 100 && half < 1.0 && most < 4.0);
+    assert!(off.len() > 50 && half < 1.0 && most < 4.0);
 }

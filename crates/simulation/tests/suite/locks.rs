@@ -45,7 +45,7 @@ fn locks_of_long_hair_stay_as_narrow_as_at_rest() {
     rest.sort_by(f32::total_cmp);
     let rest = rest[rest.len() * 95 / 100];
     let settings = settings_of("long");
-    let secs = suite::seconds(4.0, 120.0);
+    let secs = suite::seconds(2.5, 120.0);
     let held = radius_in_dance(&mut stage, &settings, secs);
     let mut alone = settings;
     (alone.locks.cohesion, alone.locks.friction) = (0.0, 0.0);

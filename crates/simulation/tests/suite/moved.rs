@@ -81,7 +81,7 @@ fn fastest(simulation: &mut Simulation, steps: std::ops::Range<i32>, moves: bool
 
 #[test]
 fn combed_hair_stays_where_it_was_combed_without_a_kick() {
-    let settings = GroomSettings { wisps: 40, strands_per_wisp: 2, ..GroomSettings::preset(Preset::Long) };
+    let settings = GroomSettings { wisps: 12, strands_per_wisp: 2, ..GroomSettings::preset(Preset::Long) };
     let style = Arc::new(grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("it grows"));
     for moves in [false, true] {
         let mut simulation = Simulation::new(Arc::clone(&style));

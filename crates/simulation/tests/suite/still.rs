@@ -117,6 +117,6 @@ fn undamped_hair_fails_this_test() {
         locks: Locks { friction: 0.0, ..Locks::default() },
         ..SimulationSettings::default()
     };
-    let found = worst(&after_stops(Preset::Smooth, 40, &restless, &[5.75], 4.0));
+    let found = worst(&after_stops(Preset::Smooth, 16, &restless, &[3.8], 4.0));
     assert!(found.0 > 1e-3 && found.1 > 2e-3, "{found:?} m");
 }

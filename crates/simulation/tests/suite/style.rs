@@ -125,7 +125,7 @@ fn tip(simulation: &Simulation) -> f32 {
 
 #[test]
 fn a_guide_sways_at_the_frequency_set_by_its_stiffness() {
-    for stiffness in [10.0_f32, 20.0] {
+    for &stiffness in suite::cases(&[20.0_f32], &[10.0, 20.0]) {
         let (mut simulation, settings) = level(40, stiffness);
         let mut step = 0_u32;
         let mut run = |simulation: &mut Simulation, settings: &SimulationSettings| {

@@ -7,6 +7,7 @@ use lovelock_base::settings::Settings;
 use lovelock_groom::{Hairstyle, Wisp};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RepulsionMode, Simulation, SimulationSettings, StepInput, StepReport};
+use lovelock_testkit::suite::is_long;
 use proptest::prelude::*;
 
 use crate::common::{STEP_SECS, frame, head, straight, style};
@@ -303,7 +304,7 @@ fn the_tested_ranges_are_those_of_the_settings() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(if is_long() { 128 } else { 24 }) })]
     #[test]
     fn no_setting_breaks_the_motion(v in prop::collection::vec(number(), NUMBERS), n in any::<[u32; 5]>()) {
         survives(&settings_of(&v, n))?;

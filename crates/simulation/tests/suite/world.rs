@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::common::{STEP_SECS, Stage, frame, head, straight, style};
 
 fn few(preset: Preset) -> Stage {
-    Stage::grown(&GroomSettings { wisps: 60, strands_per_wisp: 4, ..GroomSettings::preset(preset) })
+    Stage::grown(&GroomSettings { wisps: 24, strands_per_wisp: 4, ..GroomSettings::preset(preset) })
 }
 
 /// Simulates seconds of the dance, from its start.
@@ -47,10 +47,10 @@ fn a_tie_holds_the_hair_in_its_ring_and_the_tail_swings() {
         };
         let ring = held(&|h| h >= 4000.0);
         let firm = held(&|h| h >= 60.0);
-        assert!(ring.len() >= 2 * 150, "only {} points are in the ring", ring.len());
+        assert!(ring.len() >= 100, "only {} points are in the ring", ring.len());
         let mut simulation = stage.simulation(Some(0.0));
         let (mut in_ring, mut on_head, mut tips) = (0.0_f32, 0.0_f32, 0.0_f32);
-        dance(&mut stage, &mut simulation, 4.0, &mut |simulation, world_from_head| {
+        dance(&mut stage, &mut simulation, 3.0, &mut |simulation, world_from_head| {
             let now = frame(simulation).guides;
             let away = |i: usize| {
                 let rest = world_from_head.transform_point3(style.guides.point(i / n, i % n));
@@ -81,7 +81,7 @@ fn hair_cut_in_motion_continues_from_where_it_was() {
     let cut =
         Haircut::of(&stage.style, &before, &blade.moved(&before.world_from_head)).expect("it meets hair");
     let met = cut.kept.iter().filter(|k| **k < 1.0).count();
-    assert!(met > 40, "only {met} guides are cut");
+    assert!(met > 16, "only {met} guides are cut");
     let short = Arc::new(trimmed(&stage.style, &cut));
     let mut whole = simulation.clone();
     simulation.set_style(Arc::clone(&short));
@@ -125,7 +125,7 @@ fn hair_cut_in_motion_continues_from_where_it_was() {
     // Control: another hairstyle does move the drawn hair.
     let mut other = whole.clone();
     let longer =
-        GroomSettings { wisps: 60, strands_per_wisp: 4, length: 0.5, ..GroomSettings::preset(Preset::Long) };
+        GroomSettings { wisps: 24, strands_per_wisp: 4, length: 0.5, ..GroomSettings::preset(Preset::Long) };
     let was = frame(&other).guides.point(5, 20);
     other.set_style(Stage::grown(&longer).style);
     assert!((frame(&other).guides.point(5, 20) - was).length() > 1e-3);

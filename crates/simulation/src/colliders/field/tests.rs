@@ -1,15 +1,23 @@
+use std::sync::LazyLock;
+
 use lovelock_motion::{Body, Clip, Pose, RestDistance, Skin, load_character, pose_at, skin};
 
 use super::*;
 use crate::lanes::{LANES, ZERO3, put, splat3};
 use crate::motion::substep;
 
-fn dancer() -> (Arc<Body>, Arc<Clip>, Arc<BodyField>) {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
-    let character = load_character(&file).expect("the shipped dancer loads");
-    let dance = character.clips.iter().find(|c| c.name == "dance").expect("she dances");
-    let field = BodyField::new(&character.body, &RestDistance::new(&character.body)).expect("a field");
-    (Arc::clone(&character.body), Arc::clone(dance), Arc::new(field))
+type Dancer = (Arc<Body>, Arc<Clip>, Arc<BodyField>);
+
+/// The shipped dancer, loaded once.
+fn dancer() -> Dancer {
+    static DANCER: LazyLock<Dancer> = LazyLock::new(|| {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+        let character = load_character(&file).expect("the shipped dancer loads");
+        let dance = character.clips.iter().find(|c| c.name == "dance").expect("she dances");
+        let field = BodyField::new(&character.body, &RestDistance::new(&character.body)).expect("a field");
+        (Arc::clone(&character.body), Arc::clone(dance), Arc::new(field))
+    });
+    DANCER.clone()
 }
 
 /// The dancer at one time, and her field there after a step.
