@@ -3,7 +3,27 @@
 use crate::tool::run;
 
 #[test]
-fn every_stage_of_a_scene_is_measured() {
+fn a_scene_of_the_simulation_is_measured() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let json =
+        run(dir.path(), ["bench", "simulate-402", "--frames", "1", "--json", "-o", "a b.csv"]).done().json();
+    assert!(json["machine"].as_str().is_some_and(|name| name.contains("threads")), "{json}");
+    let scene = &json["scenes"][0];
+    let stages = scene["stages"].as_array().expect("stages");
+    for stage in stages {
+        let [least, median, most] =
+            ["min_ms", "median_ms", "max_ms"].map(|key| stage[key].as_f64().expect("a number"));
+        assert!(0.0 < least && least <= median && median <= most, "{stage}");
+        assert!(stage["multiple"].as_f64().is_some_and(|multiple| multiple > 0.0), "{stage}");
+        assert!(stage["change"].is_null(), "there is no earlier run");
+    }
+    let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + stages.len());
+    assert!(!stages.is_empty() && json["yardstick"]["copy_gb_per_s"].as_f64() > Some(0.0), "{json}");
+}
+
+#[test]
+fn every_stage_of_a_scene_is_measured_long_suite() {
     let dir = tempfile::tempdir().expect("a folder");
     let args = [
         "bench",

@@ -89,7 +89,7 @@ fn clusters_are_compared_by_images_alone() {
     // Narrow strands, with which the reference converges soon.
     project.look.real_hairs *= 0.05;
     saved(dir.path(), "p.lovelock", &project);
-    let args = "compare p.lovelock -o out --frame 3 --methods voxel-map --draw strands,clusters --size 96x64 --backend cpu --draws 1 --json";
+    let args = "compare p.lovelock -o out --frame 3 --methods voxel-map --draw strands,clusters --size 64x48 --backend cpu --draws 1 --json";
     let ran = run_with_cache(dir.path(), &dir.path().join("cache"), &args.split(' ').collect::<Vec<_>>());
     let json = ran.done().json();
     let methods = json["methods"].as_array().expect("methods");

@@ -26,7 +26,7 @@ fn a_report_has_the_documented_keys_and_files() {
             "--methods",
             "none,voxel-map,exact",
             "--size",
-            "96x64",
+            "48x32",
             "--backend",
             "cpu",
             "--json",
@@ -130,7 +130,7 @@ fn a_quick_comparison_leaves_out_stability_and_names_its_steps() {
     let mut project = small_project();
     project.look.real_hairs *= 0.05;
     saved(dir.path(), "p.lovelock", &project);
-    let args = "compare p.lovelock -o out --frame 3 --methods none,voxel-map --size 64x64 --backend cpu --quick --json";
+    let args = "compare p.lovelock -o out --frame 3 --methods none,voxel-map --size 48x32 --backend cpu --quick --json";
     let ran = run(dir.path(), args.split(' '));
     let json = ran.done().json();
     let notes = json["notes"].to_string();

@@ -148,7 +148,7 @@ fn a_full_disk_ends_a_recording_with_an_error_and_leaves_no_output() {
     for (out, more) in [("a.mp4", ""), ("a.apng", ""), ("a", ""), ("e", "--format exr")] {
         let program = env!("CARGO_BIN_EXE_lovelock");
         let script = format!(
-            "trap '' XFSZ; ulimit -f 8; exec {program} record p.lovelock --backend cpu --size 320x240 --frames 0..9 -o {out} {more}"
+            "trap '' XFSZ; ulimit -f 8; exec {program} record p.lovelock --backend cpu --size 240x180 --frames 0..9 -o {out} {more}"
         );
         let mut command = std::process::Command::new("sh");
         let ran = run_command(command.current_dir(dir.path()).args(["-c", &script]).env_remove("DISPLAY"));

@@ -48,12 +48,23 @@ fn recordings() -> Option<&'static Recordings> {
     let make = || {
         let dir = tempfile::tempdir().expect("a folder");
         saved(dir.path(), "ein Projekt ü.lovelock", &small_project());
-        let record = |threads: &str, out: &str| {
-            let args = ["record", "ein Projekt ü.lovelock", "--frames", "3..7", "--json", "-o", out];
+        let record = |threads: &str, backend: &str, out: &str| {
+            let args = [
+                "record",
+                "ein Projekt ü.lovelock",
+                "--frames",
+                "3..7",
+                "--backend",
+                backend,
+                "--json",
+                "-o",
+                out,
+            ];
             run_command(lovelock().current_dir(dir.path()).args(args).env("RAYON_NUM_THREADS", threads))
         };
-        let film = record("2", FILM);
-        let pictures = ["1", "2", "8"].map(|threads| record(threads, &format!("frames {threads}"))).into();
+        let film = record("2", "auto", FILM);
+        let pictures =
+            ["1", "2", "8"].map(|threads| record(threads, "cpu", &format!("frames {threads}"))).into();
         Some(Recordings { dir, film, pictures })
     };
     RECORDINGS.get_or_init(make).as_ref()

@@ -9,7 +9,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::project::save_project;
-use lovelock_render::StrandCount;
+use lovelock_render::{Backend, StrandCount};
 use lovelock_testkit::wait::{HANG, wait_for};
 use serde_json::Value;
 
@@ -99,6 +99,9 @@ pub fn small_project() -> Project {
     project.hair.groom.segments_per_strand = 10;
     project.shadow.voxel_map.resolution = 32;
     project.picture.strands = StrandCount::Stored;
+    // A software adapter takes seconds to start.
+    project.picture.backend = Backend::Cpu;
+    project.timeline.preroll_secs = 0.1;
     (project.recording.width, project.recording.height) = (96, 64);
     project
 }

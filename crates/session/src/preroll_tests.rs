@@ -6,12 +6,11 @@ use std::sync::Arc;
 use lovelock_motion::Clip;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
-use lovelock_simulation::SimulationSettings;
 
 use crate::dance::Dance;
 use crate::engine::Engine;
 use crate::scene::Scene;
-use crate::testing::{scene, small_project};
+use crate::testing::{scene, settled, small_project};
 use crate::tests::{farthest, in_head_space};
 
 /// The small project in a wind that changes over time.
@@ -56,8 +55,8 @@ fn hair_after_a_seek_equals_a_recording_that_starts_there() {
 
 #[test]
 fn a_frame_is_the_same_after_a_seek_a_step_and_in_a_recording() {
-    let mut gone_to = Engine::new(scene(), SimulationSettings::default());
-    let mut stepped = Engine::new(scene(), SimulationSettings::default());
+    let mut gone_to = settled(scene(), &small_project());
+    let mut stepped = settled(scene(), &small_project());
     stepped.seek(130.0 * crate::clock::STEP_SECS);
     stepped.settle();
     for step in 131..136 {
@@ -75,9 +74,9 @@ fn a_frame_is_the_same_after_a_seek_a_step_and_in_a_recording() {
 
 #[test]
 fn settled_hair_is_close_to_a_continuous_simulation() {
-    let mut danced = Engine::new(scene(), SimulationSettings::default());
+    let mut danced = settled(scene(), &small_project());
     let (mut worst, mut unsettled) = (0.0_f32, f32::INFINITY);
-    for step in [250, 375, 470] {
+    for &step in lovelock_testkit::suite::cases(&[250], &[250, 375, 470]) {
         danced.advance_to_step(step);
         let lived = in_head_space(&danced.snapshot());
         let off = |preroll_secs: f32| {
@@ -104,7 +103,7 @@ fn a_preroll_starts_no_earlier_than_a_cut() {
     let cut = Arc::new(Scene { clip: Some(Arc::new(cut_clip)), ..(*whole).clone() });
     assert_eq!(cut.lead_in_secs(3.5), 3.1);
     assert_eq!(whole.lead_in_secs(3.5), f64::NEG_INFINITY);
-    let mut engine = Engine::new(Arc::clone(&cut), SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&cut), &small_project());
     engine.seek(3.5);
     let mut preroll = engine.preroll();
     let mut fastest = 0.0_f32;

@@ -9,17 +9,19 @@ use lovelock_project::files::Access;
 use lovelock_project::project::Project;
 use lovelock_record::{CurveFrame, CurveScene, CurveWriter, FrameRate};
 
+use crate::clock::STEP_SECS;
 use crate::engine::Engine;
 use crate::scene::{Scene, SceneLoader};
 use crate::snapshot::FrameSnapshot;
 use crate::take::{TakePlayer, TakeRecording};
 
-/// The default project with little hair, so that tests are quick.
+/// The default project with little hair and a short pre-roll, so that tests are quick.
 pub fn small_project() -> Project {
     let mut project = Project::default();
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 3;
     project.hair.groom.segments_per_strand = 8;
+    project.timeline.preroll_secs = 0.5;
     project
 }
 
@@ -32,6 +34,14 @@ pub fn load(project: &Project) -> (Arc<Scene>, Vec<Problem>) {
 pub fn scene() -> Arc<Scene> {
     static SCENE: OnceLock<Arc<Scene>> = OnceLock::new();
     Arc::clone(SCENE.get_or_init(|| load(&small_project()).0))
+}
+
+/// A scene whose hair is settled at the first frame as the project says.
+pub fn settled(scene: Arc<Scene>, project: &Project) -> Engine {
+    let mut engine = Engine::at_rest(scene, project.simulation, STEP_SECS);
+    engine.follow(project);
+    engine.settle();
+    engine
 }
 
 fn points(frame: &FrameSnapshot) -> Vec<Vec3> {
@@ -55,7 +65,7 @@ pub fn recorded(
     let mut loader = SceneLoader::new();
     let mut project = project.clone();
     let (scene, _) = loader.load_now(&project, &Access::new()).expect("a scene");
-    let mut engine = Engine::new(scene, project.simulation);
+    let mut engine = settled(scene, &project);
     let mut take = TakeRecording::start(path, &Arc::new(project.clone()), &engine).expect("a take");
     let mut frames = vec![FrameSnapshot::clone(&engine.snapshot())];
     for step in 1..steps {

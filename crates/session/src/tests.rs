@@ -10,10 +10,9 @@ use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_simulation::SimulationSettings;
 
-use crate::engine::Engine;
 use crate::scene::*;
 use crate::snapshot::FrameSnapshot;
-use crate::testing::{load, scene, small_project};
+use crate::testing::{load, scene, settled, small_project};
 
 /// A speed that hair never reaches in the dance, where the head turns at a few metres per second.
 const WHIP_METRES_PER_SEC: f32 = 15.0;
@@ -50,7 +49,7 @@ fn the_same_bytes_for_any_number_of_threads() {
     let hash_with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
-            let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
+            let mut engine = settled(Arc::clone(&scene), &small_project());
             engine.advance_to_step(40);
             (engine.state_hash(), engine.snapshot().guides.clone())
         })
@@ -58,7 +57,7 @@ fn the_same_bytes_for_any_number_of_threads() {
     let one = hash_with(1);
     assert_eq!(hash_with(2), one);
     assert_eq!(hash_with(8), one);
-    let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&scene), &small_project());
     engine.advance_to_step(41);
     assert_ne!(engine.state_hash(), one.0, "control: the hash changes with a step");
 }
@@ -66,8 +65,8 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn a_restart_clears_all_state() {
     let scene = scene();
-    let mut fresh = Engine::new(Arc::clone(&scene), SimulationSettings::default());
-    let mut played = Engine::new(scene, SimulationSettings::default());
+    let mut fresh = settled(Arc::clone(&scene), &small_project());
+    let mut played = settled(scene, &small_project());
     played.advance_to_step(33);
     played.seek(5.0);
     played.step();
@@ -82,7 +81,7 @@ fn a_restart_clears_all_state() {
 fn hair_is_settled_at_the_first_frame() {
     let mut project = small_project();
     project.motion.source = lovelock_project::project::MotionSource::Rest;
-    let mut engine = Engine::new(load(&project).0, SimulationSettings::default());
+    let mut engine = settled(load(&project).0, &small_project());
     let before = in_head_space(&engine.snapshot());
     engine.advance_to_step(60);
     let after = in_head_space(&engine.snapshot());
@@ -92,7 +91,7 @@ fn hair_is_settled_at_the_first_frame() {
 
 #[test]
 fn a_seek_moves_the_hair_rigidly_and_does_not_whip_it() {
-    let mut engine = Engine::new(scene(), SimulationSettings::default());
+    let mut engine = settled(scene(), &small_project());
     engine.advance_to_step(30);
     for time_secs in [3.7, 0.2, 6.1, 1.9] {
         let before = in_head_space(&engine.snapshot());
@@ -115,8 +114,10 @@ fn a_seek_moves_the_hair_rigidly_and_does_not_whip_it() {
 #[test]
 fn a_loop_is_seamless_where_the_clip_allows() {
     let scene = scene();
-    let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&scene), &small_project());
     let frames = (scene.duration_secs() / crate::clock::STEP_SECS) as u64;
+    engine.seek((frames - 40) as f64 * crate::clock::STEP_SECS);
+    engine.settle();
     engine.advance_to_step(frames - 5);
     engine.clear_totals();
     for _ in 0..15 {
@@ -144,8 +145,10 @@ fn a_clip_without_loop_moves_the_hair_rigidly_over_its_seam() {
     let cut_clip = Clip { duration_secs: cut, loops: false, ..(**clip).clone() };
     let scene = Arc::new(Scene { clip: Some(Arc::new(cut_clip)), ..(*whole).clone() });
     assert!(!scene.loops_smoothly());
-    let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&scene), &small_project());
     let seam = (cut / crate::clock::STEP_SECS) as u64;
+    engine.seek((seam - 40) as f64 * crate::clock::STEP_SECS);
+    engine.settle();
     engine.advance_to_step(seam - 3);
     engine.clear_totals();
     for _ in 0..20 {
@@ -177,7 +180,7 @@ fn a_motion_without_a_loop_ends_at_its_last_pose() {
     let mut project = small_project();
     project.motion.looping = false;
     let scene = load(&project).0;
-    let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&scene), &small_project());
     engine.seek(scene.duration_secs() + 5.0);
     assert!(engine.is_at_end());
     assert_eq!(engine.position_secs(), scene.duration_secs());
@@ -296,7 +299,7 @@ fn other_hair_appears_without_a_whip_and_time_continues() {
     let access = Access::new();
     let mut loader = SceneLoader::new();
     let mut project = small_project();
-    let mut engine = Engine::new(loader.load_now(&project, &access).expect("a scene").0, project.simulation);
+    let mut engine = settled(loader.load_now(&project, &access).expect("a scene").0, &project);
     engine.advance_to_step(100);
     for change in [
         |p: &mut Project| p.hair.groom.length = 0.25,
@@ -324,7 +327,7 @@ fn other_hair_appears_without_a_whip_and_time_continues() {
 
 #[test]
 fn unshared_snapshots_are_reused() {
-    let mut engine = Engine::new(scene(), SimulationSettings::default());
+    let mut engine = settled(scene(), &small_project());
     let first = Arc::as_ptr(&engine.snapshot());
     let held = engine.snapshot();
     assert_eq!(Arc::as_ptr(&held), first, "the first one was unused");
@@ -378,7 +381,7 @@ fn the_head_stays_in_the_picture_through_the_whole_dance() {
 
 #[test]
 fn framing_puts_the_hair_in_the_picture() {
-    let mut engine = Engine::new(scene(), SimulationSettings::default());
+    let mut engine = settled(scene(), &small_project());
     engine.advance_to_step(50);
     let frame = engine.snapshot();
     let guides = &frame.guides.guides;

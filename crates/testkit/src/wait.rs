@@ -7,8 +7,11 @@ use lovelock_base::clock::Stopwatch;
 /// The time after which a wait is taken for a hang. No test comes near it, however busy the machine is.
 pub const HANG: Duration = Duration::from_mins(15);
 
-/// The pause between two looks.
-const PAUSE: Duration = Duration::from_millis(2);
+/// The least and the longest pause between two looks. A look may be a pass of the window, which would take the processor from what is waited
+/// for; so the pauses grow to [`PART`] of the wait.
+const PAUSES: [Duration; 2] = [Duration::from_millis(2), Duration::from_millis(60)];
+/// The pauses as a part of the wait: one of so many.
+const PART: u32 = 12;
 
 /// Calls `ready` until it returns something, and returns that.
 ///
@@ -22,7 +25,7 @@ pub fn wait_for<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
             return value;
         }
         assert!(watch.elapsed() < HANG, "hangs while waiting for {what}");
-        std::thread::sleep(PAUSE);
+        std::thread::sleep((watch.elapsed() / PART).clamp(PAUSES[0], PAUSES[1]));
     }
 }
 

@@ -275,10 +275,10 @@ mod tests {
     fn the_brush_lies_on_the_hair_of_the_image() {
         let mut project = Project::default();
         project.hair.groom.wisps = 120;
-        project.hair.groom.strands_per_wisp = 50;
+        project.hair.groom.strands_per_wisp = 20;
         project.camera.distance = 0.9;
         let scene = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene").0;
-        let mut engine = Engine::new(scene, project.simulation);
+        let mut engine = Engine::at_rest(scene, project.simulation, 1.0 / 60.0);
         let snapshot = engine.snapshot();
         let camera = snapshot.camera(&project.camera);
         let (width, height) = (480_u16, 480_u16);

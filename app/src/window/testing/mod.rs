@@ -195,14 +195,11 @@ pub(crate) fn tooltip<S>(harness: &Harness<'_, S>) -> Option<String> {
 
 /// The tooltip at a position.
 pub(crate) fn tooltip_at<S>(harness: &mut Harness<'_, S>, at: Pos2) -> Option<String> {
-    harness.remove_cursor();
-    harness.run();
     harness.hover_at(at);
-    harness.run();
-    harness.run_steps(2);
+    harness.run_steps(3);
     let said = tooltip(harness);
     harness.remove_cursor();
-    harness.run();
+    harness.step();
     said
 }
 

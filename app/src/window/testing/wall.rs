@@ -10,11 +10,11 @@ use lovelock_panes::wall::Wall;
 use super::control;
 use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window};
 
-/// The window with all variants drawn.
+/// The window with the variants, of which not all are drawn yet.
 fn wall() -> Whole {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::N);
-    wait(&mut harness, "the variants", |window| window.wall.has_pictures());
+    wait(&mut harness, "the variants", |window| window.wall.variants().len() == Wall::CELLS);
     harness
 }
 

@@ -47,6 +47,11 @@ fn window_of(backend: Backend, playing: bool) -> Whole {
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
     project.shadow.voxel_map.resolution = 32;
+    project.shadow.opacity_maps.resolution = 64;
+    project.shadow.deep_opacity_maps.resolution = 64;
+    project.shadow.density_clustering.resolution = 64;
+    project.shadow.occupancy_maps.resolution = 64;
+    project.shadow.exact.resolution = 64;
     let mut opened = Some(Opened { project, ..Opened::default() });
     let mut harness = screen_of(vec2(1200.0, 900.0), None, move |ui, window: &mut Option<Window>| {
         let window = window.get_or_insert_with(|| {

@@ -11,6 +11,7 @@ use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, HairFile, Hairstyle, ImportSettings, PlainHead, Preset, StrandBounds,
     Strands, Wisp, grow, import, interpolate, load_hair,
 };
+use lovelock_testkit::suite::cases;
 use proptest::prelude::*;
 
 fn preset(preset: Preset) -> Arc<Hairstyle> {
@@ -24,8 +25,10 @@ fn imported(name: &str) -> Option<Arc<Hairstyle>> {
 }
 
 fn styles() -> Vec<(&'static str, Arc<Hairstyle>)> {
-    let mut all: Vec<_> = Preset::ALL.into_iter().map(|which| (which.id(), preset(which))).collect();
-    for name in ["yuksel/straight.hair", "tressfx/Ratboy_mohawk.tfx"] {
+    let presets = cases(&[Preset::Smooth, Preset::Curly], &Preset::ALL);
+    let mut all: Vec<_> = presets.iter().map(|&which| (which.id(), preset(which))).collect();
+    let files = ["tressfx/Ratboy_mohawk.tfx", "yuksel/straight.hair"];
+    for &name in cases(&files[..1], &files) {
         all.extend(imported(name).map(|style| (name, style)));
     }
     all

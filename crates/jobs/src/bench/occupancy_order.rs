@@ -183,6 +183,7 @@ mod tests {
     fn both_modes_draw_the_same_frames_and_differ_little() {
         let mut project = BenchScene::Smooth.project();
         (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (20, 10);
+        project.timeline.preroll_secs = 0.25;
         let loaded = super::super::load(&project).expect("a scene");
         let mut renderer = Renderer::open(Backend::Cpu).expect("the CPU");
         let request = BenchRequest { frames: 2, size: Some((160, 120)), ..BenchRequest::default() };

@@ -1,8 +1,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Backend, ShadowMethod};
+use lovelock_render::{Backend, Gpu, ShadowMethod};
 use lovelock_session::progress::Progress;
 use lovelock_session::testing::small_project;
 
@@ -22,14 +23,10 @@ fn try_record(
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Option<Result<RecordReport, ProjectError>> {
-    let gpu = match lovelock_render::Gpu::open() {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            lovelock_testkit::skip_without_adapter(&error);
-            return None;
-        }
-    };
-    let request = RecordRequest { gpu: Some(gpu), ..request.clone() };
+    static GPU: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
+    let gpu = GPU
+        .get_or_init(|| Gpu::open().inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).ok());
+    let request = RecordRequest { gpu: Some(Arc::clone(gpu.as_ref()?)), ..request.clone() };
     Some(record(&small_project(), &request, progress))
 }
 

@@ -2,6 +2,7 @@ use std::{collections::HashMap, path::Path};
 
 use glam::{Quat, Vec3};
 use lovelock_base::random::SplitMix64;
+use lovelock_testkit::suite::sample;
 
 use super::*;
 use crate::{Character, load_character};
@@ -136,7 +137,7 @@ fn inside_of_imperfect_surfaces() {
     for (name, (positions, triangles)) in names.into_iter().zip(surfaces) {
         let distance = RestDistance::of_triangles(positions, triangles);
         let mut random = SplitMix64::new(2);
-        for _ in 0..20_000 {
+        for _ in 0..5000 {
             let p = within(&mut random, Vec3::splat(-0.15), Vec3::splat(0.15));
             let mut truth = p.length() - 0.1;
             if name == "crossed" {
@@ -288,7 +289,7 @@ fn degenerate_and_huge_surfaces() {
     assert!(none.exact.tree.nodes.is_empty());
     let flat = RestDistance::of_triangles(&points, &[[0, 1, 2]]);
     assert!((flat.distance(Vec3::new(0.2, 0.2, 0.05)).0 - 0.05).abs() < 0.01);
-    for scale in [1e-9, 1e-4, 1e3, 1e8, 1e12, 1e37] {
+    for scale in sample([1e-9, 1e-4, 1e12, 1e8, 1e37, 1e3], 2) {
         let (positions, triangles) = sphere(Vec3::ONE, 1.0);
         let positions: Vec<Vec3> = positions.iter().map(|p| p * scale).collect();
         let distance = RestDistance::of_triangles(&positions, &triangles);
@@ -300,10 +301,10 @@ fn degenerate_and_huge_surfaces() {
     }
     let mut random = SplitMix64::new(5);
     // A cloud of triangles that fills its volume makes the cells larger, not more numerous.
-    let positions: Vec<Vec3> = (0..30_000).map(|_| within(&mut random, Vec3::NEG_ONE, Vec3::ONE)).collect();
+    let positions: Vec<Vec3> = (0..12_000).map(|_| within(&mut random, Vec3::NEG_ONE, Vec3::ONE)).collect();
     let cloud: Vec<Vec3> =
         positions.chunks(3).flat_map(|c| [c[0], c[0].lerp(c[1], 0.02), c[0].lerp(c[2], 0.02)]).collect();
-    let triangles: Vec<[u32; 3]> = (0..10_000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let triangles: Vec<[u32; 3]> = (0..4000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     let distance = RestDistance::of_triangles(&cloud, &triangles);
     assert!(distance.grid.unwrap().bytes() < 30_000_000);
 }

@@ -15,7 +15,7 @@ use lovelock_render::{Backend, CpuRenderer, Gpu, GpuError, HairDrawing, Picture,
 use lovelock_session::engine::Engine;
 use lovelock_session::scene::SceneLoader;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_session::testing::small_project;
+use lovelock_session::testing::{settled, small_project};
 use lovelock_session::window_device::WindowDevice;
 use lovelock_testkit::wait::{HANG, wait_until};
 
@@ -42,7 +42,7 @@ impl Rig {
         };
         project.compare.panes = methods.iter().map(pane).collect();
         let (scene, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
-        let snapshot = Engine::new(scene, project.simulation).snapshot();
+        let snapshot = settled(scene, &project).snapshot();
         let (sender, finished) = sync_channel(64);
         let wake = move || {
             let _ = sender.try_send(());

@@ -9,9 +9,8 @@ use lovelock_render::Gpu;
 use lovelock_testkit::wait::HANG;
 
 use super::*;
-use crate::engine::Engine;
 use crate::scene::SceneLoader;
-use crate::testing::small_project;
+use crate::testing::{settled, small_project};
 
 /// A render thread with the renderers of a test, one instant, and the backends that were requested.
 struct Rig {
@@ -32,7 +31,7 @@ impl Rig {
         mut open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static,
     ) -> Self {
         let (scene, _) = SceneLoader::new().load_now(&small_project(), &Access::new()).expect("a scene");
-        let snapshot = Engine::new(scene, small_project().simulation).snapshot();
+        let snapshot = settled(scene, &small_project()).snapshot();
         let opened = Arc::new(Mutex::new(Vec::new()));
         let noted = Arc::clone(&opened);
         let open = move |choice, _: Option<&Arc<Gpu>>| {

@@ -6,8 +6,7 @@ use lovelock_motion::ColliderEdit;
 use lovelock_project::files::Access;
 
 use super::*;
-use crate::engine::Engine;
-use crate::testing::small_project;
+use crate::testing::{settled, small_project};
 
 #[test]
 fn edited_colliders_take_effect_and_the_hair_keeps_moving() {
@@ -15,9 +14,9 @@ fn edited_colliders_take_effect_and_the_hair_keeps_moving() {
     let mut project = small_project();
     let first = loader.load_now(&project, &access).expect("a scene").0;
     assert!(first.field.is_some() && first.colliders.len() < first.fitted.len());
-    let mut engine = Engine::new(Arc::clone(&first), project.simulation);
+    let mut engine = settled(Arc::clone(&first), &project);
     engine.advance_to_step(60);
-    let mut kept = Engine::new(Arc::clone(&first), project.simulation);
+    let mut kept = settled(Arc::clone(&first), &project);
     kept.advance_to_step(60);
 
     // Without the skin field, hair collides with all shapes that it replaces.

@@ -12,9 +12,8 @@ use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation, UnknownOperat
 
 use super::Scene;
 use super::loader::SceneLoader;
-use crate::engine::Engine;
 use crate::snapshot::FrameSnapshot;
-use crate::testing::small_project;
+use crate::testing::{settled, small_project};
 
 fn load(loader: &mut SceneLoader, project: &Project) -> Arc<Scene> {
     let (scene, problems) = loader.load_now(project, &Access::new()).expect("a scene");
@@ -67,7 +66,7 @@ fn a_tied_project_is_saved_loaded_and_untied() {
 fn a_cut_in_motion_is_kept_by_the_project_and_undone_with_it() {
     let mut loader = SceneLoader::new();
     let mut project = small_project();
-    let mut engine = Engine::new(load(&mut loader, &project), project.simulation);
+    let mut engine = settled(load(&mut loader, &project), &project);
     engine.advance_to_step(40);
     let before = engine.snapshot();
     let chin = Blade::Plane { point: Vec3::new(0.0, -0.02, 0.0), normal: Vec3::NEG_Y };
@@ -112,7 +111,7 @@ fn light_and_shadow_do_not_change_the_motion() {
     let moved = |change: &dyn Fn(&mut Project)| {
         let mut project = small_project();
         change(&mut project);
-        let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+        let mut engine = settled(Arc::clone(&scene), &project);
         engine.follow(&project);
         engine.advance_to_step(60);
         engine.state_hash()
@@ -154,7 +153,7 @@ fn strands_that_are_tied_in_motion_do_not_jump() {
     project.hair.ties = vec![HairTie::default()];
     let tied = load(&mut loader, &project);
     for [from, to] in [[&loose, &tied], [&tied, &loose]] {
-        let mut engine = Engine::new(Arc::clone(from), project.simulation);
+        let mut engine = settled(Arc::clone(from), &project);
         engine.advance_to_step(40);
         let before = engine.snapshot();
         assert!(!engine.set_scene(Arc::clone(to)), "the hair keeps moving");

@@ -236,7 +236,7 @@ fn a_stiffer_side_moves_less() {
         let mut engine = engine_of(&project);
         engine.settle();
         let (mut sums, mut counts) = ([0.0_f32; 2], [0.0_f32; 2]);
-        for _ in 0..180 {
+        for _ in 0..120 {
             engine.step();
             let now = engine.snapshot();
             let rest = &now.scene.style.guides;

@@ -8,9 +8,8 @@ use lovelock_project::error::{Place, Problem};
 use lovelock_project::files::Access;
 
 use super::SceneLoader;
-use crate::engine::Engine;
 use crate::take::TakePlayer;
-use crate::testing::{recorded, small_project};
+use crate::testing::{recorded, settled, small_project};
 
 /// Writes a picture of one colour with a lamp at the top.
 fn picture(path: &Path, width: usize) {
@@ -33,7 +32,7 @@ fn a_picture_of_the_surroundings_lights_every_frame_and_is_read_once() {
     assert_eq!(problems, []);
     assert!(Arc::ptr_eq(&plain.style, &scene.style) && Arc::ptr_eq(&plain.body, &scene.body), "light alone");
     assert_eq!(scene.surroundings.as_ref().map(|of| of.size()), Some([32, 16]));
-    let frame = Engine::new(Arc::clone(&scene), project.simulation).snapshot();
+    let frame = settled(Arc::clone(&scene), &project).snapshot();
     let camera = frame.camera(&project.camera);
     assert!(frame.frame_input(&project, &camera).surroundings.is_some());
 

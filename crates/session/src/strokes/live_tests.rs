@@ -13,7 +13,7 @@ use super::{Stroke, StrokeStart};
 use crate::engine::{BrushLayers, Engine};
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
-use crate::testing::{farthest, small_project};
+use crate::testing::{farthest, settled, small_project};
 
 /// A project with a wave, and with a layer of brushes above it, whose number is 2.
 fn brushed() -> Project {
@@ -140,7 +140,7 @@ fn hair_that_is_combed_in_motion_goes_on_without_a_jump() {
         })
     };
     let engine = || {
-        let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+        let mut engine = settled(Arc::clone(&scene), &project);
         engine.advance_to_step(90);
         engine
     };

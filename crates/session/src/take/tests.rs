@@ -9,9 +9,8 @@ use lovelock_project::files::Access;
 use lovelock_record::{MAX_ERROR_M, TakeCondition};
 
 use super::*;
-use crate::engine::Engine;
 use crate::scene::SceneLoader;
-use crate::testing::{farthest, played, recorded, small_project};
+use crate::testing::{farthest, played, recorded, settled, small_project};
 
 pub(super) fn folder() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -117,7 +116,7 @@ fn hair_that_does_not_fit_is_refused_and_changed_hair_is_reported() {
     let mut access = Access::new();
     access.pick(&hair);
     let (scene, _) = SceneLoader::new().load_now(&project, &access).expect("a scene");
-    let engine = Engine::new(scene, project.simulation);
+    let engine = settled(scene, &project);
     let take = TakeRecording::start(&path, &Arc::new(project.clone()), &engine).expect("a take");
     take.finish().expect("a whole take");
     assert_eq!(
@@ -161,7 +160,7 @@ fn frames_are_not_interpolated_across_a_jump() {
     let (_folder, path) = folder();
     let project = small_project();
     let (scene, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
-    let mut engine = Engine::new(scene, project.simulation);
+    let mut engine = settled(scene, &project);
     let mut take = TakeRecording::start(&path, &Arc::new(project), &engine).expect("a take");
     for step in 1..20 {
         if step == 10 {

@@ -9,9 +9,8 @@ use lovelock_style::hand::HandEdits;
 use lovelock_testkit::wait::wait_for as wait;
 
 use super::*;
-use crate::engine::Engine;
 use crate::scene::SceneLoader;
-use crate::testing::small_project;
+use crate::testing::{settled, small_project};
 
 fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
     let woken = Arc::new(AtomicU64::new(0));
@@ -103,7 +102,7 @@ fn settled_at(worker: &Worker, secs: f64) -> Arc<FrameSnapshot> {
 /// Waits until the hair is settled at a time, and compares it with an engine that settles there.
 fn sees_settled_hair(worker: &Worker, project: &lovelock_project::Project, secs: f64) {
     let shown = settled_at(worker, secs);
-    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
+    let mut engine = settled(Arc::clone(&shown.scene), project);
     engine.seek(secs);
     engine.settle();
     assert_eq!(engine.snapshot().guides, shown.guides);
@@ -121,8 +120,7 @@ fn hair_is_settled_where_scrubbing_ends() {
     }
     worker.seek(end);
     let shown = settled_at(&worker, end);
-    let mut engine =
-        Engine::new(Arc::clone(&first.scene), lovelock_simulation::SimulationSettings::default());
+    let mut engine = settled(Arc::clone(&first.scene), &small_project());
     engine.seek(end);
     assert_ne!(engine.snapshot().guides, shown.guides, "control: hair that was only moved rigidly");
     engine.settle();
@@ -164,7 +162,7 @@ fn settings_changed_while_paused_settle_the_hair_again() {
         worker.set_project(Arc::new(project.clone()), Access::new());
         std::thread::sleep(Duration::from_millis(3));
     }
-    let mut engine = Engine::new(Arc::clone(&before.scene), project.simulation);
+    let mut engine = settled(Arc::clone(&before.scene), &project);
     engine.seek(secs);
     engine.settle();
     let wanted = engine.snapshot();
@@ -263,6 +261,7 @@ fn a_cancelled_load_keeps_the_scene_and_the_next_one_loads() {
 #[test]
 fn hair_dragged_while_paused_settles_after_release() {
     let mut project = lovelock_project::Project::default();
+    project.timeline.preroll_secs = 0.25;
     let (worker, _) = start(project.clone());
     wait("a frame", || worker.frame());
     worker.set_playing(false);
@@ -275,7 +274,7 @@ fn hair_dragged_while_paused_settles_after_release() {
         project.hair.groom.length += 1e-5;
         worker.set_project(Arc::new(project.clone()), Access::new());
         loads += u32::from(worker.poll_event().is_some_and(|event| matches!(event, Event::Loaded { .. })));
-        (loads == 5).then_some(())
+        (loads == 2).then_some(())
     });
     let (last, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
     let is_last = |frame: &FrameSnapshot| frame.scene.style.guides == last.style.guides;

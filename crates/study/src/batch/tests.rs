@@ -16,7 +16,7 @@ fn request(out: &Path, methods: &[ShadowMethod]) -> CompareRequest {
     CompareRequest {
         out: out.to_owned(),
         frames: Some(2..3),
-        size: Some((72, 64)),
+        size: Some((48, 40)),
         methods: methods.to_vec(),
         backends: vec![Backend::Cpu],
         draws: 2,
@@ -141,7 +141,7 @@ fn the_truth_of_every_light_counts() {
     project.lights.truncate(1);
     project.lights[0].enabled = true;
     project.lights.push(project.lights[0].clone());
-    let wanted = request(dir.path(), &[ShadowMethod::None]);
+    let wanted = CompareRequest { quick: true, ..request(dir.path(), &[ShadowMethod::None]) };
     let report = run(&project, &wanted).expect("a report");
     let of_second = report.reference.others.iter().find(|truth| truth.name == "reference picture, light 2");
     let of_second = of_second.unwrap_or_else(|| panic!("{:?}", report.reference.others));
@@ -159,8 +159,11 @@ fn images_are_compared_with_the_reference_of_their_own_backend() {
     let dir = tempfile::tempdir().expect("a folder");
     let both = vec![Backend::Cpu, Backend::Gpu];
     let methods = [ShadowMethod::Exact, ShadowMethod::None];
-    let wanted = CompareRequest { backends: both, ..request(dir.path(), &methods) };
-    let report = run(&little_hair(), &wanted).expect("a report");
+    let mut project = little_hair();
+    project.lights.truncate(1);
+    project.lights[0].enabled = true;
+    let wanted = CompareRequest { backends: both, quick: true, ..request(dir.path(), &methods) };
+    let report = run(&project, &wanted).expect("a report");
     let drawn: Vec<_> = report.reference.pictures.iter().map(|of| of.backend.as_str()).collect();
     assert!(report.reference.pictures.iter().all(|of| dir.path().join(&of.file).is_file()));
     assert_eq!(report.reference.picture.as_ref(), Some(&report.reference.pictures[0].file));
@@ -180,8 +183,9 @@ fn images_are_compared_with_the_reference_of_their_own_backend() {
     }
     assert!(flip("exact", "gpu") < between.flip.mean && flip("exact", "gpu") < 0.5 * flip("none", "gpu"));
 
-    let wanted = CompareRequest { backends: vec![Backend::Gpu], ..request(dir.path(), &methods) };
-    let alone = run(&little_hair(), &wanted).expect("a report").reference;
+    let backends = vec![Backend::Gpu];
+    let wanted = CompareRequest { backends, quick: true, ..request(dir.path(), &[ShadowMethod::None]) };
+    let alone = run(&project, &wanted).expect("a report").reference;
     assert_eq!((alone.pictures.len(), alone.pictures[0].backend.as_str()), (1, "gpu"));
     assert!(alone.gpu_from_cpu.is_some());
 }
@@ -190,8 +194,11 @@ fn images_are_compared_with_the_reference_of_their_own_backend() {
 fn sweeps_run_a_method_over_its_settings() {
     let dir = tempfile::tempdir().expect("a folder");
     let sweeps = vec!["slices=8,128".parse().expect("a sweep")];
-    let wanted =
-        CompareRequest { sweeps, ..request(dir.path(), &[ShadowMethod::OpacityMaps, ShadowMethod::None]) };
+    let wanted = CompareRequest {
+        sweeps,
+        quick: true,
+        ..request(dir.path(), &[ShadowMethod::OpacityMaps, ShadowMethod::None])
+    };
     // Spread hair, because for sparse hair close to the head, more slices make no difference.
     let mut project = little_hair();
     project.simulation.stiffness_root = 14.0;
@@ -239,7 +246,8 @@ fn what_is_finished_stays_when_it_is_stopped() {
         }
         _ => ControlFlow::Continue(()),
     };
-    let report = compare(&little_hair(), &request(dir.path(), &methods), &mut stop).expect("a report");
+    let quick = CompareRequest { quick: true, ..request(dir.path(), &methods) };
+    let report = compare(&little_hair(), &quick, &mut stop).expect("a report");
     assert!(!report.complete && report.notes.iter().any(|note| note.contains("Stopped")));
     assert_eq!(report.methods.len(), 2);
     let written = std::fs::read_to_string(dir.path().join("report.json")).expect("JSON");
