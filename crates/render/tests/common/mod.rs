@@ -301,8 +301,6 @@ pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     };
     s.lights = Light::default_rig();
     s.shadow = ShadowSettings::default();
-    // Half of the default, which a software adapter draws several times as fast.
-    s.shadow.voxel_map.resolution = 64;
     s.picture = PictureSettings { strands: StrandCount::Stored, ambient: 0.5, ..PictureSettings::default() };
     s
 }

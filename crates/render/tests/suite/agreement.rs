@@ -16,7 +16,7 @@ const P99: f32 = 0.06;
 const GROUND_MEAN: f32 = 0.0005;
 
 fn compared(scene: &Scene, other: &Scene) -> Option<Flip> {
-    let (w, h) = (240, 180);
+    let (w, h) = (320, 240);
     let gpu = scene.draw_by(Backend::Gpu, w, h)?;
     let cpu = other.draw_by(Backend::Cpu, w, h)?;
     Some(flip(&gpu.rgba, &cpu.rgba, w, h))
@@ -128,7 +128,7 @@ type Spoil = fn(&mut Scene);
 /// Negative controls: the comparison must detect each of these small defects of one backend.
 #[test]
 fn small_differences_of_the_scene_are_found() {
-    let (w, h) = (240, 180);
+    let (w, h) = (320, 240);
     let Some(gpu) = tuft_scene(400).draw_by(Backend::Gpu, w, h) else { return };
     let spoiled: [(&str, Spoil); 4] = [
         ("a light turned by 12 degrees", |s| s.lights[0].direction = Vec3::new(-0.62, -0.45, -0.6)),
