@@ -4,7 +4,7 @@ use std::path::Path;
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use lovelock_alembic::{Archive, Compound, Object, Source};
 use lovelock_groom::{HairFile, load_hair, load_hair_bytes};
-use lovelock_testkit::suite::{is_long, sample};
+use lovelock_testkit::suite;
 
 use super::*;
 use crate::partial::failing::small_disk;
@@ -146,9 +146,9 @@ fn broken_files_are_refused_or_read_without_a_panic() {
         // one of them.
         let mut broken = whole.clone();
         let (mut refused, mut tried) = (0, 0);
-        for at in sample(0..whole.len(), 3) {
-            let first = if is_long() { 0 } else { at / 3 % 4 };
-            for value in sample([0, 0x7f, 0xff, whole[at] ^ 1].into_iter().skip(first), 4) {
+        for at in suite::sample(0..whole.len(), 3) {
+            let first = if suite::is_long() { 0 } else { at / 3 % 4 };
+            for value in suite::sample([0, 0x7f, 0xff, whole[at] ^ 1].into_iter().skip(first), 4) {
                 broken[at] = value;
                 tried += 1;
                 match load_hair_bytes(name, &broken) {
