@@ -1,6 +1,7 @@
 //! Projects that were saved before the place of the loop blend was a setting: they blend the start of a clip.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 #[derive(Default, Deserialize)]
 #[serde(default)]
@@ -11,8 +12,8 @@ struct Saved {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Motion {
-    loop_blend: Option<ron::Value>,
-    loop_blend_secs: Option<ron::Value>,
+    loop_blend: Option<IgnoredAny>,
+    loop_blend_secs: Option<IgnoredAny>,
 }
 
 /// Whether the text is that of a project with the duration of the blend, but without its place. A saved project has all settings; one that
