@@ -93,7 +93,8 @@ fn all_rows_of_a_file_are_played() {
     let file = data.join("reports/open_ends_59_rows.bvh");
     let mut project = small_project();
     project.set_motion_file(&file);
-    let access = Access::new();
+    let mut access = Access::new();
+    access.pick(&file);
     let (mut dance, mut problems) = Dance::open(&project, &access, 30.0, &mut go_on).expect("a dance");
     assert_eq!(dance.frames(), 59);
     dance.play_once(&(0..59), &mut problems);
