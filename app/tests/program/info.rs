@@ -10,7 +10,7 @@ use crate::tool::run;
 type Fact = (&'static str, Value);
 
 #[track_caller]
-fn said(data: &Path, file: &str) -> Value {
+fn report_of(data: &Path, file: &str) -> Value {
     let ran = run(data, ["info", "--json", file]);
     let json = ran.done().json();
     assert_eq!(json["file"], file);
@@ -18,11 +18,11 @@ fn said(data: &Path, file: &str) -> Value {
     json
 }
 
-/// Checks that `said` has every field of `facts`, with numbers equal to within a thousandth.
+/// Checks that `report` has every field of `facts`, with numbers equal to within a thousandth.
 #[track_caller]
-fn assert_facts(file: &str, said: &Value, facts: &Value) {
+fn assert_facts(file: &str, report: &Value, facts: &Value) {
     for (key, wanted) in facts.as_object().expect("facts") {
-        let found = &said[key];
+        let found = &report[key];
         let same = match (found.as_f64(), wanted.as_f64()) {
             (Some(found), Some(wanted)) => (found - wanted).abs() <= 1e-3 * wanted.abs(),
             _ => found == wanted,
@@ -47,21 +47,21 @@ fn hair_files_are_described() {
         ("hair/tressfx/sintel_vk.tfx", hair(228, 7_296)),
     ];
     for (file, facts) in files {
-        let said = said(&data, file);
-        assert_facts(file, &said, &facts);
-        assert_eq!(said["dropped"], json!({}), "{file}");
+        let report = report_of(&data, file);
+        assert_facts(file, &report, &facts);
+        assert_eq!(report["dropped"], json!({}), "{file}");
         let size = |axis: usize| {
-            said["bounds_m"]["max"][axis].as_f64().expect("metres")
-                - said["bounds_m"]["min"][axis].as_f64().expect("metres")
+            report["bounds_m"]["max"][axis].as_f64().expect("metres")
+                - report["bounds_m"]["min"][axis].as_f64().expect("metres")
         };
         // The size of hair on a head in metres, whatever the unit of the file.
-        assert!((0..3).all(|axis| (0.05..1.5).contains(&size(axis))), "{file}: {}", said["bounds_m"]);
+        assert!((0..3).all(|axis| (0.05..1.5).contains(&size(axis))), "{file}: {}", report["bounds_m"]);
     }
-    let straight = said(&data, "hair/yuksel/straight.hair");
+    let straight = report_of(&data, "hair/yuksel/straight.hair");
     assert_facts("straight.hair", &straight, &json!({"up": "z", "facing": "+y", "unit_guessed": true}));
-    assert_eq!(said(&data, "hair/tressfx/Ratboy_mohawk.tfx")["unit"], "m");
+    assert_eq!(report_of(&data, "hair/tressfx/Ratboy_mohawk.tfx")["unit"], "m");
     assert_eq!(
-        said(&data, "hair/tressfx/Ratboy_mohawk_v40.tfx")["unit"],
+        report_of(&data, "hair/tressfx/Ratboy_mohawk_v40.tfx")["unit"],
         "cm",
         "the same groom a hundred times larger"
     );
@@ -110,14 +110,14 @@ fn characters_are_described() {
         ("characters/robot.glb", json!({"joints": 43})),
     ];
     for (file, facts) in files {
-        let said = said(&data, file);
-        assert_eq!(said["kind"], "character", "{file}");
-        assert_facts(file, &said, &facts);
-        assert_eq!(said["dropped"], json!({}), "{file}");
+        let report = report_of(&data, file);
+        assert_eq!(report["kind"], "character", "{file}");
+        assert_facts(file, &report, &facts);
+        assert_eq!(report["dropped"], json!({}), "{file}");
     }
     let clips = |file| {
-        let said = said(&data, file);
-        let clips = said["clips"].as_array().expect("clips").clone();
+        let report = report_of(&data, file);
+        let clips = report["clips"].as_array().expect("clips").clone();
         clips
             .into_iter()
             .map(|clip| {
@@ -154,11 +154,11 @@ fn motions_are_described() {
         ("motion/assimp_Boxing_Toes.bvh", json!({"joints": 21, "frames": 3070})),
     ];
     for (file, facts) in files {
-        let said = said(&data, file);
-        assert_eq!(said["kind"], "motion", "{file}");
-        assert_facts(file, &said, &facts);
+        let report = report_of(&data, file);
+        assert_eq!(report["kind"], "motion", "{file}");
+        assert_facts(file, &report, &facts);
     }
-    let boxing = said(&data, "motion/assimp_Boxing_Toes.bvh");
+    let boxing = report_of(&data, "motion/assimp_Boxing_Toes.bvh");
     assert!(boxing["notes"].to_string().contains("3069"), "the wrong header is not reported: {boxing}");
 }
 

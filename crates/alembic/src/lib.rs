@@ -2,7 +2,7 @@
 //!
 //! An archive is a tree of *objects*. Each has a name, metadata and a compound of *properties*; a property holds samples over
 //! time, and each sample is a scalar or an array of numbers. A *schema* is a convention for the names of properties: curves,
-//! meshes and transforms. This crate knows the archive; schemas belong to those who read or write them.
+//! meshes and transforms. This crate reads and writes the archive; schemas stand in the crates that use them.
 //!
 //! In the file, Ogawa stores *groups* (lists of addresses) and *data* (bytes). [`Archive`] reads from memory or from a file,
 //! one sample at a time. Whatever the bytes, it returns a value or an error: every address and length is compared with the file,

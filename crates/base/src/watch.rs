@@ -21,7 +21,7 @@ impl From<Cancelled> for std::io::Error {
     }
 }
 
-/// What a reader and whoever waits for it share: how much is read, and whether it must stop. Clones are the same watch.
+/// What a reader and its caller share: how much is read, and whether it must stop. Clones are the same watch.
 #[derive(Clone, Debug, Default)]
 pub struct Watch(Arc<(AtomicBool, AtomicU32)>);
 

@@ -20,7 +20,7 @@ use lovelock_shadow::voxel_map::VoxelMap;
 use lovelock_shadow::{CpuShadow, LightFrame, ShadowInput};
 use lovelock_simulation::{Simulation, SimulationSettings, StepInput};
 
-/// Makes this thread the only worker, for as long as the process lives. Later calls have no effect.
+/// Makes this thread the only worker, until the process ends. Later calls have no effect.
 ///
 /// # Panics
 /// If the CPU has no 256-bit vectors.

@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             driven.rest(&format!("{event} random inputs"), page)?;
         }
     }
-    // Back to the first project, so that nothing asks whether to save it.
+    // Back to the first project, so that no dialog opens about saving it.
     for _ in 0..3 {
         driven.key(&[], ESCAPE)?;
     }

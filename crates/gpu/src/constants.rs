@@ -3,16 +3,16 @@
 /// The most buffers that are kept. More passes in one frame get buffers of their own, which are not kept.
 const MAX_KEPT: usize = 256;
 
-/// Buffers in the order in which a frame asks for them: the same pass gets the same buffer in each frame, so its bind group
+/// Buffers in the order in which a frame uses them: the same pass gets the same buffer in each frame, so its bind group
 /// stays valid too.
 #[derive(Debug, Default)]
 pub(crate) struct ConstantPool {
-    kept: Vec<Kept>,
+    kept: Vec<KeptConstant>,
     next: usize,
 }
 
 #[derive(Debug)]
-struct Kept {
+struct KeptConstant {
     buffer: wgpu::Buffer,
     content: Vec<u8>,
 }
@@ -42,7 +42,7 @@ impl ConstantPool {
             _ => {
                 let buffer = make();
                 self.kept.truncate(place);
-                self.kept.push(Kept { buffer: buffer.clone(), content: bytes.to_vec() });
+                self.kept.push(KeptConstant { buffer: buffer.clone(), content: bytes.to_vec() });
                 (buffer, true)
             }
         }

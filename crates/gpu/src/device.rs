@@ -124,7 +124,7 @@ impl Gpu {
         }
     }
 
-    /// Takes a device that somebody else opened, such as the window, with what [`Gpu::device_descriptor`] asks for. Its errors are
+    /// Takes a device that other code opened, such as the window, with the features and limits of [`Gpu::device_descriptor`]. Its errors are
     /// reported by [`Gpu::check`] from now on.
     pub fn adopt(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Arc<Self> {
         tracing::info!(adapter = %info.name, backend = %info.backend, "graphics device");

@@ -8,7 +8,7 @@ use lovelock_base::settings::Settings as _;
 use crate::HairLook;
 use crate::fine::LOCK_NUMBERS;
 
-/// The multiple of the shade whose fraction tells which strands are grey; twin of `WHITENING` in `strand_points.wgsl`.
+/// The multiple of the shade whose fraction decides which strands are grey; twin of `WHITENING` in `strand_points.wgsl`.
 pub const WHITENING: f32 = 97.381;
 /// What is left of the pigment in grey strands.
 pub const UNPIGMENTED: f32 = 0.03;

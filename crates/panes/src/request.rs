@@ -57,7 +57,7 @@ impl LiveTimes {
         if stats.passes.is_empty() {
             return Self { whole, ..Self::default() };
         }
-        let (build, ask) = (stats.build_ms(), stats.ask_ms());
+        let (build, ask) = (stats.build_ms(), stats.query_ms());
         let draw = (whole - build - ask).max(0.0);
         Self { build: Some(build), ask: Some(ask), draw: Some(draw), whole: build + ask + draw }
     }

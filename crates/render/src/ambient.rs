@@ -42,12 +42,12 @@ const PICTURE_BRIGHTNESS: f32 = 2.0;
 
 /// The light from all directions of a picture: for surfaces, and from the six axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Around {
+pub(crate) struct Surroundings {
     pub surround: Surround,
     pub axes: [Vec3; 6],
 }
 
-impl Around {
+impl Surroundings {
     /// That of `input`.
     pub fn new(input: &FrameInput) -> Self {
         let picture = input.picture;
@@ -113,18 +113,24 @@ impl AmbientGrid {
     }
 
     /// Builds the grid.
-    pub fn build(&mut self, input: &FrameInput, around: &Around, tables: &FibreTables) {
+    pub fn build(&mut self, input: &FrameInput, surroundings: &Surroundings, tables: &FibreTables) {
         let points = HairPoints::new(input, std::mem::take(&mut self.hair));
-        self.build_from(&points, input, around, tables);
+        self.build_from(&points, input, surroundings, tables);
         self.hair = points.lines;
     }
 
-    fn build_from(&mut self, points: &HairPoints, input: &FrameInput, around: &Around, tables: &FibreTables) {
+    fn build_from(
+        &mut self,
+        points: &HairPoints,
+        input: &FrameInput,
+        surroundings: &Surroundings,
+        tables: &FibreTables,
+    ) {
         let (low, high) = points.bounds();
         if low.x > high.x {
             // Without hair everything is open.
             (self.origin, self.cell) = (Vec3::ZERO, 1.0);
-            let open = around.axes.iter().sum::<Vec3>() / 6.0;
+            let open = surroundings.axes.iter().sum::<Vec3>() / 6.0;
             self.cells.clear();
             self.cells.resize(ALL, [open.x, open.y, open.z, 1.0]);
             return;
@@ -134,7 +140,7 @@ impl AmbientGrid {
         self.origin = 0.5 * (low + high) - Vec3::splat(0.5 * CELLS as f32 * self.cell);
         self.deposit(points, input);
         self.add_head(input);
-        self.light(input, around, tables);
+        self.light(input, surroundings, tables);
     }
 
     /// Spreads the hair: fibres across a cell are the sum of their widths times lengths times pi/4 over the area of its face.
@@ -196,7 +202,7 @@ impl AmbientGrid {
     }
 
     /// The light that arrives in every cell from the six directions.
-    fn light(&mut self, input: &FrameInput, around: &Around, tables: &FibreTables) {
+    fn light(&mut self, input: &FrameInput, surroundings: &Surroundings, tables: &FibreTables) {
         let absorption = input.style.strands.colours.mean().absorption(input.look.absorption());
         let eye = CosineStep::new(USUAL_COSINE);
         let rates = absorption.to_array().map(|sigma| tables.many.row(eye, sigma)[6]);
@@ -214,7 +220,7 @@ impl AmbientGrid {
                 let first = first_of(line);
                 let mut out = [[0.0_f32; 4]; CELLS];
                 for (side, radiance) in
-                    [around.axes[2 * axis], around.axes[2 * axis + 1]].into_iter().enumerate()
+                    [surroundings.axes[2 * axis], surroundings.axes[2 * axis + 1]].into_iter().enumerate()
                 {
                     let (mut crossed, mut blocked) = (0.0, 0.0);
                     for step in 0..CELLS {

@@ -124,7 +124,7 @@ pub struct FrameStats {
 }
 
 impl FrameStats {
-    /// Time to build the shadow maps, milliseconds: all passes `shadow/…` except those of [`FrameStats::ask_ms`]; 0 if the device
+    /// Time to build the shadow maps, milliseconds: all passes `shadow/…` except those of [`FrameStats::query_ms`]; 0 if the device
     /// does not measure passes.
     pub fn build_ms(&self) -> f64 {
         self.sum_ms(|name| name.starts_with("shadow/") && !ASKING.contains(&name))
@@ -132,7 +132,7 @@ impl FrameStats {
 
     /// Time to look up the shadow maps at strand points, at vertices of the body and behind all hair, milliseconds; 0 if the device
     /// does not measure passes.
-    pub fn ask_ms(&self) -> f64 {
+    pub fn query_ms(&self) -> f64 {
         self.sum_ms(|name| ASKING.contains(&name))
     }
 
@@ -172,9 +172,9 @@ mod tests {
             ..FrameStats::default()
         };
         let anew = stats.made_anew();
-        assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.ask_ms()), (3.0, 5.5, 2.0, 1.0));
+        assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.query_ms()), (3.0, 5.5, 2.0, 1.0));
         assert!(anew.kept.is_empty() && anew.made_anew() == anew);
-        assert_eq!((stats.build_ms(), stats.ask_ms()), (0.0, 0.0), "the picture itself built nothing");
+        assert_eq!((stats.build_ms(), stats.query_ms()), (0.0, 0.0), "the picture itself built nothing");
     }
 
     #[test]
@@ -190,8 +190,8 @@ mod tests {
         let passes = names.iter().zip([1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
         let passes = passes.map(|(name, ms)| PassTime { name: (*name).to_owned(), ms }).collect();
         let stats = FrameStats { passes, ..FrameStats::default() };
-        assert_eq!((stats.build_ms(), stats.ask_ms()), (34.0, 20.0));
+        assert_eq!((stats.build_ms(), stats.query_ms()), (34.0, 20.0));
         let nothing = FrameStats::default();
-        assert_eq!((nothing.build_ms(), nothing.ask_ms()), (0.0, 0.0));
+        assert_eq!((nothing.build_ms(), nothing.query_ms()), (0.0, 0.0));
     }
 }

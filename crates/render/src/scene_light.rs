@@ -5,13 +5,13 @@ use std::sync::LazyLock;
 use lovelock_appearance::fibre::{Fibre, FibreTables};
 
 use crate::FrameInput;
-use crate::ambient::{AmbientGrid, Around};
+use crate::ambient::{AmbientGrid, Surroundings};
 
 /// Tables of the fibres, and light from all directions; kept from frame to frame.
 #[derive(Debug)]
 pub(crate) struct SceneLight {
     pub tables: FibreTables,
-    pub around: Around,
+    pub surroundings: Surroundings,
     pub grid: AmbientGrid,
 }
 
@@ -19,7 +19,7 @@ impl Default for SceneLight {
     fn default() -> Self {
         Self {
             tables: FibreTables::bake(&Fibre::default()),
-            around: Around::default(),
+            surroundings: Surroundings::default(),
             grid: AmbientGrid::default(),
         }
     }
@@ -34,8 +34,8 @@ impl SceneLight {
         let shape = |tables: &FibreTables| (tables.fibre.roughness_around, tables.fibre.index);
         let before = shape(&self.tables);
         self.tables.update(&input.look.fibre());
-        self.around = Around::new(input);
-        self.grid.build(input, &self.around, &self.tables);
+        self.surroundings = Surroundings::new(input);
+        self.grid.build(input, &self.surroundings, &self.tables);
         before != shape(&self.tables)
     }
 }

@@ -123,7 +123,7 @@ impl FrameUniform {
                 Vec4::new(sin, cos, light.tables.variances[p], 0.0)
             }),
             ambient_grid: light.grid.origin.extend(1.0 / light.grid.cell.max(1e-6)),
-            surround: light.around.surround.uniform(),
+            surround: light.surroundings.surround.uniform(),
             lights,
         }
     }

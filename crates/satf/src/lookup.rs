@@ -74,7 +74,7 @@ impl Place {
     /// The value of a record.
     #[inline]
     fn texels(&self, record: &[u8; RECORD]) -> f32 {
-        // The mask tells the compiler that no index is out of range.
+        // With the mask the compiler sees that no index is out of range.
         let level =
             |(start, texels): (usize, Between)| texels.mix(|i| f32::from(record[(start + i) & (RECORD - 1)]));
         let fine = level(self.levels[0]);

@@ -1,6 +1,6 @@
 //! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, pictures, count and assets. `cargo xtask` lists them.
 //!
-//! This crate has few dependencies, because whoever builds Lovelock for the first time waits for it. Chores that need
+//! This crate has few dependencies, because the first build of Lovelock waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
 
 mod ci;

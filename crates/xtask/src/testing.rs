@@ -91,7 +91,7 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
         // Mesa's choice of devices by display prints an error for each device that is opened without a display.
         tests.env(SUITE, suite).env("NODEVICE_SELECT", "1").args(&scope);
         if cfg!(unix) {
-            // The harness of a stable toolchain tells times only to those who ask so.
+            // The harness of a stable toolchain reports times only with this variable.
             tests.args(["--config", r#"target.'cfg(unix)'.runner=["env", "RUSTC_BOOTSTRAP=1"]"#]);
         }
         tests.args(filter).arg("--");

@@ -85,7 +85,7 @@ pub enum Problem {
     Damaged {
         /// What is there.
         found: String,
-        /// What the format asks for.
+        /// What the format requires.
         wanted: &'static str,
     },
 }

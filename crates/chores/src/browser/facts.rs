@@ -15,7 +15,7 @@ pub(crate) struct Facts {
     /// Height of the page in CSS pixels.
     pub(crate) height: u32,
     /// Addresses that the page requested, without local files.
-    pub(crate) asked: Vec<String>,
+    pub(crate) requests: Vec<String>,
 }
 
 impl Facts {
@@ -36,13 +36,13 @@ impl Facts {
             pictures: number("pictures"),
             broken: number("broken"),
             height: number("height"),
-            asked: asked(log)?,
+            requests: requests(log)?,
         })
     }
 
     /// Checks that the page loaded completely and without network requests.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
-        ensure!(self.asked.is_empty(), "the page made network requests: {}", self.asked.join(", "));
+        ensure!(self.requests.is_empty(), "the page made network requests: {}", self.requests.join(", "));
         ensure!(self.ran, "the script of the page did not finish");
         ensure!(self.pictures > 0, "the page has no images");
         ensure!(self.broken == 0, "{} of {} images did not load", self.broken, self.pictures);
@@ -68,7 +68,7 @@ struct Parameters {
 }
 
 /// Addresses that the page requested. Requests of the browser itself have no origin.
-fn asked(log: &[u8]) -> anyhow::Result<Vec<String>> {
+fn requests(log: &[u8]) -> anyhow::Result<Vec<String>> {
     let log: Log = serde_json::from_slice(log).context("could not read the browser's network log")?;
     let mut found = Vec::new();
     for parameters in log.events.into_iter().filter_map(|event| event.params) {
@@ -102,7 +102,7 @@ mod tests {
     fn a_whole_page_is_good() {
         let page = PAGE.replace('\n', " ");
         let facts = check(&page, LOG).unwrap();
-        assert_eq!(facts, Facts { ran: true, pictures: 12, broken: 0, height: 3400, asked: vec![] });
+        assert_eq!(facts, Facts { ran: true, pictures: 12, broken: 0, height: 3400, requests: vec![] });
     }
 
     #[test]

@@ -46,8 +46,8 @@ pub(crate) fn run(write: bool) -> anyhow::Result<()> {
     let output = bench.output().context("could not start cargo bench")?;
     ensure!(output.status.success(), "the benchmarks failed ({}); the reason stands above", output.status);
     let now = Counts {
-        compiler: said("rustc", &["--version"])?,
-        valgrind: said("valgrind", &["--version"])?,
+        compiler: version_of("rustc", &["--version"])?,
+        valgrind: version_of("valgrind", &["--version"])?,
         vectors: "256 bits".to_owned(),
         instructions: of_output(&String::from_utf8_lossy(&output.stdout))?,
     };
@@ -92,7 +92,7 @@ fn print(now: &BTreeMap<String, u64>, before: &BTreeMap<String, u64>) {
 }
 
 /// The first line that a program prints.
-fn said(program: &str, arguments: &[&str]) -> anyhow::Result<String> {
+fn version_of(program: &str, arguments: &[&str]) -> anyhow::Result<String> {
     let text = tool::output_of(program, arguments).with_context(|| format!("could not start {program}"))?;
     Ok(text.lines().next().unwrap_or_default().trim().to_owned())
 }

@@ -22,8 +22,8 @@ impl<'a> Nearest<'a> {
     }
 
     /// The `N` points nearest to `at` that `accept` takes, nearest first.
-    pub fn of<const N: usize>(&self, at: Vec3, accept: impl Fn(u32) -> bool) -> Found<N> {
-        let mut found = Found { count: 0, near: [(f32::INFINITY, u32::MAX); N] };
+    pub fn of<const N: usize>(&self, at: Vec3, accept: impl Fn(u32) -> bool) -> NearestFew<N> {
+        let mut found = NearestFew { count: 0, near: [(f32::INFINITY, u32::MAX); N] };
         if at.is_finite() {
             self.search(&self.order, at, &accept, &mut found);
         }
@@ -35,9 +35,9 @@ impl<'a> Nearest<'a> {
         part: &[(u32, u8)],
         at: Vec3,
         accept: &impl Fn(u32) -> bool,
-        found: &mut Found<N>,
+        found: &mut NearestFew<N>,
     ) {
-        let compare = |i: u32, found: &mut Found<N>| {
+        let compare = |i: u32, found: &mut NearestFew<N>| {
             let square = at.distance_squared(self.points[i as usize]);
             if square < found.furthest() && accept(i) {
                 found.insert(square, i);
@@ -82,12 +82,12 @@ fn divide(points: &[Vec3], part: &mut [(u32, u8)]) {
 }
 
 /// The nearest points found so far, sorted by distance.
-pub(super) struct Found<const N: usize> {
+pub(super) struct NearestFew<const N: usize> {
     count: usize,
     near: [(f32, u32); N],
 }
 
-impl<const N: usize> Found<N> {
+impl<const N: usize> NearestFew<N> {
     /// The numbers of the points.
     pub fn points(&self) -> impl ExactSizeIterator<Item = u32> {
         self.near[..self.count].iter().map(|&(_, i)| i)

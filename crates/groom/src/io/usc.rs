@@ -3,7 +3,7 @@
 //!
 //! An i32 number of strands; for each strand an i32 number of points, then its points, root first. A point is three f32 (`.data`), three f32
 //! and an i32 visibility (`.data`), or three f32, a direction or colour of three f32 and a label (`.bin`). Only the length of the file tells
-//! these dialects apart.
+//! these dialects apart from each other.
 
 use glam::Vec3;
 

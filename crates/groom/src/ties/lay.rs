@@ -16,7 +16,7 @@ const THICKNESS: [f32; 2] = [0.006, 0.014];
 const WISP: f32 = 0.2;
 
 /// The guides of a wisp as laid by a tie.
-pub(super) struct Laid {
+pub(super) struct GatheredHair {
     /// The points of the three guides, head space.
     pub(super) guides: [Vec<Vec3>; 3],
     /// The first point of each guide beyond the ring.
@@ -43,7 +43,7 @@ pub(super) fn wisp(
     caught: &Gathered,
     middle: Vec3,
     obstacle: &dyn Obstacle,
-) -> Option<Laid> {
+) -> Option<GatheredHair> {
     let guides = style.wisps[caught.wisp].guides.map(|g| g as usize);
     let roots = guides.map(|g| style.guides.point(g, 0));
     let lengths = guides.map(|g| length(&style.guides, g));
@@ -68,7 +68,7 @@ pub(super) fn wisp(
     });
     let widest = local.iter().map(|l| Vec3::from_array(*l).length()).fold(1e-4, f32::max);
     let in_ring = (WISP * ring.tie.radius / widest).min(1.0);
-    let mut laid = Laid { guides: Default::default(), ring_point: [0; 3] };
+    let mut laid = GatheredHair { guides: Default::default(), ring_point: [0; 3] };
     for n in 0..3 {
         let target: Vec<Vec3> = (0..way.len())
             .map(|i| {

@@ -7,7 +7,7 @@
 //! 4. [`left_out`]: wisps that are too short for the ring, which lie on the head.
 //! 5. [`offsets`]: the strands' offsets, flattened before the ring.
 //!
-//! [`Hairstyle::held`] tells the simulator which points the tie holds, and [`Hairstyle::ropes`] which hair stays
+//! [`Hairstyle::held`] lists for the simulator which points the tie holds, and [`Hairstyle::ropes`] which hair stays
 //! together beyond it.
 
 mod lay;
@@ -79,7 +79,7 @@ pub fn tied_where(
     let middle = middle - Vec3::Y * (0.5 * half.y);
     let (gathered, mut left) = gather(style, &rings, ears, includes);
 
-    let laid: Vec<Option<lay::Laid>> = gathered
+    let laid: Vec<Option<lay::GatheredHair>> = gathered
         .par_iter()
         .map(|caught| lay::wisp(style, &rings[caught.ring], caught, middle, obstacle))
         .collect();

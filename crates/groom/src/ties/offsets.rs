@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::lay::{self, Laid};
+use super::lay::{self, GatheredHair};
 use super::{HairTie, TieKind};
 use crate::{Hairstyle, Obstacle, WispCurve};
 
@@ -23,7 +23,7 @@ pub(super) fn of_wisp(
     before: &Hairstyle,
     after: &Hairstyle,
     wisp: usize,
-    laid: &Laid,
+    laid: &GatheredHair,
     tie: &HairTie,
     obstacle: &dyn Obstacle,
 ) -> Vec<Vec3> {

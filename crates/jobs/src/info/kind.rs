@@ -159,7 +159,7 @@ impl FileKind {
     /// The kind by file extension.
     pub fn by_extension(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        // A glTF or a package is a character unless it holds lines or curves, which its content tells.
+        // A glTF file or a package is a character unless it contains lines or curves.
         if ["glb", "gltf", "usdz"].contains(&ending.as_str()) {
             return Some(Self::Character);
         }

@@ -67,7 +67,7 @@ pub fn flip(reference: &Image<'_>, test: &Image<'_>) -> Result<FlipMap, ImageErr
     reference.same_size(test)?;
     let filters = Filters::new(PIXELS_PER_DEGREE);
     let (seen_reference, seen_test) =
-        rayon::join(|| Seen::new(reference, &filters), || Seen::new(test, &filters));
+        rayon::join(|| FilteredImage::new(reference, &filters), || FilteredImage::new(test, &filters));
     let largest = largest_color_difference();
     let values = (0..reference.width() * reference.height())
         .into_par_iter()
@@ -90,7 +90,7 @@ const KNEE_VALUE: f32 = 0.95;
 const FEATURE_EXPONENT: f32 = 0.5;
 
 /// The filtered signals of one image.
-struct Seen {
+struct FilteredImage {
     /// Colour after contrast sensitivity filtering: CIELAB with the Hunt adjustment.
     lab: Vec<[f32; 3]>,
     /// Length of the gradient of luminance.
@@ -99,7 +99,7 @@ struct Seen {
     points: Vec<f32>,
 }
 
-impl Seen {
+impl FilteredImage {
     fn new(image: &Image<'_>, filters: &Filters) -> Self {
         let (width, height) = (image.width(), image.height());
         let mut planes = [const { Vec::new() }; 3];

@@ -136,7 +136,7 @@ impl Renderers {
             return Broken { try_again: false, notice: None };
         }
         if self.window.get().is_some_and(|gpu| gpu.is_lost()) {
-            // The window opens another device and asks again: this is no failure of the pane.
+            // The window opens another device and repeats the request: the pane has not failed.
             self.close_lost();
             return Broken { try_again: false, notice: None };
         }

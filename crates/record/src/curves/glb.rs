@@ -156,7 +156,7 @@ impl Asset {
         }
         let segments = self.array(&segments, UNSIGNED_INT, "SCALAR", Some(ELEMENT_ARRAY_BUFFER), Value::Null);
         let colors = self.colors(&scene.colors);
-        // glTF knows no width of lines; several programs read half of it from this attribute.
+        // glTF has no width of lines; several programs read half the width from this attribute.
         let radii: Vec<f32> = scene.widths.iter().map(|width| 0.5 * width).collect();
         let radii = self.array(&radii, FLOAT, "SCALAR", Some(ARRAY_BUFFER), Value::Null);
         // Scales of a node: hidden, shown while its frame lasts, hidden.

@@ -1,4 +1,4 @@
-//! The sound beside a sequence. The manifest lists it, so that a later recording knows which file it may remove.
+//! The sound beside a sequence. The manifest lists it, so that a later recording removes no other file.
 
 use std::fs::{self, File};
 use std::io::{self, Read};

@@ -11,7 +11,7 @@ use super::texels::TexelFrame;
 use super::{ShadowMethod, ShadowSettings};
 use crate::{Bounds, CpuShadow, GpuShadow, RayMarkKind, ShadowInput};
 
-/// Everything about one shadow method that the rest of the program asks for. Each method's folder has one.
+/// Everything about one shadow method that the rest of the program uses. Each method's folder has one.
 #[derive(Debug)]
 pub(crate) struct Method {
     /// The stable name of the command line, of projects and of reports.

@@ -13,7 +13,7 @@ use lovelock_shadow::{
 };
 
 /// The device that all tests of a process share; `None` without an adapter. A test keeps it until its thread ends, because the uniforms of a
-/// handle belong to one frame at a time, and an error of the device to whoever asks first.
+/// handle belong to one frame at a time, and an error of the device goes to the first caller that looks for it.
 pub fn device() -> Option<&'static Arc<Gpu>> {
     static DEVICE: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     static TURN: Mutex<()> = Mutex::new(());

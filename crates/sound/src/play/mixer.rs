@@ -1,4 +1,4 @@
-//! Computes the samples that a device asks for.
+//! Computes the samples that a device requests.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -9,10 +9,10 @@ use crate::sound::{RATE, Sound};
 /// The amplitude changes from silence to full within this time, seconds, so that jumps and pauses do not click.
 const FADE_SECS: f32 = 0.004;
 
-/// Parts of the output whose place in the sound is remembered. A device asks for some hundred frames at a time, so this is several seconds.
+/// Parts of the output whose place in the sound is remembered. A device requests some hundred frames at a time, so this is several seconds.
 const MAX_SPANS: usize = 1024;
 
-/// Computes the samples that a device asks for.
+/// Computes the samples that a device requests.
 pub(super) struct Mixer {
     state: Mutex<State>,
     /// Frames per second of the device.

@@ -85,7 +85,7 @@ fn play(
 ) -> Option<String> {
     // The frames of a stream are counted from its own first one.
     let first = mixer.written() as f64;
-    // The client lives as long as its stream, and its thread ends when the socket is shut down, after both.
+    // The client exists as long as its stream, and its thread ends when the socket is shut down, after both.
     let (_until_dropped, _client, stream) = match connect(socket, answered, mixer, ended) {
         Ok(connected) => connected,
         Err(error) => return Some(error),

@@ -75,7 +75,7 @@ fn times(stats: &[FrameStats]) -> Vec<TimeSpread> {
     let mut times = Vec::new();
     if !passes.is_empty() {
         times.extend(spread("build", &FrameStats::build_ms));
-        times.extend(spread("query", &FrameStats::ask_ms));
+        times.extend(spread("query", &FrameStats::query_ms));
     }
     times.extend(spread("draw", &|stats| stats.draw_ms));
     times.extend(spread("whole", &|stats| stats.shadow_ms + stats.draw_ms));
@@ -157,9 +157,9 @@ mod tests {
             let mut picture = Picture::default();
             let mut draw = || renderer.picture(&frame, 32, 32, &mut picture).expect("a picture");
             let (first, second) = (draw(), draw());
-            assert_eq!((second.build_ms(), second.ask_ms()), (0.0, 0.0), "{method}");
+            assert_eq!((second.build_ms(), second.query_ms()), (0.0, 0.0), "{method}");
             let anew = second.made_anew();
-            assert_eq!((anew.build_ms(), anew.ask_ms()), (first.build_ms(), first.ask_ms()), "{method}");
+            assert_eq!((anew.build_ms(), anew.query_ms()), (first.build_ms(), first.query_ms()), "{method}");
         }
     }
 }

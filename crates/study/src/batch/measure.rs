@@ -8,7 +8,7 @@ use super::maps::{Kind, at_pixels};
 use super::pictures::picture_error;
 use super::probe::Probe;
 use super::swim::swimming;
-use super::work::{Against, CheckCancel, Work};
+use super::work::{CheckCancel, References, Work};
 use super::{banding, draw, maps, stray};
 use crate::changes::StabilityReport;
 
@@ -21,21 +21,21 @@ impl Work<'_> {
     pub(super) fn measure(
         &self,
         entrant: &mut Entrant,
-        against: &Against,
+        references: &References,
         (truth, cell_size): (usize, Option<f32>),
         (renderer, values, probes): (&mut Renderer, &mut ValueRenderer, &mut [Probe]),
         check_cancel: &mut CheckCancel,
     ) -> Result<(), ProjectError> {
         let project = entrant.contender.applied_to(self.project);
-        let input = against.hair.frame_input(&project);
+        let input = references.hair.frame_input(&project);
         let name = file_name(&entrant.report.name);
         let report = &mut entrant.report;
         let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, check_cancel)?;
         let [width, height] = self.size;
         report.files.picture = Some(self.folder.picture(&name, (width, height, &drawn.picture.rgba))?);
-        if let Some(reference) = against.pictures.of(renderer.backend()) {
-            let (difference, seen) =
-                picture_error(&drawn.picture, reference, against.hair_pixels).map_err(ProjectError::work)?;
+        if let Some(reference) = references.pictures.of(renderer.backend()) {
+            let (difference, seen) = picture_error(&drawn.picture, reference, references.hair_pixels)
+                .map_err(ProjectError::work)?;
             report.flip = Some(difference.flip);
             (report.psnr_db, report.ssim) = (difference.psnr_db, difference.ssim);
             report.files.picture_error = self.pixel_map(&name, maps::PICTURE_ERROR, &seen)?;
@@ -45,40 +45,43 @@ impl Work<'_> {
             return Ok(());
         }
 
-        let shadow_input = against.hair.shadow_input(&project, &self.lights[0]);
+        let shadow_input = references.hair.shadow_input(&project, &self.lights[0]);
         for probe in probes {
             probe.ask(renderer, &shadow_input, &project.shadow, &report.name)?;
         }
-        if let Ok(truth) = &against.truths.0[truth].transmittance {
+        if let Ok(truth) = &references.truths.0[truth].transmittance {
             report.transmittance =
-                Some(draw::transmittance_error(&drawn.transmittance, truth, against.points));
+                Some(draw::transmittance_error(&drawn.transmittance, truth, references.points));
             let error: Vec<f32> =
                 drawn.transmittance.iter().zip(truth).map(|(test, truth)| test - truth).collect();
             report.files.transmittance_error =
                 self.point_map(&name, maps::TRANSMITTANCE_ERROR, &error, (values, &input))?;
         }
-        if let Ok(truth) = &against.truths.0[against.common].transmittance {
+        if let Ok(truth) = &references.truths.0[against.common].transmittance {
             report.transmittance_common =
-                Some(draw::transmittance_error(&drawn.transmittance, truth, against.points));
+                Some(draw::transmittance_error(&drawn.transmittance, truth, references.points));
         }
-        if let Some(points) = against.points
+        if let Some(points) = references.points
             && !points.is_made_by(&entrant.contender.shadow, cell_size)
         {
-            report.transmittance_at_points =
-                Some(draw::transmittance_error(&drawn.transmittance, &points.transmittance, against.points));
+            report.transmittance_at_points = Some(draw::transmittance_error(
+                &drawn.transmittance,
+                &points.transmittance,
+                references.points,
+            ));
         }
-        if self.request.quick && against.film.is_none() {
+        if self.request.quick && references.film.is_none() {
             return Ok(());
         }
         let mut stability = StabilityReport::default();
         if !self.request.quick {
             report.banding = banding::slab(&entrant.contender.shadow);
             report.stray = stray::stray(&entrant.contender.shadow);
-            let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), check_cancel)?;
+            let swim = swimming(renderer, references.shifted, (&project, &self.lights[0]), check_cancel)?;
             report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
             (stability.swim, stability.swim_p99) = (Some(swim.rms), Some(swim.p99));
         }
-        if let Some(film) = against.film {
+        if let Some(film) = references.film {
             let (pop, flicker) = film.watch(renderer, &project, truth, check_cancel)?;
             (stability.pop, stability.pop_p99) = (Some(pop.max), Some(pop.p99));
             report.files.pop = self.point_map(&name, maps::POP, &pop.per_point, (values, &input))?;
@@ -89,9 +92,9 @@ impl Work<'_> {
             }
         }
         report.stability = Some(stability);
-        if let Some(sweep) = against.light_sweep {
+        if let Some(sweep) = references.light_sweep {
             report.light_sweep =
-                Some(sweep.watch(renderer, (against.hair, &project), truth, check_cancel)?);
+                Some(sweep.watch(renderer, (references.hair, &project), truth, check_cancel)?);
         }
         Ok(())
     }

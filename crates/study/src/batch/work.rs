@@ -39,7 +39,7 @@ pub(super) struct Work<'a> {
 }
 
 /// The references that an entrant is compared with.
-pub(super) struct Against<'a> {
+pub(super) struct References<'a> {
     pub hair: &'a Hair,
     pub truths: &'a Truths,
     /// Index of the one that is common to all.
@@ -124,7 +124,7 @@ impl Work<'_> {
         let mut probes = self.probes(&mut values, &hair, &hair_pixels, points.as_ref(), report);
         report.reference.settle();
 
-        let against = Against {
+        let references = References {
             hair: &hair,
             truths: &truths,
             common,
@@ -148,7 +148,7 @@ impl Work<'_> {
             entrant.report.cell_size_m = cell_size;
             entrant.report.cells_total = cell_size.and(truths.0[truth].cells());
             let tools = (&mut *renderer, &mut values, &mut probes[..]);
-            let result = self.measure(&mut entrant, &against, (truth, cell_size), tools, &mut || {
+            let result = self.measure(&mut entrant, &references, (truth, cell_size), tools, &mut || {
                 part(name.clone(), false)
             });
             match result {

@@ -31,7 +31,7 @@ pub struct CordStrand {
 
 /// Where a strand runs at a place of the line.
 #[derive(Clone, Copy, Debug)]
-pub struct Laid {
+pub struct CordPlace {
     /// Place across the cord: to the side, and toward the head, metres.
     pub place: Vec2,
     /// The share of its own place that is kept, 0 to 1.
@@ -46,7 +46,7 @@ pub fn lay(
     scope: &Scope<'_>,
     cords: &[Cord],
     (join, segment): (f32, f32),
-    place: impl Fn(&Cord, &CordStrand, f32) -> Laid + Sync,
+    place: impl Fn(&Cord, &CordStrand, f32) -> CordPlace + Sync,
 ) {
     let mut members: Vec<Option<(usize, Member)>> = vec![None; style.wisps.len()];
     for (c, cord) in cords.iter().enumerate() {
@@ -104,7 +104,7 @@ pub fn lay(
                 let amount = (smoothstep(0.0, join, row.metres) * member.strength * along).clamp(0.0, 1.0);
                 let own_place = || row.apart(weights) + offset;
                 let new = if amount > 0.0 {
-                    let Laid { place, own } = place(cord, of_strand, row.metres);
+                    let CordPlace { place, own } = place(cord, of_strand, row.metres);
                     let mut target = row.to_line + row.side * place.x + row.deep * place.y;
                     if own > 0.0 {
                         target += (own_place() - row.to_line) * own;

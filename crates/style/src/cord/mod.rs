@@ -16,7 +16,7 @@ use glam::Vec3;
 use lovelock_groom::Hairstyle;
 
 pub use gather::{Gathering, gather};
-pub use lay::{CordStrand, Laid, lay};
+pub use lay::{CordPlace, CordStrand, lay};
 pub use line::Line;
 
 use crate::Scope;

@@ -43,7 +43,7 @@ pub enum MaskRegion {
 }
 
 impl MaskRegion {
-    /// Every region that this version knows, with its id and its label.
+    /// Every region of this version, with its id and its label.
     pub const ALL: [(Self, &'static str, &'static str); 13] = [
         (Self::All, "all", "Everywhere"),
         (Self::Left, "left", "Left side"),

@@ -57,7 +57,7 @@ impl File {
         Ok(operation)
     }
 
-    /// Takes what the operation knows; the rest keeps its defaults.
+    /// Takes the settings that the operation has; the others keep their defaults.
     fn fill(self, operation: &mut dyn AnyOperation) -> Result<(), String> {
         let lists: Vec<&str> = operation.lists().into_iter().map(|(name, _)| name).collect();
         let texts: Vec<&str> = operation.texts().into_iter().map(|(name, _)| name).collect();

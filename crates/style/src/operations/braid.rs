@@ -7,7 +7,7 @@ use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::cord::{Gathering, Laid, Plan, cords, gather, lay};
+use crate::cord::{CordPlace, Gathering, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 use weave::{THICKNESS, Weave};
 
@@ -129,7 +129,7 @@ impl Operate for Braid {
         let segment = self.pitch / SEGMENTS;
         lay(style, &before, scope, &cords, (join, segment), |_, strand, metres| {
             let weave = Weave::new(self, strand.end);
-            Laid { place: weave.place(strand, metres), own: 0.0 }
+            CordPlace { place: weave.place(strand, metres), own: 0.0 }
         });
     }
 }

@@ -9,7 +9,7 @@ use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::cord::{Gathering, Laid, Plan, cords, gather, lay};
+use crate::cord::{CordPlace, Gathering, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
 /// Gathers each lock and winds it into a helix, like corkscrew curls.
@@ -93,7 +93,7 @@ impl Operate for Coil {
             let wave = |n: usize| (TAU * turns / VARIES[n] + varies[n]).sin() * self.variation;
             let radius = self.radius * (1.0 + 0.3 * wave(0)) * smoothstep(0.0, onset, metres);
             let angle = hand * (TAU * turns + wave(1)) + phase;
-            Laid { place: Vec2::from_angle(angle) * radius, own: 1.0 - self.gather }
+            CordPlace { place: Vec2::from_angle(angle) * radius, own: 1.0 - self.gather }
         });
     }
 }

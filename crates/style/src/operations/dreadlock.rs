@@ -8,7 +8,7 @@ use lovelock_base::settings::{Setting, Settings, Unit};
 use lovelock_groom::Hairstyle;
 
 use crate::Scope;
-use crate::cord::{CordStrand, Gathering, Laid, Plan, cords, gather, lay};
+use crate::cord::{CordPlace, CordStrand, Gathering, Plan, cords, gather, lay};
 use crate::operate::{Kind, Operate, Subject};
 
 /// Mats hair into dreadlocks of even thickness with rounded ends.
@@ -130,7 +130,7 @@ impl Operate for Dreadlock {
         lay(style, &before, scope, &cords, (join, segment), |cord, strand, metres| {
             let mut random = scope.random(1, cord.members[0].wisp);
             let phase = [(); 4].map(|()| random.angle());
-            Laid { place: self.place(strand, phase, metres), own: 0.0 }
+            CordPlace { place: self.place(strand, phase, metres), own: 0.0 }
         });
     }
 }

@@ -7,7 +7,7 @@ mod probe;
 use anyhow::bail;
 use needs::{BROWSER, COUNT, FILM, INTERCHANGE, NEEDS, Need, SCREEN};
 use plan::{Plan, Rights, Step, plan};
-use probe::Here;
+use probe::ThisMachine;
 use std::process::Command;
 
 /// Installs the system packages for building, testing and the window.
@@ -66,7 +66,7 @@ fn get(needs: &[Need]) -> anyhow::Result<()> {
     if !cfg!(target_os = "linux") {
         return Ok(());
     }
-    let Some(first) = plan(&Here::new(), needs) else {
+    let Some(first) = plan(&ThisMachine::new(), needs) else {
         return Ok(());
     };
     name(&first);
@@ -74,7 +74,7 @@ fn get(needs: &[Need]) -> anyhow::Result<()> {
         println!("Installing with apt-get: {}", packages.join(" "));
         install(*rights, *update_first, packages);
     }
-    let Some(left) = plan(&Here::new(), needs) else {
+    let Some(left) = plan(&ThisMachine::new(), needs) else {
         return Ok(());
     };
     let what: Vec<_> = left.missing.iter().map(|need| need.what).collect();

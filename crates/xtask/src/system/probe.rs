@@ -8,11 +8,11 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 /// This machine.
-pub(crate) struct Here {
+pub(crate) struct ThisMachine {
     libraries: BTreeSet<String>,
 }
 
-impl Here {
+impl ThisMachine {
     /// Lists the libraries of the dynamic loader once.
     pub(crate) fn new() -> Self {
         // /sbin is often not in the path of users.
@@ -46,7 +46,7 @@ fn library_folders() -> Vec<PathBuf> {
     folders
 }
 
-impl Probe for Here {
+impl Probe for ThisMachine {
     fn has_cxx_compiler(&self) -> bool {
         // Chosen in the same way as by the build of the encoder. `CXX` may contain arguments after the name.
         let chosen = std::env::var("CXX").unwrap_or_default();
