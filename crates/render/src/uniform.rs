@@ -1,7 +1,7 @@
 //! The uniform of all passes: the twin of `frame.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 use lovelock_appearance::fibre::LOBES;
 use lovelock_base::settings::Settings;
 use lovelock_groom::fine::Portion;
@@ -14,10 +14,22 @@ use crate::{FrameInput, MAX_LIGHTS};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct LightUniform {
-    pub direction_specular: Vec4,
-    pub radiance_blur: Vec4,
+    pub direction: Vec3,
+    pub specular: f32,
+    pub radiance: Vec3,
+    pub blur: f32,
     pub shadow_from_world: Mat4,
     pub columns_from_world: Mat4,
+}
+
+/// Twin of `LobeUniform` in `frame.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LobeUniform {
+    pub sin_tilt: f32,
+    pub cos_tilt: f32,
+    pub variance: f32,
+    unused: f32,
 }
 
 /// Twin of `FrameUniform` in `frame.wgsl`.
@@ -26,20 +38,38 @@ pub(crate) struct LightUniform {
 pub(crate) struct FrameUniform {
     pub clip_from_world: Mat4,
     pub world_from_clip: Mat4,
-    pub eye_lights: Vec4,
-    pub size_scale_exposure: Vec4,
-    pub ground_texels: Vec4,
-    pub background_top: Vec4,
-    pub background_bottom: Vec4,
-    pub absorption_variation: Vec4,
-    pub root_absorption: Vec4,
-    pub mean_absorption: Vec4,
-    pub width_opacity_tip: Vec4,
-    pub highlights: Vec4,
-    pub fading: Vec4,
-    pub colors: Vec4,
-    pub lobes: [Vec4; LOBES],
-    pub ambient_grid: Vec4,
+    pub eye: Vec3,
+    pub light_count: u32,
+    pub size: Vec2,
+    pub pixels_per_metre: f32,
+    pub exposure: f32,
+    pub background_top: Vec3,
+    pub shows_ground: u32,
+    pub background_bottom: Vec3,
+    pub shadow_texels: f32,
+    pub absorption: Vec3,
+    pub variation: f32,
+    pub root_absorption: Vec3,
+    pub strand_width: f32,
+    pub mean_absorption: Vec3,
+    pub opacity: f32,
+    pub primary_strength: f32,
+    pub secondary_strength: f32,
+    pub primary_exponent: f32,
+    pub secondary_exponent: f32,
+    pub fade_end: f32,
+    pub fade_slope: f32,
+    pub points_per_strand: u32,
+    pub drawn_points: u32,
+    pub grey: f32,
+    pub highlights: f32,
+    pub lightening: f32,
+    pub many_scattering: f32,
+    pub tip_lightening: f32,
+    unused: [f32; 3],
+    pub lobes: [LobeUniform; LOBES],
+    pub grid_corner: Vec3,
+    pub cells_per_metre: f32,
     pub surround: [Vec4; 9],
     pub lights: [LightUniform; MAX_LIGHTS],
 }
@@ -71,58 +101,60 @@ impl FrameUniform {
         for (lamp, map) in input.lights.iter().filter(|lamp| lamp.enabled).take(MAX_LIGHTS).zip(maps) {
             let lamp = lamp.normalized();
             lights[lit] = LightUniform {
-                direction_specular: lamp.direction.extend(lamp.specular),
-                radiance_blur: (lamp.color * lamp.intensity)
-                    .extend(lamp.softness / map.metres_per_texel.max(1e-6)),
+                direction: lamp.direction,
+                specular: lamp.specular,
+                radiance: lamp.color * lamp.intensity,
+                blur: lamp.softness / map.metres_per_texel.max(1e-6),
                 shadow_from_world: map.shadow_from_world,
                 columns_from_world: map.columns_from_world,
             };
             lit += 1;
         }
-        let scale = input.camera.pixels_per_metre_at_one_metre(height);
-        let exponents = highlight_exponents(look.roughness);
-        // The rest of the optical depth is that of clusters.
-        let opacity = picture.strand_opacity * (1.0 - cluster_share(input, height)).max(1e-3);
+        let [primary_exponent, secondary_exponent] = highlight_exponents(look.roughness);
         let count =
             drawn.map_or(input.style.strands.count().max(1) as f32, |(portion, _)| portion.sum().max(1.0));
-        let strand_width = look.diameter * (look.real_hairs / count) * look.width_scale.clamp(0.01, 4.0);
-        let fading = drawn.map_or(
-            Vec4::new(f32::MAX, 1.0, 1.0, input.style.strands.points() as f32),
-            |(portion, points)| {
-                let [end, inverse] = portion.ramp();
-                Vec4::new(end, inverse, points as f32, (portion.drawn * points) as f32)
-            },
-        );
+        let [fade_end, fade_slope] = drawn.map_or([f32::MAX, 1.0], |(portion, _)| portion.ramp());
+        let (points_per_strand, drawn_points) = drawn
+            .map_or((1, input.style.strands.points()), |(portion, points)| (points, portion.drawn * points));
         Self {
             clip_from_world,
             world_from_clip: clip_from_world.inverse(),
-            eye_lights: input.camera.eye.extend(lit as f32),
-            size_scale_exposure: Vec4::new(width as f32, height as f32, scale, picture.exposure_stops.exp2()),
-            ground_texels: Vec4::new(f32::from(u8::from(picture.ground)), shadow_texels as f32, 0.0, 0.0),
-            background_top: picture.background_top.extend(1.0),
-            background_bottom: picture.background_bottom.extend(1.0),
-            root_absorption: colours.roots().absorption(look.absorption()).extend(0.0),
-            mean_absorption: colours.mean().absorption(look.absorption()).extend(0.0),
-            absorption_variation: look.absorption().extend(look.variation.clamp(0.0, 1.0)),
-            width_opacity_tip: Vec4::new(strand_width, opacity, look.tip_lightening.clamp(0.0, 1.0), 0.0),
-            highlights: Vec4::new(
-                look.primary_strength.clamp(0.0, 4.0),
-                look.secondary_strength.clamp(0.0, 4.0),
-                exponents[0],
-                exponents[1],
-            ),
-            fading,
-            colors: Vec4::new(
-                look.grey.clamp(0.0, 1.0),
-                look.highlights.clamp(0.0, 1.0),
-                look.highlight_lightening.clamp(0.0, 1.0),
-                look.many_scattering.clamp(0.0, 1.0),
-            ),
+            eye: input.camera.eye,
+            light_count: lit as u32,
+            size: Vec2::new(width as f32, height as f32),
+            pixels_per_metre: input.camera.pixels_per_metre_at_one_metre(height),
+            exposure: picture.exposure_stops.exp2(),
+            background_top: picture.background_top,
+            shows_ground: u32::from(picture.ground),
+            background_bottom: picture.background_bottom,
+            shadow_texels: shadow_texels as f32,
+            absorption: look.absorption(),
+            variation: look.variation.clamp(0.0, 1.0),
+            root_absorption: colours.roots().absorption(look.absorption()),
+            strand_width: look.diameter * (look.real_hairs / count) * look.width_scale.clamp(0.01, 4.0),
+            mean_absorption: colours.mean().absorption(look.absorption()),
+            // The rest of the optical depth is that of clusters.
+            opacity: picture.strand_opacity * (1.0 - cluster_share(input, height)).max(1e-3),
+            primary_strength: look.primary_strength.clamp(0.0, 4.0),
+            secondary_strength: look.secondary_strength.clamp(0.0, 4.0),
+            primary_exponent,
+            secondary_exponent,
+            fade_end,
+            fade_slope,
+            points_per_strand: points_per_strand as u32,
+            drawn_points: drawn_points as u32,
+            grey: look.grey.clamp(0.0, 1.0),
+            highlights: look.highlights.clamp(0.0, 1.0),
+            lightening: look.highlight_lightening.clamp(0.0, 1.0),
+            many_scattering: look.many_scattering.clamp(0.0, 1.0),
+            tip_lightening: look.tip_lightening.clamp(0.0, 1.0),
+            unused: [0.0; 3],
             lobes: std::array::from_fn(|p| {
-                let [sin, cos] = light.tables.tilts[p];
-                Vec4::new(sin, cos, light.tables.variances[p], 0.0)
+                let [sin_tilt, cos_tilt] = light.tables.tilts[p];
+                LobeUniform { sin_tilt, cos_tilt, variance: light.tables.variances[p], unused: 0.0 }
             }),
-            ambient_grid: light.grid.origin.extend(1.0 / light.grid.cell.max(1e-6)),
+            grid_corner: light.grid.origin,
+            cells_per_metre: 1.0 / light.grid.cell.max(1e-6),
             surround: light.surroundings.surround.uniform(),
             lights,
         }
@@ -157,11 +189,23 @@ mod tests {
         assert_eq!(
             layout_of("LightUniform"),
             [
-                offset_of!(LightUniform, direction_specular),
-                offset_of!(LightUniform, radiance_blur),
+                offset_of!(LightUniform, direction),
+                offset_of!(LightUniform, specular),
+                offset_of!(LightUniform, radiance),
+                offset_of!(LightUniform, blur),
                 offset_of!(LightUniform, shadow_from_world),
                 offset_of!(LightUniform, columns_from_world),
                 size_of::<LightUniform>(),
+            ]
+        );
+        assert_eq!(
+            layout_of("LobeUniform"),
+            [
+                offset_of!(LobeUniform, sin_tilt),
+                offset_of!(LobeUniform, cos_tilt),
+                offset_of!(LobeUniform, variance),
+                offset_of!(LobeUniform, unused),
+                size_of::<LobeUniform>(),
             ]
         );
         assert_eq!(
@@ -169,20 +213,37 @@ mod tests {
             [
                 offset_of!(FrameUniform, clip_from_world),
                 offset_of!(FrameUniform, world_from_clip),
-                offset_of!(FrameUniform, eye_lights),
-                offset_of!(FrameUniform, size_scale_exposure),
-                offset_of!(FrameUniform, ground_texels),
+                offset_of!(FrameUniform, eye),
+                offset_of!(FrameUniform, light_count),
+                offset_of!(FrameUniform, size),
+                offset_of!(FrameUniform, pixels_per_metre),
+                offset_of!(FrameUniform, exposure),
                 offset_of!(FrameUniform, background_top),
+                offset_of!(FrameUniform, shows_ground),
                 offset_of!(FrameUniform, background_bottom),
-                offset_of!(FrameUniform, absorption_variation),
+                offset_of!(FrameUniform, shadow_texels),
+                offset_of!(FrameUniform, absorption),
+                offset_of!(FrameUniform, variation),
                 offset_of!(FrameUniform, root_absorption),
+                offset_of!(FrameUniform, strand_width),
                 offset_of!(FrameUniform, mean_absorption),
-                offset_of!(FrameUniform, width_opacity_tip),
+                offset_of!(FrameUniform, opacity),
+                offset_of!(FrameUniform, primary_strength),
+                offset_of!(FrameUniform, secondary_strength),
+                offset_of!(FrameUniform, primary_exponent),
+                offset_of!(FrameUniform, secondary_exponent),
+                offset_of!(FrameUniform, fade_end),
+                offset_of!(FrameUniform, fade_slope),
+                offset_of!(FrameUniform, points_per_strand),
+                offset_of!(FrameUniform, drawn_points),
+                offset_of!(FrameUniform, grey),
                 offset_of!(FrameUniform, highlights),
-                offset_of!(FrameUniform, fading),
-                offset_of!(FrameUniform, colors),
+                offset_of!(FrameUniform, lightening),
+                offset_of!(FrameUniform, many_scattering),
+                offset_of!(FrameUniform, tip_lightening),
                 offset_of!(FrameUniform, lobes),
-                offset_of!(FrameUniform, ambient_grid),
+                offset_of!(FrameUniform, grid_corner),
+                offset_of!(FrameUniform, cells_per_metre),
                 offset_of!(FrameUniform, surround),
                 offset_of!(FrameUniform, lights),
                 size_of::<FrameUniform>(),

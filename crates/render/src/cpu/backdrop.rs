@@ -39,10 +39,10 @@ impl Ground {
     /// Evaluates the corners of the cells of the tile at `origin`. `None` if there is no ground or all of it is fully lit.
     #[inline(always)]
     pub fn new(view: &View, origin: [f32; 2]) -> Option<Self> {
-        if view.uniform.ground_texels.x <= 0.5 {
+        if view.uniform.shows_ground == 0 {
             return None;
         }
-        let size = view.uniform.size_scale_exposure;
+        let size = view.uniform.size;
         let (x0, y0) = (2.0 * origin[0] / size.x - 1.0, 1.0 - 2.0 * origin[1] / size.y);
         let (x1, y1) = (x0 + 2.0 * TILE as f32 / size.x, y0 - 2.0 * TILE as f32 / size.y);
         let (outline, is_ground) = ground_place(view, &[[x0, x1, x0, x1], [y0, y0, y1, y1]]);
@@ -85,7 +85,7 @@ impl Ground {
                 return a;
             }
         }
-        let size = view.uniform.size_scale_exposure;
+        let size = view.uniform.size;
         let (x, y) = (self.origin[0] + x as f32 + 0.5, self.origin[1] + y as f32 + 0.5);
         let light = ground_light(view, &[[2.0 * x / size.x - 1.0], [1.0 - 2.0 * y / size.y]]);
         [light[0][0], light[1][0], light[2][0]]
@@ -104,7 +104,7 @@ const POOL_Y: f32 = 0.12;
 #[inline(always)]
 pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) {
     let uniform = view.uniform;
-    let size = uniform.size_scale_exposure;
+    let size = uniform.size;
     let (top, bottom) = (uniform.background_top.to_array(), uniform.background_bottom.to_array());
     let ndc_y = 1.0 - 2.0 * y / size.y;
     let blend = smoothstep(0.0, 1.0, 0.5 - 0.5 * ndc_y);
@@ -128,7 +128,7 @@ pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) 
 /// The positions on the ground behind positions of the picture, and whether there is ground: 1 or 0.
 #[inline(always)]
 fn ground_place<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> ([[f32; N]; 3], [f32; N]) {
-    let eye = view.uniform.eye_lights.to_array();
+    let eye = view.uniform.eye.to_array();
     let m = view.uniform.world_from_clip.to_cols_array_2d();
     let mut place = [[0.0; N]; 3];
     let mut is_ground = [0.0; N];

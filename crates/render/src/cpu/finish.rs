@@ -70,7 +70,7 @@ simd_versions! {
 /// Composites and tone-maps a tile, and writes its [`TILE_BYTES`] bytes.
 #[inline(always)]
 fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
-    let exposure = view.uniform.size_scale_exposure.w;
+    let exposure = view.uniform.exposure;
     let origin = input.origin;
     for y in 0..TILE {
         let (mut row, _) = compose_row(view, input, y, true);

@@ -103,7 +103,7 @@ impl LayerTiles {
 
 /// Composites a tile as exposed linear light.
 pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool, out: &mut [[f32; 4]]) {
-    let exposure = view.uniform.size_scale_exposure.w;
+    let exposure = view.uniform.exposure;
     for (y, out) in out.chunks_exact_mut(TILE).enumerate() {
         let (row, open) = compose_row(view, input, y, over_background);
         for (x, out) in out.iter_mut().enumerate() {
@@ -134,7 +134,7 @@ fn nearest_of(
         let shown = samples.depths(at).into_iter().zip(samples.triangles(at));
         *near = shown.map(held).fold(0.0, f32::max);
     }
-    let opacity = view.uniform.width_opacity_tip.y;
+    let opacity = view.uniform.opacity;
     let mut sink = Nearest { samples, near: &mut near };
     let firsts = placed.segments();
     for &segment in placed.segment_bins.of(tile) {

@@ -207,7 +207,7 @@ impl PlacedScene {
         segments: &[u32],
         scratch: &mut TileScratch,
     ) {
-        let opacity = view.uniform.width_opacity_tip.y;
+        let opacity = view.uniform.opacity;
         if transparency == Transparency::Sorted {
             self.keys.sort(segments, self.segments(), &mut scratch.order);
             let order = std::mem::take(&mut scratch.order);
@@ -243,7 +243,7 @@ impl PlacedScene {
             segments,
             first_points: self.segments(),
             samples: &scratch.samples,
-            opacity: view.uniform.width_opacity_tip.y,
+            opacity: view.uniform.opacity,
         };
         list_segments_simd(self.width, &input, &mut scratch.fragments);
     }

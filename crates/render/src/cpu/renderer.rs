@@ -2,7 +2,7 @@
 
 mod inspect;
 
-use glam::Vec4;
+use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
@@ -470,7 +470,7 @@ impl CpuRenderer {
 #[derive(Debug, Default)]
 struct PlainTiles {
     /// What the tiles depend on.
-    of: Option<([Vec4; 3], Grid)>,
+    of: Option<([Vec3; 2], f32, Grid)>,
     bytes: Vec<u8>,
     /// Whether each tile has been drawn.
     known: Vec<bool>,
@@ -479,8 +479,7 @@ struct PlainTiles {
 impl PlainTiles {
     /// Clears the tiles if the background or the size has changed.
     fn follow(&mut self, uniform: &FrameUniform, grid: &Grid) {
-        let exposure = Vec4::splat(uniform.size_scale_exposure.w);
-        let of = Some(([uniform.background_top, uniform.background_bottom, exposure], *grid));
+        let of = Some(([uniform.background_top, uniform.background_bottom], uniform.exposure, *grid));
         if self.of != of {
             self.of = of;
             self.known.clear();

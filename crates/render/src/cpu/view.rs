@@ -64,16 +64,16 @@ impl<'a> View<'a> {
         columns: &'a [Option<ColumnMap>],
         texels: u32,
     ) -> Self {
-        let count = (uniform.eye_lights.w as usize).min(MAX_LIGHTS);
+        let count = (uniform.light_count as usize).min(MAX_LIGHTS);
         let lights = uniform.lights[..count]
             .iter()
             .zip(depth)
             .enumerate()
             .map(|(k, (light, depth))| LightView {
-                direction: light.direction_specular.truncate(),
-                specular: light.direction_specular.w,
-                radiance: light.radiance_blur.truncate(),
-                blur: light.radiance_blur.w.max(1.0) / texels as f32,
+                direction: light.direction,
+                specular: light.specular,
+                radiance: light.radiance,
+                blur: light.blur.max(1.0) / texels as f32,
                 texel: 1.0 / texels as f32,
                 edges: [
                     light.shadow_from_world.row(0).truncate().normalize_or_zero(),
@@ -89,7 +89,7 @@ impl<'a> View<'a> {
 
     /// Points of each fine strand; 1 if stored strands are drawn.
     pub fn points_per_strand(&self) -> usize {
-        self.uniform.fading.z.max(1.0) as usize
+        self.uniform.points_per_strand.max(1) as usize
     }
 
     /// Light from all directions on a surface with the unit normal `n`: irradiance over pi.

@@ -275,7 +275,7 @@ impl GpuRenderer {
             published: &self.pipelines.published,
             lights: maps.len(),
             area: seen.area.edges(),
-            scale: uniform.size_scale_exposure.z,
+            scale: uniform.pixels_per_metre,
             nearest: seen.nearest_rib,
         };
         self.clusters.place(gpu, &mut commands, &frame, &lighting)?;
@@ -289,7 +289,7 @@ impl GpuRenderer {
         let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
         let figure = area.with(Area::of_points(input.camera, [width, height], body));
-        let exposure = uniform.size_scale_exposure.w;
+        let exposure = uniform.exposure;
         let screen = ScreenInput {
             targets,
             corners: self.ground.corners(),
@@ -298,8 +298,8 @@ impl GpuRenderer {
             figure: figure.widened(CELL, [width, height]),
             background: [
                 Vec4::new(width as f32, height as f32, exposure, 0.0),
-                uniform.background_top,
-                uniform.background_bottom,
+                uniform.background_top.extend(1.0),
+                uniform.background_bottom.extend(1.0),
             ],
         };
         self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);

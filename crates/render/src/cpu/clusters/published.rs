@@ -18,7 +18,7 @@ pub(super) fn light(
     out: &mut [Vertex],
 ) {
     let lighting = input.picture.clusters.lighting();
-    let color = HairLook::body_color(view.uniform.mean_absorption.truncate());
+    let color = HairLook::body_color(view.uniform.mean_absorption);
     let ambient = Vec3::from(view.ambient([0.0, 0.3, 0.0]));
     let points = hair.grid.points();
     let of_cluster = hair.grid.around * points;

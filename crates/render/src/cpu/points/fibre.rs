@@ -23,7 +23,7 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
         sin_v[lane] = sin_v[lane].clamp(-MAX_INCLINED, MAX_INCLINED);
         cos_v[lane] = max(cos_v[lane], LEAST_COSINE);
     }
-    let strength = uniform.colors.w;
+    let strength = uniform.many_scattering;
     let mut points = [PointScatter::default(); LANES];
     for (lane, point) in points.iter_mut().enumerate() {
         let sigma = [absorption[0][lane], absorption[1][lane], absorption[2][lane]];

@@ -15,7 +15,7 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
     let uniform = view.uniform;
     let ShadedFrom { here, tangent, to_eye, sin_v, cos_v, pigment, packed, .. } = from;
     // The colours of the fibre: paths of many lengths through absorbing hair.
-    let absorption = uniform.absorption_variation.to_array();
+    let absorption = uniform.absorption.to_array();
     let mut stretched = [0.0; LANES];
     for lane in 0..LANES {
         stretched[lane] = pow(pigment[lane], HairLook::STRETCH);
@@ -40,7 +40,7 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
 
     let mut sum = [[0.0; LANES]; 3];
     let mut open = [0.0; LANES];
-    let [primary, secondary, primary_exponent, secondary_exponent] = uniform.highlights.to_array();
+    let (primary, secondary) = (uniform.primary_strength, uniform.secondary_strength);
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
         let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
@@ -63,8 +63,9 @@ pub(super) fn shade(view: &View, from: &ShadedFrom) -> [Lane; 3] {
             let (sin_v, cos_v) = (sin_v[lane], cos_v[lane]);
             let cos_sum = cos_l * cos_v - sin_l * sin_v;
             let sin_sum = sin_l * cos_v + cos_l * sin_v;
-            let shifted = pow(max(cos_sum * 0.992_81 - sin_sum * 0.119_71, 0.0), primary_exponent);
-            let shifted_back = pow(max(cos_sum * 0.975_90 + sin_sum * 0.218_23, 0.0), secondary_exponent);
+            let shifted = pow(max(cos_sum * 0.992_81 - sin_sum * 0.119_71, 0.0), uniform.primary_exponent);
+            let shifted_back =
+                pow(max(cos_sum * 0.975_90 + sin_sum * 0.218_23, 0.0), uniform.secondary_exponent);
             let lv = lx * to_eye[0][lane] + ly * to_eye[1][lane] + lz * to_eye[2][lane];
             let azimuth = (lv - sin_l * sin_v) / max(cos_l * cos_v, 1e-3);
             let behind = saturate(0.5 - 0.5 * azimuth);

@@ -227,7 +227,7 @@ fn shade_group<const COLORED: bool>(
 
     let uniform = view.uniform;
     let [clip_x, clip_y, _, clip_w] = rows(uniform.clip_from_world);
-    let size = [uniform.size_scale_exposure.x, uniform.size_scale_exposure.y];
+    let size = [uniform.size.x, uniform.size.y];
     let project = |p: &[Lane; 3]| {
         let mut to = [[0.0; LANES]; 3];
         for lane in 0..LANES {
@@ -246,7 +246,7 @@ fn shade_group<const COLORED: bool>(
     let mut run = [[0.0; LANES]; 2];
     let mut tangent = [[0.0; LANES]; 3];
     let mut to_eye = [[0.0; LANES]; 3];
-    let eye = uniform.eye_lights.to_array();
+    let eye = uniform.eye.to_array();
     for lane in 0..LANES {
         let (dx, dy) = (at_after[0][lane] - at_before[0][lane], at_after[1][lane] - at_before[1][lane]);
         let length = (dx * dx + dy * dy).sqrt();
@@ -292,7 +292,7 @@ fn shade_group<const COLORED: bool>(
     let sum = if COLORED {
         let pigment = pigment_of(view, &detail);
         let mut absorption = [[0.0; LANES]; 3];
-        let look = uniform.absorption_variation.to_array();
+        let look = uniform.absorption.to_array();
         for c in 0..3 {
             for lane in 0..LANES {
                 absorption[c][lane] = look[c] * pigment[lane];
@@ -321,11 +321,11 @@ fn shade_group<const COLORED: bool>(
     } else {
         [[0.0; LANES]; 3]
     };
-    let (scale, width) = (uniform.size_scale_exposure.z, uniform.width_opacity_tip.x);
+    let (scale, width) = (uniform.pixels_per_metre, uniform.strand_width);
     // The last of fine strands fade.
-    let [fade_end, fade_slope, points_per_strand, _] = uniform.fading.to_array();
-    let points_per_strand = max(points_per_strand, 1.0) as u32;
-    let (opacity, fine) = (uniform.width_opacity_tip.y, points_per_strand > 1);
+    let (fade_end, fade_slope) = (uniform.fade_end, uniform.fade_slope);
+    let points_per_strand = uniform.points_per_strand.max(1);
+    let (opacity, fine) = (uniform.opacity, points_per_strand > 1);
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
@@ -369,7 +369,7 @@ fn color(
     detail: &[i32; LANES],
     absorption: &mut [Lane; 3],
 ) {
-    let variation = view.uniform.absorption_variation.w;
+    let variation = view.uniform.variation;
     let of = PigmentVariation { variation, ..PigmentVariation::default() };
     for lane in 0..LANES {
         let along = (detail[lane] >> 8 & 0xff) as f32 * (1.0 / 255.0);
@@ -386,13 +386,12 @@ fn color(
 #[inline(always)]
 fn pigment_of(view: &View, detail: &[i32; LANES]) -> Lane {
     let uniform = view.uniform;
-    let [grey, highlights, lightening, _] = uniform.colors.to_array();
     let of = PigmentVariation {
-        variation: uniform.absorption_variation.w,
-        tip_lightening: uniform.width_opacity_tip.z,
-        grey,
-        highlights,
-        lightening,
+        variation: uniform.variation,
+        tip_lightening: uniform.tip_lightening,
+        grey: uniform.grey,
+        highlights: uniform.highlights,
+        lightening: uniform.lightening,
     };
     let mut pigment = [0.0; LANES];
     for lane in 0..LANES {

@@ -46,7 +46,7 @@ simd_versions! {
 #[inline(always)]
 fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     let uniform = view.uniform;
-    let eye = uniform.eye_lights.to_array();
+    let eye = uniform.eye.to_array();
     // Skin under hair has the colour of the roots, so that gaps do not look bald.
     let absorption = uniform.root_absorption.to_array();
     let mut paint = [0.0; LANES];

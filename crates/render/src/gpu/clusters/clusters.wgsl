@@ -3,18 +3,32 @@
 
 // Twin of `ClusterUniform` in mod.rs.
 struct ClusterUniform {
-    // The eye, and the optical depth of a strand times the length of the arc that it lies in, metres.
-    eye_depth: vec4f,
-    // Unit vector toward the strongest light, and how strongly records vary the light of strands.
-    light_detail: vec4f,
-    // The pixels that may show hair: left, top, right and bottom.
-    area: vec4f,
-    // Hair shell volumes around, along, layers, and clusters.
-    grid: vec4u,
-    // Radius of the core, strength of the own shadow, the finest level of detail, and 1 for the published lighting.
-    core_strength_finest_paper: vec4f,
+    eye: vec3f,
+    // The optical depth of a strand times the length of the arc that it lies in, metres.
+    depth: f32,
+    // Unit vector toward the strongest light.
+    to_light: vec3f,
+    // How strongly records vary the light of strands.
+    detail: f32,
+    // The pixels that may show hair: left and top, right and bottom.
+    low: vec2f,
+    high: vec2f,
+    // Hair shell volumes around, along, and layers of each cluster.
+    around: u32,
+    along: u32,
+    layers: u32,
+    count: u32,
+    // Radius of the core.
+    core: f32,
+    shadow_strength: f32,
+    // The finest level of detail.
+    finest: f32,
+    // 1 for the published lighting.
+    as_published: u32,
     // Strengths of the matt part and of both highlights of the published light.
-    published: vec4f,
+    matt: f32,
+    primary: f32,
+    secondary: f32,
     // Entries of a map, the pattern of the literal look-up, and threads per triangle.
     entries: u32,
     pattern: u32,
@@ -43,17 +57,17 @@ struct ClusterVertex {
 const TAU: f32 = 6.2831853;
 
 fn columns() -> u32 {
-    return clusters.grid.w * clusters.grid.x * clusters.grid.y;
+    return clusters.count * clusters.around * clusters.along;
 }
 
 fn quads() -> u32 {
-    return columns() * clusters.grid.z;
+    return columns() * clusters.layers;
 }
 
 // The four vertices of a column: both ribs at its lower section, then at its upper one.
 fn corners(column: u32) -> vec4u {
-    let around = clusters.grid.x;
-    let along = clusters.grid.y;
+    let around = clusters.around;
+    let along = clusters.along;
     let all = column / along;
     let rib = all % around;
     let cluster_first = (all - rib) * (along + 1u);
@@ -64,24 +78,24 @@ fn corners(column: u32) -> vec4u {
 
 // Where the outer surface of a layer lies between the rings: 1 on the outer one.
 fn outward(layer: u32) -> f32 {
-    return f32(layer + 1u) / f32(max(clusters.grid.z, 1u));
+    return f32(layer + 1u) / f32(max(clusters.layers, 1u));
 }
 
 // The radius of that surface in the unit disk.
 fn radius_of(layer: u32) -> f32 {
-    let core = clusters.core_strength_finest_paper.x;
+    let core = clusters.core;
     return core + (1.0 - core) * outward(layer);
 }
 
 // The radius in the middle of a layer, by which its density is measured.
 fn middle_radius_of(layer: u32) -> f32 {
-    let core = clusters.core_strength_finest_paper.x;
-    return core + (1.0 - core) * (f32(layer) + 0.5) / f32(max(clusters.grid.z, 1u));
+    let core = clusters.core;
+    return core + (1.0 - core) * (f32(layer) + 0.5) / f32(max(clusters.layers, 1u));
 }
 
 // The thickness of a layer as a fraction of its radius.
 fn thickness_of(layer: u32) -> f32 {
-    return (1.0 - clusters.core_strength_finest_paper.x) / (f32(clusters.grid.z) * radius_of(layer));
+    return (1.0 - clusters.core) / (f32(clusters.layers) * radius_of(layer));
 }
 
 // Between four corners.

@@ -8,19 +8,19 @@
 const MAX_WAY: f32 = 0.1;
 
 fn turned_by(rib: u32) -> vec2f {
-    let angle = TAU * f32(rib) / f32(clusters.grid.x);
+    let angle = TAU * f32(rib) / f32(clusters.around);
     return vec2f(cos(angle), sin(angle));
 }
 
 // How far it is to the surface from rib `rib` at `radius` of section `i`, metres.
 fn way_out(outer: u32, i: u32, rib: u32, radius: f32) -> f32 {
-    let around = clusters.grid.x;
-    let toward = clusters.light_detail.xyz;
+    let around = clusters.around;
+    let toward = clusters.to_light;
     // The axes of the ellipse to which the disk's axes are mapped.
     var x = vec3f(0.0);
     var y = vec3f(0.0);
     for (var k = 0u; k < around; k++) {
-        let rim = points[outer + k * (clusters.grid.y + 1u) + i].xyz * (2.0 / f32(around));
+        let rim = points[outer + k * (clusters.along + 1u) + i].xyz * (2.0 / f32(around));
         let angle = turned_by(k);
         x += rim * angle.x;
         y += rim * angle.y;
@@ -43,15 +43,15 @@ fn way_out(outer: u32, i: u32, rib: u32, radius: f32) -> f32 {
 @compute @workgroup_size(64)
 fn place_entries(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
-    let around = clusters.grid.x;
-    let sections = clusters.grid.y + 1u;
+    let around = clusters.around;
+    let sections = clusters.along + 1u;
     let ring = around * sections;
-    if (thread >= clusters.grid.w * 2u * ring) {
+    if (thread >= clusters.count * 2u * ring) {
         return;
     }
     let k = thread % (2u * ring);
     let rib = k / sections;
-    let radius = select(1.0, clusters.core_strength_finest_paper.x, rib < around);
+    let radius = select(1.0, clusters.core, rib < around);
     let way = way_out(thread - k + ring, k % sections, rib % around, radius);
-    entries[thread] = vec4f(points[thread].xyz + clusters.light_detail.xyz * way, 0.0);
+    entries[thread] = vec4f(points[thread].xyz + clusters.to_light * way, 0.0);
 }

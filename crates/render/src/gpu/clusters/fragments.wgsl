@@ -64,8 +64,8 @@ fn map_at(quad: u32, texels: u32, u: f32, t: f32) -> vec2f {
 
 // The light that other layers let through to a place on a layer (Xu et al., equation 12).
 fn own_shadow(quad: u32, layer: u32, cos_view: f32, u: f32, t: f32) -> f32 {
-    let layers = clusters.grid.z;
-    let strength = clusters.core_strength_finest_paper.y;
+    let layers = clusters.layers;
+    let strength = clusters.shadow_strength;
     var sum = 0.0;
     if (LOCAL_SHADOW == SHADOW_OF_LAYERS || LOCAL_SHADOW == SHADOW_LINEAR) {
         for (var outer = layer + 1u; outer < layers; outer++) {
@@ -113,7 +113,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     if (quad >= quads()) {
         return;
     }
-    let layers = clusters.grid.z;
+    let layers = clusters.layers;
     let column = quad / layers;
     let layer = quad % layers;
     let at = corners(column);
@@ -160,8 +160,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let color_c = color_on(at.z, share);
     let color_d = color_on(at.w, share);
     let header = maps[quad * clusters.entries];
-    let detail = clusters.light_detail.w;
-    let as_published = clusters.core_strength_finest_paper.w > 0.5;
+    let detail = clusters.detail;
+    let as_published = clusters.as_published != 0u;
     let slope = select(detail * bitcast<f32>(header.x), 1.0, as_published);
     let even = select(1.0 - detail, 0.0, as_published);
     let hash = fract(f32(quad) * 0.618034);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
 use lovelock_gpu::Gpu;
 use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 
@@ -15,16 +16,27 @@ use crate::{FrameInput, HairPose, PictureSettings};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct ClusterUniform {
-    eye_depth: [f32; 4],
-    light_detail: [f32; 4],
-    pub area: [f32; 4],
-    grid: [u32; 4],
-    core_strength_finest_paper: [f32; 4],
-    published: [f32; 4],
+    eye: Vec3,
+    depth: f32,
+    to_light: Vec3,
+    detail: f32,
+    pub low: Vec2,
+    pub high: Vec2,
+    around: u32,
+    along: u32,
+    layers: u32,
+    count: u32,
+    core: f32,
+    shadow_strength: f32,
+    finest: f32,
+    as_published: u32,
+    matt: f32,
+    primary: f32,
+    secondary: f32,
     entries: u32,
     pattern: u32,
     pub lanes: u32,
-    pad: u32,
+    unused: [u32; 2],
 }
 
 /// Twin of `ClusterVertex` in clusters.wgsl; never read on the CPU.
@@ -80,26 +92,34 @@ pub(super) fn entries_of(finest: u32) -> u32 {
 /// The uniform without what depends on the image.
 pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> ClusterUniform {
     let settings = &input.picture.clusters;
-    let RibGrid { layers, around, along } = frame.grid();
+    // Each fits, because the vertices fit a buffer.
+    let [around, along, layers, count] = {
+        let RibGrid { layers, around, along } = frame.grid();
+        [around, along, layers, frame.hair.clusters()].map(|n| n as u32)
+    };
     let opacity = input.picture.strand_opacity;
-    let depth = frame.share * opacity * lovelock_satf::strand_width(&input.look, frame.hair.strands);
     ClusterUniform {
-        eye_depth: input.camera.eye.extend(depth).to_array(),
-        light_detail: to_strongest_light(input.lights).extend(settings.detail).to_array(),
-        area: [0.0; 4],
-        // Each fits, because the vertices fit a buffer.
-        grid: [around, along, layers, frame.hair.clusters()].map(|n| n as u32),
-        core_strength_finest_paper: [
-            frame.hair.core,
-            settings.shadow_strength,
-            finest as f32,
-            f32::from(u8::from(settings.shading == ClusterShading::Paper)),
-        ],
-        published: [settings.diffuse, settings.primary, settings.secondary, 0.0],
+        eye: input.camera.eye,
+        depth: frame.share * opacity * lovelock_satf::strand_width(&input.look, frame.hair.strands),
+        to_light: to_strongest_light(input.lights),
+        detail: settings.detail,
+        low: Vec2::ZERO,
+        high: Vec2::ZERO,
+        around,
+        along,
+        layers,
+        count,
+        core: frame.hair.core,
+        shadow_strength: settings.shadow_strength,
+        finest: finest as f32,
+        as_published: u32::from(settings.shading == ClusterShading::Paper),
+        matt: settings.diffuse,
+        primary: settings.primary,
+        secondary: settings.secondary,
         entries: entries_of(finest),
         pattern: SectorRef::literal(1.0).index / layout::DEPTHS as u32,
         lanes: 1,
-        pad: 0,
+        unused: [0; 2],
     }
 }
 
@@ -145,12 +165,23 @@ mod tests {
         assert_eq!(
             layout_of("ClusterUniform"),
             [
-                offset_of!(ClusterUniform, eye_depth),
-                offset_of!(ClusterUniform, light_detail),
-                offset_of!(ClusterUniform, area),
-                offset_of!(ClusterUniform, grid),
-                offset_of!(ClusterUniform, core_strength_finest_paper),
-                offset_of!(ClusterUniform, published),
+                offset_of!(ClusterUniform, eye),
+                offset_of!(ClusterUniform, depth),
+                offset_of!(ClusterUniform, to_light),
+                offset_of!(ClusterUniform, detail),
+                offset_of!(ClusterUniform, low),
+                offset_of!(ClusterUniform, high),
+                offset_of!(ClusterUniform, around),
+                offset_of!(ClusterUniform, along),
+                offset_of!(ClusterUniform, layers),
+                offset_of!(ClusterUniform, count),
+                offset_of!(ClusterUniform, core),
+                offset_of!(ClusterUniform, shadow_strength),
+                offset_of!(ClusterUniform, finest),
+                offset_of!(ClusterUniform, as_published),
+                offset_of!(ClusterUniform, matt),
+                offset_of!(ClusterUniform, primary),
+                offset_of!(ClusterUniform, secondary),
                 offset_of!(ClusterUniform, entries),
                 offset_of!(ClusterUniform, pattern),
                 offset_of!(ClusterUniform, lanes),

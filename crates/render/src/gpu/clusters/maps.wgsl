@@ -29,17 +29,17 @@ struct Place {
 // As many texels as pixels.
 fn mip_of(at: vec4u, layer: u32) -> f32 {
     if (NEAREST) {
-        return clusters.core_strength_finest_paper.z;
+        return clusters.finest;
     }
     let share = outward(layer);
     let width = 0.5 * (length(place_on(at.x, share).xy - place_on(at.y, share).xy)
         + length(place_on(at.z, share).xy - place_on(at.w, share).xy));
     let mip = log2(max(f32(FINEST_TEXELS) / max(width, 1e-3), 1.0));
-    return clamp(mip, clusters.core_strength_finest_paper.z, LAST_MIP);
+    return clamp(mip, clusters.finest, LAST_MIP);
 }
 
 fn depths_of(at: vec4u, layer: u32) -> vec2f {
-    return clusters.eye_depth.w * vec2f(vertices[at.x].inverse_arc, vertices[at.z].inverse_arc) / middle_radius_of(layer);
+    return clusters.depth * vec2f(vertices[at.x].inverse_arc, vertices[at.z].inverse_arc) / middle_radius_of(layer);
 }
 
 // Optical depth of a texel with the strands of a cell, and reflectance.
@@ -148,8 +148,8 @@ fn light_depths(place: Place, u: f32) -> vec2f {
 
 // Writes where light passes layer `met` on its way to a layer: see `crossings` in satf/src/shadow.rs.
 fn cross_layer(slot: u32, column: u32, met: u32, position: vec2f) {
-    let around = clusters.grid.x;
-    let along = clusters.grid.y;
+    let around = clusters.around;
+    let along = clusters.along;
     let turn = atan2(position.y, position.x) / TAU;
     let at = (turn - floor(turn)) * f32(around);
     let first = column / along / around * around;
@@ -166,9 +166,9 @@ fn cross_layer(slot: u32, column: u32, met: u32, position: vec2f) {
 }
 
 fn fill_crossings(quad: u32, column: u32, layer: u32, light: vec4f) {
-    let layers = clusters.grid.z;
-    let sector = TAU / f32(clusters.grid.x);
-    let here = (f32(column / clusters.grid.y % clusters.grid.x) + 0.5) * sector;
+    let layers = clusters.layers;
+    let sector = TAU / f32(clusters.around);
+    let here = (f32(column / clusters.along % clusters.around) + 0.5) * sector;
     let toward = here + dot(light, vec4f(0.25));
     let direction = vec2f(cos(toward), sin(toward));
     let radius = radius_of(layer);
@@ -199,8 +199,8 @@ fn fill_maps(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     if (quad >= quads()) {
         return;
     }
-    let column = quad / clusters.grid.z;
-    let layer = quad % clusters.grid.z;
+    let column = quad / clusters.layers;
+    let layer = quad % clusters.layers;
     let at = corners(column);
     let sines = sines_of(at);
     var low = vec2f(3e38);
@@ -212,7 +212,7 @@ fn fill_maps(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
         high = max(high, max(inner, outer));
     }
     // Nobody reads the maps of columns that are not drawn.
-    let seen = all(low <= clusters.area.zw) && all(high >= clusters.area.xy) && all(sines >= vec4f(0.0));
+    let seen = all(low <= clusters.high) && all(high >= clusters.low) && all(sines >= vec4f(0.0));
     if (!seen) {
         return;
     }

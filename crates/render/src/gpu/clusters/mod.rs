@@ -11,7 +11,7 @@ mod parts;
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec3, vec2};
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderSource, wgpu};
 use lovelock_groom::HairShading;
 use lovelock_satf::{ClusterHair, ClusterShading};
@@ -182,7 +182,8 @@ impl Clusters {
         parts.ribs.shade(gpu, "draw/ribs", lighting.shading, commands, &of_ribs)?;
         frame.uniform.lanes =
             lanes(parts.constant.largest, frame, lighting.area, lighting.scale / lighting.nearest.max(0.05));
-        frame.uniform.area = lighting.area;
+        let [left, top, right, bottom] = lighting.area;
+        (frame.uniform.low, frame.uniform.high) = (vec2(left, top), vec2(right, bottom));
         if frame.picture.clusters.shading == ClusterShading::Paper {
             let kernel = parts.kernels.published(gpu, lighting.published, lighting.lights)?;
             let uniform = commands.constants("clusters", &frame.uniform);

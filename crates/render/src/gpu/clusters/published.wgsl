@@ -27,28 +27,28 @@ fn published_highlight(tangent: vec3f, l: vec3f, v: vec3f, exponent: f32) -> f32
 fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
     let ring = ring_points();
-    if (i >= clusters.grid.w * 2u * ring) {
+    if (i >= clusters.count * 2u * ring) {
         return;
     }
     let at = i % ring;
     let inner = i / (2u * ring) * (2u * ring);
     let normal = surface_at(inner, at).normal;
-    let section = at % (clusters.grid.y + 1u);
+    let section = at % (clusters.along + 1u);
     let tangent = tangent_at(i - section, section);
     let p = points[i].xyz;
-    let v = unit_or_zero(clusters.eye_depth.xyz - p);
-    let color = strand_color(frame.mean_absorption.xyz).body;
+    let v = unit_or_zero(clusters.eye - p);
+    let color = strand_color(frame.mean_absorption).body;
     var sum = ambient(vec3f(0.0, 0.3, 0.0)) * color * 0.22;
     for (var k = 0u; k < LIGHTS; k++) {
         let light = frame.lights[k];
-        let l = -light.direction_specular.xyz;
+        let l = -light.direction;
         let lit = f32((light_left[i] >> (8u * k)) & 255u) / 255.0 * body_light_on_strand(k, p);
-        let matt = clusters.published.x * sine_of(dot(tangent, l));
-        let first = clusters.published.y
+        let matt = clusters.matt * sine_of(dot(tangent, l));
+        let first = clusters.primary
             * published_highlight(shifted_tangent(tangent, normal, PRIMARY_SHIFT), l, v, PRIMARY_EXPONENT);
-        let second = clusters.published.z
+        let second = clusters.secondary
             * published_highlight(shifted_tangent(tangent, normal, -SECONDARY_SHIFT), l, v, SECONDARY_EXPONENT);
-        sum += light.radiance_blur.xyz * (color * (matt + second) + first) * lit;
+        sum += light.radiance * (color * (matt + second) + first) * lit;
     }
     sum = min(sum, vec3f(MAX_LIGHT));
     let hash = shaded[i].color.y & 0xffff0000u;

@@ -18,18 +18,18 @@ fn unit_or_zero(v: vec3f) -> vec3f {
 
 // Points of a ring of ribs.
 fn ring_points() -> u32 {
-    return clusters.grid.x * (clusters.grid.y + 1u);
+    return clusters.around * (clusters.along + 1u);
 }
 
 // The unit vector toward the tip at point `i` of the rib that begins at point `first`.
 fn tangent_at(first: u32, i: u32) -> vec3f {
-    return unit_or_zero(points[first + min(i + 1u, clusters.grid.y)].xyz - points[first + max(i, 1u) - 1u].xyz);
+    return unit_or_zero(points[first + min(i + 1u, clusters.along)].xyz - points[first + max(i, 1u) - 1u].xyz);
 }
 
 // At point `at` of the outer ring of the cluster whose first point is `inner`.
 fn surface_at(inner: u32, at: u32) -> Surface {
-    let around = clusters.grid.x;
-    let sections = clusters.grid.y + 1u;
+    let around = clusters.around;
+    let sections = clusters.along + 1u;
     let rib = at / sections;
     let i = at % sections;
     let outer = inner + ring_points();

@@ -23,13 +23,13 @@ fn azimuth(v: vec3f, surface: Surface) -> f32 {
 fn place_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
     let ring = ring_points();
-    if (thread >= clusters.grid.w * ring) {
+    if (thread >= clusters.count * ring) {
         return;
     }
     let at = thread % ring;
     let inner = (thread - at) * 2u;
     let surface = surface_at(inner, at);
-    let to_eye = unit_or_zero(clusters.eye_depth.xyz - surface.here);
+    let to_eye = unit_or_zero(clusters.eye - surface.here);
     let a = shaded[inner + at];
     let b = shaded[inner + ring + at];
     let drawn = a.half_width >= 0.0 && b.half_width >= 0.0 && any(surface.normal != vec3f(0.0));
@@ -39,7 +39,7 @@ fn place_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
         select(-1.0, length(cross(to_eye, surface.tangent)), drawn),
         b.at,
         1.0 / max(length(cross(surface.next - surface.here, surface.tangent)), 1e-6),
-        vec2f(view, azimuth(clusters.light_detail.xyz, surface)),
+        vec2f(view, azimuth(clusters.to_light, surface)),
         cos(view),
         a.color,
         b.color,

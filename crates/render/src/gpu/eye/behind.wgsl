@@ -3,8 +3,8 @@
 @group(0) @binding(9) var gathered: texture_storage_2d<rgba32float, write>;
 
 fn pixel_pass(pixel: u32) {
-    let place = vec2u(pixel % eye.area.z, pixel / eye.area.z);
-    let at = place + eye.area.xy;
+    let place = vec2u(pixel % eye.size.x, pixel / eye.size.x);
+    let at = place + eye.corner;
     let four = vec4f(
         textureLoad(samples, at, 0),
         textureLoad(samples, at, 1),

@@ -44,8 +44,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     // The outer loop runs along the longer axis; on the other axis there is a run of pixels.
     let low_corner = min(a.at.xy - abs(a.across) * reach, b.at.xy - abs(b.across) * reach);
     let high_corner = max(a.at.xy + abs(a.across) * reach, b.at.xy + abs(b.across) * reach);
-    let low = max(low_corner, vec2f(eye.area.xy));
-    let high = min(high_corner, vec2f(eye.area.xy + eye.area.zw));
+    let low = max(low_corner, vec2f(eye.corner));
+    let high = min(high_corner, vec2f(eye.corner + eye.size));
     if (!(low.x < high.x && low.y < high.y)) {
         return;
     }
@@ -93,7 +93,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 continue;
             }
             let depth = a.at.z + (b.at.z - a.at.z) * along;
-            let seen = vec4f(depth) >= textureLoad(depths, at - eye.area.xy, 0);
+            let seen = vec4f(depth) >= textureLoad(depths, at - eye.corner, 0);
             if (!any(seen)) {
                 continue;
             }
@@ -107,7 +107,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 gain = 1.0 + 0.18 * wave;
             }
             let color = (color_a + (color_b - color_a) * along) * gain;
-            take((at.y - eye.area.y) * eye.area.z + at.x - eye.area.x, Fragment(depth, alpha, seen, color, hash, middle_distance, at));
+            take((at.y - eye.corner.y) * eye.size.x + at.x - eye.corner.x, Fragment(depth, alpha, seen, color, hash, middle_distance, at));
         }
     }
 }

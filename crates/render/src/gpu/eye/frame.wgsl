@@ -1,8 +1,10 @@
 // The pixels of the picture, shaded strands, and what is behind them. Twin of `EyeUniform` in mod.rs.
 
 struct EyeUniform {
-    // First column and row of the area, columns and rows.
-    area: vec4u,
+    // First column and row of the area.
+    corner: vec2u,
+    // Columns and rows of the area.
+    size: vec2u,
     // Segments, and the capacity of the list of fragments.
     segments: u32,
     room: u32,
@@ -43,7 +45,7 @@ struct ShadedPoint {
 @group(0) @binding(7) var<storage, read_write> layer: array<vec2u>;
 
 fn area_pixels() -> u32 {
-    return eye.area.z * eye.area.w;
+    return eye.size.x * eye.size.y;
 }
 
 fn write_layer(pixel: u32, color: vec3f, through: f32) {

@@ -38,13 +38,14 @@ const FRAGMENT_WORDS: u64 = 3;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct EyeUniform {
-    area: [u32; 4],
+    corner: [u32; 2],
+    size: [u32; 2],
     segments: u32,
     room: u32,
     opacity: f32,
     first: u32,
     lanes: u32,
-    pad: [u32; 3],
+    unused: [u32; 3],
 }
 
 /// The input of the passes.
@@ -223,13 +224,14 @@ impl Eye {
     ) {
         let pixels = area.pixels();
         let uniform = EyeUniform {
-            area: [area.left, area.top, area.columns, area.rows],
+            corner: [area.left, area.top],
+            size: [area.columns, area.rows],
             segments: input.segment_count,
             room: self.room as u32,
             opacity: input.opacity,
             first,
             lanes: input.lanes(),
-            pad: [0; 3],
+            unused: [0; 3],
         };
         let Some(depths) = &self.depths else { return };
         let buffer = commands.constants("eye", &uniform);
@@ -368,7 +370,8 @@ mod tests {
         assert_eq!(
             layout_in_shader(&source, "EyeUniform"),
             [
-                offset_of!(EyeUniform, area),
+                offset_of!(EyeUniform, corner),
+                offset_of!(EyeUniform, size),
                 offset_of!(EyeUniform, segments),
                 offset_of!(EyeUniform, room),
                 offset_of!(EyeUniform, opacity),

@@ -7,8 +7,10 @@ struct Instant {
     turn_x: vec4f,
     turn_y: vec4f,
     turn_z: vec4f,
-    // Points of all guides, points per guide, wisps, points of all strands.
-    counts: vec4u,
+    guide_points: u32,
+    points_per_guide: u32,
+    wisps: u32,
+    strand_points: u32,
 }
 
 // Twin of `Wisp` in mod.rs: its guides, and its frame at the root in the rest pose.
@@ -35,8 +37,8 @@ struct CurvePoint {
 @group(0) @binding(8) var<storage, read> widest: array<f32>;
 
 fn guide_point(guide: u32, point: u32) -> vec3f {
-    let n = instant.counts.x;
-    let i = guide * instant.counts.y + point;
+    let n = instant.guide_points;
+    let i = guide * instant.points_per_guide + point;
     return vec3f(guides[i], guides[n + i], guides[2u * n + i]);
 }
 
@@ -89,7 +91,7 @@ fn narrowed_points(w: u32, point: u32) -> array<vec3f, 3> {
     let away = array(p[0] - mean, p[1] - mean, p[2] - mean);
     let squares = dot3(away[0], away[0]) + dot3(away[1], away[1]) + dot3(away[2], away[2]);
     let radius = sqrt(squares / 3.0);
-    let most = widest[own.x * instant.counts.y + point];
+    let most = widest[own.x * instant.points_per_guide + point];
     // False for NaN.
     if (radius > most) {
         let share = most / radius;
@@ -103,11 +105,11 @@ fn narrowed_points(w: u32, point: u32) -> array<vec3f, 3> {
 @compute @workgroup_size(64)
 fn carry_frames(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let w = id.x + id.y * groups.x * 64u;
-    if (w >= instant.counts.z) {
+    if (w >= instant.wisps) {
         return;
     }
     let wisp = wisps[w];
-    let points = instant.counts.y;
+    let points = instant.points_per_guide;
     var tangent = to_world(wisp.tangent);
     var normal = to_world(wisp.normal);
     var own = narrowed_points(w, 0u);

@@ -23,7 +23,10 @@ const STRANDS: ShaderPart =
 #[repr(C)]
 struct Instant {
     turn: [Vec4; 3],
-    counts: [u32; 4],
+    guide_points: u32,
+    points_per_guide: u32,
+    wisps: u32,
+    strand_points: u32,
 }
 
 /// Twin of `Wisp` in frames.wgsl.
@@ -137,7 +140,10 @@ impl Interpolation {
         let instant = Instant {
             turn: [turn.x_axis, turn.y_axis, turn.z_axis].map(|column| column.extend(0.0)),
             // Each fits, because its buffer fits a binding.
-            counts: [guides.x.len(), guides.points_per_guide, style.wisps.len(), count].map(|n| n as u32),
+            guide_points: guides.x.len() as u32,
+            points_per_guide: guides.points_per_guide as u32,
+            wisps: style.wisps.len() as u32,
+            strand_points: count as u32,
         };
         gpu.upload(&self.instant, 0, &[instant]);
 

@@ -41,16 +41,16 @@ fn cross3(a: vec3f, b: vec3f) -> vec3f {
 @compute @workgroup_size(64)
 fn place_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    if (i >= instant.counts.w) {
+    if (i >= instant.strand_points) {
         return;
     }
     let strand = strands[strand_of[i]];
     let place = places[i];
-    let links = instant.counts.y - 1u;
+    let links = instant.points_per_guide - 1u;
     let p = min(u32(place.w), links - 1u);
     let t = place.w - f32(p);
 
-    let first = strand.wisp * instant.counts.y + p;
+    let first = strand.wisp * instant.points_per_guide + p;
     let here = curves[first];
     let next = curves[first + 1u];
     let w = strand.weights;

@@ -36,7 +36,7 @@ impl GpuRenderer {
         let mut stats = drawn?;
 
         let uniform = self.last;
-        let kind = (uniform.eye_lights.w as usize, over_background);
+        let kind = (uniform.light_count as usize, over_background);
         // Depth and transmittance of clusters are those of the strands that cast their shadow.
         let seen = self.seen.of_strands();
         self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;

@@ -50,7 +50,7 @@ pub(super) fn eye_input<'a>(
         segments: strands.segments,
         segment_count: if seen.has_strands { strands.segment_count } else { 0 },
         depth: &targets.depth,
-        opacity: uniform.width_opacity_tip.y,
+        opacity: uniform.opacity,
         drawn,
         clusters,
     }
@@ -65,9 +65,8 @@ impl GpuRenderer {
         size: [u32; 2],
     ) -> SeenHair {
         let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
-        let strand_width = uniform.width_opacity_tip.x;
-        let reach_at =
-            |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
+        let strand_width = uniform.strand_width;
+        let reach_at = |least: f32| 0.5 * strand_width * uniform.pixels_per_metre / bounds.min.x.max(least);
         let area = Area::of(input.camera, size, (bounds.min, bounds.max), strand_width);
         let share = self.clusters.share();
         let transparency = input.picture.transparency;

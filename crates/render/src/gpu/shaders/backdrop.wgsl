@@ -22,7 +22,7 @@ fn light_of_cell(cell: vec2u) -> u32 {
     // Corners on both sides of the horizon do not determine the cell.
     let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
     let light = (packed & 0x3fffffffu) | select(0u, EVEN_LIGHT, all(spread < vec4f(ALIKE)));
-    return select(ALL_LIGHT, light, frame.ground_texels.x > 0.5);
+    return select(ALL_LIGHT, light, frame.shows_ground != 0u);
 }
 
 // The packed light on the ground at a pixel.
@@ -31,7 +31,7 @@ fn light_at(pixel: vec2u) -> u32 {
 }
 
 fn ndc_of(pixel: vec2u) -> vec2f {
-    return ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
+    return ((vec2f(pixel) + 0.5) / frame.size - 0.5) * vec2f(2.0, -2.0);
 }
 
 // How much darker the background is far from the pool of light behind the figure.
@@ -47,9 +47,9 @@ fn graded(pixel: vec2u) -> vec3f {
     let ndc = ndc_of(pixel);
     let down = 0.5 - 0.5 * ndc.y;
     // Half as elongated as the image.
-    let wide = sqrt(frame.size_scale_exposure.x / frame.size_scale_exposure.y);
+    let wide = sqrt(frame.size.x / frame.size.y);
     let from_middle = vec2f(ndc.x * wide, ndc.y - POOL_Y);
     // A bell has no edge: where a ramp begins or ends, the eye sees a ring.
     let pool = 1.0 - POOL_DEPTH * (1.0 - exp2(POOL_FALL * dot(from_middle, from_middle)));
-    return mix(frame.background_top.xyz, frame.background_bottom.xyz, smoothstep(0.0, 1.0, down)) * pool;
+    return mix(frame.background_top, frame.background_bottom, smoothstep(0.0, 1.0, down)) * pool;
 }

@@ -91,7 +91,7 @@ struct Scatter {
 }
 
 fn tilted(p: u32, sin_v: f32, cos_v: f32) -> vec2f {
-    let tilt = frame.lobes[p].xy;
+    let tilt = vec2f(frame.lobes[p].sin_tilt, frame.lobes[p].cos_tilt);
     return vec2f(sin_v * tilt.y + cos_v * tilt.x, abs(cos_v * tilt.y - sin_v * tilt.x));
 }
 
@@ -103,7 +103,7 @@ fn scatter_of(t: vec3f, v: vec3f, absorption: vec3f) -> Scatter {
     let r = many_row(eye, sigma.r);
     let g = many_row(eye, sigma.g);
     let b = many_row(eye, sigma.b);
-    let variance = frame.lobes[0].z;
+    let variance = frame.lobes[0].variance;
     let returned = vec3f(r.b.x, g.b.x, b.b.x);
     let weights = returned + 1e-9;
     let widths = vec3f(r.b.y, g.b.y, b.b.y);
@@ -154,13 +154,13 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32, 
 
     // A large source widens the lobes, and so does the turn of the strand.
     let wider = LARGEST_SOURCE * (1.0 - specular) + turn;
-    let v_r = frame.lobes[0].z + wider;
-    let v_tt = frame.lobes[1].z + wider;
-    let v_trt = frame.lobes[2].z + wider;
+    let v_r = frame.lobes[0].variance + wider;
+    let v_tt = frame.lobes[1].variance + wider;
+    let v_trt = frame.lobes[2].variance + wider;
     let once_r = lobe_at(quick_lobe(v_r), light, s.tilted_r);
     let once_tt = lobe_at(quick_lobe(v_tt), light, s.tilted_tt);
     let once_trt = lobe_at(quick_lobe(v_trt), light, s.tilted_trt);
-    let once_rest = lobe_at(quick_lobe(frame.lobes[3].z + wider), light, s.tilted_rest);
+    let once_rest = lobe_at(quick_lobe(frame.lobes[3].variance + wider), light, s.tilted_rest);
     let after_r = lobe_at(quick_lobe(v_r + x), light, s.tilted_r);
     let after_tt = vec3f(
         lobe_at(quick_lobe(v_tt + added.r), light, s.tilted_tt),
@@ -173,7 +173,7 @@ fn scattered(s: Scatter, t: vec3f, l: vec3f, v: vec3f, lit: f32, specular: f32, 
     let back_once = same_side * lobe_at(quick_lobe(s.backscatter_variance), light, s.tilted_rest);
     let back_after = same_side * lobe_at(quick_lobe(s.backscatter_variance + x), light, s.tilted_rest);
 
-    let strength = frame.colors.w;
+    let strength = frame.many_scattering;
     let single = once_r * direct.a.x
         + once_tt * faded(direct.a.y, direct.a.z, direct.a.w, s.sigma)
         + once_trt * faded(direct.b.x, direct.b.y, direct.b.z, s.sigma)

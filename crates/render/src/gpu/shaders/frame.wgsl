@@ -3,45 +3,73 @@
 const MAX_LIGHTS: u32 = 4u;
 
 struct LightUniform {
-    // The direction in which the light travels; w is the fraction that contributes to highlights.
-    direction_specular: vec4f,
-    // Colour times intensity; w is the blur of the body's shadow in texels of its map.
-    radiance_blur: vec4f,
+    // The direction in which the light travels.
+    direction: vec3f,
+    // The fraction that contributes to highlights.
+    specular: f32,
+    // Colour times intensity.
+    radiance: vec3f,
+    // The blur of the body's shadow in texels of its map.
+    blur: f32,
     // To the clip space of the body's depth map, z in 0..1.
     shadow_from_world: mat4x4f,
     // To the texture of transmittance behind all hair; z is the fraction of the texture's edge that the map of this light uses.
     columns_from_world: mat4x4f,
 }
 
+// One of the lobes R, TT, TRT and the rest.
+struct LobeUniform {
+    sin_tilt: f32,
+    cos_tilt: f32,
+    variance: f32,
+    unused: f32,
+}
+
 struct FrameUniform {
     clip_from_world: mat4x4f,
     world_from_clip: mat4x4f,
-    // w: number of lights.
-    eye_lights: vec4f,
-    // Size in pixels, pixels that a metre covers at one metre, exposure as a factor.
-    size_scale_exposure: vec4f,
-    // 1 where the ground is drawn, texels of the body's depth maps.
-    ground_texels: vec4f,
-    background_top: vec4f,
-    background_bottom: vec4f,
-    // Absorption of the hair; w: variation between strands.
-    absorption_variation: vec4f,
+    eye: vec3f,
+    light_count: u32,
+    // Size in pixels.
+    size: vec2f,
+    // Pixels that a metre covers at one metre.
+    pixels_per_metre: f32,
+    // A factor.
+    exposure: f32,
+    background_top: vec3f,
+    shows_ground: u32,
+    background_bottom: vec3f,
+    // Texels along an edge of the body's depth maps.
+    shadow_texels: f32,
+    // Absorption of the hair, and its variation between strands.
+    absorption: vec3f,
+    variation: f32,
     // Absorption of the hair with the colours of its strands: the mean at the roots, and over the whole length.
-    root_absorption: vec4f,
-    mean_absorption: vec4f,
-    // Full width of a drawn strand in metres, opacity, tip lightening.
-    width_opacity_tip: vec4f,
-    // Strength of the first and second highlight, their exponents.
-    highlights: vec4f,
-    // The index of the strand at which the width of fading strands would reach 0, the slope of their widths, points per strand, and
-    // the number of points.
-    fading: vec4f,
+    root_absorption: vec3f,
+    // Full width of a drawn strand in metres.
+    strand_width: f32,
+    mean_absorption: vec3f,
+    opacity: f32,
+    primary_strength: f32,
+    secondary_strength: f32,
+    primary_exponent: f32,
+    secondary_exponent: f32,
+    // The index of the strand at which the width of fading strands would reach 0, and the slope of their widths.
+    fade_end: f32,
+    fade_slope: f32,
+    // 1 if stored strands are drawn.
+    points_per_strand: u32,
+    drawn_points: u32,
     // Share of grey strands, share of lightened locks, how much less pigment those have, strength of many scatterings.
-    colors: vec4f,
-    // Sine and cosine of the tilt, and variance, of the lobes R, TT, TRT and the rest.
-    lobes: array<vec4f, 4>,
-    // The corner of the grid of ambient light; w: reciprocal of its cells' edge.
-    ambient_grid: vec4f,
+    grey: f32,
+    highlights: f32,
+    lightening: f32,
+    many_scattering: f32,
+    tip_lightening: f32,
+    @align(16) lobes: array<LobeUniform, 4>,
+    // The corner of the grid of ambient light, and the reciprocal of its cells' edge.
+    grid_corner: vec3f,
+    cells_per_metre: f32,
     // Light from all directions: see `Surround` in appearance.
     surround: array<vec4f, 9>,
     lights: array<LightUniform, 4>,
@@ -65,7 +93,7 @@ fn lean_of(i: u32, n: vec3f) -> vec3f {
     let rows = transpose(light.shadow_from_world);
     let u = dot(n, normalize(rows[0].xyz));
     let v = -dot(n, normalize(rows[1].xyz));
-    return vec3f(u, v, -dot(n, light.direction_specular.xyz));
+    return vec3f(u, v, -dot(n, light.direction));
 }
 
 // The colour of much hair: see `HairLook::body_color` in groom.
@@ -80,19 +108,19 @@ const SURFACE_TAPS: u32 = 12u;
 // disc in the plane of the surface, given by `lean`, so that a flat surface does not shadow itself.
 fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     let light = frame.lights[i];
-    let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * bias, 1.0);
+    let at = light.shadow_from_world * vec4f(p - light.direction * bias, 1.0);
     let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
     if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
         return 1.0;
     }
     // Texels around a position are nearer by the slope of the plane over one texel. The slope is limited, because at grazing angles it
     // would be too large for other surfaces.
-    let texel = 1.0 / frame.ground_texels.y;
+    let texel = 1.0 / frame.shadow_texels;
     let z = at.z - texel * (abs(lean.x) + abs(lean.y)) / max(lean.z, 0.25);
     let turn = lean.xy / (1.0 + max(lean.z, 0.0));
     // A golden-angle disc: uniform for any number of taps, and the same for every pixel, so that it does not flicker. The map is as deep
     // as it is wide, so its three coordinates can be rotated together.
-    let radius = max(light.radiance_blur.w, 1.0) * texel;
+    let radius = max(light.blur, 1.0) * texel;
     var direction = vec2f(1.0, 0.0);
     var sum = 0.0;
     var k = 0u;
@@ -145,6 +173,6 @@ fn ambient(n: vec3f) -> vec3f {
 
 // Light from all directions at a position among the hair.
 fn ambient_at(p: vec3f) -> vec4f {
-    let place = (p - frame.ambient_grid.xyz) * frame.ambient_grid.w;
+    let place = (p - frame.grid_corner) * frame.cells_per_metre;
     return textureSampleLevel(ambient_cells, linear_clamp, place / vec3f(textureDimensions(ambient_cells)), 0.0);
 }

@@ -4,7 +4,7 @@ const UP: vec3f = vec3f(0.0, 1.0, 0.0);
 
 // The unshadowed light `k` on the ground.
 fn share_of(k: u32) -> vec3f {
-    return frame.lights[k].radiance_blur.xyz * max(-frame.lights[k].direction_specular.y, 0.0);
+    return frame.lights[k].radiance * max(-frame.lights[k].direction.y, 0.0);
 }
 
 // The fraction of it that arrives.
@@ -16,7 +16,7 @@ fn left_on_ground(k: u32, p: vec3f) -> f32 {
 // the horizon, the fraction is 1.
 fn ground_light(ndc: vec2f) -> vec4f {
     let near = frame.world_from_clip * vec4f(ndc, 1.0, 1.0);
-    let eye = frame.eye_lights.xyz;
+    let eye = frame.eye;
     let ray = normalize(near.xyz / near.w - eye);
     if (!(ray.y < -1e-3 && eye.y > 0.0)) {
         return vec4f(1.0, 1.0, 1.0, 0.0);
@@ -59,5 +59,5 @@ fn unpack_share(packed: u32) -> vec4f {
 
 // Corners per row.
 fn corner_columns() -> u32 {
-    return (u32(frame.size_scale_exposure.x) + CELL - 1u) / CELL + 1u;
+    return (u32(frame.size.x) + CELL - 1u) / CELL + 1u;
 }

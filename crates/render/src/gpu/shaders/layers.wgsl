@@ -10,7 +10,7 @@ const NOTHING_METRES: f32 = 1e10;
 const NEAR_METRES: f32 = 0.02;
 
 fn put_light(i: u32, light: vec3f, alpha: f32) {
-    light_layer[i] = vec4f(light * frame.size_scale_exposure.w, alpha);
+    light_layer[i] = vec4f(light * frame.exposure, alpha);
 }
 
 fn samples_of(pixel: vec2u) -> vec4f {

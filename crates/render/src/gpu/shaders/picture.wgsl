@@ -119,7 +119,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     // Samples that are not shaded yet, one bit each.
     var open = vec4<bool>(a.depth > 0.0, b.depth > 0.0, c.depth > 0.0, d.depth > 0.0);
     let free = dot(select(vec4f(0.25), vec4f(0.0), open), vec4f(1.0));
-    let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
+    let ndc = ((vec2f(pixel) + 0.5) / frame.size - 0.5) * vec2f(2.0, -2.0);
     var sum = vec3f(0.0);
     loop {
         let first = select(select(select(3u, 2u, open.z), 1u, open.y), 0u, open.x);
@@ -173,7 +173,7 @@ fn pack_pixel(pixel: vec2u, light: vec3f) -> u32 {
 }
 
 fn picture_size() -> vec2u {
-    return vec2u(frame.size_scale_exposure.xy);
+    return vec2u(frame.size);
 }
 
 // The plain background: without hair, body and shadows on the ground. Kept from frame to frame.

@@ -21,20 +21,20 @@ struct ShadedPoint {
 
 // The number of points that are drawn; the buffers may hold more.
 fn drawn_points() -> u32 {
-    return u32(frame.fading.w);
+    return frame.drawn_points;
 }
 
 // The width with which a strand is drawn: see `thin` in cpu/points/mod.rs.
 fn thin(width: f32) -> f32 {
-    let opacity = frame.width_opacity_tip.y;
+    let opacity = frame.opacity;
     let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);
-    return select(width, narrow + (width - narrow) * smoothstep(0.5, 2.0, width), frame.fading.z > 1.5);
+    return select(width, narrow + (width - narrow) * smoothstep(0.5, 2.0, width), frame.points_per_strand > 1u);
 }
 
 // The width of the strand of point `i` as a share of the full width: the last of fine strands fade.
 fn share_of_strand(i: u32) -> f32 {
-    let strand = i / max(u32(frame.fading.z), 1u);
-    return clamp((frame.fading.x - f32(strand)) * frame.fading.y, 0.0, 1.0);
+    let strand = i / max(frame.points_per_strand, 1u);
+    return clamp((frame.fade_end - f32(strand)) * frame.fade_slope, 0.0, 1.0);
 }
 
 struct Projected { pixel: vec2f, depth: f32, w: f32 }
@@ -43,7 +43,7 @@ fn project(p: vec3f) -> Projected {
     let clip = frame.clip_from_world * vec4f(p, 1.0);
     let w = max(clip.w, 1e-4);
     let ndc = clip.xyz / w;
-    let pixel = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * frame.size_scale_exposure.xy;
+    let pixel = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * frame.size;
     return Projected(pixel, ndc.z, clip.w);
 }
 
@@ -66,7 +66,7 @@ struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor, scatter: Scatte
 
 // The part of `pigment_of` by which strands differ by nature.
 fn varied(shade: f32) -> f32 {
-    return max(1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0), 0.0);
+    return max(1.0 + frame.variation * (2.0 * shade - 1.0), 0.0);
 }
 
 // What is kept of the look's absorption at the fraction `along` of the strand of point `i`, and what is added to it. Twin of
@@ -76,7 +76,7 @@ const COLOR_SAMPLES: u32 = 8u;
 fn color_at(i: u32, along: f32) -> vec4f {
     let place = along * f32(COLOR_SAMPLES - 1u);
     let sample = min(u32(place), COLOR_SAMPLES - 2u);
-    let first = strand_colors[i / max(u32(frame.fading.z), 1u)] + 4u * sample;
+    let first = strand_colors[i / max(frame.points_per_strand, 1u)] + 4u * sample;
     let a = vec4u(strand_colors[first], strand_colors[first + 1u], strand_colors[first + 2u], strand_colors[first + 3u]);
     let b = vec4u(strand_colors[first + 4u], strand_colors[first + 5u], strand_colors[first + 6u], strand_colors[first + 7u]);
     return mix(bitcast<vec4f>(a), bitcast<vec4f>(b), place - f32(sample));
@@ -85,19 +85,19 @@ fn color_at(i: u32, along: f32) -> vec4f {
 // Factor on the absorption of a point.
 fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
     let lock = f32(detail >> 26u) / 64.0;
-    let lightened = 1.0 - frame.width_opacity_tip.z * smoothstep(0.2, 1.0, along);
-    let whitened = select(1.0, UNPIGMENTED, fract(shade * WHITENING) < frame.colors.x);
-    let painted = select(0.0, smoothstep(0.0, PAINTED_FROM, along), lock < frame.colors.y);
-    return varied(shade) * lightened * whitened * (1.0 - frame.colors.z * painted);
+    let lightened = 1.0 - frame.tip_lightening * smoothstep(0.2, 1.0, along);
+    let whitened = select(1.0, UNPIGMENTED, fract(shade * WHITENING) < frame.grey);
+    let painted = select(0.0, smoothstep(0.0, PAINTED_FROM, along), lock < frame.highlights);
+    return varied(shade) * lightened * whitened * (1.0 - frame.lightening * painted);
 }
 
 // Like `body_light` for points without a surface: three taps on a disc perpendicular to the light.
 fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
     let light = frame.lights[k];
     // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
-    let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * 0.006, 1.0);
+    let at = light.shadow_from_world * vec4f(p - light.direction * 0.006, 1.0);
     let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
-    let radius = max(light.radiance_blur.w, 1.0) / frame.ground_texels.y;
+    let radius = max(light.blur, 1.0) / frame.shadow_texels;
     let z = min(at.z, 1.0);
     let first = radius * sqrt(2.5 / 3.0) * vec2f(1.0, 0.0);
     let second = radius * sqrt(1.5 / 3.0) * vec2f(-0.737368878, 0.675490294);
@@ -113,12 +113,12 @@ fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
 fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
     let body = body_light_on_strand(k, point.p);
-    let toward = -light.direction_specular.xyz;
-    let specular = light.direction_specular.w;
+    let toward = -light.direction;
+    let specular = light.specular;
     if (FIBRE) {
-        return light.radiance_blur.xyz * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);
+        return light.radiance * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);
     }
-    return light.radiance_blur.xyz * (lit * body)
+    return light.radiance * (lit * body)
         * strand_light(point.t, toward, point.v, point.color, specular, lit);
 }
 
@@ -156,10 +156,10 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let run_length = length(run);
     run = select(vec2f(0.0, 1.0), run / max(run_length, 1e-6), run_length > 1e-4);
 
-    let to_eye = frame.eye_lights.xyz - p;
+    let to_eye = frame.eye - p;
     let distance = max(length(to_eye), 1e-3);
     let v = to_eye / distance;
-    var absorption = frame.absorption_variation.xyz * pigment_of(detail, along, shade);
+    var absorption = frame.absorption * pigment_of(detail, along, shade);
     if (COLORED) {
         let own = color_at(i, along);
         absorption = absorption * own.x + own.yzw * varied(shade);
@@ -201,7 +201,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     }
 
     sum = min(sum, vec3f(MAX_LIGHT));
-    let width = frame.width_opacity_tip.x * taper * share_of_strand(i) * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let width = frame.strand_width * taper * share_of_strand(i) * frame.pixels_per_metre / max(here.w, 1e-3);
     let half_width = 0.5 * thin(width);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
     if (thread < count) {

@@ -18,7 +18,7 @@ const WRAP: vec3f = vec3f(0.12, 0.09, 0.07);
 // The light that a position reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     let light = frame.lights[k];
-    let l = -light.direction_specular.xyz;
+    let l = -light.direction;
     let facing = dot(place.n, l);
     // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
     let wrapped = clamp((facing + WRAP) / (1.0 + WRAP), vec3f(0.0), vec3f(1.0));
@@ -28,9 +28,9 @@ fn light_of(k: u32, place: Place, left: f32) -> vec3f {
         let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
         let lit = body_light(k, above, lean_of(k, place.n), 0.003, SURFACE_TAPS) * left;
         let h = normalize(l + place.v);
-        let gloss = 0.014 * place.skin * light.direction_specular.w
+        let gloss = 0.014 * place.skin * light.specular
             * (pow(max(dot(place.n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(place.n, place.v), 0.0), 4.0));
-        sum = light.radiance_blur.xyz * lit
+        sum = light.radiance * lit
             * (place.albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
     }
     return sum;
@@ -38,10 +38,10 @@ fn light_of(k: u32, place: Place, left: f32) -> vec3f {
 
 // The light that the body reflects toward the eye.
 fn shade_surface(in: Surface) -> vec3f {
-    let v = normalize(frame.eye_lights.xyz - in.world);
+    let v = normalize(frame.eye - in.world);
     let n = normalize(in.normal);
     // Skin under hair has the colour of the roots, so that gaps do not look bald.
-    let stretched = pow(max(frame.root_absorption.xyz, vec3f(0.0)), vec3f(STRETCH));
+    let stretched = pow(max(frame.root_absorption, vec3f(0.0)), vec3f(STRETCH));
     let root = 0.3 * (exp(-BODY_PATH * stretched) + SURFACE_SHARE);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);

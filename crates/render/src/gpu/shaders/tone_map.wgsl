@@ -35,7 +35,7 @@ fn srgb(linear: vec3f) -> vec3f {
 
 // A pixel as sRGB-encoded numbers.
 fn tone_map(light: vec3f, pixel: vec2u) -> vec3f {
-    let color = srgb(agx(max(light, vec3f(0.0)) * frame.size_scale_exposure.w));
+    let color = srgb(agx(max(light, vec3f(0.0)) * frame.exposure));
     // Ordered dither of up to half a step, so that smooth gradients do not band.
     let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5;
     return color + noise / 255.0;

@@ -22,7 +22,7 @@ fn put_value(i: u32, value: f32, share: f32) {
 fn value_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
     if (i < drawn_points()) {
-        put_value(i, select(1.0, unpack4x8unorm(light_left[i]).x, frame.eye_lights.w > 0.5), 1.0);
+        put_value(i, select(1.0, unpack4x8unorm(light_left[i]).x, frame.light_count > 0u), 1.0);
     }
 }
 

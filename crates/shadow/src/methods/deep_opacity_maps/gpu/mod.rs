@@ -24,15 +24,12 @@ impl GpuTexelMethod for Layers {
     const QUERY: &'static [ShaderPart] = &[LAYER, QUERY];
 
     fn needs(&self) -> Needs {
-        let mut floats = [0.0; 32];
-        let (starts, per_depth) = floats.split_at_mut(self.starts.len());
-        starts.copy_from_slice(&self.starts);
-        per_depth.copy_from_slice(&self.per_depth);
         Needs {
             map_words: self.cells() as u64,
-            scratch_words: 0,
-            integers: [self.count as u32, 0, 0, 0],
-            floats,
+            parts: self.count as u32,
+            starts: self.starts,
+            per_depth: self.per_depth,
+            ..Needs::default()
         }
     }
 }

@@ -8,7 +8,7 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
         return 0.0;
     }
     let layer = layer_of(behind);
-    let part = min((behind - setting(layer)) * setting(MAX_LAYERS + layer), 1.0);
+    let part = min((behind - start_of(layer)) * per_depth_of(layer), 1.0);
     var before = 0.0;
     if (layer > 0u) {
         before = depth_of_weight(f32(map[record + layer]));

@@ -6,7 +6,7 @@ fn texel_pass(texel: u32) {
         return;
     }
     var sum = 0u;
-    for (var layer = 1u; layer <= texels.integers.x; layer++) {
+    for (var layer = 1u; layer <= texels.parts; layer++) {
         sum += atomicLoad(&map[record + layer]);
         atomicStore(&map[record + layer], sum);
     }

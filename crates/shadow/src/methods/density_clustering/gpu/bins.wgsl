@@ -16,7 +16,7 @@ fn texel_pass(texel: u32) {
     var ends: array<f32, 8>;
     var kept = 0u;
     var last = 0.0;
-    for (var j = 0u; j < texels.integers.x; j++) {
+    for (var j = 0u; j < texels.parts; j++) {
         var middle = centre(texel, j);
         let border = select(0.5 * (last + middle), 0.0, j == 0u);
         last = middle;
@@ -27,7 +27,7 @@ fn texel_pass(texel: u32) {
             continue;
         }
         var square = over_weight(atomicLoad(&scratch[sums + 1u]), atomicLoad(&scratch[sums + 2u]), weight);
-        if (texels.integers.z != 0u) {
+        if (texels.merged != 0u) {
             let mean = square;
             let at = bin_of(texel, j) + 1u;
             square = over_weight(atomicLoad(&map[at]), atomicLoad(&map[at + 1u]), weight);
@@ -50,7 +50,7 @@ fn texel_pass(texel: u32) {
     }
     let range = range_of(texel);
     let depth = range.y - range.x;
-    for (var j = 0u; j < texels.integers.x; j++) {
+    for (var j = 0u; j < texels.parts; j++) {
         let bin = bin_of(texel, j);
         let sums = sums_of(texel, j);
         var border = NOWHERE;

@@ -2,8 +2,7 @@
 // so that they keep their precision where the range is short.
 //
 // Scratch memory of a texel: the inverted bits of the nearest depth, so that 0 means no hair; the farthest depth; then three
-// words per cluster, or 32 words of a histogram before clusters have centres. `texels.integers`: clusters, seeds (0 uniform, 1 toward
-// the light, 2 from the histogram), 1 if the deviation is computed together with the centres, 1 for filtered lines.
+// words per cluster, or 32 words of a histogram before clusters have centres. `texels.parts`: clusters.
 //
 // A record has three words per cluster, which finally hold its bin: start, 1 over the width, weight. Until then the first word
 // is the centre of the cluster.
@@ -17,7 +16,7 @@ const PARTS: f32 = 1048576.0;
 const NOWHERE: f32 = 2.0;
 
 fn scratch_of(texel: u32) -> u32 {
-    return texel * (2u + select(3u * texels.integers.x, max(3u * texels.integers.x, HISTOGRAM_BINS), texels.integers.y == 2u));
+    return texel * (2u + select(3u * texels.parts, max(3u * texels.parts, HISTOGRAM_BINS), texels.seeds == 2u));
 }
 
 // The first word of cluster `j` in scratch memory.
@@ -27,7 +26,7 @@ fn sums_of(texel: u32, j: u32) -> u32 {
 
 // The first word of bin `j` of the record.
 fn bin_of(texel: u32, j: u32) -> u32 {
-    return 3u * (texel * texels.integers.x + j);
+    return 3u * (texel * texels.parts + j);
 }
 
 fn is_empty(texel: u32) -> bool {
@@ -65,7 +64,7 @@ struct Place {
 fn place_of(texel: u32, part: f32) -> Place {
     var place = Place(0u, 0.0);
     var last = centre(texel, 0u);
-    for (var j = 1u; j < texels.integers.x; j++) {
+    for (var j = 1u; j < texels.parts; j++) {
         let next = centre(texel, j);
         let border = 0.5 * (last + next);
         if (!(part > border)) {

@@ -7,14 +7,14 @@ fn put(texel: u32, depth: f32, weight: u32) {
     let part = part_of(texel, depth);
     let first = sums_of(texel, 0u);
     var j = 0u;
-    while (j + 1u < texels.integers.x && part > bitcast<f32>(atomicLoad(&scratch[first + 3u * j]))) {
+    while (j + 1u < texels.parts && part > bitcast<f32>(atomicLoad(&scratch[first + 3u * j]))) {
         j++;
     }
     let at = first + 3u * j;
     if (j > 0u && part < bitcast<f32>(atomicLoad(&scratch[at + 1u])) - SLACK
         && part <= bitcast<f32>(atomicLoad(&scratch[at - 1u]))) {
         j--;
-    } else if (j + 1u < texels.integers.x && part > bitcast<f32>(atomicLoad(&scratch[at + 2u])) + SLACK
+    } else if (j + 1u < texels.parts && part > bitcast<f32>(atomicLoad(&scratch[at + 2u])) + SLACK
         && part >= bitcast<f32>(atomicLoad(&scratch[at + 4u]))) {
         j++;
     }

@@ -61,7 +61,10 @@ impl GpuTexelMethod for Clustering {
         Needs {
             map_words: 3 * clusters,
             scratch_words: RANGE_WORDS + histogram.max(3 * clusters),
-            integers: [clusters as u32, seeds, u32::from(merged), u32::from(self.settings.prefiltered)],
+            parts: clusters as u32,
+            seeds,
+            merged: u32::from(merged),
+            prefiltered: u32::from(self.settings.prefiltered),
             ..Needs::default()
         }
     }

@@ -6,7 +6,7 @@ fn texel_pass(texel: u32) {
     }
     var last = centre(texel, 0u);
     var border = 0.0;
-    for (var j = 0u; j < texels.integers.x; j++) {
+    for (var j = 0u; j < texels.parts; j++) {
         let next = centre(texel, j);
         if (j > 0u) {
             border = 0.5 * (last + next);

@@ -2,8 +2,8 @@
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
     var sum = 0.0;
-    for (var j = 0u; j < texels.integers.x; j++) {
-        let bin = 3u * (texel * texels.integers.x + j);
+    for (var j = 0u; j < texels.parts; j++) {
+        let bin = 3u * (texel * texels.parts + j);
         let weight = map[bin + 2u];
         if (weight > 0u) {
             let part = (depth - bitcast<f32>(map[bin])) * bitcast<f32>(map[bin + 1u]);

@@ -1,16 +1,16 @@
 // The initial centres of clusters. Twin of seeds.rs.
 
 fn even(j: u32) -> f32 {
-    return (f32(j) + 0.5) / f32(texels.integers.x);
+    return (f32(j) + 0.5) / f32(texels.parts);
 }
 
 fn texel_pass(texel: u32) {
     if (is_empty(texel)) {
         return;
     }
-    if (texels.integers.y != 2u) {
-        let drawn = select(1.0, 0.75, texels.integers.y == 1u);
-        for (var j = 0u; j < texels.integers.x; j++) {
+    if (texels.seeds != 2u) {
+        let drawn = select(1.0, 0.75, texels.seeds == 1u);
+        for (var j = 0u; j < texels.parts; j++) {
             set_centre(texel, j, even(j) * drawn);
         }
         return;
@@ -25,8 +25,8 @@ fn texel_pass(texel: u32) {
         atomicStore(&scratch[first + bin], 0u);
     }
     var bin = 0u;
-    for (var j = 0u; j < texels.integers.x; j++) {
-        let wanted = lost[HISTOGRAM_BINS] * (f32(j) + 0.5) / f32(texels.integers.x);
+    for (var j = 0u; j < texels.parts; j++) {
+        let wanted = lost[HISTOGRAM_BINS] * (f32(j) + 0.5) / f32(texels.parts);
         while (bin + 1u < HISTOGRAM_BINS && lost[bin + 1u] < wanted) {
             bin++;
         }

@@ -17,7 +17,7 @@ fn each_group(
 ) {
     let texel = id.x + id.y * groups.x * 64u;
     var own = 0u;
-    if (texel < texels.size.z) {
+    if (texel < texels.count) {
         own = atomicLoad(&map[texel * 2u + 1u]);
     }
     counts[local] = own;

@@ -94,7 +94,7 @@ fn each_group(
     let texel = (group.x + group.y * groups.x) * 64u + local;
     if (local < 64u) {
         lists[local] = vec2u(0u);
-        if (texel < texels.size.z) {
+        if (texel < texels.count) {
             lists[local] = list_of(texel);
             atomicMax(&longest, lists[local].y);
         }

@@ -23,11 +23,6 @@ impl GpuTexelMethod for Slices {
 
     fn needs(&self) -> Needs {
         let slices = self.cells();
-        Needs {
-            map_words: slices as u64,
-            scratch_words: 1,
-            integers: [slices as u32, 0, 0, 0],
-            ..Needs::default()
-        }
+        Needs { map_words: slices as u64, scratch_words: 1, parts: slices as u32, ..Needs::default() }
     }
 }

@@ -2,9 +2,9 @@
 
 fn texel_pass(texel: u32) {
     let after = atomicLoad(&scratch[texel]);
-    let record = texel * texels.integers.x;
+    let record = texel * texels.parts;
     var sum = 0u;
-    for (var slice = texels.integers.x - after; slice < texels.integers.x; slice++) {
+    for (var slice = texels.parts - after; slice < texels.parts; slice++) {
         sum += atomicLoad(&map[record + slice]);
         atomicStore(&map[record + slice], sum);
     }

@@ -2,8 +2,8 @@
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let slice = u32(slice_of(depth).x);
-    atomicAdd(&map[texel * texels.integers.x + slice], weight);
-    let first = texels.integers.x - slice;
+    atomicAdd(&map[texel * texels.parts + slice], weight);
+    let first = texels.parts - slice;
     if (atomicLoad(&scratch[texel]) < first) {
         atomicMax(&scratch[texel], first);
     }

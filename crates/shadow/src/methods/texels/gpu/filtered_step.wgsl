@@ -1,9 +1,9 @@
-// Lines one texel wide, or pre-filtered lines if `texels.integers.w` is set: then a step is one fragment in each of the two
+// Lines one texel wide, or pre-filtered lines if `texels.prefiltered` is set: then a step is one fragment in each of the two
 // nearest texels across the longer axis, which share its weight.
 
 fn put_step(by_row: bool, major: i32, minor: f32, depth: f32, length: f32) {
     let weight = u32(length * WEIGHT_ONE + 0.5);
-    let filtered = texels.integers.w != 0u;
+    let filtered = texels.prefiltered != 0u;
     let at = select(minor, minor - 0.5, filtered);
     let low = floor(at);
     let second = select(0u, u32(length * WEIGHT_ONE * (at - low) + 0.5), filtered);

@@ -1,17 +1,33 @@
 // The placement of the texels of a map, and the method's settings. Twin of `TexelUniform` in gpu/mod.rs.
 
 struct TexelUniform {
-    // World space; w is the optical depth of a piece of strand whose length across the light is one texel.
-    anchor: vec4f,
-    // Axes, in texels and in fractions of the depth range; w is added to the dot product.
-    column: vec4f,
-    row: vec4f,
-    depth: vec4f,
-    // Texels along each edge, segments, texels.
-    size: vec3u,
-    // Settings of the method.
-    integers: vec4u,
-    floats: array<vec4f, 8>,
+    // World space.
+    anchor: vec3f,
+    // The optical depth of a piece of strand whose length across the light is one texel.
+    optical_depth: f32,
+    // Axes, in texels and in fractions of the depth range, and what is added to each dot product.
+    column: vec3f,
+    first_column: f32,
+    row: vec3f,
+    first_row: f32,
+    depth: vec3f,
+    first_depth: f32,
+    // Texels along each edge.
+    edge: u32,
+    segments: u32,
+    // All texels.
+    count: u32,
+    // Slices, layers or clusters of a texel.
+    parts: u32,
+    // Of density clustering: 0 for uniform seeds, 1 toward the light, 2 from the histogram.
+    seeds: u32,
+    // 1 if the deviation of clusters is computed together with their centres.
+    merged: u32,
+    // 1 for pre-filtered lines.
+    prefiltered: u32,
+    // Of deep opacity maps: the start of each layer relative to the first fragment, and 1 over its thickness.
+    @align(16) starts: array<vec4f, 4>,
+    per_depth: array<vec4f, 4>,
 }
 
 @group(0) @binding(0) var<uniform> texels: TexelUniform;
@@ -21,15 +37,15 @@ const WEIGHT_ONE: f32 = 1024.0;
 
 // The optical depth of a sum of weights.
 fn depth_of_weight(weight: f32) -> f32 {
-    return weight * (texels.anchor.w / WEIGHT_ONE);
+    return weight * (texels.optical_depth / WEIGHT_ONE);
 }
 
 // Column and row in texels, and depth along the light, 0 to 1 for the hair.
 fn texel_from_world(p: vec3f) -> vec3f {
-    let d = p - texels.anchor.xyz;
+    let d = p - texels.anchor;
     return vec3f(
         (d.x * texels.column.x + d.y * texels.column.y) + d.z * texels.column.z,
         (d.x * texels.row.x + d.y * texels.row.y) + d.z * texels.row.z,
         (d.x * texels.depth.x + d.y * texels.depth.y) + d.z * texels.depth.z,
-    ) + vec3f(texels.column.w, texels.row.w, texels.depth.w);
+    ) + vec3f(texels.first_column, texels.first_row, texels.first_depth);
 }

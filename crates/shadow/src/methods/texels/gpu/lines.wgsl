@@ -6,13 +6,13 @@
 
 // Whether a point was included in the bounds of the window. False for NaN.
 fn holds(p: vec3f) -> bool {
-    let far = 2.0 * f32(texels.size.x);
+    let far = 2.0 * f32(texels.edge);
     return abs(p.x) <= far && abs(p.y) <= far && abs(p.z) <= 2.0;
 }
 
 // Clamped to the window: rounding must not move hair into the empty texels at the border.
 fn held(p: vec3f) -> vec3f {
-    let highest = f32(texels.size.x - 1u) * (1.0 - 1.1920929e-7);
+    let highest = f32(texels.edge - 1u) * (1.0 - 1.1920929e-7);
     return clamp(p, vec3f(1.0, 1.0, 0.0), vec3f(highest, highest, 1.0));
 }
 
@@ -24,15 +24,15 @@ fn centres_below(c: f32) -> i32 {
 
 // The texel at these coordinates on the longer and the shorter axis; texels at the border stay empty.
 fn texel_of(by_row: bool, major: i32, minor: i32) -> u32 {
-    let held_minor = u32(clamp(minor, 1, i32(texels.size.x) - 2));
+    let held_minor = u32(clamp(minor, 1, i32(texels.edge) - 2));
     let at = select(vec2u(u32(major), held_minor), vec2u(held_minor, u32(major)), by_row);
-    return at.y * texels.size.x + at.x;
+    return at.y * texels.edge + at.x;
 }
 
 @compute @workgroup_size(64)
 fn draw(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    if (i >= texels.size.y) {
+    if (i >= texels.segments) {
         return;
     }
     let first = segments[i];

@@ -10,7 +10,7 @@ override FILTER: u32 = 1u;
 const BEHIND: f32 = 2.0;
 
 fn texel_light(column: i32, row: i32, depth: f32) -> f32 {
-    let n = i32(texels.size.x);
+    let n = i32(texels.edge);
     let at = clamp(vec2i(column, row), vec2i(0), vec2i(n - 1));
     let light = exp_of_minus(depth_before(u32(at.y * n + at.x), depth));
     return select(1.0, light, all(at == vec2i(column, row)));
@@ -57,7 +57,7 @@ fn light_at(p: vec3f, world_position: vec3f) -> f32 {
 // Transmittance at a point.
 fn hair_transmittance(world_position: vec3f) -> f32 {
     let p = texel_from_world(world_position);
-    let end = f32(texels.size.x) + 1.0;
+    let end = f32(texels.edge) + 1.0;
     // False for NaN. Points before all hair are lit.
     let inside = p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0;
     // Evaluated for every point: on software adapters a branch would not be faster.
@@ -65,7 +65,7 @@ fn hair_transmittance(world_position: vec3f) -> f32 {
 }
 
 fn column_count() -> u32 {
-    return texels.size.x;
+    return texels.edge;
 }
 
 // Transmittance of all hair of a texel.

@@ -13,7 +13,7 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec4;
+use glam::Vec3;
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
 use self::kernels::KernelSets;
@@ -40,18 +40,31 @@ pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_re
 /// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
 pub(crate) const RANGE_WORDS: u64 = 3;
 
+/// The most layers of deep opacity maps.
+const MAX_LAYERS: usize = 16;
+
 /// Twin of `TexelUniform` in frame.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct TexelUniform {
-    anchor: Vec4,
-    column: Vec4,
-    row: Vec4,
-    depth: Vec4,
-    size: [u32; 3],
-    pad: u32,
-    integers: [u32; 4],
-    floats: [f32; 32],
+    anchor: Vec3,
+    optical_depth: f32,
+    column: Vec3,
+    first_column: f32,
+    row: Vec3,
+    first_row: f32,
+    depth: Vec3,
+    first_depth: f32,
+    edge: u32,
+    segments: u32,
+    count: u32,
+    parts: u32,
+    seeds: u32,
+    merged: u32,
+    prefiltered: u32,
+    unused: u32,
+    starts: [f32; MAX_LAYERS],
+    per_depth: [f32; MAX_LAYERS],
 }
 
 /// What the threads of a pass iterate over.
@@ -59,7 +72,7 @@ pub(crate) struct TexelUniform {
 pub(crate) enum Over {
     /// Every segment: the part defines `put`.
     Segments,
-    /// Every segment, as pre-filtered lines if the last word of [`Needs::integers`] is set: the part defines `put`.
+    /// Every segment, as pre-filtered lines if [`Needs::prefiltered`] is 1: the part defines `put`.
     FilteredSegments,
     /// Every texel: the part defines `texel_pass`.
     Texels,
@@ -105,10 +118,18 @@ pub(crate) struct Needs {
     pub map_words: u64,
     /// Words of scratch memory per texel.
     pub scratch_words: u64,
-    /// `TexelUniform::integers`.
-    pub integers: [u32; 4],
-    /// `TexelUniform::floats`.
-    pub floats: [f32; 32],
+    /// Slices, layers or clusters of a texel.
+    pub parts: u32,
+    /// See `TexelUniform` in frame.wgsl.
+    pub seeds: u32,
+    /// See `seeds`.
+    pub merged: u32,
+    /// See `seeds`.
+    pub prefiltered: u32,
+    /// See `seeds`.
+    pub starts: [f32; MAX_LAYERS],
+    /// See `seeds`.
+    pub per_depth: [f32; MAX_LAYERS],
 }
 
 /// The GPU's part of a method with a record per texel.
@@ -226,16 +247,25 @@ impl Map {
 impl TexelUniform {
     fn new(frame: &TexelFrame, depth_per_texel: f32, segments: u32, needs: &Needs) -> Self {
         let axes = frame.axes();
-        let texels = frame.resolution * frame.resolution;
         Self {
-            anchor: axes.anchor.extend(depth_per_texel),
-            column: axes.column.extend(axes.offset.x),
-            row: axes.row.extend(axes.offset.y),
-            depth: axes.depth.extend(axes.offset.z),
-            size: [frame.resolution, segments, texels],
-            pad: 0,
-            integers: needs.integers,
-            floats: needs.floats,
+            anchor: axes.anchor,
+            optical_depth: depth_per_texel,
+            column: axes.column,
+            first_column: axes.offset.x,
+            row: axes.row,
+            first_row: axes.offset.y,
+            depth: axes.depth,
+            first_depth: axes.offset.z,
+            edge: frame.resolution,
+            segments,
+            count: frame.resolution * frame.resolution,
+            parts: needs.parts,
+            seeds: needs.seeds,
+            merged: needs.merged,
+            prefiltered: needs.prefiltered,
+            unused: 0,
+            starts: needs.starts,
+            per_depth: needs.per_depth,
         }
     }
 }

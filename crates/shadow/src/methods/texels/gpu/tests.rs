@@ -10,12 +10,22 @@ use lovelock_gpu::layout_in_shader;
 fn the_uniform_has_the_layout_of_every_shader() {
     let expected = [
         offset_of!(TexelUniform, anchor),
+        offset_of!(TexelUniform, optical_depth),
         offset_of!(TexelUniform, column),
+        offset_of!(TexelUniform, first_column),
         offset_of!(TexelUniform, row),
+        offset_of!(TexelUniform, first_row),
         offset_of!(TexelUniform, depth),
-        offset_of!(TexelUniform, size),
-        offset_of!(TexelUniform, integers),
-        offset_of!(TexelUniform, floats),
+        offset_of!(TexelUniform, first_depth),
+        offset_of!(TexelUniform, edge),
+        offset_of!(TexelUniform, segments),
+        offset_of!(TexelUniform, count),
+        offset_of!(TexelUniform, parts),
+        offset_of!(TexelUniform, seeds),
+        offset_of!(TexelUniform, merged),
+        offset_of!(TexelUniform, prefiltered),
+        offset_of!(TexelUniform, starts),
+        offset_of!(TexelUniform, per_depth),
         size_of::<TexelUniform>(),
     ];
     let shaders = all_shaders();

@@ -11,13 +11,13 @@ const MAX_PER_SAMPLE: f32 = 33554432.0;
 
 // Whether a point was included in the bounds of the window. False for NaN.
 fn holds(p: vec3f) -> bool {
-    let far = 2.0 * f32(voxels.size.x);
+    let far = 2.0 * f32(voxels.edge);
     return abs(p.x) <= far && abs(p.y) <= far && abs(p.z) <= far;
 }
 
 // Clamped to the window: rounding must not move hair into the empty cells at the border.
 fn held(p: vec3f) -> vec3f {
-    let highest = f32(voxels.size.x - 1u) * (1.0 - 1.1920929e-7);
+    let highest = f32(voxels.edge - 1u) * (1.0 - 1.1920929e-7);
     return clamp(p, vec3f(1.0), vec3f(highest));
 }
 
@@ -33,7 +33,7 @@ fn add(cell: vec3u, depth: u32) {
 @compute @workgroup_size(64)
 fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    if (i >= voxels.size.y) {
+    if (i >= voxels.segments) {
         return;
     }
     let first = segments[i];
@@ -49,7 +49,7 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let count = u32(2.0 * sqrt(d.x * d.x + across)) + 1u;
     let inverse = 1.0 / f32(count);
     // The length across the light, in cells, counts.
-    let depth = u32(min(voxels.anchor.w * sqrt(across) * inverse + 0.5, MAX_PER_SAMPLE));
+    let depth = u32(min(voxels.deposit * sqrt(across) * inverse + 0.5, MAX_PER_SAMPLE));
     if (depth == 0u) {
         return;
     }
@@ -62,11 +62,11 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
 @compute @workgroup_size(64)
 fn deposit_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    if (i >= voxels.size.z) {
+    if (i >= voxels.points) {
         return;
     }
     let p = window_from_world(points[i].xyz);
     if (holds(p)) {
-        add(vec3u(held(p)), u32(min(voxels.anchor.w + 0.5, MAX_PER_SAMPLE)));
+        add(vec3u(held(p)), u32(min(voxels.deposit + 0.5, MAX_PER_SAMPLE)));
     }
 }

@@ -3,7 +3,7 @@
 //! Cells hold the same integers as on the CPU.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec4;
+use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
 use super::cpu::fixed_point_depth;
@@ -26,25 +26,37 @@ const SUM_PASS: &str = "shadow/sum";
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 struct VoxelUniform {
-    anchor: Vec4,
-    along: Vec4,
-    row: Vec4,
-    column: Vec4,
-    size: [u32; 4],
+    anchor: Vec3,
+    deposit: f32,
+    along: Vec3,
+    first_along: f32,
+    row: Vec3,
+    first_row: f32,
+    column: Vec3,
+    first_column: f32,
+    edge: u32,
+    segments: u32,
+    points: u32,
+    as_printed: u32,
 }
 
 impl VoxelUniform {
-    fn new(lattice: &Lattice, depth: f32, input: &GpuShadowInput, filter: VoxelFilter) -> Self {
+    fn new(lattice: &Lattice, deposit: f32, input: &GpuShadowInput, filter: VoxelFilter) -> Self {
         let first = lattice.first.as_vec3();
         let [along, row, column] = lattice.axes_per_cell;
-        let as_printed = u32::from(filter == VoxelFilter::Paper);
-        let strands = &input.strands;
         Self {
-            anchor: lattice.anchor.extend(depth),
-            along: along.extend(first.x),
-            row: row.extend(first.y),
-            column: column.extend(first.z),
-            size: [lattice.resolution, strands.segment_count, strands.point_count, as_printed],
+            anchor: lattice.anchor,
+            deposit,
+            along,
+            first_along: first.x,
+            row,
+            first_row: first.y,
+            column,
+            first_column: first.z,
+            edge: lattice.resolution,
+            segments: input.strands.segment_count,
+            points: input.strands.point_count,
+            as_printed: u32::from(filter == VoxelFilter::Paper),
         }
     }
 }
@@ -230,10 +242,17 @@ mod tests {
     fn the_uniform_has_the_layout_of_every_shader() {
         let expected = [
             offset_of!(VoxelUniform, anchor),
+            offset_of!(VoxelUniform, deposit),
             offset_of!(VoxelUniform, along),
+            offset_of!(VoxelUniform, first_along),
             offset_of!(VoxelUniform, row),
+            offset_of!(VoxelUniform, first_row),
             offset_of!(VoxelUniform, column),
-            offset_of!(VoxelUniform, size),
+            offset_of!(VoxelUniform, first_column),
+            offset_of!(VoxelUniform, edge),
+            offset_of!(VoxelUniform, segments),
+            offset_of!(VoxelUniform, points),
+            offset_of!(VoxelUniform, as_printed),
             size_of::<VoxelUniform>(),
         ];
         for (label, source) in GpuVoxelMap::shaders() {

@@ -18,7 +18,7 @@ fn column_light(cell: vec3u, along: f32) -> f32 {
     let faces = map[cell_at(cell)];
     let front = f32(faces & 0xffffu);
     let back = f32(faces >> 16u);
-    if (voxels.size.w != 0u) {
+    if (voxels.as_printed != 0u) {
         return mix_of(exp_of_minus_steps(front), exp_of_minus_steps(back), along);
     }
     // Exact for a cell of uniform density.
@@ -27,17 +27,17 @@ fn column_light(cell: vec3u, along: f32) -> f32 {
 
 // Transmittance at a point.
 fn hair_transmittance(world_position: vec3f) -> f32 {
-    if (voxels.size.x == 0u) {
+    if (voxels.edge == 0u) {
         return 1.0;
     }
     let p = window_from_world(world_position);
-    let n = f32(voxels.size.x);
+    let n = f32(voxels.edge);
     // The value of a column belongs to its centre; in the printed filter, to its far edge.
-    let lead = select(0.5, 1.0, voxels.size.w != 0u);
+    let lead = select(0.5, 1.0, voxels.as_printed != 0u);
     // Points before the window and NaN read the first face and the border, which are lit.
-    let u = split(p.x, n, voxels.size.x - 1u);
-    let v = split(p.y - lead, n - 1.0, voxels.size.x - 2u);
-    let w = split(p.z - lead, n - 1.0, voxels.size.x - 2u);
+    let u = split(p.x, n, voxels.edge - 1u);
+    let v = split(p.y - lead, n - 1.0, voxels.edge - 2u);
+    let w = split(p.z - lead, n - 1.0, voxels.edge - 2u);
     let cell = vec3u(u32(u.y), u32(v.y), u32(w.y));
     let near = mix_of(column_light(cell, u.x), column_light(cell + vec3u(0u, 0u, 1u), u.x), w.x);
     let far =
@@ -46,10 +46,10 @@ fn hair_transmittance(world_position: vec3f) -> f32 {
 }
 
 fn column_count() -> u32 {
-    return voxels.size.x;
+    return voxels.edge;
 }
 
 // Transmittance of all hair of a column.
 fn behind_column(at: vec2u) -> f32 {
-    return exp_of_minus_steps(f32(map[cell_at(vec3u(voxels.size.x - 1u, at.y, at.x))] >> 16u));
+    return exp_of_minus_steps(f32(map[cell_at(vec3u(voxels.edge - 1u, at.y, at.x))] >> 16u));
 }

@@ -12,13 +12,13 @@ const FACE_SHIFT: u32 = 8u;
 @compute @workgroup_size(64)
 fn sum_columns(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let column = id.x + id.y * groups.x * 64u;
-    let slice = voxels.size.x * voxels.size.x;
+    let slice = voxels.edge * voxels.edge;
     if (column >= slice) {
         return;
     }
     var sum = 0u;
     var front = 0u;
-    for (var i = 0u; i < voxels.size.x; i++) {
+    for (var i = 0u; i < voxels.edge; i++) {
         let at = i * slice + column;
         let cell = map[at];
         let wrapped = ((full[at >> 5u] >> (at & 31u)) & 1u) != 0u;
