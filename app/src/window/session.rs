@@ -10,7 +10,7 @@ use lovelock_panes::live::Live;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage, ShownMask};
+use lovelock_session::render_thread::{ImageQuality, RenderRequest, RenderThread, RenderedImage, ShownMask};
 use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -278,7 +278,7 @@ impl Session {
             self.stages.push(painted.times);
             // Times of another size, as those of the images before a change, say nothing about this one.
             if let (Some((size, ms)), Some(drawn)) = (painted.cost, &self.drawn)
-                && !drawn.still
+                && drawn.quality != ImageQuality::Refined
                 && drawn.size == size
             {
                 self.resolution.take(ms, self.view.rate.unwrap_or_default());
@@ -359,8 +359,11 @@ impl Session {
             project: Arc::clone(seen),
             snapshot: Arc::clone(frame),
             size: size.map(side),
-            still: still && automatic,
-            moving: automatic && !still,
+            quality: match (automatic, still) {
+                (false, _) => ImageQuality::Full,
+                (true, false) => ImageQuality::Draft,
+                (true, true) => ImageQuality::Refined,
+            },
             measured: self.view.measured,
             mask: mask.cloned(),
         };
@@ -372,8 +375,8 @@ impl Session {
                     (drawn, request) => drawn.is_none() && request.is_none(),
                 };
                 same_mask
-                    && (drawn.still, drawn.moving, drawn.size, drawn.measured)
-                        == (request.still, request.moving, request.size, request.measured)
+                    && (drawn.quality, drawn.size, drawn.measured)
+                        == (request.quality, request.size, request.measured)
             });
         if !fresh {
             self.painter.request(request.clone());

@@ -16,7 +16,7 @@ use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Backend;
-use lovelock_session::render_thread::{RenderRequest, RenderThread};
+use lovelock_session::render_thread::{ImageQuality, RenderRequest, RenderThread};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::strokes::StrokeStart;
 use lovelock_session::window_device::WindowDevice;
@@ -141,8 +141,7 @@ impl Threads {
                 project: Arc::clone(&self.project),
                 snapshot: Arc::clone(&frame),
                 size: self.size,
-                still: false,
-                moving: true,
+                quality: ImageQuality::Draft,
                 measured: false,
                 mask: None,
             });

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::Affine3A;
 use lovelock_groom::{GuideFrame, HairLook, Strands, interpolate};
 use lovelock_motion::{Pose, Skin};
 use lovelock_project::Project;
@@ -45,6 +46,26 @@ pub struct FrameSnapshot {
 }
 
 impl FrameSnapshot {
+    /// A snapshot of this scene to be filled: hair and body at rest, at the start of the timeline.
+    pub(crate) fn empty(scene: &Arc<Scene>) -> Self {
+        let guides = scene.style.guides.clone();
+        Self {
+            scene: Arc::clone(scene),
+            step: 0,
+            time_secs: 0.0,
+            position_secs: 0.0,
+            duration_secs: 0.0,
+            pose: Pose::default(),
+            skin: Skin::default(),
+            guides: GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides },
+            strands: None,
+            report: StepReport::default(),
+            rest_inside: None,
+            totals: Totals::default(),
+            times: StageTimes::default(),
+        }
+    }
+
     /// Interpolates the strands on the CPU, or copies those that are given. Rendering does not need this.
     pub fn interpolate(&self, strands: &mut Strands) {
         if let Some(given) = &self.strands {

@@ -120,17 +120,36 @@ impl Outbox {
     }
 }
 
-/// The simulation thread and the loader thread. Dropping it ends both.
-///
-/// No call blocks: later requests replace earlier ones in a mailbox, and only the newest frame is kept.
-pub struct Worker {
+/// What the simulation thread shares with the worker that controls it.
+#[derive(Clone)]
+struct Shared {
     mailbox: Mailbox,
     frames: Latest<FrameSnapshot>,
-    events: Mutex<Receiver<Event>>,
     loader: Arc<LoadThread>,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
     settling: Arc<Mutex<Option<PrerollProgress>>>,
     take_frames: Held,
+}
+
+impl Shared {
+    fn new(mailbox: Mailbox, loader: Arc<LoadThread>) -> Self {
+        Self {
+            mailbox,
+            frames: Latest::default(),
+            loader,
+            recorded: Arc::default(),
+            settling: Arc::default(),
+            take_frames: Held::default(),
+        }
+    }
+}
+
+/// The simulation thread and the loader thread. Dropping it ends both.
+///
+/// No call blocks: later requests replace earlier ones in a mailbox, and only the newest frame is kept.
+pub struct Worker {
+    shared: Shared,
+    events: Mutex<Receiver<Event>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -142,93 +161,75 @@ impl Worker {
     pub fn start(project: Arc<Project>, access: Access, wake: Wake) -> Result<Self, ProjectError> {
         let (outbox, events) = Outbox::new(wake);
         let mailbox = Mailbox::default();
-        let frames = Latest::default();
         let to_simulation = mailbox.clone();
         let loader = Arc::new(LoadThread::start(outbox.clone(), move |loaded| {
             to_simulation.post(|requests| requests.loaded = Some(loaded));
         })?);
         mailbox.post(|requests| requests.project = Some((project, access)));
-        let (recorded, settling, take_frames) = (Arc::default(), Arc::default(), Held::default());
-        let inside = SimulationThread::new(
-            mailbox.clone(),
-            frames.clone(),
-            Arc::clone(&loader),
-            outbox,
-            Arc::clone(&recorded),
-            Arc::clone(&settling),
-            take_frames.clone(),
-        );
+        let shared = Shared::new(mailbox, loader);
+        let inside = SimulationThread::new(shared.clone(), outbox);
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
             .spawn(move || inside.run())
             .map_err(|error| ProjectError::work(format!("the simulation thread could not start: {error}")))?;
-        Ok(Self {
-            mailbox,
-            frames,
-            events: Mutex::new(events),
-            loader,
-            recorded,
-            settling,
-            take_frames,
-            thread: Some(thread),
-        })
+        Ok(Self { shared, events: Mutex::new(events), thread: Some(thread) })
     }
 
     /// Sets a changed project. Parts that need loading are loaded in the background while the old scene continues.
     pub fn set_project(&self, project: Arc<Project>, access: Access) {
-        self.mailbox.post(|requests| requests.project = Some((project, access)));
+        self.shared.mailbox.post(|requests| requests.project = Some((project, access)));
     }
 
     /// Plays or pauses.
     pub fn set_playing(&self, playing: bool) {
-        self.mailbox.post(|requests| requests.playing = Some(playing));
+        self.shared.mailbox.post(|requests| requests.playing = Some(playing));
     }
 
     /// Sets the scene seconds per second, 0.05 to 2; less than 1 is slow motion.
     pub fn set_rate(&self, rate: f64) {
-        self.mailbox.post(|requests| requests.rate = Some(rate));
+        self.shared.mailbox.post(|requests| requests.rate = Some(rate));
     }
 
     /// Sets the refresh rate of the display. Above 60 Hz and in slow motion, images are interpolated between two steps, so that
     /// the motion is even.
     pub fn set_display_hz(&self, hz: f64) {
-        self.mailbox.post(|requests| requests.display_hz = Some(hz));
+        self.shared.mailbox.post(|requests| requests.display_hz = Some(hz));
     }
 
     /// Sets whether a take is played backwards. A simulation can only run forwards.
     pub fn set_backwards(&self, backwards: bool) {
-        self.mailbox.post(|requests| requests.backwards = Some(backwards));
+        self.shared.mailbox.post(|requests| requests.backwards = Some(backwards));
     }
 
     /// Records every step from now on as a take, until [`Worker::finish_take`]. Failures are reported as events.
     pub fn record_take(&self, path: impl Into<PathBuf>) {
         let path = path.into();
-        self.mailbox.post(|requests| requests.take = Some(TakeRequest::Start(path)));
+        self.shared.mailbox.post(|requests| requests.take = Some(TakeRequest::Start(path)));
     }
 
     /// Completes the take that is being recorded.
     pub fn finish_take(&self) {
-        self.mailbox.post(|requests| requests.take = Some(TakeRequest::Finish));
+        self.shared.mailbox.post(|requests| requests.take = Some(TakeRequest::Finish));
     }
 
     /// Progress of the take that is being recorded, if any.
     pub fn take_progress(&self) -> Option<TakeProgress> {
-        self.recorded.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.shared.recorded.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Progress of settling; `None` if the hair is settled.
     pub fn settling(&self) -> Option<PrerollProgress> {
-        *self.settling.lock().unwrap_or_else(PoisonError::into_inner)
+        *self.shared.settling.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Cancels settling and continues with the current hair.
     pub fn cancel_settle(&self) {
-        self.mailbox.post(|requests| requests.settle = Some(false));
+        self.shared.mailbox.post(|requests| requests.settle = Some(false));
     }
 
     /// Seeks to a time, seconds. The hair moves rigidly at once and then settles in the background; playback waits for it.
     pub fn seek(&self, time_secs: f64) {
-        self.mailbox.post(|requests| {
+        self.shared.mailbox.post(|requests| {
             (requests.seek_secs, requests.look_back) = (Some(time_secs), false);
             (requests.steps, requests.restart) = (0, false);
         });
@@ -236,7 +237,7 @@ impl Worker {
 
     /// As [`Worker::seek`], but keeps the totals, to show where a value was measured.
     pub fn look_back(&self, time_secs: f64) {
-        self.mailbox.post(|requests| {
+        self.shared.mailbox.post(|requests| {
             (requests.seek_secs, requests.look_back) = (Some(time_secs), true);
             (requests.steps, requests.restart) = (0, false);
         });
@@ -244,12 +245,14 @@ impl Worker {
 
     /// Steps by a number of steps of 1/60 s. Forward steps are simulated; backward steps settle the hair as [`Worker::seek`] does.
     pub fn step(&self, steps: i64) {
-        self.mailbox.post(|requests| requests.steps = requests.steps.saturating_add(steps).clamp(-600, 600));
+        self.shared
+            .mailbox
+            .post(|requests| requests.steps = requests.steps.saturating_add(steps).clamp(-600, 600));
     }
 
     /// Moves to the first frame with settled hair.
     pub fn restart(&self) {
-        self.mailbox.post(|requests| {
+        self.shared.mailbox.post(|requests| {
             requests.restart = true;
             (requests.seek_secs, requests.steps) = (None, 0);
         });
@@ -257,56 +260,58 @@ impl Worker {
 
     /// Settles the hair at the current time.
     pub fn settle(&self) {
-        self.mailbox.post(|requests| requests.settle = Some(true));
+        self.shared.mailbox.post(|requests| requests.settle = Some(true));
     }
 
     /// Cancels the current load.
     pub fn cancel_load(&self) {
-        self.loader.cancel();
+        self.shared.loader.cancel();
     }
 
     /// Uses a scene that does not come from the loader.
     #[cfg(test)]
     pub(crate) fn put_scene(&self, scene: Arc<Scene>) {
         let project = Arc::new(Project::default());
-        self.mailbox.post(|requests| requests.loaded = Some(load_thread::Loaded::Scene(scene, project)));
+        self.shared
+            .mailbox
+            .post(|requests| requests.loaded = Some(load_thread::Loaded::Scene(scene, project)));
     }
 
     /// The memory of the hairstyles that are kept between layers, bytes; at most
     /// [`SceneLoader::MAX_LAYER_BYTES`](crate::scene::SceneLoader::MAX_LAYER_BYTES).
     pub fn layer_bytes(&self) -> u64 {
-        self.loader.layer_bytes()
+        self.shared.loader.layer_bytes()
     }
 
     /// The memory of the decoded frames of the take that plays, bytes; at most [`CACHE_BYTES`](lovelock_record::CACHE_BYTES).
     pub fn take_bytes(&self) -> u64 {
-        self.take_frames.bytes()
+        self.shared.take_frames.bytes()
     }
 
     /// Progress of the current load, if any.
     pub fn load_progress(&self) -> Option<LoadProgress> {
-        self.loader.progress()
+        self.shared.loader.progress()
     }
 
     /// Whether a change of the project, or what was loaded for one, waits for the simulation: whether it loads or settles something is
     /// not known yet.
     pub fn has_changes(&self) -> bool {
-        self.mailbox.has_changes()
+        self.shared.mailbox.has_changes()
     }
 
     /// Whether a load is running or waiting.
     pub fn is_loading(&self) -> bool {
-        self.loader.is_busy()
+        self.shared.loader.is_busy()
     }
 
     /// The newest frame; `None` before the first scene is loaded.
     pub fn frame(&self) -> Option<Arc<FrameSnapshot>> {
-        self.frames.latest()
+        self.shared.frames.latest()
     }
 
     /// The newest frame as a shared value.
     pub fn frames(&self) -> &Latest<FrameSnapshot> {
-        &self.frames
+        &self.shared.frames
     }
 
     /// Begins a stroke of a brush. It waits for the scene that has its layer. What it does is reported by [`Event::Brushed`].
@@ -335,12 +340,12 @@ impl Worker {
     }
 
     fn brush(&self, request: BrushRequest) {
-        self.mailbox.post(|requests| requests.brushes.push(request));
+        self.shared.mailbox.post(|requests| requests.brushes.push(request));
     }
 
     /// Sets whether the hair stays in its rest shape instead of being simulated.
     pub fn set_still(&self, still: bool) {
-        self.mailbox.post(|requests| requests.still = Some(still));
+        self.shared.mailbox.post(|requests| requests.still = Some(still));
     }
 
     /// The oldest unread event.
@@ -351,7 +356,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.mailbox.post(|requests| requests.stop = true);
+        self.shared.mailbox.post(|requests| requests.stop = true);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Affine3A;
-use lovelock_groom::GuideFrame;
-use lovelock_motion::{Pose, Skin, pose_at, skin};
+use lovelock_motion::{pose_at, skin};
 use lovelock_record::TakeFrame;
 
 use super::Engine;
@@ -71,45 +69,30 @@ impl Engine {
         let rest_inside = self.rest_inside;
         let own_secs = self.at_step as f64 * self.step_secs;
         let (step, time_secs) = (self.taken, between.map_or(own_secs, |(frame, _)| frame.guides.time_secs));
-        let new = || FrameSnapshot {
-            scene: Arc::clone(scene),
-            step,
-            time_secs,
-            position_secs: 0.0,
-            duration_secs: 0.0,
-            pose: Pose::default(),
-            skin: Skin::default(),
-            guides: GuideFrame {
-                time_secs,
-                world_from_head: Affine3A::IDENTITY,
-                guides: scene.style.guides.clone(),
+        self.pool.make(
+            scene,
+            || FrameSnapshot::empty(scene),
+            |frame| {
+                if !Arc::ptr_eq(&frame.scene, scene) {
+                    frame.scene = Arc::clone(scene);
+                }
+                (frame.step, frame.time_secs, frame.position_secs) =
+                    (step, time_secs, scene.position_secs(time_secs));
+                frame.duration_secs = scene.duration_secs();
+                if let Some((mixed, _)) = between {
+                    pose_at(&scene.body, scene.clip.as_deref(), mixed.clip_secs, &mut frame.pose);
+                    frame.guides.clone_from(&mixed.guides);
+                } else {
+                    frame.pose.clone_from(own_pose);
+                    simulation.frame(&mut frame.guides);
+                }
+                skin(&scene.body, &frame.pose, &mut frame.skin);
+                // The simulator's clock contains jumps; frames use the time of the scene.
+                frame.guides.time_secs = time_secs;
+                (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
+                times.motion += watch.ms();
+                frame.times = std::mem::take(times);
             },
-            strands: None,
-            report,
-            rest_inside,
-            totals,
-            times: StageTimes::default(),
-        };
-        self.pool.make(scene, new, |frame| {
-            if !Arc::ptr_eq(&frame.scene, scene) {
-                frame.scene = Arc::clone(scene);
-            }
-            (frame.step, frame.time_secs, frame.position_secs) =
-                (step, time_secs, scene.position_secs(time_secs));
-            frame.duration_secs = scene.duration_secs();
-            if let Some((mixed, _)) = between {
-                pose_at(&scene.body, scene.clip.as_deref(), mixed.clip_secs, &mut frame.pose);
-                frame.guides.clone_from(&mixed.guides);
-            } else {
-                frame.pose.clone_from(own_pose);
-                simulation.frame(&mut frame.guides);
-            }
-            skin(&scene.body, &frame.pose, &mut frame.skin);
-            // The simulator's clock contains jumps; frames use the time of the scene.
-            frame.guides.time_secs = time_secs;
-            (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
-            times.motion += watch.ms();
-            frame.times = std::mem::take(times);
-        })
+        )
     }
 }

@@ -25,6 +25,18 @@ use mask_view::MaskView;
 pub use mask_view::ShownMask;
 use samples::{Samples, jitter};
 
+/// How well an image is rendered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ImageQuality {
+    /// Something moves, and an image of full quality follows when it rests.
+    Draft,
+    /// Completely, once.
+    #[default]
+    Full,
+    /// Nothing moves: after the image, the CPU renders further samples of it until another request arrives.
+    Refined,
+}
+
 /// What to render.
 #[derive(Clone, Debug)]
 pub struct RenderRequest {
@@ -34,10 +46,8 @@ pub struct RenderRequest {
     pub snapshot: Arc<FrameSnapshot>,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Whether nothing moves: then the CPU goes on to draw further samples of the image until another request arrives.
-    pub still: bool,
-    /// Whether something moves and an image of full quality follows when it rests: then this one is a draft.
-    pub moving: bool,
+    /// How well to render it.
+    pub quality: ImageQuality,
     /// Whether the times of passes and the mean transmittance are wanted, for which a graphics device is read back.
     pub measured: bool,
     /// A mask that is shown on hair and scalp in place of their colours.
@@ -494,11 +504,11 @@ impl Worker {
             let input = FrameInput {
                 body: Some((&body, &snapshot.skin)),
                 picture: &picture,
-                is_draft: request.moving,
+                is_draft: request.quality == ImageQuality::Draft,
                 ..snapshot.frame_input(project, &camera)
             };
             renderer.strand_colors(&input, *size, (&self.mask.values, &shown.scale), textures)?
-        } else if request.still && renderer.backend() == Backend::Cpu {
+        } else if request.quality == ImageQuality::Refined && renderer.backend() == Backend::Cpu {
             let index = if is_sample { self.samples.taken() } else { 0 };
             let jittered = camera.moved_by_pixels(jitter(index), size[1]);
             let picture = &mut self.picture;
@@ -508,7 +518,10 @@ impl Worker {
             (Image::on(textures, picture), stats)
         } else {
             self.samples.forget();
-            let input = FrameInput { is_draft: request.moving, ..snapshot.frame_input(project, &camera) };
+            let input = FrameInput {
+                is_draft: request.quality == ImageQuality::Draft,
+                ..snapshot.frame_input(project, &camera)
+            };
             renderer.image(&input, *size, *measured, textures)?
         };
         if renderer.backend() == Backend::Gpu && renderer.in_flight() > 0 {

@@ -8,7 +8,7 @@ use lovelock_project::Project;
 use lovelock_render::Picture;
 use rayon::prelude::*;
 
-use super::RenderRequest;
+use super::{ImageQuality, RenderRequest};
 use crate::snapshot::FrameSnapshot;
 
 /// The most samples of each pixel.
@@ -51,7 +51,7 @@ impl Samples {
 
     /// Whether further samples of `request` are worth their time.
     pub fn wants_more(&self, request: &RenderRequest) -> bool {
-        request.still && self.is_of(request) && (1..MAX).contains(&self.taken)
+        request.quality == ImageQuality::Refined && self.is_of(request) && (1..MAX).contains(&self.taken)
     }
 
     fn is_of(&self, request: &RenderRequest) -> bool {

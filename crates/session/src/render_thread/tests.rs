@@ -55,8 +55,7 @@ impl Rig {
             project,
             snapshot,
             size: [64, 48],
-            still: false,
-            moving: false,
+            quality: ImageQuality::Full,
             measured: false,
             mask: None,
         });
@@ -241,12 +240,11 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
     let mut project = small_project();
     project.picture.backend = Backend::Cpu;
     let project = Arc::new(project);
-    let request = |still| RenderRequest {
+    let request = |quality| RenderRequest {
         project: Arc::clone(&project),
         snapshot: Arc::clone(&rig.snapshot),
         size: [64, 48],
-        still,
-        moving: false,
+        quality,
         measured: false,
         mask: None,
     };
@@ -257,9 +255,9 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
             return image.image.picture().expect("pixels");
         }
     };
-    rig.thread.request(request(false));
+    rig.thread.request(request(ImageQuality::Full));
     let plain = wait(1);
-    rig.thread.request(request(true));
+    rig.thread.request(request(ImageQuality::Refined));
     let first = wait(1);
     assert!(first == plain, "the first sample is the image");
     let refined = wait(16);
@@ -270,9 +268,9 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
     };
     assert!(off(&refined, &plain) < 4.0, "{}", off(&refined, &plain));
     // A quarter as many samples are nearer to all than one is.
-    rig.thread.request(request(false));
+    rig.thread.request(request(ImageQuality::Full));
     assert!(wait(1) == plain);
-    rig.thread.request(request(true));
+    rig.thread.request(request(ImageQuality::Refined));
     let some = wait(4);
     assert!(
         off(&some, &refined) < 0.6 * off(&plain, &refined),

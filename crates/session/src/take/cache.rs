@@ -14,18 +14,16 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{
     CurveCache, GuideFrame, HairFormat, ImportSettings, ImportedInPlace, Strands, hair_look, import_in_place,
 };
-use lovelock_motion::{Pose, Skin, pose_at, skin};
+use lovelock_motion::{Pose, pose_at, skin};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, HairSection, MotionSection, SurroundingsSection};
 use lovelock_record::{FrameRate, TakeHeader};
-use lovelock_simulation::StepReport;
 
 use crate::scene::{Scene, SceneLoader};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
-use crate::totals::Totals;
 
 /// The longest playback of curves, seconds.
 const MAX_SECS: f64 = 86_400.0;
@@ -254,35 +252,25 @@ impl CachePlayer {
         (self.guides.time_secs, self.guides.world_from_head) = (time_secs, self.pose.world_from_head);
         self.shown += 1;
         let (guides, pose, shown) = (&self.guides, &self.pose, self.shown);
-        let new = || FrameSnapshot {
-            scene: Arc::clone(scene),
-            step: 0,
-            time_secs: 0.0,
-            position_secs: 0.0,
-            duration_secs,
-            pose: Pose::default(),
-            skin: Skin::default(),
-            guides: guides.clone(),
-            strands: None,
-            report: StepReport::default(),
-            rest_inside: None,
-            totals: Totals::default(),
-            times: StageTimes::default(),
-        };
         let position_secs = secs + self.origin_secs;
-        Ok(self.pool.make(scene, new, |snapshot| {
-            if !Arc::ptr_eq(&snapshot.scene, scene) {
-                snapshot.scene = Arc::clone(scene);
-            }
-            snapshot.step = shown;
-            (snapshot.time_secs, snapshot.position_secs) = (time_secs, position_secs);
-            snapshot.pose.clone_from(pose);
-            skin(&scene.body, pose, &mut snapshot.skin);
-            snapshot.guides.clone_from(guides);
-            let strands = snapshot.strands.get_or_insert_with(Strands::default);
-            fill(strands, &self.first_point, &self.imported.strands, &file.first_point, &self.points);
-            snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
-        }))
+        Ok(self.pool.make(
+            scene,
+            || FrameSnapshot::empty(scene),
+            |snapshot| {
+                if !Arc::ptr_eq(&snapshot.scene, scene) {
+                    snapshot.scene = Arc::clone(scene);
+                }
+                snapshot.step = shown;
+                (snapshot.time_secs, snapshot.position_secs) = (time_secs, position_secs);
+                snapshot.duration_secs = duration_secs;
+                snapshot.pose.clone_from(pose);
+                skin(&scene.body, pose, &mut snapshot.skin);
+                snapshot.guides.clone_from(guides);
+                let strands = snapshot.strands.get_or_insert_with(Strands::default);
+                fill(strands, &self.first_point, &self.imported.strands, &file.first_point, &self.points);
+                snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
+            },
+        ))
     }
 }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use lovelock_appearance::environment::Panorama;
 use lovelock_base::clock::Stopwatch;
-use lovelock_groom::{GuideFrame, Hairstyle};
-use lovelock_motion::{Pose, Skin, pose_at, skin};
+use lovelock_groom::Hairstyle;
+use lovelock_motion::{Pose, pose_at, skin};
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -19,7 +19,6 @@ use lovelock_simulation::StepReport;
 use crate::scene::{Scene, SceneLoader, Styling};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
-use crate::totals::Totals;
 
 /// Number of cached scenes of a take, so that seeking between parts does not grow the hair again.
 const MAX_SCENES: usize = 8;
@@ -209,35 +208,24 @@ impl RecordedPlayer {
         let duration_secs = self.duration_secs();
         let (scene, frame, pose, shown) = (&styled, &self.frame, &self.pose, self.shown);
         let report = StepReport { substeps: frame.substeps, jumped: frame.jumped, ..StepReport::default() };
-        let new = || FrameSnapshot {
-            scene: Arc::clone(scene),
-            step: 0,
-            time_secs: 0.0,
-            position_secs: 0.0,
-            duration_secs,
-            pose: Pose::default(),
-            skin: Skin::default(),
-            guides: GuideFrame::clone(&frame.guides),
-            strands: None,
-            report,
-            rest_inside: None,
-            totals: Totals::default(),
-            times: StageTimes::default(),
-        };
-        Ok(self.pool.make(scene, new, |snapshot| {
-            if !Arc::ptr_eq(&snapshot.scene, scene) {
-                snapshot.scene = Arc::clone(scene);
-            }
-            snapshot.step = shown;
-            // The camera uses the time of the scene; the timeline uses the time of the take.
-            (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
-            snapshot.duration_secs = duration_secs;
-            snapshot.pose.clone_from(pose);
-            skin(&scene.body, pose, &mut snapshot.skin);
-            snapshot.guides.clone_from(&frame.guides);
-            snapshot.report = report;
-            snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
-        }))
+        Ok(self.pool.make(
+            scene,
+            || FrameSnapshot::empty(scene),
+            |snapshot| {
+                if !Arc::ptr_eq(&snapshot.scene, scene) {
+                    snapshot.scene = Arc::clone(scene);
+                }
+                snapshot.step = shown;
+                // The camera uses the time of the scene; the timeline uses the time of the take.
+                (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
+                snapshot.duration_secs = duration_secs;
+                snapshot.pose.clone_from(pose);
+                skin(&scene.body, pose, &mut snapshot.skin);
+                snapshot.guides.clone_from(&frame.guides);
+                snapshot.report = report;
+                snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
+            },
+        ))
     }
 
     /// Returns the nearest readable frame in place of a lost one, and reports each run of lost frames once.

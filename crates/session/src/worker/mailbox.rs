@@ -73,79 +73,45 @@ pub(super) struct Requests {
     pub(super) stop: bool,
 }
 
-impl Requests {
-    fn is_empty(&self) -> bool {
-        let Self {
-            project,
-            loaded,
-            playing,
-            rate,
-            display_hz,
-            backwards,
-            seek_secs,
-            // Only modifies the seek.
-            look_back: _,
-            steps,
-            restart,
-            settle,
-            take,
-            brushes,
-            still,
-            stop,
-        } = self;
-        project.is_none()
-            && loaded.is_none()
-            && playing.is_none()
-            && rate.is_none()
-            && display_hz.is_none()
-            && backwards.is_none()
-            && seek_secs.is_none()
-            && *steps == 0
-            && !restart
-            && settle.is_none()
-            && take.is_none()
-            && brushes.is_empty()
-            && still.is_none()
-            && !stop
-    }
-}
+/// The requests since the reader took the last ones; `None` if there are none.
+type Pending = Option<Requests>;
 
 /// The mailbox, shared between threads.
 #[derive(Clone, Default)]
 pub(super) struct Mailbox {
-    shared: Arc<(Mutex<Requests>, Condvar)>,
+    shared: Arc<(Mutex<Pending>, Condvar)>,
 }
 
 impl Mailbox {
     /// Adds a request and wakes the reader.
     pub(super) fn post(&self, request: impl FnOnce(&mut Requests)) {
-        let (requests, changed) = &*self.shared;
-        request(&mut requests.lock().unwrap_or_else(PoisonError::into_inner));
+        let (pending, changed) = &*self.shared;
+        request(pending.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default());
         changed.notify_one();
     }
 
     /// Whether a project or the result of a load waits to be taken.
     pub(super) fn has_changes(&self) -> bool {
-        let requests = self.shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-        requests.project.is_some() || requests.loaded.is_some()
+        let pending = self.shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+        pending.as_ref().is_some_and(|requests| requests.project.is_some() || requests.loaded.is_some())
     }
 
     /// Takes all requests. Waits for one for at most `timeout`, or without limit if there is none.
     pub(super) fn take(&self, timeout: Option<Duration>) -> Requests {
-        let (requests, changed) = &*self.shared;
-        let guard = requests.lock().unwrap_or_else(PoisonError::into_inner);
+        let (pending, changed) = &*self.shared;
+        let guard = pending.lock().unwrap_or_else(PoisonError::into_inner);
         let mut guard = match timeout {
             Some(timeout) => {
                 changed
-                    .wait_timeout_while(guard, timeout, |requests| requests.is_empty())
+                    .wait_timeout_while(guard, timeout, |pending| pending.is_none())
                     .unwrap_or_else(PoisonError::into_inner)
                     .0
             }
-            None => changed
-                .wait_while(guard, |requests| requests.is_empty())
-                .unwrap_or_else(PoisonError::into_inner),
+            None => {
+                changed.wait_while(guard, |pending| pending.is_none()).unwrap_or_else(PoisonError::into_inner)
+            }
         };
-        std::mem::take(&mut *guard)
+        guard.take().unwrap_or_default()
     }
 }
 
@@ -166,6 +132,7 @@ mod tests {
         let requests = mailbox.take(None);
         assert_eq!((requests.seek_secs, requests.steps), (Some(999.0), 1000));
         assert!(!mailbox.has_changes());
-        assert!(mailbox.take(Some(Duration::ZERO)).is_empty());
+        let none = mailbox.take(Some(Duration::ZERO));
+        assert_eq!((none.seek_secs, none.steps), (None, 0));
     }
 }

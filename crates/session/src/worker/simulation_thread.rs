@@ -10,7 +10,7 @@ mod tests;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use brushing::Brushing;
@@ -21,16 +21,13 @@ use lovelock_project::files::Access;
 use lovelock_simulation::SimulationSettings;
 use settling::{PendingPreroll, preroll_differs};
 
-use super::Outbox;
-use super::load_thread::{LoadThread, Loaded};
-use super::mailbox::{Mailbox, Requests, TakeRequest};
+use super::load_thread::Loaded;
+use super::mailbox::{Requests, TakeRequest};
+use super::{Outbox, Shared};
 use crate::clock::{Playback, STEP_SECS};
-use crate::engine::{Engine, LastSteps, PrerollProgress};
-use crate::latest::Latest;
-use crate::memory::Held;
+use crate::engine::{Engine, LastSteps};
 use crate::scene::Scene;
-use crate::snapshot::FrameSnapshot;
-use crate::take::{TakeProgress, TakeRecording, TakeTransport};
+use crate::take::{TakeRecording, TakeTransport};
 
 /// Number of consecutive panics after which the simulation stops until something changes.
 const MAX_PANICS: u32 = 3;
@@ -40,13 +37,8 @@ const AGAIN: Duration = Duration::from_millis(50);
 
 /// The state of the simulation thread.
 pub(super) struct SimulationThread {
-    mailbox: Mailbox,
-    frames: Latest<FrameSnapshot>,
-    loader: Arc<LoadThread>,
+    shared: Shared,
     outbox: Outbox,
-    recorded: Arc<Mutex<Option<TakeProgress>>>,
-    settling: Arc<Mutex<Option<PrerollProgress>>>,
-    take_frames: Held,
     engine: Option<Engine>,
     /// The pre-roll that leads to the engine's instant. Playback waits for it.
     preroll: Option<PendingPreroll>,
@@ -73,23 +65,10 @@ pub(super) struct SimulationThread {
 }
 
 impl SimulationThread {
-    pub(super) fn new(
-        mailbox: Mailbox,
-        frames: Latest<FrameSnapshot>,
-        loader: Arc<LoadThread>,
-        outbox: Outbox,
-        recorded: Arc<Mutex<Option<TakeProgress>>>,
-        settling: Arc<Mutex<Option<PrerollProgress>>>,
-        take_frames: Held,
-    ) -> Self {
+    pub(super) fn new(shared: Shared, outbox: Outbox) -> Self {
         Self {
-            mailbox,
-            frames,
-            loader,
+            shared,
             outbox,
-            recorded,
-            settling,
-            take_frames,
             engine: None,
             preroll: None,
             settling_pending: false,
@@ -126,7 +105,7 @@ impl SimulationThread {
             };
             let timeout =
                 if self.has_waiting_strokes() { Some(timeout.unwrap_or(AGAIN).min(AGAIN)) } else { timeout };
-            let requests = self.mailbox.take(self.until_calm(timeout));
+            let requests = self.shared.mailbox.take(self.until_calm(timeout));
             if requests.stop {
                 // Closing the window must not lose the recording.
                 self.end_take(None);
@@ -164,7 +143,7 @@ impl SimulationThread {
         } else {
             self.simulate(changed, elapsed_secs);
         }
-        self.take_frames.set(self.take.as_ref().map_or(0, TakeTransport::cached_bytes));
+        self.shared.take_frames.set(self.take.as_ref().map_or(0, TakeTransport::cached_bytes));
         self.publish_settling();
     }
 
@@ -193,7 +172,7 @@ impl SimulationThread {
         let mut changed = loaded.is_some();
         if let Some(loaded) = loaded {
             self.set_loaded(loaded);
-            self.loader.arrived();
+            self.shared.loader.arrived();
         }
         if let Some(rate) = rate {
             self.playback.set_rate(rate);
@@ -289,7 +268,7 @@ impl SimulationThread {
         let inputs = SceneInputs::of(&project, &access);
         if self.inputs.as_ref() != Some(&inputs) {
             self.inputs = Some(inputs);
-            self.loader.request(project, access);
+            self.shared.loader.request(project, access);
         }
     }
 
@@ -325,7 +304,8 @@ impl SimulationThread {
 
     /// Whether a take is being opened in place of the simulation.
     fn awaits_take(&self) -> bool {
-        self.project.as_ref().is_some_and(|project| project.take.file.is_some()) && self.loader.is_busy()
+        self.project.as_ref().is_some_and(|project| project.take.file.is_some())
+            && self.shared.loader.is_busy()
     }
 
     fn set_scene(&mut self, scene: Arc<Scene>) {
@@ -381,7 +361,7 @@ impl SimulationThread {
     /// After a panic the engine may be in the middle of a step, so it restarts with the same scene.
     fn recover(&mut self, panic: &(dyn Any + Send)) {
         self.outbox.panicked("simulation", panic);
-        self.loader.arrived();
+        self.shared.loader.arrived();
         self.panics += 1;
         let played = self.take.take().is_some();
         (self.preroll, self.settling_pending) = (None, false);

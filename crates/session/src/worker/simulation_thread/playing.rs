@@ -50,7 +50,7 @@ impl SimulationThread {
         if let Some(engine) = &mut self.engine {
             self.last_steps.forget();
             self.playback.begin();
-            self.frames.put(engine.snapshot());
+            self.shared.frames.put(engine.snapshot());
             self.outbox.wake();
         }
     }
@@ -58,7 +58,7 @@ impl SimulationThread {
     /// Shows an instant between the last two steps.
     pub(super) fn show_between(&mut self, t: f64) {
         if let Some(engine) = &mut self.engine {
-            self.frames.put(engine.snapshot_between(&mut self.last_steps, t));
+            self.shared.frames.put(engine.snapshot_between(&mut self.last_steps, t));
             self.outbox.wake();
         }
     }
@@ -104,7 +104,7 @@ impl SimulationThread {
         if changed {
             match take.snapshot() {
                 Ok(snapshot) => {
-                    self.frames.put(snapshot);
+                    self.shared.frames.put(snapshot);
                     self.outbox.wake();
                     for message in take.notices() {
                         self.outbox.send(Event::TakeUnreadable { message });

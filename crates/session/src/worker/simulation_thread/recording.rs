@@ -78,6 +78,6 @@ impl SimulationThread {
 
     pub(super) fn publish_progress(&self) {
         let progress = self.recording.as_ref().map(TakeRecording::progress);
-        *self.recorded.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+        *self.shared.recorded.lock().unwrap_or_else(PoisonError::into_inner) = progress;
     }
 }

@@ -104,7 +104,7 @@ impl SimulationThread {
     /// Restarts the hair settling after settings have changed while playback is paused. During playback the simulation continues
     /// with the new settings.
     pub(super) fn settle_when_calm(&mut self) {
-        if self.settling_pending && !self.loader.is_busy() {
+        if self.settling_pending && !self.shared.loader.is_busy() {
             self.begin_preroll();
         }
         if self.playback.is_playing() || self.take.is_some() || self.preroll.is_some() {
@@ -147,7 +147,7 @@ impl SimulationThread {
             PrerollProgress { done: 0, total: 1, to_secs, taken_secs: 0.0 }
         });
         let progress = progress.or(to_come);
-        let mut told = self.settling.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut told = self.shared.settling.lock().unwrap_or_else(PoisonError::into_inner);
         if progress.is_some() || told.is_some() {
             *told = progress;
             self.outbox.wake();

@@ -7,9 +7,9 @@ use lovelock_motion::{Pose, pose_at};
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 
-use super::super::Outbox;
 use super::super::load_thread::{LoadThread, Loaded};
 use super::super::mailbox::{Mailbox, Requests};
+use super::super::{Outbox, Shared};
 use super::{Scene, SimulationThread};
 use crate::clock::STEP_SECS;
 use crate::latest::Latest;
@@ -29,16 +29,9 @@ impl Driven {
     fn new(project: &Project, scene: &Arc<Scene>) -> Self {
         let (outbox, _) = Outbox::new(Arc::new(|| ()));
         let loader = Arc::new(LoadThread::start(outbox.clone(), |_| ()).expect("a thread"));
-        let frames = Latest::default();
-        let inside = SimulationThread::new(
-            Mailbox::default(),
-            frames.clone(),
-            loader,
-            outbox,
-            Arc::default(),
-            Arc::default(),
-            crate::memory::Held::default(),
-        );
+        let shared = Shared::new(Mailbox::default(), loader);
+        let frames = shared.frames.clone();
+        let inside = SimulationThread::new(shared, outbox);
         let mut driven = Self { inside, frames, seen: 0 };
         driven.put(project, scene);
         driven
@@ -88,7 +81,7 @@ fn hair_does_not_settle_while_newer_hair_is_loading() {
     let (go_on, gate) = std::sync::mpsc::sync_channel(2);
     let loader =
         Arc::new(LoadThread::start(outbox, move |_| gate.recv().unwrap_or_default()).expect("a thread"));
-    driven.inside.loader = Arc::clone(&loader);
+    driven.inside.shared.loader = Arc::clone(&loader);
     let wanted = Arc::new(project.clone());
     let request = || loader.request(Arc::clone(&wanted), Access::new());
     let rest = || {
@@ -103,7 +96,8 @@ fn hair_does_not_settle_while_newer_hair_is_loading() {
     project.hair.groom.length *= 0.9;
     let other = Loaded::Scene(load(&project).0, Arc::new(project.clone()));
     driven.turn(Requests { loaded: Some(other), ..Requests::default() }, 0.0);
-    let told = |driven: &Driven| driven.inside.settling.lock().expect("no panic").map(|told| told.done);
+    let told =
+        |driven: &Driven| driven.inside.shared.settling.lock().expect("no panic").map(|told| told.done);
     for _ in 0..5 {
         assert!(
             driven.inside.preroll.is_none() && told(&driven) == Some(0),
@@ -335,7 +329,7 @@ fn the_simulation_waits_while_a_take_is_opened() {
     let mut takes = project.clone();
     takes.take.file = Some(lovelock_project::files::FileRef::new("/a/take.take"));
     let takes = Arc::new(takes);
-    driven.inside.loader = Arc::new(LoadThread::that_never_ends(Arc::clone(&takes)));
+    driven.inside.shared.loader = Arc::new(LoadThread::that_never_ends(Arc::clone(&takes)));
     driven.inside.project = Some(takes);
     let before = driven.hash();
     for _ in 0..5 {
