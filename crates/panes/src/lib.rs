@@ -3,7 +3,6 @@
 //! - [`live`]: renders panes, on a thread of its own or frame by frame for a film.
 //! - [`request`] and [`view`]: what is asked for and what comes back.
 //! - [`probe`]: the light along a ray through a chosen hair.
-//! - [`wall`]: variants of a hairstyle, all simulated, beside each other.
 //! - [`sheet`] and [`label`]: panes in one picture, with their labels.
 
 mod heat;
@@ -13,4 +12,3 @@ pub mod probe;
 pub mod request;
 pub mod sheet;
 pub mod view;
-pub mod wall;

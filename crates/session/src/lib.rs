@@ -6,6 +6,7 @@
 //! - [`take`]: recorded simulations, and playing them.
 //! - [`dance`]: frames of a simulation or a take for work without a window; [`prepare`] and [`progress`] belong to it.
 //! - [`render_thread`] and [`filmstrip`]: threads that render.
+//! - [`wall`]: variants of a hairstyle, all simulated, beside each other.
 //! - [`strokes`]: brushes on the hair of an engine, and recorded strokes played on a project.
 //! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
 //! - [`clock`], [`stats`], [`job`], [`latest`], [`threads`], [`memory`], [`machine`] and [`new_folders`]: parts that the others need.
@@ -36,6 +37,7 @@ pub mod take;
 pub mod testing;
 pub mod threads;
 pub mod totals;
+pub mod wall;
 pub mod window_device;
 pub mod worker;
 

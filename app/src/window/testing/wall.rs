@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use lovelock_panes::wall::Wall;
+use lovelock_session::wall::Wall;
 
 use super::control;
 use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window};

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use egui::{
     Align2, CentralPanel, Color32, FontId, Frame, Panel, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2,
 };
-use lovelock_panes::wall::{Wall, WallCell, WallRequest};
 use lovelock_project::Project;
 use lovelock_project::variants::{Locks, adopt, breed};
+use lovelock_session::wall::{Wall, WallCell, WallRequest};
 use rounds::Rounds;
 use serde::{Deserialize, Serialize};
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use lovelock_panes::wall::Wall;
 use lovelock_project::Project;
 use lovelock_project::variants::{Locks, vary};
+use lovelock_session::wall::Wall;
 
 use super::{PRESENT, WallLayout};
 

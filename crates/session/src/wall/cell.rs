@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use crate::engine::Engine;
+use crate::scene::Scene;
+use crate::window_device::WindowDevice;
 use lovelock_project::Project;
 use lovelock_project::variants::adopt;
 use lovelock_render::{Backend, DeviceImages, FrameInput, Gpu, Image, RenderError, Renderer, StrandCount};
-use lovelock_session::engine::Engine;
-use lovelock_session::scene::Scene;
-use lovelock_session::window_device::WindowDevice;
 
 use super::{WallCell, WallRequest};
 

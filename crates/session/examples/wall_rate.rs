@@ -1,5 +1,5 @@
 //! How many rounds of nine images a second the wall of variants shows while the hair dances, beside the rate of the single image:
-//! `cargo run --release -p lovelock-panes --example wall_rate -- [STYLE] [SECONDS]`.
+//! `cargo run --release -p lovelock-session --example wall_rate -- [STYLE] [SECONDS]`.
 //!
 //! All is drawn on the CPU: the single image with 640x480 pixels, and the nine images with as many together.
 
@@ -8,12 +8,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
-use lovelock_panes::wall::{Wall, WallRequest};
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_project::styles::{StyleParts, shipped};
 use lovelock_project::variants::{Locks, vary};
 use lovelock_render::Backend;
+use lovelock_session::wall::{Wall, WallRequest};
 use lovelock_session::window_device::WindowDevice;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -3,15 +3,15 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
+use crate::latest::{Job, Latest, LatestJob};
+use crate::memory::Held;
+use crate::scene::{Scene, SceneLoader};
+use crate::threads::{background_workers, lower_priority};
+use crate::window_device::WindowDevice;
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::variants::adopt;
 use lovelock_render::Image;
-use lovelock_session::latest::{Job, Latest, LatestJob};
-use lovelock_session::memory::Held;
-use lovelock_session::scene::{Scene, SceneLoader};
-use lovelock_session::threads::{background_workers, lower_priority};
-use lovelock_session::window_device::WindowDevice;
 use rayon::prelude::*;
 
 use super::cell::{Cell, lighten};

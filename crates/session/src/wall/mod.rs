@@ -9,12 +9,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
+use crate::latest::{Latest, LatestJob};
+use crate::memory::Held;
+use crate::window_device::WindowDevice;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Image;
-use lovelock_session::latest::{Latest, LatestJob};
-use lovelock_session::memory::Held;
-use lovelock_session::window_device::WindowDevice;
 
 /// What the wall shows.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct WallRequest {
     pub variants: Vec<Arc<Project>>,
     /// The files that the projects may read.
     pub access: Access,
-    /// Time of the scene, seconds, as in [`FrameSnapshot::time_secs`](lovelock_session::snapshot::FrameSnapshot::time_secs).
+    /// Time of the scene, seconds, as in [`FrameSnapshot::time_secs`](crate::snapshot::FrameSnapshot::time_secs).
     pub time_secs: f64,
     /// Whether time passes; hair that stands still is settled first.
     pub playing: bool,
