@@ -277,6 +277,19 @@ impl Settings for HairLook {
 }
 
 impl HairLook {
+    /// The settings that are no part of a style.
+    ///
+    /// How much light a hair blocks belongs to the rendering of shadows: it makes up for the number of drawn strands and the lights, and
+    /// all compared methods share it. It is therefore set with the shadow, and choosing a style in the browser does not undo it. Files store
+    /// it with the look because every shadow method reads it from there.
+    pub const SHARED: [&str; 1] = ["extinction_scale"];
+
+    /// The look of a style in place of this one, without the settings in [`HairLook::SHARED`].
+    #[must_use]
+    pub fn with_style(&self, style: &Self) -> Self {
+        Self { extinction_scale: self.extinction_scale, ..*style }
+    }
+
     /// Absorption per unit of path through a fibre, linear sRGB.
     ///
     /// Chiang et al. 2016, "A practical and controllable hair and fur model", after d'Eon et al. 2011; of the strands that have pigment,

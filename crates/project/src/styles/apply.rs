@@ -1,6 +1,6 @@
 //! A project takes a style, wholly or in part.
 
-use lovelock_groom::{GroomSettings, HairLook, HairTie, Preset};
+use lovelock_groom::{GroomSettings, HairTie, Preset};
 use lovelock_simulation::SimulationSettings;
 use lovelock_style::Layer;
 
@@ -12,8 +12,8 @@ use crate::Project;
 use crate::project::{HairSection, HairSource, StyleGrowth};
 
 impl Project {
-    /// Takes the parts `parts` of a style. How much light hair blocks stays, whatever its colour. Where the shape is taken, settings of
-    /// the simulation that somebody has chosen stay; motion alone is taken as it is. Gravity, wind and the method always stay.
+    /// Takes the parts `parts` of a style. Where the shape is taken, settings of the simulation that somebody has chosen stay; motion
+    /// alone is taken as it is. Gravity, wind and the method always stay.
     pub fn apply_style(&mut self, style: &Style, parts: StyleParts) {
         self.take_style(style, parts, &|_| false);
     }
@@ -56,7 +56,7 @@ impl Project {
         self.hair.style_layers = from_style;
         self.hair.stack = stack;
         if parts.colour {
-            self.look = HairLook { extinction_scale: self.look.extinction_scale, ..style.look };
+            self.look = self.look.with_style(&style.look);
         }
         if parts.motion {
             self.simulation = if parts.shape {

@@ -31,12 +31,11 @@ impl Project {
         self.apply_style(&Style { name, hair, look, simulation, ..Style::default() }, StyleParts::ALL);
     }
 
-    /// The colours between those of the two styles of the morph; `None` if they are the project's own. How much light hair blocks is
-    /// the project's.
+    /// The colours between those of the two styles of the morph; `None` if they are the project's own.
     pub fn morphed_look(&self) -> Option<HairLook> {
         let (to, amount) = self.hair.morph.mix()?;
         let mut look = self.look;
-        mix(&mut look, &to.look, f64::from(amount), &["extinction_scale"]);
+        mix(&mut look, &to.look, f64::from(amount), &HairLook::SHARED);
         Some(look)
     }
 }

@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use lovelock_groom::{GroomSettings, Preset};
+use lovelock_base::settings::entries;
+use lovelock_groom::{GroomSettings, HairLook, Preset};
 use lovelock_simulation::SimulationSettings;
 use lovelock_style::operations::{Curl, Wave};
 use lovelock_style::{Layer, StyleStack};
@@ -61,6 +62,20 @@ fn bad_files_are_refused_with_a_sentence() {
     assert!(Style::load(dir.path()).expect_err("refused").to_string().contains("is a folder"));
     std::fs::write(&path, "(version: 3)").expect("a file");
     assert_eq!(Style::load(&path).expect("a style").0.name, "large", "named as its file");
+}
+
+#[test]
+fn a_style_brings_its_look_without_the_settings_that_all_styles_share() {
+    let own = HairLook::default();
+    let other = HairLook { extinction_scale: 0.5, eumelanin: 0.25, ..own };
+    let (own_entries, other_entries) = (entries(&own), entries(&other));
+    let taken = own.with_style(&other);
+    for (entry, (own, other)) in entries(&taken).into_iter().zip(own_entries.into_iter().zip(other_entries)) {
+        let is_shared = HairLook::SHARED.contains(&&entry.path[..]);
+        assert!(!is_shared || own.value != other.value, "control: {} differs", entry.path);
+        assert_eq!(entry.value, if is_shared { own.value } else { other.value }, "{}", entry.path);
+    }
+    assert_eq!(taken.eumelanin, 0.25);
 }
 
 #[test]
