@@ -2,6 +2,7 @@
 
 pub mod clock;
 pub mod direction_map;
+mod failure;
 pub mod memory;
 pub mod numbers;
 pub mod random;
@@ -12,3 +13,5 @@ pub mod triangle;
 pub mod watch;
 mod whole_part;
 pub mod words;
+
+pub use failure::Failure;

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use lovelock_record::TakeError;
-use lovelock_render::RenderError;
+use lovelock_base::Failure;
 use serde::{Deserialize, Serialize};
 
 /// Why a request failed. Displays as one line that names the file or the option.
@@ -75,32 +74,10 @@ impl ProjectError {
     }
 }
 
-impl From<RenderError> for ProjectError {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Size { .. } => Self::option(error),
-            error => Self::work(error),
-        }
-    }
-}
-
-impl From<TakeError> for ProjectError {
-    fn from(error: TakeError) -> Self {
-        let file = Some(error.path().to_owned());
-        let message = error.to_string();
-        match error {
-            TakeError::Io { .. } | TakeError::Write { .. } | TakeError::Stopped { .. } => {
-                Self::Work { file, message }
-            }
-            TakeError::Request { .. }
-            | TakeError::Busy { .. }
-            | TakeError::NotATake { .. }
-            | TakeError::Newer { .. }
-            | TakeError::Empty { .. }
-            | TakeError::Malformed { .. }
-            | TakeError::Lost { .. }
-            | TakeError::NoSuchFrame { .. } => Self::Request { file, message },
-        }
+impl<E: Failure> From<E> for ProjectError {
+    fn from(error: E) -> Self {
+        let (file, message) = (error.file().map(Path::to_owned), error.to_string());
+        if error.is_request() { Self::Request { file, message } } else { Self::Work { file, message } }
     }
 }
 

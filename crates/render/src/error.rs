@@ -10,19 +10,8 @@ pub enum RenderError {
     #[error(transparent)]
     Shadow(#[from] lovelock_shadow::ShadowError),
     /// The size is out of range.
-    #[error(
-        "an image of {width}x{height} pixels is out of range: each side must be 1 to {limit}, and both together at \
-         most {} million pixels",
-        crate::MAX_PIXELS / 1_000_000
-    )]
-    Size {
-        /// The width that was given, pixels.
-        width: u32,
-        /// The height that was given, pixels.
-        height: u32,
-        /// The longest side that the backend supports.
-        limit: u32,
-    },
+    #[error(transparent)]
+    Size(#[from] lovelock_picture::SizeError),
     /// A picture was queried before one was rendered.
     #[error("no image has been rendered yet")]
     NoPicture,
@@ -52,5 +41,11 @@ impl From<lovelock_shadow::GpuShadowError> for RenderError {
             lovelock_shadow::GpuShadowError::Shadow(error) => error.into(),
             lovelock_shadow::GpuShadowError::Gpu(error) => error.into(),
         }
+    }
+}
+
+impl lovelock_base::Failure for RenderError {
+    fn is_request(&self) -> bool {
+        matches!(self, Self::Size(_))
     }
 }

@@ -4,7 +4,6 @@
 //! Shadow methods run here, between the strands and their shading.
 
 mod ambient;
-mod backend;
 mod camera;
 mod closed;
 mod clusters;
@@ -14,37 +13,34 @@ mod error;
 mod fibre;
 mod frame;
 mod gpu;
-mod hair_drawing;
 mod image;
 mod known;
 mod layers;
-mod light;
 mod light_view;
 mod picture;
 mod renderer;
 mod scene_light;
-mod shadow_stage;
+mod shadow_look;
 mod skin;
-mod strand_count;
 mod strand_details;
 mod strand_portion;
 mod strand_values;
-mod transparency;
 mod uniform;
 
-pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
 pub use color_scale::ColorScale;
 pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{ClusterStats, FrameInput, FrameStats, HairPose};
 pub use gpu::{Finished, GpuRenderer, MAX_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
-pub use hair_drawing::HairDrawing;
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
-pub use light::{Light, MAX_LIGHTS};
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
+pub use lovelock_picture::{
+    Backend, HairDrawing, Light, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, PictureSettings, SizeError, StrandCount,
+    Transparency, UnknownBackend, check_size,
+};
 pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
@@ -52,7 +48,5 @@ pub use lovelock_shadow::{
     LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind, RayStructure, ShadowError,
     ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter,
 };
-pub use picture::{MAX_PIXELS, MAX_SIDE, Picture, PictureSettings, check_size};
+pub use picture::Picture;
 pub use renderer::Renderer;
-pub use strand_count::StrandCount;
-pub use transparency::Transparency;

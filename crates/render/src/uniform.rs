@@ -10,6 +10,10 @@ use crate::clusters::cluster_share;
 use crate::scene_light::SceneLight;
 use crate::{FrameInput, MAX_LIGHTS};
 
+/// The brightest colour of a strand point, the largest half float: the GPU keeps no brighter one. Twin of `MAX_LIGHT` in
+/// `strand_points.wgsl`.
+pub(crate) const MAX_LIGHT: f32 = 65_504.0;
+
 /// Twin of `LightUniform` in `frame.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -269,7 +273,7 @@ mod tests {
             ("UNPIGMENTED", lovelock_groom::UNPIGMENTED),
             ("PAINTED_FROM", lovelock_groom::PAINTED_FROM),
             ("SHORT_METRES", FineStrand::SHORT_METRES),
-            ("MAX_LIGHT", crate::light::MAX_LIGHT),
+            ("MAX_LIGHT", MAX_LIGHT),
             ("OWN_FIBRES", fibre::OWN_FIBRES),
             ("FACING_FIBRES", fibre::FACING_FIBRES),
             ("MAX_INCLINED", fibre::MAX_INCLINED),

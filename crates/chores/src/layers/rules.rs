@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 27] = [
+const ARROWS: [(&str, &[&str]); 28] = [
     (
         "app",
         &[
@@ -63,8 +63,9 @@ const ARROWS: [(&str, &[&str]); 27] = [
             "base",
         ],
     ),
-    ("project", &["render", "style", "simulation", "motion", "groom", "record", "base"]),
-    ("render", &["shadow", "satf", "gpu", "groom", "motion", "appearance", "base"]),
+    ("project", &["picture", "shadow", "style", "simulation", "motion", "groom", "record", "base"]),
+    ("render", &["picture", "shadow", "satf", "gpu", "groom", "motion", "appearance", "base"]),
+    ("picture", &["satf", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
     ("satf", &["groom", "base"]),
     ("brush", &["style", "groom", "base"]),
@@ -105,7 +106,7 @@ const ARROWS: [(&str, &[&str]); 27] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 17] = [
+const WITHOUT_WGPU: [&str; 18] = [
     "alembic",
     "appearance",
     "base",
@@ -113,6 +114,7 @@ const WITHOUT_WGPU: [&str; 17] = [
     "gltf",
     "groom",
     "motion",
+    "picture",
     "satf",
     "simulation",
     "sound",

@@ -1,5 +1,5 @@
 use lovelock_base::settings::{Value, find};
-use lovelock_render::ShadowMethod;
+use lovelock_shadow::ShadowMethod;
 
 use super::*;
 use crate::project::Project;

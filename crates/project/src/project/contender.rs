@@ -1,7 +1,8 @@
 //! One way to render hair among those that are compared.
 
 use lovelock_base::settings::Choices;
-use lovelock_render::{Backend, HairDrawing, PictureSettings, ShadowSettings, Transparency};
+use lovelock_picture::{Backend, HairDrawing, PictureSettings, Transparency};
+use lovelock_shadow::ShadowSettings;
 use serde::{Deserialize, Serialize};
 
 use super::super::Project;
@@ -108,7 +109,7 @@ pub const fn backend_label(backend: Backend) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use lovelock_render::ShadowMethod;
+    use lovelock_shadow::ShadowMethod;
 
     use super::*;
 

@@ -36,7 +36,8 @@ pub use settings::{all_settings, settings_json, settings_of, settings_page, sett
 
 use lovelock_groom::{Facing, GroomSettings, HairLook, Preset, UpAxis};
 use lovelock_motion::LoopBlend;
-use lovelock_render::{Light, PictureSettings, ShadowSettings, StrandCount};
+use lovelock_picture::{Light, PictureSettings, StrandCount};
+use lovelock_shadow::ShadowSettings;
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
@@ -63,7 +64,7 @@ pub struct Project {
     pub simulation: SimulationSettings,
     /// How the hair shadows itself.
     pub shadow: ShadowSettings,
-    /// The lights, at most [`lovelock_render::MAX_LIGHTS`].
+    /// The lights, at most [`lovelock_picture::MAX_LIGHTS`].
     pub lights: Vec<Light>,
     /// The light from all directions.
     pub surroundings: SurroundingsSection,

@@ -2,7 +2,7 @@
 
 use lovelock_base::settings::Settings;
 use lovelock_base::words::counted;
-use lovelock_render::MAX_LIGHTS;
+use lovelock_picture::MAX_LIGHTS;
 
 use super::super::Project;
 use super::generic::differences;

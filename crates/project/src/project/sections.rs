@@ -3,8 +3,9 @@
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairLook, HairShading, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, LoopBlend, MotionSettings, ScalpFit};
+use lovelock_picture::{Backend, HairDrawing, Transparency};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, HairDrawing, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_shadow::{ShadowMethod, ShadowSettings};
 use lovelock_simulation::SimulationSettings;
 use lovelock_style::operations::Scissors;
 use lovelock_style::{Layer, StyleStack};

@@ -6,8 +6,8 @@ use lovelock_base::field;
 use lovelock_base::settings::{Choices, Part, PartMut, Setting, Settings, Unit};
 use lovelock_groom::{HairShading, HairTie, Preset};
 use lovelock_motion::LoopBlend;
+use lovelock_picture::{Backend, HairDrawing, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, Transparency};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, HairDrawing, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, Transparency};
 
 use super::super::Project;
 use super::PROJECT_VERSION;

@@ -101,7 +101,7 @@ fn a_light_without_a_direction_shines_down_and_a_fifth_light_is_removed() {
     project.lights.resize(6, Light::default());
     project.lights[0].direction = Vec3::ZERO;
     let (clean, problems) = project.sanitised();
-    assert_eq!(clean.lights.len(), lovelock_render::MAX_LIGHTS);
+    assert_eq!(clean.lights.len(), lovelock_picture::MAX_LIGHTS);
     assert_eq!(clean.lights[0].direction, Vec3::NEG_Y);
     assert!(problems.len() >= 2, "{problems:?}");
 }
@@ -288,7 +288,7 @@ fn panes_are_limited_in_number_and_range() {
     let panes = &project.compare.panes;
     assert_eq!(panes.len(), CompareSection::MAX_PANES);
     assert_eq!((panes[0].scale, panes[1].scale), (1.0, 1.0));
-    assert_eq!(panes[1].shadow.method, lovelock_render::ShadowMethod::Exact);
+    assert_eq!(panes[1].shadow.method, lovelock_shadow::ShadowMethod::Exact);
     assert_eq!(panes[1].shadow.exact.resolution, 64);
     assert_eq!(problems.len(), 4, "{problems:?}");
     assert!(problems.iter().all(|p| p.place == Place::Compare));
@@ -312,7 +312,7 @@ fn a_recording_has_a_renderable_size() {
         (project.recording.width, project.recording.height) = size;
         let (clean, problems) = project.sanitised();
         assert_eq!((clean.recording.width, clean.recording.height), kept);
-        lovelock_render::check_size(kept.0, kept.1).expect("a size that is drawn");
+        lovelock_picture::check_size(kept.0, kept.1).expect("a size that is drawn");
         assert_eq!(problems.is_empty(), size == kept, "{problems:?}");
     }
 }
@@ -390,7 +390,7 @@ proptest! {
         project.compare.panes[1].shadow = shadow;
         project.compare.panes[0].scale = gravity;
         let (clean, _) = project.sanitised();
-        prop_assert!(lovelock_render::check_size(clean.recording.width, clean.recording.height).is_ok());
+        prop_assert!(lovelock_picture::check_size(clean.recording.width, clean.recording.height).is_ok());
         prop_assert_eq!(round_trip(&clean), (clean.clone(), Vec::new()));
     }
 

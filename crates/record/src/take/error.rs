@@ -119,6 +119,16 @@ pub enum TakeError {
     },
 }
 
+impl lovelock_base::Failure for TakeError {
+    fn is_request(&self) -> bool {
+        Self::is_request(self)
+    }
+
+    fn file(&self) -> Option<&Path> {
+        Some(self.path())
+    }
+}
+
 impl TakeError {
     /// Whether the request or an input file is at fault (exit status 2) rather than the work (exit status 1).
     pub fn is_request(&self) -> bool {

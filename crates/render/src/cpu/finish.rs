@@ -7,7 +7,7 @@ use lovelock_base::simd_versions;
 use super::backdrop::{Ground, backdrop};
 use super::math::{clamp, floor, index_of, max};
 use super::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
-use super::tone::encode;
+use super::tone_map::encode;
 use super::view::View;
 
 /// Bytes of a finished tile.

@@ -10,8 +10,8 @@ use lovelock_base::memory::list_bytes;
 use lovelock_groom::{GuideFrame, Hairstyle, Strands};
 use lovelock_motion::Body;
 
-use crate::shadow_stage::soft_reach;
-use crate::{FrameInput, HairPose, Light, ShadowSettings};
+use crate::shadow_look::ShadowLook;
+use crate::{FrameInput, HairPose, Light};
 
 /// Given strands of more points are not compared: copies of them would cost too much memory beside those of other panes.
 const MAX_STRAND_POINTS: usize = 1 << 18;
@@ -30,11 +30,7 @@ pub(super) struct KeptInputs {
 struct HairInputs {
     style: Arc<Hairstyle>,
     anchor: Affine3A,
-    /// Diameter, number of real hairs and extinction.
-    look: [f32; 3],
-    shadow: ShadowSettings,
-    /// How far apart shadows are looked up.
-    reach: f32,
+    look: ShadowLook,
 }
 
 #[derive(Debug, Default)]
@@ -76,9 +72,7 @@ impl KeptInputs {
             self.hair = Some(HairInputs {
                 style: Arc::clone(input.style),
                 anchor: input.world_from_head,
-                look: look_of(input),
-                shadow: *input.shadow,
-                reach: soft_reach(input.lights),
+                look: ShadowLook::of(input),
             });
         }
         Unchanged { body, hair }
@@ -129,9 +123,7 @@ impl HairInputs {
     fn is_of(&self, input: &FrameInput) -> bool {
         Arc::ptr_eq(&self.style, input.style)
             && self.anchor == input.world_from_head
-            && self.look == look_of(input)
-            && self.shadow == *input.shadow
-            && self.reach == soft_reach(input.lights)
+            && self.look == ShadowLook::of(input)
     }
 }
 
@@ -156,8 +148,4 @@ impl BodyInputs {
         }
         same
     }
-}
-
-fn look_of(input: &FrameInput) -> [f32; 3] {
-    [input.look.diameter, input.look.real_hairs, input.look.extinction_scale]
 }

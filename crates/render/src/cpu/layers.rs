@@ -7,14 +7,14 @@ use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
 use super::finish::{PixelsIn, compose_row, noise_at};
-use super::hair::segment::{Span, SpanSink, each_span};
+use super::hair::fragments::{Span, SpanSink, each_span};
 use super::math::{clamp, floor, index_of};
 use super::placed::{PlacedScene, PosedBody, TileScratch, copy_rows, posed_body};
-use super::points::ShadedPoint;
 use super::pool::Pool;
+use super::strand_points::ShadedPoint;
 use super::surface::raster::SurfaceSamples;
 use super::tile::{BLOCK_LANES, Grid, STRIDE, TILE, pixel_of};
-use super::tone::encode;
+use super::tone_map::encode;
 use super::view::View;
 use crate::camera::NEAR_METRES;
 use crate::{FrameInput, Layers};

@@ -23,15 +23,15 @@ use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
 use super::view::{FibreView, View};
 use crate::clusters::{of_casters, without_strands};
+use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::light_view::{bounding_sphere, light_view};
-use crate::picture::check_size;
 use crate::scene_light::SceneLight;
-use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{
     ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError,
 };
+use lovelock_picture::check_size;
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;

@@ -12,7 +12,7 @@ use super::fine::FineBuffers;
 use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
 use super::light_kernels::LightKernels;
-use crate::shadow_stage::soft_reach;
+use crate::shadow_look::ShadowLook;
 use crate::strand_details::StrandDetails;
 use crate::strand_portion::portion_of;
 use crate::strand_values::at_points;
@@ -105,7 +105,7 @@ impl HairBuffers {
         let all = portion.drawn * points;
         self.transmittance.reserve(gpu, all);
         self.shaded.reserve(gpu, all);
-        let reach = soft_reach(input.lights);
+        let reach = ShadowLook::of(input).reach;
         self.fine.run(gpu, commands, (portion.drawn, points), reach, self.points.raw());
         Ok(())
     }

@@ -31,7 +31,7 @@ use super::targets::Targets;
 use crate::clusters::{of_casters, without_strands};
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
-use crate::shadow_stage::has_soft_skin;
+use crate::shadow_look::has_soft_skin;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
 use flight::Flights;

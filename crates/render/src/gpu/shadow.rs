@@ -12,7 +12,7 @@ use lovelock_shadow::{
 };
 
 use super::hair::HairBuffers;
-use crate::shadow_stage::pack;
+use crate::shadow_look::{ShadowLook, pack};
 use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
@@ -99,6 +99,7 @@ impl GpuShadowStage {
         self.lights = lights.len();
         self.frames.truncate(lights.len());
         let anchor: Vec3 = input.world_from_head.translation.into();
+        let look = ShadowLook::of(input);
         if input.known.is_none() {
             commands.encoder().clear_buffer(&self.sum, 0, None);
         }
@@ -115,13 +116,13 @@ impl GpuShadowStage {
                 strands: hair.strands(),
                 bounds,
                 longest_strand,
-                strand_width: input.look.shadow_width(input.style.strands.count()),
-                extinction_scale: input.look.extinction_scale,
+                strand_width: look.strand_width,
+                extinction_scale: look.extinction_scale,
                 light: frame,
                 anchor,
                 maps: lights.len() as u32,
             };
-            shadow.build(slot, gpu, commands, &from, input.shadow)?;
+            shadow.build(slot, gpu, commands, &from, &look.settings)?;
             let strands = hair.drawn();
             let targets = GpuTargets {
                 points: hair.asked(),

@@ -18,12 +18,12 @@ use lovelock_satf::{ClusterHair, ClusterSettings, ClusterShading, LocalShadow};
 
 use super::bins::Bins;
 use super::hair::list::Fragments;
-use super::points::{PointsIn, ShadedPoint, shade_all};
+use super::strand_points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::raster::SurfaceSamples;
 use super::tile::{Grid, HairPlanes};
 use super::view::View;
 use crate::clusters::{ClusterStage, cluster_share, guides_of};
-use crate::shadow_stage::ShadowStage;
+use crate::cpu::shadow::ShadowStage;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, MAX_LIGHTS};
 use columns::Columns;

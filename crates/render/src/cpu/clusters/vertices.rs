@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::FrameInput;
 use crate::clusters::to_strongest_light;
-use crate::cpu::points::ShadedPoint;
+use crate::cpu::strand_points::ShadedPoint;
 
 /// Where an outer and an inner rib cross a section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

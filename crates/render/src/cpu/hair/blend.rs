@@ -4,9 +4,9 @@
 
 use lovelock_base::simd_versions;
 
-use super::segment::{Span, SpanSink, each_span};
+use super::fragments::{Span, SpanSink, each_span};
 use crate::cpu::math::max;
-use crate::cpu::points::ShadedPoint;
+use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::surface::raster::Occlusion;
 use crate::cpu::tile::{
     BLOCK_LANES, BLOCK_WIDTH, BLOCKS, BLOCKS_IN_ROW, HairPlanes, STRIDE, UNSEEN, pixel_of,

@@ -5,9 +5,9 @@
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd_versions;
 
-use super::segment::{Span, SpanSink, each_span};
+use super::fragments::{Span, SpanSink, each_span};
 use crate::cpu::math::{clamp, floor, three};
-use crate::cpu::points::ShadedPoint;
+use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
 use crate::cpu::tile::{BLOCK_LANES, STRIDE, TILE, pixel_of};
 

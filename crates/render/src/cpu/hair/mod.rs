@@ -3,6 +3,6 @@
 //! `blend` blends segments from near to far; `list` keeps all fragments of a tile, for the transparency modes that need them.
 
 pub(super) mod blend;
+pub(super) mod fragments;
 pub(super) mod list;
 pub(super) mod order;
-pub(super) mod segment;

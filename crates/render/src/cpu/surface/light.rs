@@ -5,7 +5,7 @@ use lovelock_motion::Body;
 
 use super::PlacedSurface;
 use super::raster::{Edges, NOTHING, SurfaceSamples};
-use super::shade::{LANES, SurfaceBatch, shade_batch_simd};
+use super::shading::{LANES, SurfaceBatch, shade_batch_simd};
 use crate::cpu::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
 use crate::cpu::view::View;
 

@@ -4,7 +4,7 @@
 
 pub(super) mod light;
 pub(super) mod raster;
-pub(super) mod shade;
+pub(super) mod shading;
 
 use std::sync::Arc;
 

@@ -12,11 +12,11 @@ use super::placed::{PlacedScene, TileScratch, copy_rows};
 use super::pool::Pool;
 use super::tile::{Grid, HairPlanes, STRIDE, TILE};
 use super::view::View;
-use crate::picture::check_size;
 use crate::scene_light::NO_LIGHT;
 use crate::strand_details::StrandDetails;
 use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError};
+use lovelock_picture::check_size;
 
 /// Values from this limit on count as missing, so that sums stay finite.
 const MAX: f32 = 1e30;

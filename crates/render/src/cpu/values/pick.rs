@@ -5,14 +5,14 @@ use rayon::prelude::*;
 
 use super::{HairHit, ValueRenderer};
 use crate::FrameInput;
-use crate::cpu::hair::segment::is_drawn;
+use crate::cpu::hair::fragments::is_drawn;
 use crate::cpu::placed::{TileScratch, posed_body};
-use crate::cpu::points::ShadedPoint;
+use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::tile::{Grid, STRIDE, TILE};
 use crate::cpu::view::View;
-use crate::picture::check_size;
 use crate::scene_light::NO_LIGHT;
 use crate::uniform::FrameUniform;
+use lovelock_picture::check_size;
 
 /// The largest distance of hair from the pixel, pixels.
 const REACH: f32 = 4.0;

@@ -1,6 +1,6 @@
 // Rasterises segments as ribbons that face the camera. Widths below a pixel become coverage: a strand of 0.2 pixels is drawn one
 // pixel wide with a fifth of its opacity, so that it neither breaks up nor becomes heavier with distance. Twin of
-// cpu/hair/segment.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
+// cpu/hair/fragments.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
 //
 // Several threads share a segment that may cover very many pixels, because software adapters end loops after 65,535 iterations.
 

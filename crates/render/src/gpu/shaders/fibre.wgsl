@@ -1,4 +1,4 @@
-// Scattering by fibres and by the many fibres around them: twin of cpu/points/fibre.rs and of `PointScatter` in appearance, which explains
+// Scattering by fibres and by the many fibres around them: twin of cpu/strand_points/fibre.rs and of `PointScatter` in appearance, which explains
 // the formulas.
 
 // The tables of `FibreTables`, one after the other, 8 numbers a row: direct light, light that many fibres scattered, many scatterings.

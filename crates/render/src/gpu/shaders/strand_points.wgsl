@@ -24,7 +24,7 @@ fn drawn_points() -> u32 {
     return frame.drawn_points;
 }
 
-// The width with which a strand is drawn: see `thin` in cpu/points/mod.rs.
+// The width with which a strand is drawn: see `thin` in cpu/strand_points/mod.rs.
 fn thin(width: f32) -> f32 {
     let opacity = frame.opacity;
     let narrow = (1.0 - exp(-opacity * width)) / max(opacity, 1e-3);
@@ -53,7 +53,7 @@ override FIBRE: bool = true;
 // Whether strands have colours of their own.
 override COLORED: bool = false;
 
-// The largest half float. See cpu/points/mod.rs.
+// The largest half float. See cpu/strand_points/mod.rs.
 const MAX_LIGHT: f32 = 65504.0;
 
 // See pigment.rs in groom.
@@ -122,7 +122,7 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
         * strand_light(point.t, toward, point.v, point.color, specular, lit);
 }
 
-// Variance that the turn of a strand adds: twin of `turn_variance` in cpu/points.
+// Variance that the turn of a strand adds: twin of `turn_variance` in cpu/strand_points.
 fn turn_variance(a: vec3f, b: vec3f) -> f32 {
     let lengths = dot(a, a) * dot(b, b);
     let cosine = select(1.0, dot(a, b) * inverseSqrt(max(lengths, 1e-30)), lengths > 1e-30);

@@ -58,7 +58,7 @@ fn shade_surface(in: Surface) -> vec3f {
     if (LIGHTS > 3u) {
         sum += light_of(3u, place, in.hair.w);
     }
-    // Hair that lies on skin shadows it: twin of `ABOVE_SKIN` in cpu/surface/shade.rs.
+    // Hair that lies on skin shadows it: twin of `ABOVE_SKIN` in cpu/surface/shading.rs.
     sum += ambient(n) * albedo * ambient_at(in.world + n * 0.008).w;
     return sum;
 }

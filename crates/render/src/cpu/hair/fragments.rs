@@ -6,7 +6,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::cpu::math::{max, min, saturate, sin, smoothstep};
-use crate::cpu::points::ShadedPoint;
+use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::tile::{BLOCK_HEIGHT, BLOCK_LANES, BLOCK_WIDTH, BLOCKS_IN_ROW, TILE};
 
 type Lane = [f32; BLOCK_LANES];

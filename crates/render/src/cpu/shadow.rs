@@ -9,8 +9,9 @@ use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
+use crate::shadow_look::{PIECE, ShadowLook, has_soft_skin, pack};
 use crate::skin::Neighbours;
-use crate::{FrameInput, HairDrawing, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -54,22 +55,20 @@ impl LightShadow {
         &mut self,
         direction: Vec3,
         maps: u32,
-        input: &FrameInput,
+        (look, anchor): (&ShadowLook, Vec3),
         strands: &Strands,
     ) -> Result<(), ShadowError> {
         // Transported instead of recomputed, so that the map does not roll while the light is dragged.
         self.frame = self.frame.transported(direction);
-        let strand_width = input.look.shadow_width(input.style.strands.count());
-        let anchor = input.world_from_head.translation.into();
         let from = ShadowInput {
             strands,
-            strand_width,
-            extinction_scale: input.look.extinction_scale,
+            strand_width: look.strand_width,
+            extinction_scale: look.extinction_scale,
             light: self.frame,
             anchor,
             maps,
         };
-        self.shadow.build(&from, input.shadow)
+        self.shadow.build(&from, &look.settings)
     }
 
     /// Looks up strand points, if any are passed, and vertices, unless their transmittance is given.
@@ -152,10 +151,12 @@ impl ShadowStage {
         let maps = lights.len() as u32;
         self.passes.clear();
         let part = Stopwatch::start();
+        let look = ShadowLook::of(input);
+        let anchor = input.world_from_head.translation.into();
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, stored))?;
+            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, (&look, anchor), stored))?;
         self.passed("shadow/build", &part);
         self.look_up(input, drawn);
 
@@ -202,7 +203,7 @@ impl ShadowStage {
 
     fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
         let part = Stopwatch::start();
-        let reach = soft_reach(input.lights);
+        let reach = ShadowLook::of(input).reach;
         let positions = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
         let apart = points.filter(|_| reach > 0.0 && input.known.is_none());
         if let Some(points) = apart {
@@ -280,40 +281,8 @@ impl ShadowStage {
     }
 }
 
-/// How far apart fine strands look up shadows, metres: half of the softness of the first light.
-pub(crate) fn soft_reach(lights: &[Light]) -> f32 {
-    let key = lights.iter().find(|light| light.enabled);
-    key.map_or(0.0, |light| 0.5 * light.normalized().softness)
-}
-
-/// Whether the hair's shadow on skin is softened: where hair is as fine as it is in images for the eye, not in comparisons of maps.
-/// `has_fine_strands` tells whether strands are drawn by their size.
-pub(crate) fn has_soft_skin(input: &FrameInput, has_fine_strands: bool) -> bool {
-    let has_clusters = input.picture.draw == HairDrawing::Clusters && input.known.is_none();
-    (has_fine_strands || has_clusters) && soft_reach(input.lights) > 0.0
-}
-
 /// Points that are looked up together at places of their own.
 const POINTS_AT_ONCE: usize = 1 << 18;
-
-/// Points that are packed or summed together.
-const PIECE: usize = 8192;
-
-/// Packs the values of up to four lights into one word per point, the first light in the lowest byte. Bytes without a light are
-/// 255.
-pub(crate) fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
-    packed.clear();
-    packed.resize(count, u32::MAX);
-    packed.par_chunks_mut(PIECE).enumerate().for_each(|(piece, words)| {
-        for (k, values) in values.iter().enumerate().take(MAX_LIGHTS) {
-            let shift = 8 * k as u32;
-            for (word, &value) in words.iter_mut().zip(&values[piece * PIECE..]) {
-                let byte = (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-                *word = (*word & !(0xff << shift)) | (byte << shift);
-            }
-        }
-    });
-}
 
 /// The mean of values, added up in an order that does not depend on the number of threads; 1 if there are none.
 fn mean(values: &[f32]) -> f32 {
@@ -325,15 +294,6 @@ fn mean(values: &[f32]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn packing_writes_a_byte_a_light_and_fills_the_others() {
-        let mut packed = vec![7; 9];
-        pack(&[&[1.0, 1.0, 1.0], &[0.0, 0.5, f32::NAN]], 3, &mut packed);
-        assert_eq!(packed, [0xffff_00ff, 0xffff_80ff, 0xffff_00ff]);
-        pack(&[], 2, &mut packed);
-        assert_eq!(packed, [u32::MAX; 2]);
-    }
 
     #[test]
     fn means() {

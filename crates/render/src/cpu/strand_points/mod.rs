@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};
 use super::view::View;
-use crate::light::MAX_LIGHT;
 use crate::strand_details::PointColours;
+use crate::uniform::MAX_LIGHT;
 
 mod fibre;
 mod kajiya_kay;

@@ -8,10 +8,6 @@ use serde::{Deserialize, Serialize};
 /// The most lights of a picture: transmittance is stored per light and strand point.
 pub const MAX_LIGHTS: usize = 4;
 
-/// The brightest colour of a strand point, the largest half float: the GPU keeps no brighter one. Twin of `MAX_LIGHT` in
-/// `strand_points.wgsl`.
-pub(crate) const MAX_LIGHT: f32 = 65_504.0;
-
 /// A directional light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
