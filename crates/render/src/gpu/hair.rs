@@ -23,6 +23,16 @@ use crate::{FrameInput, HairPose};
 #[repr(C)]
 struct ShadedPoint([u32; 8]);
 
+/// How the points of strands are shaded.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointShading<'a> {
+    /// The kernels for the lights that are on.
+    pub kernels: &'a LightKernels,
+    pub model: HairShading,
+    /// The tables of the fibres.
+    pub tables: &'a wgpu::Buffer,
+}
+
 /// The width of a strand that is aimed at, pixels, on a GPU and on a software adapter.
 const TARGET_PIXELS: [f32; 2] = [0.35, 0.7];
 /// The most points of fine strands.
@@ -249,13 +259,13 @@ impl HairBuffers {
         &self,
         gpu: &Gpu,
         name: &'static str,
-        (kernels, shading, tables): (&LightKernels, HairShading, &wgpu::Buffer),
+        shading: PointShading,
         commands: &mut Commands,
         frame: &FrameResources,
     ) -> Result<(), GpuError> {
         let is_colored = self.drawn.colours().is_some();
-        let kernel = kernels.shade_points(gpu, shading == HairShading::Fibre, is_colored)?;
-        let more = [(8, tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
+        let kernel = shading.kernels.shade_points(gpu, shading.model == HairShading::Fibre, is_colored)?;
+        let more = [(8, shading.tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
         self.run_over_points(gpu, kernel, name, commands, frame, more);
         Ok(())
     }

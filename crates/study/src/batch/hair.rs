@@ -9,6 +9,21 @@ use lovelock_render::{Camera, FrameInput, HairPose, Light, MAX_LIGHTS};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::{LightFrame, ShadowInput};
 
+/// Hair in the light of one lamp, with the settings of a project.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LitHair<'a> {
+    pub hair: &'a Hair,
+    pub project: &'a Project,
+    pub light: &'a Light,
+}
+
+impl<'a> LitHair<'a> {
+    /// The input of a shadow method.
+    pub(super) fn shadow_input(self) -> ShadowInput<'a> {
+        self.hair.shadow_input(self.project, self.light)
+    }
+}
+
 /// Hair at one instant, interpolated once for all uses.
 #[derive(Debug)]
 pub(super) struct Hair {

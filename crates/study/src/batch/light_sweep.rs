@@ -7,7 +7,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_render::{Light, Picture, Renderer};
 use lovelock_shadow::{LightFrame, ShadowInput};
 
-use super::hair::Hair;
+use super::hair::{Hair, LitHair};
 use super::stability::{SMALL, drawn, fits};
 use super::truth::{Truth, converge_at};
 use super::work::CheckCancel;
@@ -46,11 +46,12 @@ impl LightSweep {
     /// # Errors
     /// The error of `check_cancel`. The inner error says what does not fit in memory, with numbers.
     pub(super) fn new(
-        (hair, project, light): (&Hair, &Project, &Light),
+        lit: LitHair,
         known: &[Truth],
         reference: &mut Reference,
         mut check_cancel: impl FnMut() -> Result<(), ProjectError>,
     ) -> Result<Result<Self, String>, ProjectError> {
+        let LitHair { hair, project, light } = lit;
         let first = LightFrame::new(light.direction);
         let strands = &hair.strands;
         let points = patches(strands, &first);

@@ -7,7 +7,7 @@ use lovelock_render::{
     Transparency, ValueRenderer,
 };
 
-use super::hair::Hair;
+use super::hair::{Hair, LitHair};
 use super::maps;
 use super::maps::at_pixels;
 use super::pictures::ReferencePictures;
@@ -73,7 +73,7 @@ impl Work<'_> {
             let found = if i == 0 {
                 of_first_light.transmittance.clone()
             } else {
-                let (found, facts) = converge((hair, project, light), &project.shadow);
+                let (found, facts) = converge(LitHair { hair, project, light }, &project.shadow);
                 if found.is_ok() {
                     let name = format!("reference picture, light {}", i + 1);
                     report.reference.others.push(NamedTruth::new(name, &facts));

@@ -8,7 +8,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, Light, Picture, Renderer};
 use lovelock_session::snapshot::FrameSnapshot;
 
-use super::hair::Hair;
+use super::hair::{Hair, LitHair};
 use super::truth::{Truth, converge};
 use super::work::CheckCancel;
 use crate::report::{FootprintTruth, NamedTruth, Reference};
@@ -75,7 +75,7 @@ impl Film {
                 let found = if let (0, Ok(found)) = (frame, &known.transmittance) {
                     Ok(found.clone())
                 } else {
-                    let (found, facts) = converge((&hair, project, light), &known.settings);
+                    let (found, facts) = converge(LitHair { hair: &hair, project, light }, &known.settings);
                     if found.is_ok() && worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
                         worst = Some(facts);
                     }

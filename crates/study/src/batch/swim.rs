@@ -11,7 +11,7 @@ use lovelock_render::{FrameInput, Light, Renderer};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::LightFrame;
 
-use super::hair::Hair;
+use super::hair::{Hair, LitHair};
 use super::stability::drawn;
 use super::truth::cell_size;
 use super::work::CheckCancel;
@@ -46,7 +46,7 @@ pub(super) fn swimming(
     for snapshot in snapshots {
         check_cancel()?;
         let hair = Hair::new(Arc::clone(snapshot), project);
-        let cell_size = cell_size((&hair, project, light), &project.shadow).unwrap_or(0.0);
+        let cell_size = cell_size(LitHair { hair: &hair, project, light }, &project.shadow).unwrap_or(0.0);
         let mut shifts = Vec::with_capacity(SHIFTS);
         for _ in 0..SHIFTS {
             check_cancel()?;

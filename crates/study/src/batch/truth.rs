@@ -6,13 +6,12 @@
 
 use glam::Vec3;
 use lovelock_metrics::errors;
-use lovelock_project::Project;
-use lovelock_render::{Light, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
+use lovelock_render::{ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
 use lovelock_shadow::{
     CONVERGED_CHANGE, CpuShadow, ExactMap, MapKind, ShadowError, ShadowInput, converged, cpu_shadow,
 };
 
-use super::hair::Hair;
+use super::hair::LitHair;
 use crate::report::{FootprintTruth, PointTruth};
 
 /// Points with fewer fragments before them count as points where light enters.
@@ -59,17 +58,17 @@ impl Truths {
     /// metres. `name` is added to the ground truth.
     pub(super) fn find(
         &mut self,
-        (hair, project, light): (&Hair, &Project, &Light),
+        lit: LitHair,
         settings: &ShadowSettings,
         name: Option<&str>,
     ) -> (usize, Option<f32>) {
-        let (footprint, cell_size) = footprint((hair, project, light), settings);
+        let (footprint, cell_size) = footprint(lit, settings);
         let known = self.0.iter().position(|truth| truth.footprint == footprint);
         let at = known.unwrap_or_else(|| {
             // If the method needs too much memory, the finer ground truth does too.
             let (transmittance, facts) = match &footprint {
                 Footprint::Unknown(_, why) => (Err(why.clone()), FootprintTruth::default()),
-                _ => converge((hair, project, light), settings),
+                _ => converge(lit, settings),
             };
             self.0.push(Truth { footprint, settings: *settings, transmittance, facts });
             self.0.len() - 1
@@ -82,15 +81,12 @@ impl Truths {
 }
 
 /// The footprint of the method's map. `none` uses that of `exact`.
-fn footprint(
-    (hair, project, light): (&Hair, &Project, &Light),
-    settings: &ShadowSettings,
-) -> (Footprint, Option<f32>) {
+fn footprint(lit: LitHair, settings: &ShadowSettings) -> (Footprint, Option<f32>) {
     let has_map = settings.method.map_kind() != MapKind::None;
     let method = if has_map { settings.method } else { ShadowMethod::Exact };
     let settings = ShadowSettings { method, ..*settings };
     let mut map = cpu_shadow(method);
-    if let Err(error) = map.build(&hair.shadow_input(project, light), &settings) {
+    if let Err(error) = map.build(&lit.shadow_input(), &settings) {
         return (Footprint::Unknown(settings, error.to_string()), None);
     }
     let report = map.report();
@@ -103,17 +99,17 @@ fn footprint(
 }
 
 /// Edge of a texel (or cell) of the method's map, metres; `None` if it has no map, or the map cannot be built.
-pub(super) fn cell_size(place: (&Hair, &Project, &Light), settings: &ShadowSettings) -> Option<f32> {
-    footprint(place, settings).1
+pub(super) fn cell_size(lit: LitHair, settings: &ShadowSettings) -> Option<f32> {
+    footprint(lit, settings).1
 }
 
 /// Converged transmittance at every strand point, and its convergence.
 pub(super) fn converge(
-    (hair, project, light): (&Hair, &Project, &Light),
+    lit: LitHair,
     settings: &ShadowSettings,
 ) -> (Result<Vec<f32>, String>, FootprintTruth) {
-    let strands = &hair.strands;
-    converge_at(&hair.shadow_input(project, light), settings, [&strands.x, &strands.y, &strands.z])
+    let strands = &lit.hair.strands;
+    converge_at(&lit.shadow_input(), settings, [&strands.x, &strands.y, &strands.z])
 }
 
 /// The same at any points, world space, metres.
@@ -151,12 +147,12 @@ pub(super) struct Points {
 impl Points {
     /// # Errors
     /// If the exact method needs more memory than it may use, with the numbers.
-    pub(super) fn new(hair: &Hair, project: &Project, light: &Light) -> Result<Self, ShadowError> {
-        let (map, transmittance, edge) = exact(hair, project, light, *TEXEL_RESOLUTIONS.end())?;
+    pub(super) fn new(lit: LitHair) -> Result<Self, ShadowError> {
+        let (map, transmittance, edge) = exact(lit, *TEXEL_RESOLUTIONS.end())?;
         // With few strands on a small head there is no coarser map.
-        let (_, coarser, _) = exact(hair, project, light, edge / 2)?;
+        let (_, coarser, _) = exact(lit, edge / 2)?;
         let change = errors(&coarser, &transmittance).rmse as f32;
-        let strands = &hair.strands;
+        let strands = &lit.hair.strands;
         let at = |point: usize| Vec3::new(strands.x[point], strands.y[point], strands.z[point]);
         let all: Vec<Vec3> = (0..strands.points()).map(at).collect();
         let before = map.fragments_before(&all);
@@ -174,17 +170,12 @@ impl Points {
 
 /// The exact method with at most that many texels along the edge: its map, the transmittance at every strand point, and the actual
 /// number of texels.
-fn exact(
-    hair: &Hair,
-    project: &Project,
-    light: &Light,
-    resolution: u32,
-) -> Result<(ExactMap, Vec<f32>, u32), ShadowError> {
-    let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..project.shadow };
+fn exact(lit: LitHair, resolution: u32) -> Result<(ExactMap, Vec<f32>, u32), ShadowError> {
+    let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..lit.project.shadow };
     (settings.exact.resolution, settings.exact.filter) = (resolution, TexelFilter::Nearest);
     let mut map = ExactMap::default();
-    map.build(&hair.shadow_input(project, light), &settings)?;
-    let strands = &hair.strands;
+    map.build(&lit.shadow_input(), &settings)?;
+    let strands = &lit.hair.strands;
     let mut transmittance = vec![1.0; strands.points()];
     map.transmittance_at(&strands.x, &strands.y, &strands.z, &mut transmittance);
     let edge = (map.report().cells_total as f64).sqrt().round() as u32;

@@ -13,7 +13,7 @@ use lovelock_shadow::CONVERGED_CHANGE;
 
 use super::entrants::Entrant;
 use super::folder::Folder;
-use super::hair::Hair;
+use super::hair::{Hair, LitHair};
 use super::light_sweep::LightSweep;
 use super::pictures::ReferencePictures;
 use super::probe::Probe;
@@ -77,15 +77,15 @@ impl Work<'_> {
         };
         let Some(first) = snapshots.first() else { return Ok(()) };
         let hair = Hair::new(Arc::clone(first), self.project);
+        let lit = LitHair { hair: &hair, project: self.project, light: &self.lights[0] };
         let mut truths = Truths::default();
         let mut found = Vec::new();
         for entrant in &entrants {
             part(format!("ground truth for {}", entrant.report.name), true)?;
-            let place = (&hair, self.project, &self.lights[0]);
-            found.push(truths.find(place, &entrant.contender.shadow, Some(&entrant.report.name)));
+            found.push(truths.find(lit, &entrant.contender.shadow, Some(&entrant.report.name)));
         }
         part("ground truth at points".to_owned(), true)?;
-        let points = match Points::new(&hair, self.project, &self.lights[0]) {
+        let points = match Points::new(lit) {
             Ok(points) => Some(points),
             Err(error) => {
                 report.reference.refused.push(format!("the truth at points: {error}"));
@@ -94,21 +94,20 @@ impl Work<'_> {
         };
         part("reference images".to_owned(), true)?;
         let shadow = ShadowSettings { method: ShadowMethod::Exact, ..self.project.shadow };
-        let (common, _) = truths.find((&hair, self.project, &self.lights[0]), &shadow, None);
+        let (common, _) = truths.find(lit, &shadow, None);
         let pictures = self.reference(&hair, &truths.0[common], renderers, report)?;
         note_truths(report, &truths, points.as_ref());
         let film = self.film(snapshots, &truths, report, &mut part)?;
         let shifted = if self.request.quick { Vec::new() } else { frames_shifted(snapshots.len()) };
         report.swim_frames = shifted.iter().map(|at| report.frames[0] + *at as u64).collect();
         let shifted: Vec<_> = shifted.iter().map(|at| Arc::clone(&snapshots[*at])).collect();
-        let place = (&hair, self.project, &self.lights[0]);
         let light_sweep = if self.request.quick {
             None
         } else {
             let turning = || "ground truth under a turning light".to_owned();
             part(turning(), true)?;
             let check_cancel = || part(turning(), false);
-            let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, check_cancel)?;
+            let light_sweep = LightSweep::new(lit, &truths.0, &mut report.reference, check_cancel)?;
             light_sweep.map_err(|refused| report.notes.push(refused)).ok()
         };
 

@@ -13,12 +13,11 @@ use std::sync::Arc;
 
 use glam::{Vec3, vec2};
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderSource, wgpu};
-use lovelock_groom::HairShading;
 use lovelock_satf::{ClusterHair, ClusterShading};
 use lovelock_shadow::{Bounds, GpuTargets, LightFrame};
 
 use super::frame_resources::FrameResources;
-use super::light_kernels::LightKernels;
+use super::hair::PointShading;
 use super::shadow::GpuShadowStage;
 use crate::FrameInput;
 use crate::clusters::{ClusterStage, cluster_share, without_strands};
@@ -58,7 +57,7 @@ impl DrawnClusters<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RibLighting<'a> {
     /// The kernels of strand points with the tables of fibres.
-    pub shading: (&'a LightKernels, HairShading, &'a wgpu::Buffer),
+    pub shading: PointShading<'a>,
     /// The shader of the published light.
     pub published: &'a ShaderSource,
     pub lights: usize,

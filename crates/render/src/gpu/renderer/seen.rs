@@ -7,7 +7,7 @@ use super::GpuRenderer;
 use crate::gpu::clusters::DrawnClusters;
 use crate::gpu::eye::{Area, EyeInput, HairOutput, WIDEST_PLAIN};
 use crate::gpu::frame_resources::FrameResources;
-use crate::gpu::hair::HairBuffers;
+use crate::gpu::hair::{HairBuffers, PointShading};
 use crate::gpu::targets::Targets;
 use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError, Transparency};
@@ -107,7 +107,8 @@ impl GpuRenderer {
         };
         let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
         // Values replace their light.
-        let shading = (lit, HairShading::KajiyaKay, self.light.tables());
+        let shading =
+            PointShading { kernels: lit, model: HairShading::KajiyaKay, tables: self.light.tables() };
         self.hair.shade(gpu, "draw/points", shading, commands, &frame)?;
         Ok(())
     }
