@@ -328,20 +328,7 @@ impl CpuRenderer {
                 let part = Stopwatch::start();
                 let mut held = std::mem::take(&mut self.layers);
                 held.fit(&grid);
-                held.light.par_chunks_mut(TILE * TILE).enumerate().for_each_init(
-                    || self.scratch.take(),
-                    |lease, (tile, out)| {
-                        let ground = ground_simd(self.placed.width, &view, grid.origin(tile));
-                        let scratch = lease.get();
-                        self.draw_seen(&view, &grid, input, tile, scratch);
-                        finish_light(
-                            &view,
-                            &scratch.seen(grid.origin(tile), ground.as_ref()),
-                            over_background,
-                            out,
-                        );
-                    },
-                );
+                self.draw_light(&view, &grid, input, over_background, &mut held.light);
                 if hair.share <= 0.0 {
                     // Depth and transmittance of clusters are those of the strands that cast their shadow.
                     let points = (strands, details);
@@ -357,31 +344,11 @@ impl CpuRenderer {
             }
         };
         let part = Stopwatch::start();
-        self.tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         let mut tiles = std::mem::take(&mut self.tiles);
+        tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
+        self.plain.follow(&uniform, &grid);
         let mut plain = std::mem::take(&mut self.plain);
-        plain.follow(&uniform, &grid);
-        tiles
-            .par_chunks_mut(TILE_BYTES)
-            .zip(plain.bytes.par_chunks_mut(TILE_BYTES))
-            .zip(&mut plain.known)
-            .enumerate()
-            .for_each_init(
-                || self.scratch.take(),
-                |lease, (tile, ((out, plain), known))| {
-                    let ground = ground_simd(self.placed.width, &view, grid.origin(tile));
-                    let is_plain = ground.is_none() && self.placed.is_empty(tile);
-                    if is_plain && *known {
-                        out.copy_from_slice(plain);
-                        return;
-                    }
-                    self.draw_tile(&view, &grid, input, (tile, ground.as_ref()), lease.get(), out);
-                    if is_plain {
-                        plain.copy_from_slice(out);
-                        *known = true;
-                    }
-                },
-            );
+        self.draw_tiles(&view, &grid, input, &mut tiles, &mut plain);
         self.plain = plain;
         if let Some((of_strands, scale)) = colors {
             let values = hair.drawn.at_points(input.style, of_strands);
@@ -392,6 +359,58 @@ impl CpuRenderer {
         self.tiles = tiles;
         passed("draw/tiles", &part);
         Ok(self.stats(shadow_ms, &watch, (passes, kept)))
+    }
+
+    /// The light of all tiles, linear, for layers.
+    fn draw_light(
+        &self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        over_background: bool,
+        light: &mut [[f32; 4]],
+    ) {
+        light.par_chunks_mut(TILE * TILE).enumerate().for_each_init(
+            || self.scratch.take(),
+            |lease, (tile, out)| {
+                let ground = ground_simd(self.placed.width, view, grid.origin(tile));
+                let scratch = lease.get();
+                self.draw_seen(view, grid, input, tile, scratch);
+                finish_light(view, &scratch.seen(grid.origin(tile), ground.as_ref()), over_background, out);
+            },
+        );
+    }
+
+    /// Draws all tiles. Those that show only the background are copied from `plain` if it has them, and to it otherwise.
+    fn draw_tiles(
+        &self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        tiles: &mut [u8],
+        plain: &mut PlainTiles,
+    ) {
+        tiles
+            .par_chunks_mut(TILE_BYTES)
+            .zip(plain.bytes.par_chunks_mut(TILE_BYTES))
+            .zip(&mut plain.known)
+            .enumerate()
+            .for_each_init(
+                || self.scratch.take(),
+                |lease, (tile, ((out, plain), known))| {
+                    let ground = ground_simd(self.placed.width, view, grid.origin(tile));
+                    let is_plain = ground.is_none() && self.placed.is_empty(tile);
+                    if is_plain && *known {
+                        out.copy_from_slice(plain);
+                        return;
+                    }
+                    self.draw_tile(view, grid, input, (tile, ground.as_ref()), lease.get(), out);
+                    if is_plain {
+                        plain.copy_from_slice(out);
+                        *known = true;
+                    }
+                },
+            );
     }
 
     fn stats(

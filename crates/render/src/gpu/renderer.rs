@@ -18,7 +18,7 @@ use super::eye::{Area, Eye, HairOutput, Lists, too_large};
 use super::false_colors::FalseColors;
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
-use super::hair::HairBuffers;
+use super::hair::{HairBuffers, PointShading};
 use super::layers::LayerBuffers;
 use super::light_buffers::LightBuffers;
 use super::pipelines::Pipelines;
@@ -33,7 +33,7 @@ use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::shadow_look::has_soft_skin;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, MAX_LIGHTS, RenderError};
+use crate::{FrameInput, FrameStats, Light, MAX_LIGHTS, RenderError};
 use flight::Flights;
 pub use flight::{Finished, MAX_IN_FLIGHT};
 pub use picture::PendingPicture;
@@ -204,17 +204,7 @@ impl GpuRenderer {
         height: u32,
         output: Output,
     ) -> Result<Option<wgpu::Buffer>, RenderError> {
-        let pixels = u64::from(width) * u64::from(height);
-        if 4 * pixels > gpu.most_storage_bytes() {
-            return Err(too_large(gpu, 4 * pixels).into());
-        }
-        if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
-            // The old ones are freed when the bind groups of the last frames are.
-            self.targets = None;
-            self.targets = Some(Targets::new(gpu, width, height));
-        }
-        self.ground.fit(gpu, width, height);
-        self.screen.fit(gpu, width, height);
+        self.fit(gpu, width, height)?;
         let clusters = self.clusters.follow(input, height);
         let picture = without_strands(input.picture);
         let casters = clusters.as_ref().filter(|(_, share)| *share >= 1.0);
@@ -231,13 +221,7 @@ impl GpuRenderer {
             self.skin.run(gpu, &mut commands, body, &vertices);
         }
 
-        let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
-        let mut maps = Vec::with_capacity(MAX_LIGHTS);
-        for light in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS) {
-            let view = light_view(light.normalized().direction, center, radius, self.surface.texels);
-            let columns_from_world = self.shadow.columns_from_world(maps.len());
-            maps.push(LightMaps { columns_from_world, ..view });
-        }
+        let maps = self.light_maps(input);
         let uniform = FrameUniform::new(
             input,
             self.hair.portion(),
@@ -266,7 +250,7 @@ impl GpuRenderer {
         }
         self.draw_body(gpu, &mut commands, targets);
         let lit = self.pipelines.lit.of(gpu, maps.len())?;
-        let shading = (lit, input.look.shading, self.light.tables());
+        let shading = PointShading { kernels: lit, model: input.look.shading, tables: self.light.tables() };
         if seen.has_strands {
             self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame)?;
         }
@@ -303,11 +287,51 @@ impl GpuRenderer {
             ],
         };
         self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);
+        let report = self.encode_output(gpu, &mut commands, output, u64::from(width) * u64::from(height));
+        commands.submit();
+        Ok(report)
+    }
+
+    /// Fits what depends on the size of the image.
+    fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<(), RenderError> {
+        let bytes = 4 * u64::from(width) * u64::from(height);
+        if bytes > gpu.most_storage_bytes() {
+            return Err(too_large(gpu, bytes).into());
+        }
+        if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
+            // The old ones are freed when the bind groups of the last frames are.
+            self.targets = None;
+            self.targets = Some(Targets::new(gpu, width, height));
+        }
+        self.ground.fit(gpu, width, height);
+        self.screen.fit(gpu, width, height);
+        Ok(())
+    }
+
+    /// The placement of the maps of each light that is on.
+    fn light_maps(&self, input: &FrameInput) -> Vec<LightMaps> {
+        let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
+        let lights = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS);
+        let map = |(slot, light): (usize, &Light)| LightMaps {
+            columns_from_world: self.shadow.columns_from_world(slot),
+            ..light_view(light.normalized().direction, center, radius, self.surface.texels)
+        };
+        lights.enumerate().map(map).collect()
+    }
+
+    /// Encodes where the finished image goes. Returns the buffer of what the frame reports, as [`GpuRenderer::draw`].
+    fn encode_output(
+        &self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        output: Output,
+        pixels: u64,
+    ) -> Option<wgpu::Buffer> {
         let image_list = self.eye.list().map(|(buffer, room)| GpuList { buffer, room });
         let lists: Vec<_> = std::iter::once(image_list).chain(self.shadow.lists().map(Some)).collect();
         let present = &self.pipelines.present;
         present.collect(commands.encoder(), &lists);
-        let report = match output {
+        match output {
             Output::Memory { readback, pixels: back } => {
                 let wanted = [
                     (self.screen.pixels(), if back { 4 * pixels } else { 0 }),
@@ -318,15 +342,13 @@ impl GpuRenderer {
                 None
             }
             Output::Texture { shown, before, measured, report } => {
-                present.show(gpu, &mut commands, self.screen.pixels(), (shown, before), &lists);
+                present.show(gpu, commands, self.screen.pixels(), (shown, before), &lists);
                 let sum = (measured && self.shadow.has_light()).then(|| self.shadow.sum());
                 // Where no list can be too short and nothing is measured, nothing is read back.
                 let told = measured || lists.iter().any(Option::is_some);
                 told.then(|| flight::report(gpu, commands.encoder(), present.heads(), sum, report))
             }
-        };
-        commands.submit();
-        Ok(report)
+        }
     }
 
     /// Draws the attributes of the body per sample, for shading later.

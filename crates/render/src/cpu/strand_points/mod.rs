@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};
 use super::view::View;
 use crate::strand_details::PointColours;
-use crate::uniform::MAX_LIGHT;
+use crate::uniform::{FrameUniform, MAX_LIGHT};
 
 mod fibre;
 mod kajiya_kay;
@@ -197,89 +197,124 @@ fn shade_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
     }
 }
 
-/// The points of `indices`, with their colours or black.
-#[inline(always)]
-fn shade_group<const COLORED: bool>(
-    view: &View,
-    input: &PointsIn,
-    indices: &[usize; LANES],
-) -> [ShadedPoint; LANES] {
-    let Strands { x, y, z, .. } = input.strands;
-    let last = out_of(input) - 1;
-    let mut here = [[0.0; LANES]; 3];
-    let mut before = [[0.0; LANES]; 3];
-    let mut after = [[0.0; LANES]; 3];
-    let mut detail = [0_i32; LANES];
-    let mut packed = [0_i32; LANES];
-    for lane in 0..LANES {
-        let i = indices[lane].min(last);
-        let word = input.details[i];
-        let (a, b) =
-            (i.saturating_sub(1 - (word >> 24 & 1) as usize), (i + 1 - (word >> 25 & 1) as usize).min(last));
-        detail[lane] = word as i32;
-        packed[lane] = input.transmittance[i] as i32;
-        for (axis, from) in [x, y, z].into_iter().enumerate() {
-            here[axis][lane] = from[i];
-            before[axis][lane] = from[a];
-            after[axis][lane] = from[b];
+/// Points and their neighbours on the strand.
+struct Group {
+    here: [Lane; 3],
+    before: [Lane; 3],
+    after: [Lane; 3],
+    /// See `pack_detail`.
+    detail: [i32; LANES],
+    /// Four 8-bit transmittances.
+    packed: [i32; LANES],
+}
+
+impl Group {
+    #[inline(always)]
+    fn gather(input: &PointsIn, indices: &[usize; LANES]) -> Self {
+        let Strands { x, y, z, .. } = input.strands;
+        let last = out_of(input) - 1;
+        let mut group = Self {
+            here: [[0.0; LANES]; 3],
+            before: [[0.0; LANES]; 3],
+            after: [[0.0; LANES]; 3],
+            detail: [0; LANES],
+            packed: [0; LANES],
+        };
+        for lane in 0..LANES {
+            let i = indices[lane].min(last);
+            let word = input.details[i];
+            let (a, b) = (
+                i.saturating_sub(1 - (word >> 24 & 1) as usize),
+                (i + 1 - (word >> 25 & 1) as usize).min(last),
+            );
+            group.detail[lane] = word as i32;
+            group.packed[lane] = input.transmittance[i] as i32;
+            for (axis, from) in [x, y, z].into_iter().enumerate() {
+                group.here[axis][lane] = from[i];
+                group.before[axis][lane] = from[a];
+                group.after[axis][lane] = from[b];
+            }
         }
+        group
     }
 
-    let uniform = view.uniform;
-    let [clip_x, clip_y, _, clip_w] = rows(uniform.clip_from_world);
-    let size = [uniform.size.x, uniform.size.y];
-    let project = |p: &[Lane; 3]| {
-        let mut to = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            let at = [p[0][lane], p[1][lane], p[2][lane]];
-            let w = dot4(clip_w, at);
-            let inverse = 1.0 / max(w, 1e-4);
-            to[0][lane] = (dot4(clip_x, at) * inverse * 0.5 + 0.5) * size[0];
-            to[1][lane] = (0.5 - dot4(clip_y, at) * inverse * 0.5) * size[1];
-            to[2][lane] = w;
+    /// Unit vectors along the strands and toward the eye.
+    #[inline(always)]
+    fn directions(&self, eye: [f32; 3]) -> [[Lane; 3]; 2] {
+        let mut tangent = [[0.0; LANES]; 3];
+        let mut to_eye = [[0.0; LANES]; 3];
+        let mut tangent_squared = [0.0; LANES];
+        let mut eye_squared = [0.0; LANES];
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                let t = self.after[axis][lane] - self.before[axis][lane];
+                let v = eye[axis] - self.here[axis][lane];
+                tangent_squared[lane] += t * t;
+                eye_squared[lane] += v * v;
+                (tangent[axis][lane], to_eye[axis][lane]) = (t, v);
+            }
         }
-        to
-    };
-    let (at, at_before, at_after) = (project(&here), project(&before), project(&after));
+        for lane in 0..LANES {
+            tangent_squared[lane] = 1.0 / max(tangent_squared[lane].sqrt(), 1e-9);
+            eye_squared[lane] = 1.0 / max(eye_squared[lane].sqrt(), 1e-3);
+        }
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                tangent[axis][lane] *= tangent_squared[lane];
+                to_eye[axis][lane] *= eye_squared[lane];
+            }
+        }
+        [tangent, to_eye]
+    }
 
-    // The direction of the strand on the screen and in space.
-    let mut run = [[0.0; LANES]; 2];
-    let mut tangent = [[0.0; LANES]; 3];
-    let mut to_eye = [[0.0; LANES]; 3];
-    let eye = uniform.eye.to_array();
+    /// See [`turn_variance`].
+    #[inline(always)]
+    fn turns(&self) -> Lane {
+        let mut turn = [0.0; LANES];
+        for lane in 0..LANES {
+            let [first, second] = [(&self.before, &self.here), (&self.here, &self.after)]
+                .map(|(from, to)| [0, 1, 2].map(|axis| to[axis][lane] - from[axis][lane]));
+            turn[lane] = turn_variance(first, second);
+        }
+        turn
+    }
+}
+
+/// Pixels from the left and from the top, and distances in front of the eye.
+#[inline(always)]
+fn project(uniform: &FrameUniform, p: &[Lane; 3]) -> [Lane; 3] {
+    let [clip_x, clip_y, _, clip_w] = rows(uniform.clip_from_world);
+    let mut to = [[0.0; LANES]; 3];
     for lane in 0..LANES {
-        let (dx, dy) = (at_after[0][lane] - at_before[0][lane], at_after[1][lane] - at_before[1][lane]);
+        let at = [p[0][lane], p[1][lane], p[2][lane]];
+        let w = dot4(clip_w, at);
+        let inverse = 1.0 / max(w, 1e-4);
+        to[0][lane] = (dot4(clip_x, at) * inverse * 0.5 + 0.5) * uniform.size.x;
+        to[1][lane] = (0.5 - dot4(clip_y, at) * inverse * 0.5) * uniform.size.y;
+        to[2][lane] = w;
+    }
+    to
+}
+
+/// Unit vectors on the screen from the points of `from` to those of `to`.
+#[inline(always)]
+fn runs(from: &[Lane; 3], to: &[Lane; 3]) -> [Lane; 2] {
+    let mut run = [[0.0; LANES]; 2];
+    for lane in 0..LANES {
+        let (dx, dy) = (to[0][lane] - from[0][lane], to[1][lane] - from[1][lane]);
         let length = (dx * dx + dy * dy).sqrt();
         let inverse = if length > 1e-4 { 1.0 / length } else { 0.0 };
         run[0][lane] = dx * inverse;
         run[1][lane] = if length > 1e-4 { dy * inverse } else { 1.0 };
     }
-    let mut tangent_squared = [0.0; LANES];
-    let mut eye_squared = [0.0; LANES];
-    for axis in 0..3 {
-        for lane in 0..LANES {
-            let (t, v) = (after[axis][lane] - before[axis][lane], eye[axis] - here[axis][lane]);
-            tangent_squared[lane] += t * t;
-            eye_squared[lane] += v * v;
-            (tangent[axis][lane], to_eye[axis][lane]) = (t, v);
-        }
-    }
-    for lane in 0..LANES {
-        tangent_squared[lane] = 1.0 / max(tangent_squared[lane].sqrt(), 1e-9);
-        eye_squared[lane] = 1.0 / max(eye_squared[lane].sqrt(), 1e-3);
-    }
-    for axis in 0..3 {
-        for lane in 0..LANES {
-            tangent[axis][lane] *= tangent_squared[lane];
-            to_eye[axis][lane] *= eye_squared[lane];
-        }
-    }
-    let mut turn = [0.0; LANES];
-    for lane in 0..LANES {
-        let [first, second] = [(&before, &here), (&here, &after)]
-            .map(|(from, to)| [0, 1, 2].map(|axis| to[axis][lane] - from[axis][lane]));
-        turn[lane] = turn_variance(first, second);
-    }
+    run
+}
+
+/// The light that points reflect toward the eye.
+#[inline(always)]
+fn light_of(view: &View, input: &PointsIn, indices: &[usize; LANES], group: &Group) -> [Lane; 3] {
+    let uniform = view.uniform;
+    let [tangent, to_eye] = group.directions(uniform.eye.to_array());
     let mut sin_v = [0.0; LANES];
     let mut cos_v = [0.0; LANES];
     for lane in 0..LANES {
@@ -288,55 +323,64 @@ fn shade_group<const COLORED: bool>(
             + tangent[2][lane] * to_eye[2][lane];
         cos_v[lane] = max(1.0 - sin_v[lane] * sin_v[lane], 0.0).sqrt();
     }
-
-    let sum = if COLORED {
-        let pigment = pigment_of(view, &detail);
-        let mut absorption = [[0.0; LANES]; 3];
-        let look = uniform.absorption.to_array();
-        for c in 0..3 {
-            for lane in 0..LANES {
-                absorption[c][lane] = look[c] * pigment[lane];
-            }
+    let pigment = pigment_of(view, &group.detail);
+    let mut absorption = [[0.0; LANES]; 3];
+    let look = uniform.absorption.to_array();
+    for c in 0..3 {
+        for lane in 0..LANES {
+            absorption[c][lane] = look[c] * pigment[lane];
         }
-        if let Some(colours) = &input.colours {
-            let points = view.points_per_strand();
-            color(view, colours, (indices, points), &detail, &mut absorption);
-        }
-        let from = ShadedFrom {
-            here: &here,
-            tangent: &tangent,
-            to_eye: &to_eye,
-            sin_v,
-            cos_v,
-            pigment,
-            absorption: &absorption,
-            has_colours: input.colours.is_some(),
-            turn,
-            packed,
-        };
-        match &view.fibre {
-            Some(fibre) => fibre::shade(view, fibre, &from),
-            None => kajiya_kay::shade(view, &from),
-        }
-    } else {
-        [[0.0; LANES]; 3]
+    }
+    if let Some(colours) = &input.colours {
+        let points = view.points_per_strand();
+        color(view, colours, (indices, points), &group.detail, &mut absorption);
+    }
+    let from = ShadedFrom {
+        here: &group.here,
+        tangent: &tangent,
+        to_eye: &to_eye,
+        sin_v,
+        cos_v,
+        pigment,
+        absorption: &absorption,
+        has_colours: input.colours.is_some(),
+        turn: group.turns(),
+        packed: group.packed,
     };
-    let (scale, width) = (uniform.pixels_per_metre, uniform.strand_width);
+    match &view.fibre {
+        Some(fibre) => fibre::shade(view, fibre, &from),
+        None => kajiya_kay::shade(view, &from),
+    }
+}
+
+/// The points of `indices`, with their colours or black.
+#[inline(always)]
+fn shade_group<const COLORED: bool>(
+    view: &View,
+    input: &PointsIn,
+    indices: &[usize; LANES],
+) -> [ShadedPoint; LANES] {
+    let uniform = view.uniform;
+    let group = Group::gather(input, indices);
+    let at = project(uniform, &group.here);
+    let (at_before, at_after) = (project(uniform, &group.before), project(uniform, &group.after));
+    let run = runs(&at_before, &at_after);
+    let sum = if COLORED { light_of(view, input, indices, &group) } else { [[0.0; LANES]; 3] };
     // The last of fine strands fade.
-    let (fade_end, fade_slope) = (uniform.fade_end, uniform.fade_slope);
     let points_per_strand = uniform.points_per_strand.max(1);
-    let (opacity, fine) = (uniform.opacity, points_per_strand > 1);
+    let fine = points_per_strand > 1;
     let mut hash = [0.0; LANES];
     let mut half_width = [0.0; LANES];
     for lane in 0..LANES {
-        let taper = (detail[lane] & 0xff) as f32 * (1.0 / 255.0);
-        let shade = (detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
+        let taper = (group.detail[lane] & 0xff) as f32 * (1.0 / 255.0);
+        let shade = (group.detail[lane] >> 16 & 0xff) as f32 * (1.0 / 255.0);
         hash[lane] = shade * 37.0 - floor(shade * 37.0);
         let w = at[2][lane];
         let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
         let strand = indices[lane] as u32 / points_per_strand;
-        let share = saturate((fade_end - strand as f32) * fade_slope);
-        let wide = 0.5 * thin(width * taper * share * scale / max(w, 1e-3), opacity, fine);
+        let share = saturate((uniform.fade_end - strand as f32) * uniform.fade_slope);
+        let width = uniform.strand_width * taper * share * uniform.pixels_per_metre / max(w, 1e-3);
+        let wide = 0.5 * thin(width, uniform.opacity, fine);
         // A NaN point is not drawn: every comparison with it is false.
         let known = !(sum[0][lane] + sum[1][lane] + sum[2][lane]).is_nan();
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & known;
