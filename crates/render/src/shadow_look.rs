@@ -1,5 +1,6 @@
 //! What the shadows of hair depend on beside positions, and how both backends store them.
 
+use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
 use crate::{FrameInput, HairDrawing, Light, MAX_LIGHTS, ShadowSettings};
@@ -16,6 +17,8 @@ pub(crate) struct ShadowLook {
     pub extinction_scale: f32,
     /// The method and its settings.
     pub settings: ShadowSettings,
+    /// The head, at whose origin maps are anchored.
+    pub world_from_head: Affine3A,
     /// How far apart fine strands look up shadows, metres: half of the softness of the first light.
     pub reach: f32,
 }
@@ -28,8 +31,14 @@ impl ShadowLook {
             strand_width: input.look.shadow_width(input.style.strands.count()),
             extinction_scale: input.look.extinction_scale,
             settings: *input.shadow,
+            world_from_head: input.world_from_head,
             reach: key.map_or(0.0, |light| 0.5 * Light::normalized(light).softness),
         }
+    }
+
+    /// The origin of the lattices of maps, world space.
+    pub fn anchor(&self) -> Vec3 {
+        self.world_from_head.translation.into()
     }
 }
 

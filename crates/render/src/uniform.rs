@@ -165,6 +165,27 @@ impl FrameUniform {
     }
 }
 
+/// What the plain background of an image depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlainBackground {
+    size: Vec2,
+    exposure: f32,
+    top: Vec3,
+    bottom: Vec3,
+}
+
+impl PlainBackground {
+    /// That of an image.
+    pub fn of(uniform: &FrameUniform) -> Self {
+        Self {
+            size: uniform.size,
+            exposure: uniform.exposure,
+            top: uniform.background_top,
+            bottom: uniform.background_bottom,
+        }
+    }
+}
+
 /// Exponents of the two highlights: 80 and 20 (Xu et al.) at a roughness of 0.3, falling with its square.
 fn highlight_exponents(roughness: f32) -> [f32; 2] {
     let r = roughness.clamp(0.05, 1.0) / 0.3;

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use lovelock_base::memory::list_bytes;
 use lovelock_groom::{GuideFrame, Hairstyle, Strands};
 use lovelock_motion::Body;
@@ -29,7 +29,6 @@ pub(super) struct KeptInputs {
 #[derive(Debug)]
 struct HairInputs {
     style: Arc<Hairstyle>,
-    anchor: Affine3A,
     look: ShadowLook,
 }
 
@@ -69,11 +68,7 @@ impl KeptInputs {
             // Transmittance that was given is not that of the next picture.
             self.hair = None;
         } else if !same_hair {
-            self.hair = Some(HairInputs {
-                style: Arc::clone(input.style),
-                anchor: input.world_from_head,
-                look: ShadowLook::of(input),
-            });
+            self.hair = Some(HairInputs { style: Arc::clone(input.style), look: ShadowLook::of(input) });
         }
         Unchanged { body, hair }
     }
@@ -121,9 +116,7 @@ impl KeptInputs {
 
 impl HairInputs {
     fn is_of(&self, input: &FrameInput) -> bool {
-        Arc::ptr_eq(&self.style, input.style)
-            && self.anchor == input.world_from_head
-            && self.look == ShadowLook::of(input)
+        Arc::ptr_eq(&self.style, input.style) && self.look == ShadowLook::of(input)
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod inspect;
 
-use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
@@ -27,7 +26,7 @@ use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::scene_light::SceneLight;
-use crate::uniform::{FrameUniform, LightMaps};
+use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{
     ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError,
 };
@@ -489,7 +488,7 @@ impl CpuRenderer {
 #[derive(Debug, Default)]
 struct PlainTiles {
     /// What the tiles depend on.
-    of: Option<([Vec3; 2], f32, Grid)>,
+    of: Option<(PlainBackground, Grid)>,
     bytes: Vec<u8>,
     /// Whether each tile has been drawn.
     known: Vec<bool>,
@@ -498,7 +497,7 @@ struct PlainTiles {
 impl PlainTiles {
     /// Clears the tiles if the background or the size has changed.
     fn follow(&mut self, uniform: &FrameUniform, grid: &Grid) {
-        let of = Some(([uniform.background_top, uniform.background_bottom], uniform.exposure, *grid));
+        let of = Some((PlainBackground::of(uniform), *grid));
         if self.of != of {
             self.of = of;
             self.known.clear();

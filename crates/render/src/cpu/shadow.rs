@@ -55,7 +55,7 @@ impl LightShadow {
         &mut self,
         direction: Vec3,
         maps: u32,
-        (look, anchor): (&ShadowLook, Vec3),
+        look: &ShadowLook,
         strands: &Strands,
     ) -> Result<(), ShadowError> {
         // Transported instead of recomputed, so that the map does not roll while the light is dragged.
@@ -65,7 +65,7 @@ impl LightShadow {
             strand_width: look.strand_width,
             extinction_scale: look.extinction_scale,
             light: self.frame,
-            anchor,
+            anchor: look.anchor(),
             maps,
         };
         self.shadow.build(&from, &look.settings)
@@ -152,11 +152,10 @@ impl ShadowStage {
         self.passes.clear();
         let part = Stopwatch::start();
         let look = ShadowLook::of(input);
-        let anchor = input.world_from_head.translation.into();
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, (&look, anchor), stored))?;
+            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, &look, stored))?;
         self.passed("shadow/build", &part);
         self.look_up(input, drawn);
 

@@ -9,7 +9,6 @@ mod seen;
 
 use std::sync::Arc;
 
-use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
@@ -32,7 +31,7 @@ use crate::clusters::{of_casters, without_strands};
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::shadow_look::has_soft_skin;
-use crate::uniform::{FrameUniform, LightMaps};
+use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{FrameInput, FrameStats, Light, MAX_LIGHTS, RenderError};
 use flight::Flights;
 pub use flight::{Finished, MAX_IN_FLIGHT};
@@ -273,18 +272,13 @@ impl GpuRenderer {
         let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
         let figure = area.with(Area::of_points(input.camera, [width, height], body));
-        let exposure = uniform.exposure;
         let screen = ScreenInput {
             targets,
             corners: self.ground.corners(),
             area,
             hair: self.eye.layer(),
             figure: figure.widened(CELL, [width, height]),
-            background: [
-                Vec4::new(width as f32, height as f32, exposure, 0.0),
-                uniform.background_top.extend(1.0),
-                uniform.background_bottom.extend(1.0),
-            ],
+            background: PlainBackground::of(&uniform),
         };
         self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);
         let report = self.encode_output(gpu, &mut commands, output, u64::from(width) * u64::from(height));

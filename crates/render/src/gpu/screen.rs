@@ -1,6 +1,5 @@
 //! The final pixels of a picture: hair over the body over the background.
 
-use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, wgpu};
 
 use super::eye::Area;
@@ -8,6 +7,7 @@ use super::frame_resources::FrameResources;
 use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
+use crate::uniform::PlainBackground;
 
 /// Bytes of the workgroups of one kernel.
 const GROUPS_BYTES: u64 = 12;
@@ -45,8 +45,7 @@ pub(super) struct ScreenInput<'a> {
     pub hair: &'a wgpu::Buffer,
     /// The area that may contain hair or body, in whole cells.
     pub figure: Area,
-    /// The size, exposure and background colours of the picture, which determine the plain background.
-    pub background: [Vec4; 3],
+    pub background: PlainBackground,
 }
 
 /// The pixels, and the lists of those that are not plain background.
@@ -55,7 +54,7 @@ pub(super) struct Screen {
     pixels: GrowBuffer<u32>,
     /// The plain background, and what it was computed from.
     plain: GrowBuffer<u32>,
-    plain_of: Option<[Vec4; 3]>,
+    plain_of: Option<PlainBackground>,
     cells: GrowBuffer<u32>,
     /// Lists of pixels. Two lists share a buffer of the size of the picture.
     listed: GrowBuffer<u32>,

@@ -98,8 +98,8 @@ impl GpuShadowStage {
         };
         self.lights = lights.len();
         self.frames.truncate(lights.len());
-        let anchor: Vec3 = input.world_from_head.translation.into();
         let look = ShadowLook::of(input);
+        let anchor = look.anchor();
         if input.known.is_none() {
             commands.encoder().clear_buffer(&self.sum, 0, None);
         }
