@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::engine::Engine;
-use crate::scene::Scene;
-use crate::window_device::WindowDevice;
 use lovelock_project::Project;
 use lovelock_project::variants::adopt;
 use lovelock_render::{Backend, DeviceImages, FrameInput, Gpu, Image, RenderError, Renderer, StrandCount};
 
 use super::{WallCell, WallRequest};
+use crate::engine::Engine;
+use crate::scene::Scene;
+use crate::window_device::WindowDevice;
 
 /// The length of a simulated step, seconds: images of the wall are rarer than those of the window.
 const STEP_SECS: f64 = 1.0 / 30.0;

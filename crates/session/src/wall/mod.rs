@@ -9,12 +9,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
-use crate::latest::{Latest, LatestJob};
-use crate::memory::Held;
-use crate::window_device::WindowDevice;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Image;
+
+use crate::latest::{Latest, LatestJob};
+use crate::memory::Held;
+use crate::window_device::WindowDevice;
 
 /// What the wall shows.
 #[derive(Clone, Debug)]

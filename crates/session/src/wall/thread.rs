@@ -3,11 +3,6 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use crate::latest::{Job, Latest, LatestJob};
-use crate::memory::Held;
-use crate::scene::{Scene, SceneLoader};
-use crate::threads::{background_workers, lower_priority};
-use crate::window_device::WindowDevice;
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::variants::adopt;
@@ -16,6 +11,11 @@ use rayon::prelude::*;
 
 use super::cell::{Cell, lighten};
 use super::{Wall, WallCell, WallRequest};
+use crate::latest::{Job, Latest, LatestJob};
+use crate::memory::Held;
+use crate::scene::{Scene, SceneLoader};
+use crate::threads::{background_workers, lower_priority};
+use crate::window_device::WindowDevice;
 
 /// What the thread publishes.
 type Outputs = ([Latest<WallCell>; Wall::CELLS], Latest<f64>);
