@@ -7,6 +7,7 @@ use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
 use lovelock_gpu::PassTime;
 use lovelock_groom::{HairShading, Strands};
+use lovelock_picture::check_size;
 use rayon::prelude::*;
 
 use super::backdrop::{Ground, ground_simd};
@@ -30,7 +31,6 @@ use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{
     ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError,
 };
-use lovelock_picture::check_size;
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;

@@ -6,6 +6,7 @@ use glam::Vec3;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
 use lovelock_groom::Strands;
+use lovelock_picture::check_size;
 use rayon::prelude::*;
 
 use super::placed::{PlacedScene, TileScratch, copy_rows};
@@ -16,7 +17,6 @@ use crate::scene_light::NO_LIGHT;
 use crate::strand_details::StrandDetails;
 use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError};
-use lovelock_picture::check_size;
 
 /// Values from this limit on count as missing, so that sums stay finite.
 const MAX: f32 = 1e30;

@@ -1,6 +1,7 @@
 //! The hair under a pixel.
 
 use lovelock_groom::Strands;
+use lovelock_picture::check_size;
 use rayon::prelude::*;
 
 use super::{HairHit, ValueRenderer};
@@ -12,7 +13,6 @@ use crate::cpu::tile::{Grid, STRIDE, TILE};
 use crate::cpu::view::View;
 use crate::scene_light::NO_LIGHT;
 use crate::uniform::FrameUniform;
-use lovelock_picture::check_size;
 
 /// The largest distance of hair from the pixel, pixels.
 const REACH: f32 = 4.0;

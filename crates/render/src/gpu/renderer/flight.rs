@@ -9,13 +9,13 @@ use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{Gpu, GpuError, PassTimer, wgpu};
+use lovelock_picture::check_size_for;
 use lovelock_shadow::SUM_WORDS;
 
 use super::{GpuRenderer, ListsOfFrame, Output, number_of_bytes};
 use crate::gpu::present::{HEAD_BYTES, MAX_LISTS};
 use crate::image::{DeviceImage, DeviceImages};
 use crate::{FrameInput, FrameStats, RenderError};
-use lovelock_picture::check_size_for;
 
 /// The most frames that are prepared while the device has not finished them.
 pub const MAX_IN_FLIGHT: usize = 2;

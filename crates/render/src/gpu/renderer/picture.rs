@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{GpuError, PassTime, PassTimer, Readback, Traffic};
+use lovelock_picture::check_size_for;
 
 use super::{GpuRenderer, ListsOfFrame, MAX_ATTEMPTS, Output, number_of_bytes};
 use crate::gpu::present::{HEAD_BYTES, MAX_LISTS};
 use crate::{FrameInput, FrameStats, Picture, RenderError};
-use lovelock_picture::check_size_for;
 
 impl GpuRenderer {
     /// Renders `input` at `width` by `height` pixels and reads the picture back.
