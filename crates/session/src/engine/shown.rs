@@ -7,7 +7,6 @@ use lovelock_record::TakeFrame;
 
 use super::Engine;
 use crate::snapshot::FrameSnapshot;
-use crate::stats::StageTimes;
 use lovelock_base::clock::Stopwatch;
 
 /// The last two steps of a simulation, for interpolation. It only reads the simulation, so it does not affect its state.

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use lovelock_groom::Strands;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Light, Picture, Renderer};
+use lovelock_render::{Picture, Renderer};
 use lovelock_shadow::{LightFrame, ShadowInput};
 
 use super::hair::{Hair, LitHair};
