@@ -139,10 +139,10 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     if (!(abs(area) > 0.0 && abs(area) < 1e30)) {
         return;
     }
-    let first_pixel = vec2f(eye.area.xy) - origin;
+    let first_pixel = vec2f(eye.corner) - origin;
     // Whole pixels: the last one of the area begins at its edge less one.
     let low = max(floor(min(a, min(b, c))), first_pixel);
-    let high = min(max(a, max(b, c)), first_pixel + vec2f(eye.area.zw) - 1.0);
+    let high = min(max(a, max(b, c)), first_pixel + vec2f(eye.size) - 1.0);
     if (!(low.x <= high.x && low.y <= high.y)) {
         return;
     }
@@ -206,7 +206,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
             middle /= middle.x + middle.y + middle.z;
             let depth = dot(middle, depth_of);
             let pixel = vec2u(vec2i(i32(origin.x) + x, i32(origin.y) + row));
-            let place = pixel - eye.area.xy;
+            let place = pixel - eye.corner;
             let seen = inside & (vec4f(depth) >= textureLoad(depths, place, 0));
             if (!any(seen)) {
                 continue;
@@ -228,7 +228,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 let gain = max(even + slope * found.y, 0.0) * own_shadow(quad, layer, cos_view, u, t);
                 color = (lower + (upper - lower) * t) * gain;
             }
-            take(place.y * eye.area.z + place.x, Fragment(depth, alpha, seen, color, hash, middle_distance, pixel));
+            take(place.y * eye.size.x + place.x, Fragment(depth, alpha, seen, color, hash, middle_distance, pixel));
         }
     }
 }

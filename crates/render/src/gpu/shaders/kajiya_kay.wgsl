@@ -31,8 +31,8 @@ fn strand_light(t: vec3f, l: vec3f, v: vec3f, color: StrandColor, specular: f32,
     // cos(theta_l + theta_v + 2 shift), shift +0.06 for the first and -0.11 for the second highlight.
     let cos_sum = cos_l * cos_v - sin_l * sin_v;
     let sin_sum = sin_l * cos_v + cos_l * sin_v;
-    let first = pow(max(cos_sum * 0.99281 - sin_sum * 0.11971, 0.0), frame.highlights.z);
-    let second = pow(max(cos_sum * 0.97590 + sin_sum * 0.21823, 0.0), frame.highlights.w);
+    let first = pow(max(cos_sum * 0.99281 - sin_sum * 0.11971, 0.0), frame.primary_exponent);
+    let second = pow(max(cos_sum * 0.97590 + sin_sum * 0.21823, 0.0), frame.secondary_exponent);
     // Light that passes nearly straight through: only if the light is behind the strand.
     let across_l = l - t * sin_l;
     let across_v = v - t * sin_v;
@@ -43,8 +43,8 @@ fn strand_light(t: vec3f, l: vec3f, v: vec3f, color: StrandColor, specular: f32,
     // Light that has passed through other hair is more coloured with depth.
     let deep = pow(color.body, vec3f(1.0 + 0.45 * (1.0 - lit)));
     let diffuse = 0.32 * cos_l * deep;
-    let reflected = 0.13 * frame.highlights.x * first * front * vec3f(1.0)
-        + 0.40 * frame.highlights.y * second * front * color.second;
+    let reflected = 0.13 * frame.primary_strength * first * front * vec3f(1.0)
+        + 0.40 * frame.secondary_strength * second * front * color.second;
     let passed = 0.50 * behind * pow(max(cos_sum, 0.0), 4.0) * color.through;
     return diffuse + specular * (reflected + passed);
 }
