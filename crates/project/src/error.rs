@@ -217,3 +217,22 @@ impl fmt::Display for Problem {
         write!(f, "{}: {}", self.place.label(), self.message)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use lovelock_record::TakeError;
+
+    use super::*;
+
+    #[test]
+    fn errors_of_other_crates_keep_their_kind_and_their_file() {
+        let size = ProjectError::from(lovelock_picture::check_size(0, 1).expect_err("refused"));
+        assert_eq!((size.exit_code(), size.file()), (2, None));
+        assert!(size.to_string().contains("0x1"), "{size}");
+        let path = PathBuf::from("dance.take");
+        let busy = ProjectError::from(TakeError::Busy { path: path.clone() });
+        assert_eq!((busy.exit_code(), busy.file()), (2, Some(path.as_path())));
+        let lost = ProjectError::from(TakeError::Stopped { path: path.clone(), kept: 0 });
+        assert_eq!((lost.exit_code(), lost.file()), (1, Some(path.as_path())), "control: work that failed");
+    }
+}
