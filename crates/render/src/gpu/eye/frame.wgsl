@@ -2,7 +2,7 @@
 
 struct EyeUniform {
     // First column and row of the area.
-    corner: vec2u,
+    @align(16) corner: vec2u,
     // Columns and rows of the area.
     size: vec2u,
     // Segments, and the capacity of the list of fragments.
