@@ -57,7 +57,7 @@ impl Work<'_> {
             report.files.transmittance_error =
                 self.point_map(&name, maps::TRANSMITTANCE_ERROR, &error, (values, &input))?;
         }
-        if let Ok(truth) = &references.truths.0[against.common].transmittance {
+        if let Ok(truth) = &references.truths.0[references.common].transmittance {
             report.transmittance_common =
                 Some(draw::transmittance_error(&drawn.transmittance, truth, references.points));
         }
