@@ -41,7 +41,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let data = source.into_bytes(name)?;
     let file = Bytes::new(name, &data);
     file.header(HEADER)?;
-    let (strands, points) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
+    let (strands, mut points) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
     let (flags, default_segments) = (file.u32(12), file.u32(16));
     if flags & POINTS == 0 {
         return Err(file.malformed(12, format!("flags {flags:#x}"), "bit 1 set: an array of points"));
@@ -63,6 +63,11 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         Some(array) => segment_counts(array).map(|segments| u64::from(segments) + 1).sum(),
         None => strands * (u64::from(default_segments) + 1),
     };
+    // Writers that are cut off leave no true number; the strands say how many points there are.
+    if segments.is_some() && counted > 0 && [0, u64::from(u32::MAX)].contains(&points) {
+        notes.push(format!("The header states {points} points; the {counted} of the strands were read."));
+        points = counted;
+    }
     if counted != points {
         let by = if segments.is_some() { "the segments array" } else { "the default number of segments" };
         return Err(file.malformed(

@@ -107,6 +107,25 @@ fn strands_of_no_size_beside_the_groom_are_dropped() {
 }
 
 #[test]
+fn a_header_without_the_number_of_points_has_those_of_the_strands() {
+    let strand = |points: usize| (0..points).map(|i| [i as f32, 0.0, 0.0]).collect();
+    let bytes = YukselFile::new(vec![strand(3), strand(4)]).bytes();
+    for number in [0, u32::MAX] {
+        let mut bytes = bytes.clone();
+        bytes[8..12].copy_from_slice(&number.to_le_bytes());
+        let file = load_hair_bytes("by hand", &bytes).expect("hair");
+        assert_eq!((file.first_point.as_slice(), file.notes.len()), (&[0, 3, 7][..], 1), "{:?}", file.notes);
+        // Where the points are not there, the file is refused.
+        bytes.truncate(bytes.len() - 1);
+        assert!(refusal(&bytes).contains("7 points"), "{}", refusal(&bytes));
+    }
+    // Negative control: another number contradicts the strands.
+    let mut bytes = bytes;
+    bytes[8] = 8;
+    assert!(refusal(&bytes).contains("found 8 points; must be 7"), "{}", refusal(&bytes));
+}
+
+#[test]
 fn other_files_are_refused() {
     for (bytes, found) in [
         (b"".as_slice(), "a file of 0 bytes"),
