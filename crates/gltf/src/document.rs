@@ -46,9 +46,16 @@ pub struct Node {
     pub rotation: Option<[f32; 4]>,
     pub scale: Option<[f32; 3]>,
     pub weights: Option<Vec<f32>>,
+    pub extensions: BTreeMap<String, Value>,
 }
 
 impl Node {
+    /// Whether the node is not hidden by `KHR_node_visibility`. A hidden node also hides those below it.
+    pub fn is_visible(&self) -> bool {
+        let visibility = self.extensions.get("KHR_node_visibility");
+        visibility.and_then(|of| of.get("visible")).and_then(Value::as_bool).unwrap_or(true)
+    }
+
     /// Scale, rotation as stored, and translation of a node without a matrix.
     fn parts(&self) -> (Vec3, Quat, Vec3) {
         (

@@ -272,8 +272,9 @@ impl<'a> CrateLayer<'a> {
     }
 }
 
-impl Layer for CrateLayer<'_> {
-    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
+impl CrateLayer<'_> {
+    /// The prims of some types with their types, and whether they are on the stage.
+    fn of_types(&mut self, types: &[&str]) -> Result<Vec<(usize, String, bool)>, UsdError> {
         let mut found = Vec::new();
         for node in 0..self.nodes.len() as u32 {
             if self.nodes[node as usize].spec_type != PRIM {
@@ -288,13 +289,24 @@ impl Layer for CrateLayer<'_> {
                 on = self.is_on(at)?;
                 at = self.nodes[at as usize].parent;
             }
-            if on {
-                found.push((node as usize, kind));
-            }
+            found.push((node as usize, kind, on));
         }
+        Ok(found)
+    }
+}
+
+impl Layer for CrateLayer<'_> {
+    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
+        let all = self.of_types(types)?;
+        let mut found: Vec<(usize, String)> =
+            all.into_iter().filter_map(|(prim, kind, is_on)| is_on.then_some((prim, kind))).collect();
         // Names in place of whole paths: a path may repeat a long name at every level.
         found.sort_by_cached_key(|(prim, _)| self.names(*prim));
         Ok(found)
+    }
+
+    fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError> {
+        Ok(self.of_types(types)?.iter().filter(|(.., is_on)| !is_on).count())
     }
 
     fn prim_at(&mut self, path: &str) -> Option<usize> {

@@ -10,6 +10,13 @@ pub trait Layer {
     /// If the file contradicts itself, as in all methods.
     fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError>;
 
+    /// Number of prims of some types that are not on the stage: inactive ones, classes, and those that are only an `over`, with what is
+    /// below them.
+    ///
+    /// # Errors
+    /// See [`Layer::prims`].
+    fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError>;
+
     /// The prim at a path, active or not.
     fn prim_at(&mut self, path: &str) -> Option<usize>;
 

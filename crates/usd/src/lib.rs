@@ -9,14 +9,18 @@ mod crate_samples;
 mod crate_tokens;
 mod crate_value;
 mod error;
+mod imageable;
 mod layer;
+mod primvar;
 mod source;
 mod text;
 mod transform;
 mod value;
 
 pub use error::UsdError;
+pub use imageable::{Undrawn, undrawn, visibility_changes};
 pub use layer::{Around, Layer};
+pub use primvar::{Primvar, primvar};
 pub use source::Source;
 pub use transform::{StageSpace, own_transform, stage_space, to_stage, transform_times};
 pub use value::Value;

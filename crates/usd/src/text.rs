@@ -116,13 +116,14 @@ fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
     Ok(())
 }
 
-impl Layer for TextLayer {
-    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
-        let kind = |path: &Path| match self.field_of(path, "typeName") {
-            Some(Sdf::Token(name)) if types.contains(&name.as_str()) => Some(name.as_str().to_owned()),
+impl TextLayer {
+    /// The prims of some types with their types, and whether they are on the stage.
+    fn of_types<'a>(&'a self, types: &'a [&str]) -> impl Iterator<Item = (usize, &'a str, bool)> {
+        let kind = move |path: &Path| match self.field_of(path, "typeName") {
+            Some(Sdf::Token(name)) if types.contains(&name.as_str()) => Some(name.as_str()),
             _ => None,
         };
-        let is_on = |path: &Path| {
+        let is_on = move |path: &Path| {
             let mut at = Some(path.clone());
             std::iter::from_fn(|| {
                 let path = at.take()?;
@@ -134,8 +135,18 @@ impl Layer for TextLayer {
             .all(|path| !self.is_off(&path))
         };
         let prims = self.prims.iter().enumerate();
-        let of_types = prims.filter_map(|(prim, path)| Some((prim, kind(path)?)));
-        Ok(of_types.filter(|(prim, _)| is_on(&self.prims[*prim])).collect())
+        prims.filter_map(move |(prim, path)| Some((prim, kind(path)?, is_on(path))))
+    }
+}
+
+impl Layer for TextLayer {
+    fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError> {
+        let on = self.of_types(types).filter(|(.., is_on)| *is_on);
+        Ok(on.map(|(prim, kind, _)| (prim, kind.to_owned())).collect())
+    }
+
+    fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError> {
+        Ok(self.of_types(types).filter(|(.., is_on)| !is_on).count())
     }
 
     fn prim_at(&mut self, path: &str) -> Option<usize> {
