@@ -418,6 +418,9 @@ pub(crate) struct Convert {
         help = up_axis_help("IN")
     )]
     pub(crate) up: UpAxis,
+    /// Include strands that IN hides, and guides or proxies that stand for other strands.
+    #[arg(long)]
+    pub(crate) include_hidden: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use glam::Vec3;
+use lovelock_base::watch::Watch;
 use lovelock_groom::{
-    HAIR_FORMATS, HairFile, HairFormat, ImportSettings, SURE, Unit, UpAxis, guess_units, load_hair,
+    HAIR_FORMATS, HairFile, HairFormat, ImportSettings, SURE, Unit, UpAxis, guess_units, load_hair_watched,
 };
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
@@ -33,7 +34,13 @@ pub struct ConvertReport {
 ///
 /// # Errors
 /// A file that cannot be read, a name of no such format, hair that the format cannot hold, and a full disk.
-pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, ProjectError> {
+pub fn convert(
+    input: &Path,
+    out: &Path,
+    unit: Unit,
+    up: UpAxis,
+    include_hidden: bool,
+) -> Result<ConvertReport, ProjectError> {
     let format = HairFormat::of_path(out).filter(|_| has_extension(out, &written_extensions()));
     let write = format.and_then(|format| format.write);
     if write.is_none() && CurveFormat::of(out).is_none() {
@@ -43,7 +50,8 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
             written_extensions().join(", .")
         )));
     }
-    let read = load_hair(input).map_err(|error| ProjectError::input(input, error))?;
+    let read = load_hair_watched(input, include_hidden, &Watch::default())
+        .map_err(|error| ProjectError::input(input, error))?;
     let settings = ImportSettings { unit, up, ..ImportSettings::default() };
     let hair = read.in_metres(&settings);
     let mut notes = hair.notes.clone();
@@ -130,6 +138,8 @@ fn linear_of(v: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_groom::load_hair;
+
     use super::*;
 
     #[test]
@@ -191,7 +201,7 @@ mod tests {
             ("l.npz", Unit::Metre, UpAxis::Y),
             ("m.ply", Unit::Metre, UpAxis::Y),
         ] {
-            let report = convert(&from, &at(name), unit, up).expect(name);
+            let report = convert(&from, &at(name), unit, up, false).expect(name);
             assert_eq!((report.strands, report.points), (2, 4), "{name}");
             from = at(name);
         }
@@ -201,7 +211,7 @@ mod tests {
             assert!((a.y - b.y).abs() < 1e-4 && (a.length() - b.length()).abs() < 1e-4, "{a} for {b}");
         }
         for name in ["k.data", "k.stl", "k.gz"] {
-            let error = convert(&from, &at(name), Unit::Auto, UpAxis::Auto).expect_err("not written");
+            let error = convert(&from, &at(name), Unit::Auto, UpAxis::Auto, false).expect_err("not written");
             assert!(error.to_string().contains(".hair, .tfx, .glb, .gltf, .obj, .pbrt"), "{error}");
             assert_eq!(error.exit_code(), 2, "{error}");
         }

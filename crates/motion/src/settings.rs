@@ -106,6 +106,8 @@ pub struct BodySettings {
     pub facing: Facing,
     /// The hair that is part of the model.
     pub own_hair: OwnHair,
+    /// Also read meshes that the file hides, and guides or proxies that stand for other meshes.
+    pub include_hidden: bool,
 }
 
 /// How the root position of a BVH row is interpreted.
@@ -241,6 +243,11 @@ impl Settings for BodySettings {
             field!(Self, own_hair),
             "Model's hair",
             "Draws the model's own hair as a part of the body.",
+        ),
+        Setting::switch(
+            field!(Self, include_hidden),
+            "Include hidden and guides",
+            "Draws meshes that the file hides, and guides or proxies that stand for other meshes.",
         ),
     ];
 }

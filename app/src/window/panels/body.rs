@@ -63,7 +63,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
         }
         settings(
             ui,
-            &["unit", "up", "facing", "own_hair"],
+            &["unit", "up", "facing", "own_hair", "include_hidden"],
             &mut project.body.settings,
             &BodySettings::default(),
         );

@@ -110,7 +110,12 @@ fn imported(ui: &mut Ui, hair: &mut HairSection) {
     let default = ImportSettings::default();
     let import = &mut hair.import;
     unit(ui, &mut import.unit, default.unit);
-    settings(ui, &["up", "facing", "fit_scale", "snap_roots", "wisps", "points_per_guide"], import, &default);
+    settings(
+        ui,
+        &["up", "facing", "include_hidden", "fit_scale", "snap_roots", "wisps", "points_per_guide"],
+        import,
+        &default,
+    );
     section(ui, "Placement", false, |ui| {
         settings(ui, &["placement.scale", "placement.turn", "placement.offset_m"], import, &default);
     });
@@ -121,7 +126,7 @@ fn imported(ui: &mut Ui, hair: &mut HairSection) {
 pub(crate) fn curves(ui: &mut Ui, import: &mut ImportSettings, notes: &[String]) {
     let default = ImportSettings::default();
     unit(ui, &mut import.unit, default.unit);
-    settings(ui, &["up"], import, &default);
+    settings(ui, &["up", "include_hidden"], import, &default);
     for text in notes {
         note(ui, text.as_str());
     }

@@ -20,6 +20,8 @@ pub struct ImportSettings {
     pub up: UpAxis,
     /// Axis of the file that the face looks along.
     pub facing: Facing,
+    /// Also import strands that the file hides, and guides or proxies that stand for other strands.
+    pub include_hidden: bool,
     /// Scale the groom evenly so that its roots fit the scalp; else it keeps the size that the unit gives it.
     pub fit_scale: bool,
     /// Move each strand as a whole by the gap that is left between its root and the skin.
@@ -58,6 +60,7 @@ impl Default for ImportSettings {
             unit: Unit::Auto,
             up: UpAxis::Auto,
             facing: Facing::Auto,
+            include_hidden: false,
             fit_scale: true,
             snap_roots: true,
             wisps: 0,
@@ -131,6 +134,11 @@ impl Settings for ImportSettings {
             field!(Self, facing),
             "Facing",
             "The axis of the file along which the face looks.",
+        ),
+        Setting::switch(
+            field!(Self, include_hidden),
+            "Include hidden and guides",
+            "Imports strands that the file hides, and guides or proxies that stand for other strands.",
         ),
         Setting::switch(
             field!(Self, fit_scale),

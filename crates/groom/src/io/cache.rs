@@ -75,11 +75,12 @@ impl std::fmt::Debug for CurveCache {
 const NONE: usize = usize::MAX;
 
 impl CurveCache {
-    /// Opens a file. A unit or an up axis that is `Auto` is that of the file, or guessed.
+    /// Opens a file. A unit or an up axis that is `Auto` is that of the file, or guessed. Strands that are hidden at the first time are
+    /// left out, unless `include_hidden` is set.
     ///
     /// # Errors
     /// As [`load_hair`](super::load_hair), for files of other formats, and for curves whose number or points change over time.
-    pub fn open(path: &Path, unit: Unit, up: UpAxis) -> Result<Self, HairFileError> {
+    pub fn open(path: &Path, unit: Unit, up: UpAxis, include_hidden: bool) -> Result<Self, HairFileError> {
         let name = path.display().to_string();
         let Some(((frames, raw), format)) = open(&name, path)? else {
             return Err(HairFileError::Malformed {
@@ -91,6 +92,7 @@ impl CurveCache {
         };
         let frames = frames?;
         let whole = raw.points.len();
+        let raw = raw.settled(&name, include_hidden)?;
         let guides = raw.left_out.clone();
         let mut kept = Vec::new();
         let mut hair = clean_keeping(&name, format, raw, Some(&mut kept))?;

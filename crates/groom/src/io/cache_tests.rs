@@ -82,7 +82,8 @@ fn curves_that_cannot_be_played_say_why_and_are_a_still_hairstyle() {
             assert!(said.contains(name) && said.contains("number of points changes"), "{said}");
             assert!(said.contains("cannot be played") && said.contains("still hairstyle"), "{said}");
             assert_eq!(said.lines().count(), 1, "{said}");
-            let error = CurveCache::open(&path, Unit::Auto, UpAxis::Auto).expect_err("refused").to_string();
+            let error =
+                CurveCache::open(&path, Unit::Auto, UpAxis::Auto, false).expect_err("refused").to_string();
             assert!(said.starts_with(&error), "{error}");
         } else {
             assert!(
@@ -105,7 +106,7 @@ fn curves_that_cannot_be_played_say_why_and_are_a_still_hairstyle() {
 fn points_between_the_samples_of_their_prim_move_while_another_prim_has_a_sample() {
     let (_folder, at) = folder();
     write_usd(&at("a.usda"), " = [2]");
-    let mut cache = CurveCache::open(&at("a.usda"), Unit::Auto, UpAxis::Auto).expect("curves");
+    let mut cache = CurveCache::open(&at("a.usda"), Unit::Auto, UpAxis::Auto, false).expect("curves");
     assert_eq!(cache.times(), [0.0, 0.5, 1.0]);
     let mut points = Vec::new();
     for (secs, wanted) in [
@@ -139,7 +140,7 @@ fn an_archive_that_states_its_unit_is_not_guessed() {
         // 0.1 units between points, 39 of them: nearly 9 m long, which is no length of hair.
         let guessed = guess_units(&hair);
         assert_eq!(guessed.metres_per_unit == 1.0, stated, "{name}: {guessed:?}");
-        let cache = CurveCache::open(&path, Unit::Auto, UpAxis::Auto).expect("curves");
+        let cache = CurveCache::open(&path, Unit::Auto, UpAxis::Auto, false).expect("curves");
         let [unit, up] = [&cache.notes()[0], &cache.notes()[1]];
         assert_eq!(
             unit.contains("read from the file") && up.contains("read from the file"),
@@ -147,7 +148,7 @@ fn an_archive_that_states_its_unit_is_not_guessed() {
             "{unit} {up}"
         );
         assert_eq!(unit.contains("guessed"), !stated, "{unit}");
-        let set = CurveCache::open(&path, Unit::Centimetre, UpAxis::Z).expect("curves");
+        let set = CurveCache::open(&path, Unit::Centimetre, UpAxis::Z, false).expect("curves");
         assert_eq!(set.notes()[..2], ["Unit: one centimetre, as set.", "Up axis: Z, as set."]);
     }
 }
@@ -170,7 +171,7 @@ fn curves_under_a_turning_transform_move_along_circles() {
                 uniform token[] xformOpOrder = [\"xformOp:rotateZ\"]\n";
     let metadata = " metersPerUnit = 1\n upAxis = \"Y\"\n timeCodesPerSecond = 10\n";
     write_stage(&at("turns.usda"), metadata, &format!("{STILL}{turn}"));
-    let mut cache = CurveCache::open(&at("turns.usda"), Unit::Auto, UpAxis::Auto).expect("curves");
+    let mut cache = CurveCache::open(&at("turns.usda"), Unit::Auto, UpAxis::Auto, false).expect("curves");
     assert_eq!(cache.times(), [0.0, 1.0]);
     let mut points = Vec::new();
     for (secs, degrees) in [(-1.0, 0.0_f32), (0.0, 0.0), (0.5, 45.0), (0.25, 22.5), (1.0, 90.0), (2.0, 90.0)]
@@ -198,7 +199,7 @@ fn a_unit_that_a_stage_does_not_state_is_not_said_to_be_read_from_it() {
         ("unit.usda", " metersPerUnit = 0.01\n", true, false),
     ] {
         write_stage(&at(name), metadata, moves);
-        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto).expect("curves");
+        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto, false).expect("curves");
         let [unit, up] = [&cache.notes()[0], &cache.notes()[1]];
         for (note, stated) in [(unit, of_unit), (up, of_up)] {
             assert_eq!(note.contains("read from the file"), stated, "{name}: {note}");

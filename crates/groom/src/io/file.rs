@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::hidden::Hidden;
 use super::units::{Unit, UpAxis};
 use crate::StrandMarks;
 
@@ -66,6 +67,10 @@ pub(super) struct RawHair {
     /// Which points of the file are here, if the reader left some out.
     pub(super) left_out: Option<Vec<bool>>,
     pub(super) marks: StrandMarks,
+    /// Why each strand is hidden; may be shorter than the strands, of which the others are drawn.
+    pub(super) hidden: Vec<Option<Hidden>>,
+    /// Whether values that are not finite are those of curves that state none.
+    pub(super) lacks_values: bool,
 }
 
 impl RawHair {
@@ -89,6 +94,8 @@ impl RawHair {
             writer: None,
             left_out: None,
             marks: StrandMarks::default(),
+            hidden: Vec::new(),
+            lacks_values: false,
         }
     }
 }

@@ -79,18 +79,22 @@ impl HairFormat {
 /// The file cannot be read, has no known format, contradicts itself, ends early, or holds no strand that can be
 /// drawn. Memory is allocated only after the counts in the file have been compared with its size.
 pub fn load_hair(path: &Path) -> Result<HairFile, HairFileError> {
-    load_hair_watched(path, &Watch::default())
+    load_hair_watched(path, false, &Watch::default())
 }
 
-/// As [`load_hair`]. Reports to `watch`, and stops when it says so.
+/// As [`load_hair`]; with `include_hidden` strands that the file hides are read, too. Reports to `watch`, and stops when it says so.
 ///
 /// # Errors
 /// As [`load_hair`], and if the load is cancelled.
-pub fn load_hair_watched(path: &Path, watch: &Watch) -> Result<HairFile, HairFileError> {
+pub fn load_hair_watched(
+    path: &Path,
+    include_hidden: bool,
+    watch: &Watch,
+) -> Result<HairFile, HairFileError> {
     let name = path.display().to_string();
     // The start is checked before the rest is read, so that a film dropped by mistake is refused at once.
     let source = Source::open_watched(&name, path, watch)?;
-    load(&name, source)
+    load(&name, source, include_hidden)
 }
 
 /// Reads a hair file that is in memory; `name` is for messages.
@@ -98,10 +102,10 @@ pub fn load_hair_watched(path: &Path, watch: &Watch) -> Result<HairFile, HairFil
 /// # Errors
 /// As [`load_hair`], except for reading.
 pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileError> {
-    load(name, Source::Memory(data))
+    load(name, Source::Memory(data), false)
 }
 
-fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
+fn load(name: &str, source: Source<'_>, include_hidden: bool) -> Result<HairFile, HairFileError> {
     let start = source.start();
     let Some(format) = HairFormat::of_start(name, start) else {
         return Err(unknown(name, start));
@@ -111,12 +115,12 @@ fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
         let start = start[..start.len().min(4)].to_vec();
         let data = source.into_bytes(name)?;
         return match (format.read)(name, Source::Memory(&data)) {
-            Ok(raw) => clean(name, format, raw),
+            Ok(raw) => clean(name, format, raw.settled(name, include_hidden)?),
             // What is said of another format than that of the name would mislead.
             Err(_) => Err(unknown(name, &start)),
         };
     }
-    clean(name, format, (format.read)(name, source)?)
+    clean(name, format, (format.read)(name, source)?.settled(name, include_hidden)?)
 }
 
 /// The error for a file whose start fits no format, or not one of its name.

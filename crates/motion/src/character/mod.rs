@@ -3,6 +3,7 @@
 mod axes;
 mod draft;
 mod hair;
+mod hidden;
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -10,6 +11,7 @@ use crate::{Body, Clip};
 
 pub(crate) use draft::{Axes, Draft};
 pub(crate) use hair::{WornHair, names_hair};
+pub(crate) use hidden::{Hidden, HiddenMeshes};
 
 /// A character file: a body, its clips, and what was lost.
 #[derive(Clone, Debug, Default)]

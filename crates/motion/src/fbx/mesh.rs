@@ -7,8 +7,9 @@ use glam::{Affine3A, Vec3};
 use ufbx::{BlendShape, Mesh, Node, Scene, SkinDeformer};
 
 use super::nodes::Nodes;
+use super::visible::Visibility;
 use super::{affine, vec3};
-use crate::character::WornHair;
+use crate::character::{HiddenMeshes, WornHair};
 use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 use crate::{BodySettings, MotionError};
 
@@ -55,22 +56,17 @@ impl Reader<'_> {
         mut self,
         scene: &Scene,
         settings: BodySettings,
+        hidden: &mut HiddenMeshes,
         notes: &mut Vec<String>,
     ) -> Result<(), MotionError> {
-        let mut hidden = 0;
+        let visibility = Visibility::new(scene);
         let mut textured = 0;
         let mut parts: Vec<(&Node, &Mesh)> = Vec::new();
         for node in &scene.nodes {
             let Some(mesh) = node.mesh.as_ref().filter(|mesh| mesh.num_triangles > 0) else { continue };
-            if node.visible {
+            if hidden.reads(visibility.hidden(node)) {
                 parts.push((node, mesh));
-            } else {
-                hidden += 1;
             }
-        }
-        if hidden > 0 {
-            let meshes = counted(hidden, "mesh", "meshes");
-            notes.push(format!("left out, because hidden in the file: {meshes}"));
         }
         let mut worn = WornHair::new(settings);
         for &(node, mesh) in &parts {

@@ -7,6 +7,7 @@ mod clip;
 mod mesh;
 mod nodes;
 mod rest;
+mod visible;
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::watch::{Cancelled, Watch};
@@ -16,7 +17,7 @@ use ufbx::{
     LoadOpts, ProgressCb, ProgressResult, Scene, SpaceConversion,
 };
 
-use crate::character::{Axes, Character, Draft, only_motion};
+use crate::character::{Axes, Character, Draft, HiddenMeshes, only_motion};
 use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
@@ -64,6 +65,7 @@ pub(crate) fn read(
     let mut surface = Surface::default();
     let mut palette = Palette::default();
     let mut morphs = mesh::MorphsOfChannels::new();
+    let mut hidden = HiddenMeshes::new(settings);
     if needs_mesh {
         let read = mesh::Reader {
             file,
@@ -73,13 +75,14 @@ pub(crate) fn read(
             morphs: &mut morphs,
             dropped: &mut dropped,
         };
-        read.all(&scene, settings, &mut notes)?;
+        read.all(&scene, settings, &mut hidden, &mut notes)?;
+        hidden.note(&mut notes);
     }
     let (mesh, skin) = surface.finish(palette);
     if needs_mesh && mesh.triangles.is_empty() {
         return Err(MotionError::Empty {
             file: file.to_owned(),
-            found: describe(&scene, bytes) + only_motion(scene.anim_stacks.len()),
+            found: describe(&scene, bytes) + &hidden.in_error() + only_motion(scene.anim_stacks.len()),
             wanted: "a mesh of triangles",
         });
     }

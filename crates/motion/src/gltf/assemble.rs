@@ -15,7 +15,7 @@ use super::{
     skin::read_skin,
     vrm::Vrm,
 };
-use crate::character::{Axes, Character, Draft, WornHair, only_motion};
+use crate::character::{Axes, Character, Draft, Hidden, HiddenMeshes, WornHair, only_motion};
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
 
@@ -72,10 +72,11 @@ pub(super) fn assemble(
     let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
     let mut surface = Surface::default();
     let mut morphs_of_node = BTreeMap::new();
+    let mut hidden = HiddenMeshes::new(settings);
     for &n in &tree.order {
         let node = &document.nodes[n];
         let Some(mesh) = node.mesh.map(|m| &document.meshes[m]) else { continue };
-        if !needs_mesh {
+        if !needs_mesh || !hidden.reads((!tree.is_visible[n]).then_some(Hidden::Invisible)) {
             continue;
         }
         let count = mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
@@ -112,9 +113,12 @@ pub(super) fn assemble(
             }
         }
     }
+    hidden.note(&mut notes);
     let (mesh, skin_data) = surface.finish(palette);
     if needs_mesh && mesh.triangles.is_empty() {
-        let found = describe_contents(document, &dropped) + only_motion(document.animations.len());
+        let found = describe_contents(document, &dropped)
+            + &hidden.in_error()
+            + only_motion(document.animations.len());
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
     let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };

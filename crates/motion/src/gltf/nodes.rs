@@ -12,6 +12,8 @@ pub(super) struct Tree {
     /// Nodes, parents first.
     pub(super) order: Vec<usize>,
     parent: Vec<Option<usize>>,
+    /// Whether each node is drawn.
+    pub(super) is_visible: Vec<bool>,
 }
 
 impl Tree {
@@ -51,7 +53,8 @@ impl Tree {
                 roots.push(top_of(joint, &claimed));
             }
         }
-        let mut tree = Self { order: Vec::new(), parent: vec![None; nodes.len()] };
+        let is_visible = nodes.iter().map(Node::is_visible).collect();
+        let mut tree = Self { order: Vec::new(), parent: vec![None; nodes.len()], is_visible };
         let mut seen = vec![false; nodes.len()];
         for root in roots {
             if root >= nodes.len() {
@@ -75,6 +78,7 @@ impl Tree {
                     *dropped.entry("node_links".into()).or_default() += 1;
                 } else {
                     self.parent[child] = Some(n);
+                    self.is_visible[child] &= self.is_visible[n];
                     stack.push(child);
                 }
             }

@@ -3,32 +3,25 @@
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, DMat4, Vec3};
-use lovelock_usd::{Layer, Value};
+use lovelock_usd::{Layer, Undrawn, Value, primvar, undrawn};
 
+use super::over_mesh::{Influences, OverMesh, Sizes};
 use super::skeleton::{Figure, OneSkeleton};
-use super::{MAX_NAMES, affine, affine_of, inherited_target, tokens};
+use super::{affine, affine_of, inherited_target, tokens};
 use crate::MotionError;
+use crate::character::Hidden;
 use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 
 /// The morph targets of each skeleton by the name of their shape.
 pub(super) type Shapes = BTreeMap<(usize, String), Vec<usize>>;
 
-/// Whether a mesh is meant to be seen: not hidden, and no stand-in for another.
-pub(super) fn is_shown(layer: &mut dyn Layer, prim: usize) -> Result<bool, MotionError> {
-    let mut at = Some(prim);
-    for _ in 0..256 {
-        let Some(prim) = at else { break };
-        let is = |value: Option<Value>, words: &[&str]| {
-            value.as_ref().and_then(Value::token).is_some_and(|token| words.contains(&token))
-        };
-        if is(layer.attribute(prim, "visibility", 1)?, &["invisible"])
-            || is(layer.attribute(prim, "purpose", 1)?, &["guide", "proxy"])
-        {
-            return Ok(false);
-        }
-        at = layer.parent(prim);
-    }
-    Ok(true)
+/// Why a prim is not drawn, if it is not.
+pub(super) fn hidden(layer: &mut dyn Layer, prim: usize) -> Result<Option<Hidden>, MotionError> {
+    let start = layer.sample_times(prim, "points")?.first().copied();
+    Ok(undrawn(layer, prim, start)?.map(|why| match why {
+        Undrawn::Invisible => Hidden::Invisible,
+        Undrawn::StandIn => Hidden::StandIn,
+    }))
 }
 
 /// Reads meshes.
@@ -70,7 +63,14 @@ impl Reader<'_> {
         {
             return Err(refuse(format!("a corner at point {wrong}; the mesh has {} points", points.len())));
         }
-        let normals = Normals::read(layer, prim, points.len(), &counts, indices.len())?;
+        let sizes = Sizes { points: points.len(), faces: counts.len(), corners: indices.len() };
+        let normals = OverMesh::normals(layer, prim, sizes)?;
+        // The colour of a material comes before display colours.
+        let material = self.shaders.color(layer, prim)?;
+        let colors = match material {
+            Some(_) => None,
+            None => OverMesh::colors(layer, prim, sizes)?,
+        };
         let left_handed =
             layer.attribute(prim, "orientation", 1)?.is_some_and(|o| o.token() == Some("leftHanded"));
         let mut corners = Corners::default();
@@ -82,7 +82,10 @@ impl Reader<'_> {
                 let [b, c] = if left_handed { [k + 1, k] } else { [k, k + 1] };
                 let triangle = [0, b, c].map(|k| {
                     let (point, corner) = at(k);
-                    corners.corner(point, 0, normals.at(face, corner, point))
+                    let of = |values: &Option<OverMesh>| values.as_ref()?.at(face, corner, point);
+                    let color = of(&colors).map_or(0, |(color, _)| color);
+                    let normal = of(&normals).map_or(Vec3::ZERO, |(_, normal)| normal.normalize_or_zero());
+                    corners.corner(point, color, normal)
                 });
                 corners.triangles.push(triangle);
             }
@@ -92,14 +95,18 @@ impl Reader<'_> {
         let skeleton = self.figure.skeletons.iter().find(|of| Some(of.prim) == skeleton);
         let weights = self.weights(layer, prim, skeleton, points.len(), metres_from_stage)?;
         let mut piece = Piece {
-            color: self.shaders.color(layer, prim)?,
+            color: material.unwrap_or(if colors.is_some() { Vec3::ONE } else { CLAY }),
             normals: std::mem::take(&mut corners.normals),
             triangles: std::mem::take(&mut corners.triangles),
             ..Piece::default()
         };
-        for &(point, _) in &corners.vertices {
+        for &(point, color) in &corners.vertices {
             piece.positions.push(points[point]);
             piece.weights.push(weights[point]);
+            if let Some(colors) = &colors {
+                let color = colors.value(color).filter(|color| color.is_finite());
+                piece.colors.push(color.unwrap_or(CLAY));
+            }
         }
         if let Some(skeleton) = skeleton {
             piece.morphs = self.shapes(layer, prim, skeleton, &corners.copies(points.len()))?;
@@ -120,17 +127,15 @@ impl Reader<'_> {
         let refuse = |problem: String| MotionError::malformed(self.file, path.clone(), problem);
         let too_many = || refuse(format!("more than {} different binds", u16::MAX));
         let most = points.saturating_mul(64).max(64);
-        let joints = layer.attribute(prim, "primvars:skel:jointIndices", most)?;
-        let joints = joints.map_or_else(Vec::new, Value::into_ints);
-        let amounts = layer.attribute(prim, "primvars:skel:jointWeights", most)?;
-        let amounts = amounts.map_or_else(Vec::new, Value::into_floats);
-        let (Some(skeleton), false) = (skeleton, joints.is_empty()) else {
+        let influences = Influences::read(layer, prim, most)?;
+        let (Some(skeleton), Some(influences)) = (skeleton, influences) else {
             // `metres_from_stage` is the first joint.
             let _ = metres_from_stage;
             let in_stage = affine_of(&lovelock_usd::to_stage(layer, prim)?);
             let bind = self.palette.add(0, in_stage).ok_or_else(too_many)?;
             return Ok(vec![VertexWeights::rigid(bind); points]);
         };
+        let Influences { joints, weights: amounts, is_constant, per_point: size } = influences;
         if joints.len() != amounts.len() {
             return Err(refuse(format!(
                 "{} joint indices and {} joint weights",
@@ -138,8 +143,8 @@ impl Reader<'_> {
                 amounts.len()
             )));
         }
-        let geometry = layer.attribute(prim, "primvars:skel:geomBindTransform", 1)?;
-        let geometry = geometry.and_then(|value| value.numbers().first_chunk::<16>().and_then(affine));
+        let geometry = primvar(layer, prim, "skel:geomBindTransform", 1)?;
+        let geometry = geometry.and_then(|found| found.values.numbers().first_chunk::<16>().and_then(affine));
         let geometry = geometry.unwrap_or(Affine3A::IDENTITY);
         // A mesh may have an order of joints of its own.
         let own = tokens(layer, prim, "skel:joints")?;
@@ -159,11 +164,6 @@ impl Reader<'_> {
                 _ => None,
             });
         }
-        let is_constant = layer
-            .field(prim, "primvars:skel:jointIndices", "interpolation")?
-            .is_some_and(|word| word.token() == Some("constant"));
-        let size = layer.field(prim, "primvars:skel:jointIndices", "elementSize")?;
-        let size = size.and_then(|size| size.numbers().first().copied()).unwrap_or(1.0) as usize;
         let per_point = match (is_constant, joints.len()) {
             (true, all) => all,
             (false, all) if points > 0 && all % points == 0 && all / points != size => all / points,
@@ -230,62 +230,6 @@ impl Reader<'_> {
     }
 }
 
-/// The normals of a mesh.
-struct Normals {
-    values: Vec<Vec3>,
-    indices: Option<Vec<i32>>,
-    per: Per,
-}
-
-enum Per {
-    None,
-    Face,
-    Corner,
-    Point,
-}
-
-impl Normals {
-    fn read(
-        layer: &mut dyn Layer,
-        prim: usize,
-        points: usize,
-        counts: &[i32],
-        corners: usize,
-    ) -> Result<Self, MotionError> {
-        for name in ["primvars:normals", "normals"] {
-            let Some(values) = layer.attribute(prim, name, corners.max(1))? else { continue };
-            let values = values.into_vectors();
-            let indices = layer.attribute(prim, &format!("{name}:indices"), corners.max(1))?;
-            let indices = indices.map(Value::into_ints);
-            let count = indices.as_ref().map_or(values.len(), Vec::len);
-            let said = layer.field(prim, name, "interpolation")?;
-            let per = match said.as_ref().and_then(Value::token) {
-                Some("faceVarying") if count == corners => Per::Corner,
-                Some("uniform") if count == counts.len() => Per::Face,
-                _ if count == points => Per::Point,
-                _ if count == corners => Per::Corner,
-                _ => continue,
-            };
-            return Ok(Self { values, indices, per });
-        }
-        Ok(Self { values: Vec::new(), indices: None, per: Per::None })
-    }
-
-    fn at(&self, face: usize, corner: usize, point: usize) -> Vec3 {
-        let k = match self.per {
-            Per::None => return Vec3::ZERO,
-            Per::Face => face,
-            Per::Corner => corner,
-            Per::Point => point,
-        };
-        let k = match &self.indices {
-            Some(indices) => indices.get(k).and_then(|&i| usize::try_from(i).ok()),
-            None => Some(k),
-        };
-        k.and_then(|k| self.values.get(k)).map_or(Vec3::ZERO, |normal| normal.normalize_or_zero())
-    }
-}
-
 /// The shaders of a stage by their paths, ascending.
 pub(super) struct Shaders(Vec<(String, usize)>);
 
@@ -298,8 +242,8 @@ impl Shaders {
         Ok(Self(shaders))
     }
 
-    /// The colour of a mesh: that of its material if it states one, otherwise its display colour.
-    fn color(&self, layer: &mut dyn Layer, prim: usize) -> Result<Vec3, MotionError> {
+    /// The colour of a mesh's material, if it states one.
+    fn color(&self, layer: &mut dyn Layer, prim: usize) -> Result<Option<Vec3>, MotionError> {
         if let Some(material) = inherited_target(layer, prim, "material:binding")? {
             let folder = layer.path(material) + "/";
             let first = self.0.partition_point(|(path, _)| *path < folder);
@@ -308,12 +252,10 @@ impl Shaders {
                     && let Some(&color) = value.into_vectors().first()
                     && color.is_finite()
                 {
-                    return Ok(color);
+                    return Ok(Some(color));
                 }
             }
         }
-        let shown = layer.attribute(prim, "primvars:displayColor", MAX_NAMES)?;
-        let shown = shown.map_or_else(Vec::new, Value::into_vectors);
-        Ok(shown.first().copied().filter(|color| color.is_finite()).unwrap_or(CLAY))
+        Ok(None)
     }
 }

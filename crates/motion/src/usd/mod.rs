@@ -5,6 +5,7 @@
 
 mod clip;
 mod mesh;
+mod over_mesh;
 mod package;
 mod skeleton;
 
@@ -12,9 +13,10 @@ use std::collections::BTreeMap;
 use std::fs::File;
 
 use glam::{Affine3A, DMat4, Mat3A, Mat4};
+use lovelock_base::words::counted;
 use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value, stage_space};
 
-use crate::character::{Axes, Character, Draft, WornHair, only_motion};
+use crate::character::{Axes, Character, Draft, HiddenMeshes, WornHair, only_motion};
 use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
 use crate::{BodySettings, MotionError};
@@ -44,8 +46,14 @@ pub(crate) fn content(file: &str, bytes: &[u8]) -> Result<FigureContent, MotionE
 }
 
 fn content_of(layer: &mut dyn Layer, is_package: bool) -> Result<FigureContent, MotionError> {
+    // Curves that are not drawn, such as guides of a groom beside a body, do not make a file hair.
+    let curves = if is_package { Vec::new() } else { layer.prims(&["BasisCurves"])? };
+    let mut are_drawn = false;
+    for &(prim, _) in curves.iter().take(MAX_LOOKED_AT) {
+        are_drawn |= mesh::hidden(layer, prim)?.is_none();
+    }
     let mut holds = |types: &[&str]| layer.prims(types).map(|prims| !prims.is_empty());
-    Ok(if !is_package && holds(&["BasisCurves"])? {
+    Ok(if are_drawn || (!curves.is_empty() && !holds(&["Mesh"])?) {
         FigureContent::Curves
     } else if holds(&["Mesh"])? {
         FigureContent::Body
@@ -95,6 +103,7 @@ pub(crate) fn read(
     let (mut surface, mut palette) = (Surface::default(), Palette::default());
     let mut shapes = BTreeMap::new();
     let mut meshes = 0;
+    let mut hidden = HiddenMeshes::new(settings);
     if needs_mesh {
         let prims = layer.prims(&["Mesh"])?;
         let shaders = mesh::Shaders::read(layer)?;
@@ -108,7 +117,7 @@ pub(crate) fn read(
             parts.push(prim);
         }
         for (prim, is_hair) in parts.into_iter().zip(worn.decide(&mut notes)) {
-            if is_hair || !mesh::is_shown(layer, prim)? {
+            if is_hair || !hidden.reads(mesh::hidden(layer, prim)?) {
                 continue;
             }
             let mut reader = mesh::Reader {
@@ -122,13 +131,25 @@ pub(crate) fn read(
             };
             reader.mesh(layer, prim, metres_from_stage)?;
         }
+        hidden.note(&mut notes);
+        match layer.undefined(&["Mesh"])? {
+            0 => {}
+            some => notes.push(format!(
+                "{} not on the stage: inactive, a class, or an `over` of nothing",
+                counted(some, "mesh is", "meshes are")
+            )),
+        }
     }
     let (mesh, skin) = surface.finish(palette);
     let animations = layer.prims(&["SkelAnimation"])?;
     if needs_mesh && mesh.triangles.is_empty() {
         return Err(MotionError::Empty {
             file: file.to_owned(),
-            found: format!("{meshes} meshes without a usable triangle{}", only_motion(animations.len())),
+            found: format!(
+                "{meshes} meshes without a usable triangle{}{}",
+                hidden.in_error(),
+                only_motion(animations.len())
+            ),
             wanted: "a mesh of triangles",
         });
     }
@@ -162,6 +183,9 @@ fn affine_of(matrix: &DMat4) -> Affine3A {
 fn tokens(layer: &mut dyn Layer, prim: usize, name: &str) -> Result<Vec<String>, UsdError> {
     Ok(layer.attribute(prim, name, MAX_NAMES)?.map_or_else(Vec::new, Value::into_tokens))
 }
+
+/// Most prims of curves whose visibility decides what a file is.
+const MAX_LOOKED_AT: usize = 1000;
 
 /// Most joints or shapes that one attribute may name.
 const MAX_NAMES: usize = 1 << 16;

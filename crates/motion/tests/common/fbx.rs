@@ -318,3 +318,86 @@ fn write_binary(node: &Node, out: &mut Vec<u8>) {
         out[start + 4 * k..start + 4 * k + 4].copy_from_slice(&(number as u32).to_le_bytes());
     }
 }
+
+/// A second mesh of a triangle, `cap`, under a node `group`, and what hides them.
+#[derive(Default)]
+pub struct Cap {
+    /// Properties of the cap and of the group: name, kind and value.
+    pub own: Vec<(&'static str, &'static str, i64)>,
+    pub group: Vec<(&'static str, &'static str, i64)>,
+    /// Whether the display layer of the cap is shown, if it is in one.
+    pub layer: Option<i64>,
+    /// `Visibility` of the cap at 0 and 1 s, if it is animated.
+    pub animated: Option<[f32; 2]>,
+    /// Whether the group holds levels of detail, of which the cap is the second.
+    pub is_level: bool,
+}
+
+/// Adds a cap to a figure.
+pub fn with_cap(mut nodes: Vec<Node>, cap: &Cap) -> Vec<Node> {
+    let of = |list: &[(&'static str, &'static str, i64)]| {
+        properties(list.iter().map(|&(name, kind, value)| p(name, kind, vec![Integer(value)])).collect())
+    };
+    let kind = if cap.is_level { "LodGroup" } else { "Null" };
+    let mut objects = vec![
+        node(
+            "Geometry",
+            vec![Integer(12), Text("cap", "Geometry"), word("Mesh")],
+            vec![
+                node("Vertices", vec![Numbers(vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0])], vec![]),
+                node("PolygonVertexIndex", vec![Integers(vec![0, 1, -3])], vec![]),
+            ],
+        ),
+        node("Model", vec![Integer(25), Text("finest", "Model"), word("Null")], vec![]),
+        node("Model", vec![Integer(24), Text("group", "Model"), word(kind)], vec![of(&cap.group)]),
+        node("Model", vec![Integer(23), Text("cap", "Model"), word("Mesh")], vec![of(&cap.own)]),
+    ];
+    let link = |child: i64, parent: i64| node("C", vec![word("OO"), Integer(child), Integer(parent)], vec![]);
+    let mut connections = vec![link(24, 0), link(25, 24), link(23, 24), link(12, 23)];
+    if cap.is_level {
+        objects.push(node(
+            "NodeAttribute",
+            vec![Integer(33), Text("", "NodeAttribute"), word("LodGroup")],
+            vec![],
+        ));
+        connections.push(link(33, 24));
+    }
+    if let Some(shown) = cap.layer {
+        objects.push(node(
+            "CollectionExclusive",
+            vec![Integer(70), Text("layer", "DisplayLayer"), word("DisplayLayer")],
+            vec![properties(vec![p("Show", "bool", vec![Integer(shown)])])],
+        ));
+        connections.push(link(23, 70));
+    }
+    if let Some(values) = cap.animated {
+        objects.push(node(
+            "AnimationCurveNode",
+            vec![Integer(66), Text("Visibility", "AnimCurveNode"), word("")],
+            vec![],
+        ));
+        objects.push(node(
+            "AnimationCurve",
+            vec![Integer(67), Text("", "AnimCurve"), word("")],
+            vec![
+                node("KeyTime", vec![Longs(vec![0, SECOND])], vec![]),
+                node("KeyValueFloat", vec![Floats(values.to_vec())], vec![]),
+                node("KeyAttrFlags", vec![Integers(vec![4])], vec![]),
+                node("KeyAttrDataFloat", vec![Floats(vec![0.0; 4])], vec![]),
+                node("KeyAttrRefCount", vec![Integers(vec![2])], vec![]),
+            ],
+        ));
+        let drive = |child: i64, parent: i64, of: &'static str| {
+            node("C", vec![word("OP"), Integer(child), Integer(parent), word(of)], vec![])
+        };
+        connections.extend([link(66, 61), drive(66, 23, "Visibility"), drive(67, 66, "d|Visibility")]);
+    }
+    for node in &mut nodes {
+        match node.name {
+            "Objects" => node.children.append(&mut objects),
+            "Connections" => node.children.append(&mut connections),
+            _ => {}
+        }
+    }
+    nodes
+}

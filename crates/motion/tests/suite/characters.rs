@@ -218,3 +218,39 @@ fn triangles_of_every_primitive_name_their_own_vertices() {
         body.mesh.triangles.iter().map(|t| body.mesh.positions[t[2] as usize].y).collect();
     assert_eq!(heights, [0.0, 2.0]);
 }
+
+#[test]
+fn meshes_of_nodes_that_are_not_visible_are_left_out_counted_and_selectable() {
+    let mut buffer = Vec::new();
+    for value in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        buffer.extend(value.to_le_bytes());
+    }
+    // Visibility of the parent and of the node with the second mesh.
+    for (parent, own, is_drawn) in
+        [(true, true, true), (false, true, false), (true, false, false), (false, false, false)]
+    {
+        let visibility = |visible: bool| {
+            format!("\"extensions\": {{ \"KHR_node_visibility\": {{ \"visible\": {visible} }} }}")
+        };
+        let document = format!(
+            "{{ \"asset\": {{ \"version\": \"2.0\" }}, \"scenes\": [{{ \"nodes\": [0, 1] }}], \"nodes\": [\
+             {{ \"mesh\": 0 }}, {{ \"children\": [2], {} }}, {{ \"mesh\": 0, {} }}],\
+             \"meshes\": [{{ \"primitives\": [{{ \"attributes\": {{ \"POSITION\": 0 }} }}] }}],\
+             \"accessors\": [{{ \"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\" }}],\
+             \"bufferViews\": [{{ \"buffer\": 0, \"byteLength\": 36 }}], \"buffers\": [{{ \"byteLength\": 36 }}] }}",
+            visibility(parent),
+            visibility(own)
+        );
+        let bytes = common::glb(document, buffer.clone());
+        let read = |include_hidden| {
+            let settings = BodySettings { include_hidden, ..BodySettings::default() };
+            lovelock_motion::load_character_bytes_with("a.glb", &bytes, None, settings)
+                .expect("a body")
+                .info()
+        };
+        let (shown, all) = (read(false), read(true));
+        assert_eq!((shown.triangles, all.triangles), (if is_drawn { 2 } else { 1 }, 2), "{parent} {own}");
+        let noted = shown.notes.iter().any(|note| note.starts_with("left out 1 hidden mesh"));
+        assert_eq!(noted, !is_drawn, "{:?}", shown.notes);
+    }
+}

@@ -6,7 +6,7 @@ use lovelock_motion::{
 };
 use lovelock_testkit::fuzz::damaged;
 
-use crate::common::fbx::{Node, Space, Value, binary, figure, text};
+use crate::common::fbx::{Cap, Node, Space, Value, binary, figure, text, with_cap};
 use crate::common::{assert_near, points_at, reads_character};
 
 const SPACES: [Space; 4] = [
@@ -164,4 +164,37 @@ fn files_cut_anywhere_are_survived() {
 fn damaged_character_fbx() {
     let nodes = figure(SPACES[1]);
     damaged("fbx", &[text(&nodes).into_bytes(), binary(&nodes)], 2000, survives);
+}
+
+#[test]
+fn hidden_meshes_are_left_out_counted_and_selectable() {
+    const INHERITS: &str = "Visibility Inheritance";
+    let off = |name: &'static str| vec![(name, if name == "Show" { "bool" } else { name }, 0)];
+    let plain = Cap::default;
+    for (what, cap, is_drawn) in [
+        ("nothing", plain(), true),
+        ("own visibility", Cap { own: off("Visibility"), ..plain() }, false),
+        ("own show", Cap { own: off("Show"), ..plain() }, false),
+        ("visibility of the group", Cap { group: off("Visibility"), ..plain() }, false),
+        ("no inheritance", Cap { group: off("Visibility"), own: off(INHERITS), ..plain() }, true),
+        ("a layer that is off", Cap { layer: Some(0), ..plain() }, false),
+        ("a layer that is on", Cap { layer: Some(1), ..plain() }, true),
+        ("hidden at first", Cap { animated: Some([0.0, 1.0]), ..plain() }, false),
+        ("shown at first", Cap { animated: Some([1.0, 0.0]), own: off("Visibility"), ..plain() }, true),
+        ("a coarser level", Cap { is_level: true, ..plain() }, false),
+    ] {
+        let nodes = with_cap(figure(SPACES[0]), &cap);
+        for bytes in [text(&nodes).into_bytes(), binary(&nodes)] {
+            let read = |include_hidden| {
+                let settings = lovelock_motion::BodySettings { include_hidden, ..Default::default() };
+                let character = lovelock_motion::load_character_bytes_with("f.fbx", &bytes, None, settings);
+                character.unwrap_or_else(|error| panic!("{what}: {error}")).info()
+            };
+            let (shown, all) = (read(false), read(true));
+            assert_eq!((shown.triangles, all.triangles), (if is_drawn { 2 } else { 1 }, 2), "{what}");
+            let noted = |notes: &[String], start: &str| notes.iter().any(|note| note.starts_with(start));
+            assert_eq!(noted(&shown.notes, "left out 1"), !is_drawn, "{what}: {:?}", shown.notes);
+            assert_eq!(noted(&all.notes, "includes 1"), !is_drawn, "{what}: {:?}", all.notes);
+        }
+    }
 }

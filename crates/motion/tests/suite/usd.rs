@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use lovelock_motion::{
-    FigureContent, MotionSettings, figure_content, load_character_bytes, load_motion_bytes,
+    BodySettings, FigureContent, MotionSettings, figure_content, load_character_bytes,
+    load_character_bytes_with, load_motion_bytes,
 };
 use lovelock_testkit::fuzz::damaged;
 
@@ -240,4 +241,96 @@ fn the_content_of_a_crate_is_found_without_reading_it_whole() {
 fn damaged_character_usd() {
     let files = [STAGE.as_bytes().to_vec(), crate_of(STAGE), package("a.usdc", &crate_of(STAGE))];
     damaged("usd figure", &files, 1500, survives);
+}
+
+/// A stage of one triangle, and another one with lines of its own and around it.
+fn two_meshes(own: &str, above: &str) -> String {
+    let mesh = |name: &str, lines: &str| {
+        format!(
+            "def Mesh \"{name}\"\n{{\nint[] faceVertexCounts = [3, 3]\nint[] faceVertexIndices = [0, 1, 2, 0, 2, 3]\n\
+             point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]\n{lines}\n}}\n"
+        )
+    };
+    format!(
+        "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\n{}def Xform \"g\"\n{{\n{above}\n{}}}\n",
+        mesh("a", ""),
+        mesh("b", own)
+    )
+}
+
+#[test]
+fn hidden_meshes_are_left_out_counted_and_selectable() {
+    let (invisible, guide) = ("token visibility = \"invisible\"", "uniform token purpose = \"guide\"");
+    for (own, above, note) in [
+        ("", "", ""),
+        (invisible, "", "1 hidden mesh"),
+        ("", invisible, "1 hidden mesh"),
+        (guide, "", "1 guide or proxy mesh"),
+        ("uniform token purpose = \"proxy\"", "", "1 guide or proxy mesh"),
+        ("", guide, "1 guide or proxy mesh"),
+        ("uniform token purpose = \"render\"", guide, ""),
+        ("token visibility.timeSamples = { 0: \"invisible\", 5: \"inherited\" }", "", "1 hidden mesh"),
+    ] {
+        let text = two_meshes(own, above);
+        let read = |include_hidden| {
+            let settings = BodySettings { include_hidden, ..BodySettings::default() };
+            load_character_bytes_with("a.usda", text.as_bytes(), None, settings).expect("a body").info()
+        };
+        let (shown, all) = (read(false), read(true));
+        let drawn = if note.is_empty() { 4 } else { 2 };
+        assert_eq!((shown.triangles, all.triangles), (drawn, 4), "{own} {above}");
+        let noted = shown.notes.iter().any(|text| text.starts_with(&format!("left out {note}")));
+        assert_eq!(noted, !note.is_empty(), "{own} {above}: {:?}", shown.notes);
+    }
+    // A body beside hidden curves is a body; all hidden is refused with the setting that helps.
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.usda");
+    let curves = format!("def BasisCurves \"c\"\n{{\n{guide}\n}}\n");
+    for (curves, wanted) in
+        [(curves.clone(), FigureContent::Body), (curves.replace(guide, ""), FigureContent::Curves)]
+    {
+        std::fs::write(&path, two_meshes("", "") + &curves).expect("a file");
+        assert_eq!(figure_content(&path).expect("USD"), Some(wanted));
+    }
+    let hidden = two_meshes("", "").replace("def Mesh \"a\"\n{", &format!("def Mesh \"a\"\n{{\n{invisible}"));
+    let hidden = hidden.replace("def Xform \"g\"\n{", &format!("def Xform \"g\"\n{{\n{invisible}"));
+    let error = load_character_bytes("a.usda", hidden.as_bytes(), None).expect_err("nothing").to_string();
+    assert!(error.contains("2 hidden meshes") && error.contains("*Include hidden and guides*"), "{error}");
+}
+
+#[test]
+fn display_colours_have_the_interpolation_that_they_state() {
+    let (r, g, b) = (Vec3::X, Vec3::Y, Vec3::Z);
+    // The colours of the second mesh at its corners, face after face.
+    for (said, values, wanted) in [
+        ("constant", "(1, 0, 0)", [r; 6]),
+        ("uniform", "(1, 0, 0), (0, 1, 0)", [r, r, r, g, g, g]),
+        ("vertex", "(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)", [r, g, b, r, b, r]),
+        ("varying", "(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)", [r, g, b, r, b, r]),
+        (
+            "faceVarying",
+            "(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 0), (0, 0, 1), (1, 0, 0)",
+            [r, g, b, g, b, r],
+        ),
+    ] {
+        let own = format!("color3f[] primvars:displayColor = [{values}] (\n interpolation = \"{said}\"\n)");
+        let indexed = "color3f[] primvars:displayColor = [(0, 0, 1), (0, 1, 0), (1, 0, 0)] (\n interpolation = \"uniform\"\n)\n\
+                       int[] primvars:displayColor:indices = [2, 1]";
+        let inherited = "color3f[] primvars:displayColor = [(1, 0, 0)]";
+        for (own, above, wanted) in [
+            (own.as_str(), "", wanted),
+            (indexed, "", [r, r, r, g, g, g]),
+            ("", inherited, [r; 6]),
+            (own.as_str(), "color3f[] primvars:displayColor = [(1, 1, 1)]", wanted),
+        ] {
+            let text = two_meshes(own, above);
+            let body = load_character_bytes("a.usda", text.as_bytes(), None).expect("a body").body;
+            let colors: Vec<Vec3> = body.mesh.triangles[2..]
+                .as_flattened()
+                .iter()
+                .map(|&v| body.mesh.colors[v as usize])
+                .collect();
+            assert_eq!(colors, wanted, "{said}: {text}");
+        }
+    }
 }

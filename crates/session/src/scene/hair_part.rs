@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use lovelock_base::watch::Watch;
 use lovelock_groom::{
     GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, StrandSet, grow, import_noted,
-    load_hair, load_hair_watched,
+    load_hair_watched,
 };
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
@@ -43,8 +44,8 @@ impl HairPart {
     }
 }
 
-/// The hair file that was read last, so that changes of the import settings do not read it again.
-pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
+/// The hair file that was read last and whether with its hidden strands, so that changes of the other import settings do not read it again.
+pub(super) type HairFileCache = Option<(Stamp, bool, Arc<HairFile>)>;
 
 impl HairKey {
     pub(super) fn of(section: &HairSection, access: &Access) -> Result<Self, Problem> {
@@ -73,15 +74,16 @@ impl HairKey {
         cache: &mut HairFileCache,
         control: &mut LoadControl<'_>,
     ) -> Result<Result<(), Problem>, ProjectError> {
-        let Self::File { stamp, .. } = self else { return Ok(Ok(())) };
-        if cache.as_ref().is_some_and(|(kept, _)| kept == stamp) {
+        let Self::File { stamp, import } = self else { return Ok(Ok(())) };
+        let hidden = import.include_hidden;
+        if cache.as_ref().is_some_and(|(kept, of_hidden, _)| kept == stamp && *of_hidden == hidden) {
             return Ok(Ok(()));
         }
         let path = stamp.path.clone();
-        let read =
-            control.read("reading the hair", [0.5, 0.6], move |watch| load_hair_watched(&path, watch))?;
+        let read = control
+            .read("reading the hair", [0.5, 0.6], move |watch| load_hair_watched(&path, hidden, watch))?;
         Ok(read
-            .map(|file| *cache = Some((stamp.clone(), Arc::new(file))))
+            .map(|file| *cache = Some((stamp.clone(), hidden, Arc::new(file))))
             .map_err(|error| Problem::not_loaded(Place::Hair, error)))
     }
 
@@ -105,8 +107,13 @@ impl HairKey {
             }
             Self::File { stamp, import } => {
                 let file = match cache {
-                    Some((kept, file)) if kept == stamp => Arc::clone(file),
-                    _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
+                    Some((kept, hidden, file)) if kept == stamp && *hidden == import.include_hidden => {
+                        Arc::clone(file)
+                    }
+                    _ => Arc::new(
+                        load_hair_watched(&stamp.path, import.include_hidden, &Watch::default())
+                            .map_err(|error| refuse(&error))?,
+                    ),
                 };
                 // Files have a size of their own.
                 let (style, moved) =

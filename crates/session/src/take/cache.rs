@@ -95,7 +95,8 @@ impl CurveInputs {
 
 /// Opens curves that move.
 fn open(path: &Path, hair: &HairSection) -> Result<CurveCache, ProjectError> {
-    let cache = CurveCache::open(path, hair.import.unit, hair.import.up)
+    let import = &hair.import;
+    let cache = CurveCache::open(path, import.unit, import.up, import.include_hidden)
         .map_err(|error| ProjectError::input(path, error))?;
     if cache.times().len() < 2 {
         let message =

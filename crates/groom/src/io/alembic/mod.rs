@@ -12,14 +12,15 @@ mod values;
 
 use glam::{DMat4, Vec3};
 use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes, metadata_value};
-use lovelock_base::words::counted;
 
 use super::HairFileError;
 use super::basis::Spread;
 use super::file::RawHair;
 use super::format::HairFormat;
 use super::frames::{FramesOrReason, OpenedFrames};
+use super::hidden::Hidden;
 use super::marks::Marks;
+use super::partial::Partial;
 use super::source::Source;
 use super::units::{Unit, UpAxis, display_from_linear};
 use objects::{CurveObject, visit};
@@ -127,11 +128,9 @@ struct Hair {
     objects: u64,
     /// Control points so far.
     controls: u64,
-    /// Width and colour of each point, while all objects have them.
-    widths: Option<Vec<f32>>,
-    colours: Option<Vec<[f32; 3]>>,
-    /// Whether each curve is a guide of Unreal's grooms, which stands for others.
-    guides: Vec<bool>,
+    /// Width and colour of each point.
+    widths: Partial<f32>,
+    colours: Partial<[f32; 3]>,
     marks: Marks,
 }
 
@@ -141,9 +140,8 @@ impl Hair {
             raw: RawHair::new(Vec::new(), Vec::new()),
             objects: 0,
             controls: 0,
-            widths: Some(Vec::new()),
-            colours: Some(Vec::new()),
-            guides: Vec::new(),
+            widths: Partial::new(f32::NAN),
+            colours: Partial::new([f32::NAN; 3]),
             marks: Marks::default(),
         }
     }
@@ -178,12 +176,13 @@ impl Hair {
         let transform = transform::to_archive(archive, object, secs)?;
         let scale = transform.determinant().abs().cbrt() as f32;
         self.add_points(archive, object, &counts, shape, transform)?;
+        let first = self.raw.point_counts.len();
         self.raw.point_counts.extend(counts.iter().map(|&count| shape.polyline_points(count) as u32));
 
-        // Widths and colours are of use only if every object has them.
-        if let Some(mut widths) = self.widths.take()
-            && let Some(values) = &object.width
-            && values::spread(
+        let widths = &mut self.widths.values;
+        let has_widths = match &object.width {
+            None => false,
+            Some(values) => values::spread(
                 archive,
                 object,
                 values,
@@ -194,13 +193,13 @@ impl Hair {
                 &mut |[v]| {
                     widths.push(v * scale);
                 },
-            )?
-        {
-            self.widths = Some(widths);
-        }
-        if let Some(mut colours) = self.colours.take()
-            && let Some(values) = &object.colour
-            && values::spread(
+            )?,
+        };
+        self.widths.end_at(self.raw.points.len(), has_widths);
+        let colours = &mut self.colours.values;
+        let has_colours = match &object.colour {
+            None => false,
+            Some(values) => values::spread(
                 archive,
                 object,
                 values,
@@ -211,12 +210,22 @@ impl Hair {
                 &mut |v: [f32; 3]| {
                     colours.push(v.map(display_from_linear));
                 },
-            )?
-        {
-            self.colours = Some(colours);
+            )?,
+        };
+        self.colours.end_at(self.raw.points.len(), has_colours);
+        let (is_invisible, changes) = object.is_invisible(archive, secs)?;
+        if changes {
+            let path = &object.path;
+            self.raw
+                .notes
+                .push(format!("{path}: visibility changes over time; that of the first time is used."));
         }
         marks::add(&mut self.marks, archive, object, &counts, secs)?;
-        self.add_guides(archive, object, counts.len())
+        if is_invisible {
+            self.raw.hide_from(first, Some(Hidden::Invisible));
+            return Ok(());
+        }
+        self.add_guides(archive, object, first)
     }
 
     fn add_points(
@@ -239,59 +248,38 @@ impl Hair {
         Ok(())
     }
 
-    /// Notes which curves are guides: one value for all, or one for each.
+    /// Marks the curves from number `first` on that are guides of Unreal's grooms: one value for all, or one for each.
     fn add_guides(
         &mut self,
         archive: &mut Archive<'_>,
         object: &CurveObject,
-        curves: usize,
+        first: usize,
     ) -> Result<(), AlembicError> {
-        let start = self.guides.len();
-        if let Some(guides) = object.guides.as_ref().filter(|guides| guides.samples > 0) {
-            let count = archive.elements(guides, 0)?;
-            if count == 1 || count == curves as u64 {
-                archive.vectors(guides, 0, &mut |[flag]: [f32; 1]| self.guides.push(flag != 0.0))?;
-            }
+        let Some(guides) = object.guides.as_ref().filter(|guides| guides.samples > 0) else { return Ok(()) };
+        let curves = self.raw.point_counts.len() - first;
+        let count = archive.elements(guides, 0)?;
+        if count != 1 && count != curves as u64 {
+            return Ok(());
         }
-        let last = self.guides[start..].first().copied().filter(|_| self.guides.len() == start + 1);
-        self.guides.resize(start + curves, last.unwrap_or(false));
+        let mut marks = Vec::new();
+        archive.vectors(guides, 0, &mut |[flag]: [f32; 1]| {
+            marks.push((flag != 0.0).then_some(Hidden::StandIn));
+        })?;
+        if let (1, [only]) = (count, marks.as_slice()) {
+            self.raw.hide_from(first, *only);
+        } else if marks.iter().any(Option::is_some) {
+            self.raw.hide_from(first, Some(Hidden::StandIn));
+            self.raw.hidden[first..].copy_from_slice(&marks);
+        }
         Ok(())
     }
 
-    /// Leaves guides out, unless there is nothing else.
     fn finish(mut self) -> RawHair {
-        self.raw.thickness = self.widths;
-        self.raw.colours = self.colours;
+        self.raw.thickness = self.widths.finish(&mut self.raw);
+        self.raw.colours = self.colours.finish(&mut self.raw);
         self.raw.marks = self.marks.finish();
-        let guides = self.guides.iter().filter(|&&is_guide| is_guide).count();
-        if guides == 0 || guides == self.guides.len() {
-            return self.raw;
-        }
-        let many = "guides (groom_guide), which stand";
-        let guides = counted(guides, "guide (groom_guide), which stands", many);
-        self.raw.notes.push(format!("Left out {guides} for the other curves."));
-        let of_points: Vec<bool> = (self.guides.iter().zip(&self.raw.point_counts))
-            .flat_map(|(&is_guide, &count)| std::iter::repeat_n(!is_guide, count as usize))
-            .collect();
-        keep(&mut self.raw.points, &of_points);
-        if let Some(array) = &mut self.raw.thickness {
-            keep(array, &of_points);
-        }
-        if let Some(array) = &mut self.raw.colours {
-            keep(array, &of_points);
-        }
-        let of_curves: Vec<bool> = self.guides.iter().map(|is_guide| !is_guide).collect();
-        keep(&mut self.raw.point_counts, &of_curves);
-        self.raw.marks = self.raw.marks.selected((0..of_curves.len()).filter(|&curve| of_curves[curve]));
-        self.raw.left_out = Some(of_points);
         self.raw
     }
-}
-
-/// Keeps the marked elements.
-fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
-    let mut marks = marks.iter();
-    values.retain(|_| marks.next().is_some_and(|&kept| kept));
 }
 
 #[cfg(test)]

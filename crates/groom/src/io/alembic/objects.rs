@@ -18,6 +18,8 @@ const COLOURS: [&str; 6] = ["groom_color", "Cd", "displayColor", "Cs", "color", 
 
 /// Names of parameters with the coordinates of roots on their surface.
 const ROOT_UVS: [&str; 2] = ["groom_root_uv", "surface_uv_coordinate"];
+/// Names of parameters that give curves their width.
+const WIDTHS: [&str; 2] = ["groom_width", "width"];
 
 /// An object of curves.
 pub(super) struct CurveObject {
@@ -37,6 +39,14 @@ pub(super) struct CurveObject {
     pub(super) root_uvs: Option<Parameter>,
     /// The transforms above it, innermost first.
     pub(super) above: Option<Arc<Ancestor>>,
+    /// Its own visibility and that of the objects above it, innermost first.
+    pub(super) visibility: Option<Arc<Visibility>>,
+}
+
+/// The visibility (`visible`) of an object, and of the nearest one above it that has one.
+pub(super) struct Visibility {
+    pub(super) own: Property,
+    pub(super) above: Option<Arc<Visibility>>,
 }
 
 /// A parameter of geometry.
@@ -77,6 +87,37 @@ impl CurveObject {
             None => Ok(counts),
         }
     }
+
+    /// Whether the curves are invisible at a time, and whether that may change: the nearest object that does not defer to the one
+    /// above it decides, as in the Alembic library.
+    pub(super) fn is_invisible(
+        &self,
+        archive: &mut Archive<'_>,
+        secs: f64,
+    ) -> Result<(bool, bool), AlembicError> {
+        let mut changes = false;
+        let mut at = self.visibility.as_ref();
+        while let Some(Visibility { own, above }) = at.map(Arc::as_ref) {
+            changes |= !own.is_constant();
+            let (sample, ..) = archive.times(own).around(secs, own.samples);
+            match archive.few(own, sample, 1)?.first() {
+                Some(&0.0) => return Ok((true, changes)),
+                Some(&value) if value > 0.0 => return Ok((false, changes)),
+                // -1: deferred.
+                _ => at = above.as_ref(),
+            }
+        }
+        Ok((false, changes))
+    }
+}
+
+/// An object whose content is still to be visited.
+struct Waiting {
+    object: Object,
+    path: String,
+    above: Option<Arc<Ancestor>>,
+    visibility: Option<Arc<Visibility>>,
+    depth: usize,
 }
 
 /// Gives every object of curves to `take`, in the order of the archive.
@@ -84,9 +125,9 @@ pub(super) fn visit(
     archive: &mut Archive<'_>,
     take: &mut dyn FnMut(&mut Archive<'_>, CurveObject) -> Result<(), AlembicError>,
 ) -> Result<(), AlembicError> {
-    let mut waiting: Vec<(Object, String, Option<Arc<Ancestor>>, usize)> =
-        vec![(archive.top(), String::new(), None, 0)];
-    while let Some((object, path, above, depth)) = waiting.pop() {
+    let top = Waiting { object: archive.top(), path: String::new(), above: None, visibility: None, depth: 0 };
+    let mut waiting = vec![top];
+    while let Some(Waiting { object, path, above, visibility, depth }) = waiting.pop() {
         if depth > DEEPEST {
             return Err(AlembicError::Malformed {
                 offset: 0,
@@ -94,8 +135,14 @@ pub(super) fn visit(
                 wanted: "fewer",
             });
         }
+        let properties = archive.properties(&object)?;
+        let visible = properties.get("visible").filter(|own| own.samples > 0 && own.ty.pod.bytes() > 0);
+        let visibility = match visible {
+            Some(own) => Some(Arc::new(Visibility { own: own.clone(), above: visibility })),
+            None => visibility,
+        };
         let above = if object.has_schema(TRANSFORM) {
-            let transform = schema(archive, &object, ".xform")?;
+            let transform = schema(archive, &properties, ".xform")?;
             let get = |name| transform.get(name).cloned();
             Some(Arc::new(Ancestor {
                 inherits: get(".inherits"),
@@ -107,20 +154,26 @@ pub(super) fn visit(
             above
         };
         if object.has_schema(CURVES)
-            && let Some(curves) = curves(archive, &object, &path, above.clone())?
+            && let Some(curves) = curves(archive, &properties, &path, above.clone(), visibility.clone())?
         {
             take(archive, curves)?;
         }
         for child in archive.children(&object)?.into_iter().rev() {
             let path = format!("{path}/{}", child.name);
-            waiting.push((child, path, above.clone(), depth + 1));
+            waiting.push(Waiting {
+                object: child,
+                path,
+                above: above.clone(),
+                visibility: visibility.clone(),
+                depth: depth + 1,
+            });
         }
     }
     Ok(())
 }
 
-fn schema(archive: &mut Archive<'_>, object: &Object, name: &str) -> Result<Compound, AlembicError> {
-    match archive.properties(object)?.get(name) {
+fn schema(archive: &mut Archive<'_>, properties: &Compound, name: &str) -> Result<Compound, AlembicError> {
+    match properties.get(name) {
         Some(property) => archive.compound(property),
         None => Ok(Compound::default()),
     }
@@ -128,11 +181,12 @@ fn schema(archive: &mut Archive<'_>, object: &Object, name: &str) -> Result<Comp
 
 fn curves(
     archive: &mut Archive<'_>,
-    object: &Object,
+    properties: &Compound,
     path: &str,
     above: Option<Arc<Ancestor>>,
+    visibility: Option<Arc<Visibility>>,
 ) -> Result<Option<CurveObject>, AlembicError> {
-    let geometry = schema(archive, object, ".geom")?;
+    let geometry = schema(archive, properties, ".geom")?;
     let (Some(points), Some(counts)) = (geometry.get("P"), geometry.get("nVertices")) else {
         return Ok(None);
     };
@@ -141,7 +195,8 @@ fn curves(
         None => Compound::default(),
     };
     let colour = COLOURS.iter().find_map(|name| parameters.get(name));
-    let width = geometry.get("width").or_else(|| parameters.get("groom_width"));
+    // The schema's own width comes before parameters that anybody may add.
+    let width = geometry.get("width").or_else(|| WIDTHS.iter().find_map(|name| parameters.get(name)));
     Ok(Some(CurveObject {
         path: path.to_owned(),
         points: points.clone(),
@@ -161,6 +216,7 @@ fn curves(
         },
         guides: parameters.get("groom_guide").filter(|guides| guides.ty.pod.bytes() > 0).cloned(),
         above,
+        visibility,
     }))
 }
 

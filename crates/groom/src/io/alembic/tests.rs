@@ -263,3 +263,114 @@ fn damaged_hair_alembic() {
     // Measured: 8 % of 20 million.
     counts.assert_mixed(0.02);
 }
+
+/// An object with values of `visible` at the times 0 and 1.
+fn visible(writer: &mut Writer, values: &[i8], mut object: ObjectTree) -> ObjectTree {
+    let times = writer.add_times(Times::uniform(0.0, 1.0));
+    let mut samples = Samples::scalar(DataType::new(Pod::I8, 1), times);
+    for value in values {
+        samples.push(writer.store(samples.ty, &value.to_le_bytes()).expect("memory"));
+    }
+    object.properties.samples("visible", "", samples);
+    object
+}
+
+#[test]
+fn invisible_objects_are_left_out_as_the_library_decides() {
+    // Visibility of the group, of the curves, and whether they are drawn.
+    for (group, own, is_drawn) in [
+        (None, None, true),
+        (None, Some(0), false),
+        (None, Some(-1), true),
+        (Some(0), None, false),
+        (Some(0), Some(-1), false),
+        (Some(0), Some(1), true),
+        (Some(1), Some(0), false),
+        (Some(-1), Some(-1), true),
+    ] {
+        let hair = load(|writer| {
+            let mut curves = Curves::plain().object(writer, "a");
+            if let Some(own) = own {
+                curves = visible(writer, &[own], curves);
+            }
+            let mut moved = transform(writer, &[0], [&[0.0; 3], &[0.0; 3]], true, vec![curves]);
+            if let Some(group) = group {
+                moved = visible(writer, &[group], moved);
+            }
+            vec![moved, Curves::plain().object(writer, "b")]
+        });
+        assert_eq!(hair.strands(), if is_drawn { 4 } else { 2 }, "{group:?} {own:?}");
+        let noted = hair.notes.iter().any(|note| note.starts_with("Left out 2 hidden strands"));
+        assert_eq!(noted, !is_drawn, "{:?}", hair.notes);
+    }
+    // Animated: the value at the first time counts, and a note says that it changes.
+    for (values, strands) in [([0, -1], 2), ([-1, 0], 4)] {
+        let hair = load(|writer| {
+            let curves = Curves::plain().object(writer, "a");
+            vec![visible(writer, &values, curves), Curves::plain().object(writer, "b")]
+        });
+        assert_eq!(hair.strands(), strands);
+        assert!(hair.notes.iter().any(|note| note.contains("/a: visibility changes")), "{:?}", hair.notes);
+    }
+}
+
+#[test]
+fn every_scope_with_and_without_indices_gives_each_point_its_width() {
+    let index = DataType::new(Pod::U32, 1);
+    for (scope, values, picks, wanted) in [
+        ("con", vec![7.0], None, [7.0; 5]),
+        ("uni", vec![1.0, 2.0], None, [1.0, 1.0, 2.0, 2.0, 2.0]),
+        ("var", vec![1.0, 2.0, 3.0, 4.0, 5.0], None, [1.0, 2.0, 3.0, 4.0, 5.0]),
+        ("vtx", vec![1.0, 2.0, 3.0, 4.0, 5.0], None, [1.0, 2.0, 3.0, 4.0, 5.0]),
+        ("fvr", vec![1.0, 2.0, 3.0, 4.0, 5.0], None, [1.0, 2.0, 3.0, 4.0, 5.0]),
+        ("uni", vec![1.0, 2.0, 9.0], Some(vec![2, 0]), [9.0, 9.0, 1.0, 1.0, 1.0]),
+        ("vtx", vec![1.0, 2.0], Some(vec![0, 1, 1, 1, 0]), [1.0, 2.0, 2.0, 2.0, 1.0]),
+        ("con", vec![1.0, 2.0], Some(vec![1]), [2.0; 5]),
+    ] {
+        let hair = load(|writer| {
+            let mut curves = Curves::plain().object(writer, "a");
+            let metadata = format!("geoScope={scope};isGeomParam=true");
+            let samples = array(writer, FLOAT, &floats(&values));
+            let mut parameters = CompoundTree::default();
+            match &picks {
+                None => parameters.samples("groom_width", &metadata, samples),
+                Some(picks) => {
+                    let mut parameter = CompoundTree::default();
+                    parameter.samples(".vals", "", samples);
+                    let picks = array(writer, index, &ints(picks));
+                    parameter.samples(".indices", "", picks);
+                    parameters.compound("groom_width", &metadata, parameter);
+                }
+            }
+            // In place of the empty parameters of the plain curves.
+            curves.properties = plain_geometry(writer, parameters);
+            vec![curves]
+        });
+        assert_eq!(hair.thickness.as_deref(), Some(&wanted[..]), "{scope} {picks:?}: {:?}", hair.notes);
+    }
+}
+
+/// The properties of the plain curves with parameters.
+fn plain_geometry(writer: &mut Writer, parameters: CompoundTree) -> CompoundTree {
+    let curves = Curves::plain();
+    let mut schema = CompoundTree::default();
+    let points = array(writer, POINT, &floats(&curves.points));
+    schema.samples("P", "geoScope=vtx", points);
+    let counts = array(writer, INT, &ints(&curves.counts));
+    schema.samples("nVertices", "", counts);
+    schema.compound(".arbGeomParams", "", parameters);
+    let mut properties = CompoundTree::default();
+    properties.compound(".geom", "", schema);
+    properties
+}
+
+#[test]
+fn objects_without_widths_get_the_mean_of_the_others() {
+    let hair = load(|writer| {
+        let mut curves = Curves::plain();
+        curves.more = vec![("width", "geoScope=con", FLOAT, floats(&[0.5]))];
+        vec![curves.object(writer, "a"), Curves::plain().object(writer, "b")]
+    });
+    assert_eq!(hair.thickness, Some(vec![0.5; 10]));
+    assert!(hair.notes.iter().any(|note| note.contains("without a width")), "{:?}", hair.notes);
+}

@@ -1,7 +1,8 @@
 //! Lines of glTF 2.0: primitives of the modes LINES, `LINE_LOOP` and `LINE_STRIP`, in the space of the scene.
 //!
 //! glTF states metres and Y up. Half of the width of hair is the attribute `_RADIUS`, a convention of several programs;
-//! colours are `COLOR_0`. Skins, animations and morph targets do not apply to lines. Nodes of scale 0 are hidden.
+//! colours are `COLOR_0` times the base colour of the material. Skins, animations and morph targets do not apply to lines. Nodes of scale 0 and those below them are
+//! left out; `KHR_node_visibility` hides.
 
 mod shared;
 mod write;
@@ -20,6 +21,8 @@ use super::HairFileError;
 use super::chain::{Chains, chain};
 use super::file::{MAX_COPIED_POINTS, RawHair};
 use super::format::HairFormat;
+use super::hidden::Hidden;
+use super::partial::Partial;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use shared::Shared;
@@ -120,7 +123,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let asset = Asset::read(name, &bytes, folder.as_deref()).map_err(refused)?;
     let (document, accessors) = (&asset.document, asset.accessors());
     let shown = shown(document);
-    let each = || shown.iter().map(|(primitive, _)| *primitive).filter(|primitive| is_line(primitive.mode));
+    let each = || shown.iter().map(|(primitive, ..)| *primitive).filter(|primitive| is_line(primitive.mode));
     let of =
         |attribute: &'static str| move |primitive: &Primitive| primitive.attributes.get(attribute).copied();
     let mut lines = Lines {
@@ -132,26 +135,27 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         indices: Shared::new(each().filter_map(|primitive| primitive.indices)),
         most_points: MAX_COPIED_POINTS.max(bytes.len()),
         raw: RawHair::new(Vec::new(), Vec::new()),
-        widths: Some(Vec::new()),
-        colours: Some(Vec::new()),
+        widths: Partial::new(f32::NAN),
+        colours: Partial::new([f32::NAN; 3]),
         surfaces: 0,
     };
-    for (primitive, transform) in &shown {
+    for (primitive, transform, is_visible) in &shown {
+        let first = lines.raw.point_counts.len();
         lines.primitive(primitive, *transform)?;
+        lines.raw.hide_from(first, (!is_visible).then_some(Hidden::Invisible));
     }
     lines.finish()
 }
 
-/// The primitives of the scene with their transforms.
-fn shown(document: &Document) -> Vec<(&Primitive, Mat4)> {
+/// The primitives of the scene with their transforms, and whether they are visible.
+fn shown(document: &Document) -> Vec<(&Primitive, Mat4, bool)> {
     let mut shown = Vec::new();
-    for (node, transform) in nodes(document) {
+    for (node, transform, is_visible) in nodes(document) {
         let mesh = document.nodes[node].mesh.and_then(|mesh| document.meshes.get(mesh));
         // A node of scale 0 hides what it carries, as in an animation of one mesh per frame.
         if transform.determinant().abs() > 1e-18 {
-            shown.extend(
-                mesh.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| (primitive, transform)),
-            );
+            let primitives = mesh.iter().flat_map(|mesh| &mesh.primitives);
+            shown.extend(primitives.map(|primitive| (primitive, transform, is_visible)));
         }
     }
     shown
@@ -175,8 +179,9 @@ fn refused(error: GltfError) -> HairFileError {
     }
 }
 
-/// The nodes of the default scene with their transforms, parents first. A node that is reached twice counts once.
-fn nodes(document: &Document) -> Vec<(usize, Mat4)> {
+/// The nodes of the default scene with their transforms, and whether they are visible, parents first. A node that is reached twice
+/// counts once.
+fn nodes(document: &Document) -> Vec<(usize, Mat4, bool)> {
     let is_child = || {
         let mut is_child = vec![false; document.nodes.len()];
         for &child in document.nodes.iter().flat_map(|node| &node.children) {
@@ -193,16 +198,18 @@ fn nodes(document: &Document) -> Vec<(usize, Mat4)> {
         }
     };
     let mut seen = vec![false; document.nodes.len()];
-    let mut open: Vec<(usize, Mat4)> = roots.into_iter().rev().map(|root| (root, Mat4::IDENTITY)).collect();
+    let mut open: Vec<(usize, Mat4, bool)> =
+        roots.into_iter().rev().map(|root| (root, Mat4::IDENTITY, true)).collect();
     let mut found = Vec::new();
-    while let Some((node, parent)) = open.pop() {
+    while let Some((node, parent, above_is_visible)) = open.pop() {
         let (Some(seen), Some(content)) = (seen.get_mut(node), document.nodes.get(node)) else { continue };
         if std::mem::replace(seen, true) {
             continue;
         }
         let transform = parent * content.transform();
-        found.push((node, transform));
-        open.extend(content.children.iter().rev().map(|&child| (child, transform)));
+        let is_visible = above_is_visible && content.is_visible();
+        found.push((node, transform, is_visible));
+        open.extend(content.children.iter().rev().map(|&child| (child, transform, is_visible)));
     }
     found
 }
@@ -218,9 +225,8 @@ struct Lines<'a> {
     indices: Shared<[u32; 1]>,
     most_points: usize,
     raw: RawHair,
-    /// Widths of all points, as long as every primitive has them.
-    widths: Option<Vec<f32>>,
-    colours: Option<Vec<[f32; 3]>>,
+    widths: Partial<f32>,
+    colours: Partial<[f32; 3]>,
     /// Primitives that are no lines.
     surfaces: u64,
 }
@@ -248,26 +254,30 @@ impl Lines<'_> {
             }
             Err(lines.malformed(format!("{length} values of {what} for {count} points"), "one per point"))
         };
-        if let (Some(radius), true) = (of(RADIUS), self.widths.is_some()) {
+        let end = self.raw.points.len() + chains.vertices.len();
+        if let Some(radius) = of(RADIUS) {
             let radii = self.radii.get(radius, || accessors.read(radius)).map_err(refused)?;
             same_length(self, RADIUS, radii.len())?;
-            if let Some(widths) = &mut self.widths {
-                widths.extend(chains.vertices.iter().map(|&v| 2.0 * radii[v as usize][0] * scale));
-            }
-        } else {
-            self.widths = None;
+            let widths = &mut self.widths.values;
+            widths.extend(chains.vertices.iter().map(|&v| 2.0 * radii[v as usize][0] * scale));
         }
-        if let (Some(colour), true) = (of(COLOUR), self.colours.is_some()) {
+        self.widths.end_at(end, of(RADIUS).is_some());
+        // The base colour of a material is white unless it states one, and multiplies the colours of vertices.
+        let material = primitive.material.and_then(|material| accessors.document.materials.get(material));
+        let base = material.and_then(|material| material.pbr_metallic_roughness.base_color_factor);
+        let base_linear = base.map_or(Vec3::ONE, |[r, g, b, _]| Vec3::new(r, g, b));
+        if let Some(colour) = of(COLOUR) {
             let linear = self.linear.get(colour, || accessors.read_3_or_4(colour)).map_err(refused)?;
             same_length(self, COLOUR, linear.len())?;
-            let display =
-                |&v: &u32| linear[v as usize].first_chunk::<3>().map(|rgb| rgb.map(display_from_linear));
-            if let Some(colours) = &mut self.colours {
-                colours.extend(chains.vertices.iter().filter_map(display));
-            }
-        } else {
-            self.colours = None;
+            let display = |&v: &u32| {
+                let [r, g, b, _] = linear[v as usize];
+                (base_linear * Vec3::new(r, g, b)).to_array().map(display_from_linear)
+            };
+            self.colours.values.extend(chains.vertices.iter().map(display));
+        } else if base.is_some() {
+            self.colours.values.resize(end, base_linear.to_array().map(display_from_linear));
         }
+        self.colours.end_at(end, of(COLOUR).is_some() || base.is_some());
         self.raw.points.extend(
             chains.vertices.iter().map(|&v| transform.transform_point3(Vec3::from(positions[v as usize]))),
         );
@@ -338,8 +348,8 @@ impl Lines<'_> {
             );
             self.raw.notes.push(format!("{meshes} left out: only lines are hair."));
         }
-        self.raw.thickness = self.widths;
-        self.raw.colours = self.colours;
+        self.raw.thickness = self.widths.finish(&mut self.raw);
+        self.raw.colours = self.colours.finish(&mut self.raw);
         Ok(self.raw)
     }
 }

@@ -198,3 +198,73 @@ fn contradictions_are_refused() {
     let error = load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect_err("too many").to_string();
     assert!(error.contains("33554432 points at most"), "{error}");
 }
+
+#[test]
+fn nodes_that_are_not_visible_hide_what_is_below_them() {
+    let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
+    let mut text = document(&strip, &data_uri());
+    text["nodes"] = json!([{ "children": [1] }, { "mesh": 0 }, { "mesh": 0 }]);
+    text["scenes"] = json!([{ "nodes": [0, 2] }]);
+    for (node, visible, strands) in
+        [(0, json!(false), 1), (1, json!(false), 1), (0, json!(true), 2), (1, json!("no"), 2)]
+    {
+        let mut text = text.clone();
+        text["nodes"][node]["extensions"] = json!({ "KHR_node_visibility": { "visible": visible } });
+        text["extensionsRequired"] = json!(["KHR_node_visibility"]);
+        let hair = load_hair_bytes("a.gltf", text.to_string().as_bytes()).expect("hair");
+        assert_eq!(hair.strands(), strands, "{node} {visible}");
+        assert_eq!(hair.notes.iter().any(|note| note.contains("1 hidden strand")), strands == 1);
+    }
+}
+
+#[test]
+fn what_a_document_does_not_state_is_the_default_of_the_specification() {
+    let strip = json!({ "mode": 3, "attributes": { "POSITION": 0 } });
+    let load = |text: &Value| load_hair_bytes("a.gltf", text.to_string().as_bytes());
+    // An accessor without bytes is zeros; the sparse ones are set.
+    let mut text = document(&strip, &data_uri());
+    text["nodes"] = json!([{ "mesh": 0 }]);
+    text["accessors"][0] = json!({
+        "componentType": 5126, "count": 3, "type": "VEC3",
+        "sparse": {
+            "count": 2,
+            "indices": { "bufferView": 0, "byteOffset": 148, "componentType": 5123 },
+            "values": { "bufferView": 0, "byteOffset": 84 },
+        },
+    });
+    let hair = load(&text).expect("hair");
+    assert_eq!(hair.points, [Vec3::ZERO, 7.0 * Vec3::X, 8.0 * Vec3::X]);
+    // The scene that is named, otherwise the first one, otherwise all nodes.
+    let mut text = document(&strip, &data_uri());
+    text["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0 }, { "mesh": 0 }]);
+    text["scenes"] = json!([{ "nodes": [0] }, { "nodes": [0, 1] }]);
+    for (scene, strands) in [(json!(1), 2), (json!(0), 1), (Value::Null, 1), (json!(9), 3)] {
+        text["scene"] = scene;
+        assert_eq!(load(&text).expect("hair").strands(), strands, "{}", text["scene"]);
+    }
+    // A matrix stands for translation, rotation and scale.
+    let mut text = document(&strip, &data_uri());
+    text["nodes"] = json!([{ "mesh": 0, "matrix": [0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 0, 1, 0, 1] }]);
+    let by_matrix = load(&text).expect("hair").points;
+    let half = 0.5_f64.sqrt();
+    text["nodes"] =
+        json!([{ "mesh": 0, "translation": [0, 1, 0], "rotation": [0, 0, half, half], "scale": [2, 2, 2] }]);
+    let by_parts = load(&text).expect("hair").points;
+    assert!(
+        by_matrix.iter().zip(&by_parts).all(|(a, b)| a.distance(*b) < 1e-5),
+        "{by_matrix:?} {by_parts:?}"
+    );
+    assert!(by_parts[1].distance(Vec3::new(0.0, 3.0, 0.0)) < 1e-5, "{by_parts:?}");
+    // The base colour of the material, white unless it is stated.
+    let mut text =
+        document(&json!({ "mode": 3, "attributes": { "POSITION": 0 }, "material": 0 }), &data_uri());
+    text["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorFactor": [0.2, 0, 1, 1] } }]);
+    let colour = load(&text).expect("hair").colours.expect("colours")[0];
+    assert!((colour[0] - 0.484_53).abs() < 1e-3 && colour[1] == 0.0 && colour[2] > 0.999, "{colour:?}");
+    text["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(0);
+    let colours = load(&text).expect("hair").colours.expect("colours");
+    assert!((colours[1][0] - 0.484_53).abs() < 1e-3 && colours[1][2] == 0.0, "{colours:?}");
+    text["materials"] = json!([{}]);
+    let colours = load(&text).expect("hair").colours.expect("colours");
+    assert!(colours[1][0] > 0.999, "{colours:?}");
+}

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::io::basis::{Basis, Shape, Spread, Wrap};
 
 /// The parameters of a curve, as far as the geometry needs them. Reused from curve to curve.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Parameters {
     /// Coordinates of the control points.
     pub(super) points: Vec<f32>,
@@ -13,17 +13,24 @@ pub(super) struct Parameters {
     pub(super) width0: Option<f32>,
     pub(super) width1: Option<f32>,
     pub(super) degree: Option<f32>,
+    /// The part of the curve that covers what is behind it; 0 hides it.
+    pub(super) alpha: Option<f32>,
     pub(super) is_bspline: bool,
     /// A value that is no number, or a basis that is not known.
     pub(super) is_broken: bool,
 }
 
 impl Parameters {
-    /// Makes them those of a curve about which nothing is stated.
-    pub(super) fn clear(&mut self) {
-        let points = std::mem::take(&mut self.points);
-        *self = Self { points, ..Self::default() };
-        self.points.clear();
+    /// Makes them those of a curve about which nothing but `defaults` is stated.
+    pub(super) fn reset(&mut self, defaults: &Self) {
+        let mut points = std::mem::take(&mut self.points);
+        points.clone_from(&defaults.points);
+        *self = Self { points, ..*defaults };
+    }
+
+    /// Whether the curve is cut out by its alpha.
+    pub(super) fn is_invisible(&self) -> bool {
+        self.alpha.is_some_and(|alpha| alpha <= 0.0)
     }
 
     /// Whether the curve states a width.

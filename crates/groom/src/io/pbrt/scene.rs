@@ -4,6 +4,7 @@ use lovelock_base::words::counted;
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -11,6 +12,7 @@ use super::curve::Parameters;
 use super::tokens::{Token, Tokens};
 use crate::io::HairFileError;
 use crate::io::file::{MAX_COPIED_POINTS, RawHair};
+use crate::io::hidden::Hidden;
 use crate::io::source::open_beside;
 
 /// The most open blocks, named coordinate systems, objects and included files. Real scenes have a few hundred.
@@ -26,14 +28,24 @@ struct Strands {
     counts: Vec<u32>,
     points: Vec<Vec3>,
     widths: Vec<f32>,
+    /// Whether each strand is invisible.
+    hidden: Vec<bool>,
+}
+
+/// What applies to the shapes that follow, until the block ends.
+#[derive(Clone)]
+struct State {
+    transform: DMat4,
+    /// The parameters of shapes that state none of their own (`Attribute "shape"`).
+    defaults: Rc<Parameters>,
 }
 
 /// A file that is being read.
 struct Frame<'a> {
     name: String,
     tokens: Tokens<'a>,
-    /// The transform and the number of open blocks to return to at its end (`Import`).
-    restore: Option<(DMat4, usize)>,
+    /// The state and the number of open blocks to return to at its end (`Import`).
+    restore: Option<(State, usize)>,
 }
 
 /// Reads the directives of a scene.
@@ -42,9 +54,9 @@ pub(super) struct Scene<'a> {
     folder: Option<PathBuf>,
     files: Vec<Frame<'a>>,
     includes: usize,
-    transform: DMat4,
-    /// Transforms at the open blocks.
-    blocks: Vec<DMat4>,
+    state: State,
+    /// The states before the open blocks.
+    blocks: Vec<State>,
     systems: HashMap<Vec<u8>, DMat4>,
     /// Whether transforms apply to the start of the shutter's time, at which the scene is taken.
     is_active: bool,
@@ -65,7 +77,7 @@ impl<'a> Scene<'a> {
             folder,
             files: Vec::new(),
             includes: 0,
-            transform: DMat4::IDENTITY,
+            state: State { transform: DMat4::IDENTITY, defaults: Rc::default() },
             blocks: Vec::new(),
             systems: HashMap::new(),
             is_active: true,
@@ -86,8 +98,8 @@ impl<'a> Scene<'a> {
         loop {
             let Some(token) = self.next()? else {
                 let Some(frame) = self.files.pop() else { break };
-                if let Some((transform, blocks)) = frame.restore {
-                    self.transform = transform;
+                if let Some((state, blocks)) = frame.restore {
+                    self.state = state;
                     self.blocks.truncate(blocks);
                 }
                 continue;
@@ -117,6 +129,10 @@ impl<'a> Scene<'a> {
             raw.dropped.insert("unfit_curves".to_owned(), self.unfit);
         }
         raw.notes = self.notes;
+        if self.strands.hidden.contains(&true) {
+            let mark = |&is_hidden: &bool| is_hidden.then_some(Hidden::Invisible);
+            raw.hidden = self.strands.hidden.iter().map(mark).collect();
+        }
         Ok(raw)
     }
 
@@ -124,7 +140,7 @@ impl<'a> Scene<'a> {
         &mut self,
         name: String,
         reader: Box<dyn BufRead + 'a>,
-        restore: Option<(DMat4, usize)>,
+        restore: Option<(State, usize)>,
     ) -> Result<(), HairFileError> {
         let tokens =
             Tokens::new(reader).map_err(|source| HairFileError::Io { name: name.clone(), source })?;
@@ -169,28 +185,27 @@ impl<'a> Scene<'a> {
         match self.text() {
             b"Shape" => return self.shape(parameters),
             b"AttributeBegin" | b"TransformBegin" => self.begin()?,
-            b"AttributeEnd" | b"TransformEnd" => {
-                self.transform = self.blocks.pop().unwrap_or(self.transform);
-            }
-            b"WorldBegin" => self.transform = identity,
+            b"AttributeEnd" | b"TransformEnd" => self.end(),
+            b"Attribute" => self.attribute(parameters)?,
+            b"WorldBegin" => self.state.transform = identity,
             b"Identity" => self.set(identity),
             b"Translate" => {
                 let by = self.numbers::<3>("three numbers after Translate")?;
-                self.set(self.transform * DMat4::from_translation(DVec3::from(by)));
+                self.set(self.state.transform * DMat4::from_translation(DVec3::from(by)));
             }
             b"Scale" => {
                 let by = self.numbers::<3>("three numbers after Scale")?;
-                self.set(self.transform * DMat4::from_scale(DVec3::from(by)));
+                self.set(self.state.transform * DMat4::from_scale(DVec3::from(by)));
             }
             b"Rotate" => {
                 let [degrees, x, y, z] = self.numbers::<4>("an angle and an axis after Rotate")?;
                 let axis = DVec3::new(x, y, z).try_normalize().unwrap_or(DVec3::X);
-                self.set(self.transform * DMat4::from_axis_angle(axis, degrees.to_radians()));
+                self.set(self.state.transform * DMat4::from_axis_angle(axis, degrees.to_radians()));
             }
             b"LookAt" => {
                 let n = self.numbers::<9>("nine numbers after LookAt")?;
                 let [eye, look, up] = [0, 3, 6].map(|k| DVec3::new(n[k], n[k + 1], n[k + 2]));
-                self.set(self.transform * look_at(eye, look, up));
+                self.set(self.state.transform * look_at(eye, look, up));
             }
             b"Transform" => {
                 let matrix = self.numbers::<16>("sixteen numbers after Transform")?;
@@ -198,14 +213,14 @@ impl<'a> Scene<'a> {
             }
             b"ConcatTransform" => {
                 let matrix = self.numbers::<16>("sixteen numbers after ConcatTransform")?;
-                self.set(self.transform * DMat4::from_cols_array(&matrix));
+                self.set(self.state.transform * DMat4::from_cols_array(&matrix));
             }
             b"CoordinateSystem" => {
                 let name = self.quoted("a name in quotes after CoordinateSystem")?;
                 if self.systems.len() >= MAX_BLOCKS {
                     return Err(self.malformed("at most 10000 coordinate systems"));
                 }
-                self.systems.insert(name, self.transform);
+                self.systems.insert(name, self.state.transform);
             }
             b"CoordSysTransform" => {
                 let name = self.quoted("a name in quotes after CoordSysTransform")?;
@@ -225,7 +240,7 @@ impl<'a> Scene<'a> {
             }
             b"ObjectEnd" => {
                 self.end_object()?;
-                self.transform = self.blocks.pop().unwrap_or(self.transform);
+                self.end();
             }
             b"ObjectInstance" => {
                 let name = self.quoted("a name in quotes after ObjectInstance")?;
@@ -240,7 +255,7 @@ impl<'a> Scene<'a> {
 
     fn set(&mut self, transform: DMat4) {
         if self.is_active {
-            self.transform = transform;
+            self.state.transform = transform;
         }
     }
 
@@ -248,7 +263,23 @@ impl<'a> Scene<'a> {
         if self.blocks.len() >= MAX_BLOCKS {
             return Err(self.malformed("at most 10000 open blocks"));
         }
-        self.blocks.push(self.transform);
+        self.blocks.push(self.state.clone());
+        Ok(())
+    }
+
+    fn end(&mut self) {
+        if let Some(state) = self.blocks.pop() {
+            self.state = state;
+        }
+    }
+
+    /// Sets the defaults of what follows in its block. Those of anything but shapes are of no use here.
+    fn attribute(&mut self, parameters: &mut Parameters) -> Result<(), HairFileError> {
+        let target = self.quoted("a target in quotes after Attribute, such as \"shape\"")?;
+        self.parameters(parameters)?;
+        if target == b"shape" {
+            self.state.defaults = Rc::new(parameters.clone());
+        }
         Ok(())
     }
 
@@ -293,7 +324,8 @@ impl<'a> Scene<'a> {
             return Ok(());
         };
         strands.counts.push(count);
-        let transform = self.transform;
+        strands.hidden.push(parameters.is_invisible());
+        let transform = self.state.transform;
         let scale = transform.determinant().abs().cbrt() as f32;
         for point in &mut strands.points[first..] {
             *point = transform.transform_point3(point.as_dvec3()).as_vec3();
@@ -306,7 +338,7 @@ impl<'a> Scene<'a> {
 
     /// The parameters after the kind of a curve: a declaration in quotes, then a value or values in brackets.
     fn parameters(&mut self, into: &mut Parameters) -> Result<(), HairFileError> {
-        into.clear();
+        into.reset(&self.state.defaults);
         loop {
             match self.next()? {
                 Some(Token::Quoted) => {}
@@ -325,8 +357,12 @@ impl<'a> Scene<'a> {
                 (b"float", b"width1") => What::Width1,
                 (b"integer", b"degree") => What::Degree,
                 (b"string", b"basis") => What::Basis,
+                (b"float", b"alpha") => What::Alpha,
                 _ => What::Other,
             };
+            if matches!(what, What::Points) {
+                into.points.clear();
+            }
             let mut token = self.next()?;
             let in_brackets = token == Some(Token::Open);
             if in_brackets {
@@ -352,6 +388,7 @@ impl<'a> Scene<'a> {
                 Some(value) => into.points.push(value),
                 None => into.is_broken = true,
             },
+            What::Alpha => into.alpha = number(),
             What::Width => into.width = number(),
             What::Width0 => into.width0 = number(),
             What::Width1 => into.width1 = number(),
@@ -389,10 +426,11 @@ impl<'a> Scene<'a> {
         if self.copied > MAX_COPIED_POINTS {
             return Err(self.malformed("at most 33554432 points of repeated objects"));
         }
-        let scale = self.transform.determinant().abs().cbrt() as f32;
+        let transform = self.state.transform;
+        let scale = transform.determinant().abs().cbrt() as f32;
         self.strands.counts.extend(&object.counts);
+        self.strands.hidden.extend(&object.hidden);
         self.strands.widths.extend(object.widths.iter().map(|width| width * scale));
-        let transform = self.transform;
         let place = |point: &Vec3| transform.transform_point3(point.as_dvec3()).as_vec3();
         self.strands.points.extend(object.points.iter().map(place));
         Ok(())
@@ -409,7 +447,7 @@ impl<'a> Scene<'a> {
         }
         match open_beside(self.folder.as_deref(), Path::new(&name)) {
             Ok(file) => {
-                let restore = alone.then_some((self.transform, self.blocks.len()));
+                let restore = alone.then(|| (self.state.clone(), self.blocks.len()));
                 self.open(name, Box::new(BufReader::with_capacity(1 << 18, file)), restore)?;
             }
             Err(why) => self.note(format!("The included file `{short}` was left out: {why}.")),
@@ -434,6 +472,7 @@ enum What {
     Width1,
     Degree,
     Basis,
+    Alpha,
     Other,
 }
 

@@ -123,3 +123,100 @@ fn broken_scenes_are_refused_in_one_line() {
     let error = load_hair_bytes("a.pbrt", many.as_bytes()).expect_err("too many").to_string();
     assert!(error.contains("repeated objects"), "{error}");
 }
+
+/// The widths at root and tip of each strand.
+fn ends(file: &HairFile) -> Vec<[f32; 2]> {
+    let widths = file.thickness.as_ref().expect("widths");
+    let span = |&[start, end]: &[u32; 2]| [widths[start as usize], widths[end as usize - 1]];
+    file.first_point.array_windows().map(span).collect()
+}
+
+#[test]
+fn attributes_of_shapes_are_the_defaults_of_what_follows_in_their_block() {
+    let own = |words: &str| CURVE.replace('\n', &format!(" {words}\n"));
+    let text = format!(
+        "{CURVE}\
+         AttributeBegin\n\
+         Attribute \"shape\" \"float width0\" .4 \"float width1\" [ .1 ] ReverseOrientation\n\
+         Attribute \"light\" \"float width0\" 9 \"bool twosided\" true\n\
+         Attribute \"material\" \"float width\" [ 9 ] Attribute \"medium\" \"string basis\" \"other\"\n\
+         {CURVE}{of_one}\
+         TransformBegin Attribute \"shape\" \"float width0\" .8\n{CURVE}TransformEnd\n\
+         {CURVE}{of_both}\
+         ObjectBegin \"a\" Attribute \"shape\" \"float width1\" .3 {CURVE} ObjectEnd\n\
+         {CURVE} ObjectInstance \"a\"\n\
+         AttributeEnd\n{CURVE}{after}",
+        of_one = own("\"float width1\" .2"),
+        of_both = own("\"float width\" 5"),
+        after = own("\"float width\" .5"),
+    );
+    let wanted = [
+        [1.0, 1.0],
+        [0.4, 0.1],
+        [0.4, 0.2],
+        [0.8, 0.1],
+        [0.4, 0.1],
+        // width0 and width1 of the block come before the width of the curve, as in pbrt.
+        [0.4, 0.1],
+        [0.4, 0.1],
+        [0.4, 0.3],
+        [1.0, 1.0],
+        [0.5, 0.5],
+    ];
+    assert_eq!(ends(&load(&text)), wanted);
+}
+
+#[test]
+fn attributes_set_degree_basis_and_points_and_end_with_an_imported_file() {
+    let curve = "Shape \"curve\" \"point3 P\" [ 0 0 0  0 1 0  0 2 0  0 3 0  0 4 0 ]\n";
+    // Five points fit a chain of parabolas and a B-spline, but no cubic bezier.
+    for (words, fits) in [
+        ("\"integer degree\" [ 2 ]", true),
+        ("\"string basis\" [ \"bspline\" ]", true),
+        ("\"integer degree\" [ 3 ] \"string basis\" \"bezier\"", false),
+    ] {
+        let text = format!("{CURVE}Attribute \"shape\" {words}\n{curve}");
+        assert_eq!(load(&text).strands(), if fits { 2 } else { 1 }, "{words}");
+    }
+    let text =
+        "Attribute \"shape\" \"point3 P\" [ 0 0 0  0 1 0  0 2 0  0 3 0 ]\nShape \"curve\"\nShape \"curve\"\n";
+    assert_eq!(
+        load(&format!("{text}{CURVE}")).strands(),
+        3,
+        "points as a default, and own ones in their place"
+    );
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name);
+    std::fs::write(at("sets.pbrt"), "Attribute \"shape\" \"float width\" .25\n").expect("a file");
+    for (word, width) in [("Include", 0.25), ("Import", 1.0)] {
+        let own = CURVE.replace('\n', " \"float width1\" 1\n");
+        std::fs::write(at("main.pbrt"), format!("{word} \"sets.pbrt\"\n{own}")).expect("a file");
+        assert_eq!(ends(&load_hair(&at("main.pbrt")).expect("hair")), [[width, 1.0]], "{word}");
+    }
+    let error = load_hair_bytes("a.pbrt", b"Attribute 3").expect_err("no target").to_string();
+    assert!(error.contains("a target in quotes after Attribute"), "{error}");
+}
+
+#[test]
+fn curves_that_alpha_cuts_out_are_hidden() {
+    let file = load(&format!(
+        "{CURVE}AttributeBegin Attribute \"shape\" \"float alpha\" 0\n{CURVE}AttributeEnd {CURVE}"
+    ));
+    assert_eq!(file.strands(), 2);
+    assert!(file.notes.iter().any(|note| note.contains("1 hidden strand")), "{:?}", file.notes);
+}
+
+#[test]
+fn the_report_on_attributes_gives_its_widths() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    let ends = ends(&load_hair(&data.join("reports/attribute.pbrt")).expect("hair"));
+    assert_eq!(ends.len(), 60);
+    for (strands, wanted) in [
+        (0..30, [0.0004, 0.0001]),
+        (30..40, [0.0008, 0.0002]),
+        (40..50, [0.0006, 0.0006]),
+        (50..60, [0.0003, 0.0003]),
+    ] {
+        assert!(ends[strands].iter().all(|found| *found == wanted), "{wanted:?}: {ends:?}");
+    }
+}

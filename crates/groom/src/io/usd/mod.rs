@@ -11,6 +11,7 @@ mod stage;
 mod surface;
 
 use glam::Vec3;
+use lovelock_base::words::counted;
 use lovelock_usd::{CRATE_MAGIC, TEXT_MAGIC, Value};
 
 use super::HairFileError;
@@ -19,6 +20,7 @@ use super::file::RawHair;
 use super::format::HairFormat;
 use super::frames::OpenedFrames;
 use super::marks::Marks;
+use super::partial::Partial;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};
 use stage::Stage;
@@ -73,33 +75,43 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     if layer.composes() {
         raw.notes.push("References to other files and variants were ignored.".to_owned());
     }
-    let (mut widths, mut colours) = (Vec::new(), Vec::new());
-    let (mut all_widths, mut all_colours) = (true, true);
+    match layer.undefined_curves()? {
+        0 => {}
+        some => raw.notes.push(format!(
+            "{} not on the stage: inactive, a class, or an `over` of nothing.",
+            counted(some, "prim of curves is", "prims of curves are")
+        )),
+    }
+    let mut widths = Partial::new(f32::NAN);
+    let mut colours = Partial::new([f32::NAN; 3]);
     let mut marks = Marks::default();
     for prim in prims {
         let transform = space.metres_from_stage * layer.transform(prim)?;
         let curves = Curves::read(layer, prim, &mut raw.notes)?;
         marks::add(&mut marks, layer, prim, &curves.controls)?;
         let scale = transform.determinant().abs().cbrt() as f32;
+        let first = raw.point_counts.len();
         raw.point_counts.extend(&curves.counts);
+        let (why, changes) = layer.hidden(prim)?;
+        raw.hide_from(first, why);
+        if changes {
+            let path = layer.path(prim);
+            raw.notes.push(format!("{path}: visibility changes over time; that of the first time is used."));
+        }
         raw.points.extend(curves.points.iter().map(|p| transform.transform_point3(p.as_dvec3()).as_vec3()));
-        match curves.widths {
-            Some(of_prim) => widths.extend(of_prim.iter().map(|width| width.x * scale)),
-            None => all_widths = false,
-        }
-        match curves.colours {
-            Some(of_prim) => {
-                colours.extend(of_prim.iter().map(|colour| colour.to_array().map(display_from_linear)));
-            }
-            None => all_colours = false,
-        }
+        let (has_widths, has_colours) = (curves.widths.is_some(), curves.colours.is_some());
+        widths.values.extend(curves.widths.iter().flatten().map(|width| width.x * scale));
+        widths.end_at(raw.points.len(), has_widths);
+        let linear = curves.colours.iter().flatten();
+        colours.values.extend(linear.map(|colour| colour.to_array().map(display_from_linear)));
+        colours.end_at(raw.points.len(), has_colours);
         if raw.points.len() > MAX_POINTS {
             return Err(layer.malformed(format!("{} points", raw.points.len()), "268435456 at most"));
         }
     }
     raw.marks = marks.finish();
-    raw.thickness = Some(widths).filter(|_| all_widths);
-    raw.colours = Some(colours).filter(|_| all_colours);
+    raw.thickness = widths.finish(&mut raw);
+    raw.colours = colours.finish(&mut raw);
     Ok(raw)
 }
 
@@ -132,35 +144,31 @@ impl Curves {
         if made > MAX_POINTS {
             return Err(layer.malformed(format!("{path}: curves of {made} points"), "268435456 at most"));
         }
-        let mut primvar = |names: [&str; 2]| -> Result<Option<Vec<Vec3>>, HairFileError> {
-            for name in names {
-                let Some(values) = layer.attribute(prim, name, points.len().max(1))? else { continue };
-                let mut values = values.into_vectors();
-                let indices = layer.attribute(prim, &format!("{name}:indices"), points.len().max(1))?;
-                if let Some(indices) = indices.map(Value::into_ints) {
-                    let picked = indices.iter().map(|&i| usize::try_from(i).ok().and_then(|i| values.get(i)));
-                    let picked: Option<Vec<Vec3>> = picked.map(Option::<&Vec3>::copied).collect();
-                    let Some(picked) = picked else {
-                        let found = format!("{path}: an index of {name} that is out of range");
-                        return Err(layer.malformed(found, "indices of its values"));
-                    };
-                    values = picked;
-                }
-                let said = layer.interpolation(prim, name)?;
-                let spread = Spread::of(said.as_deref(), values.len(), &counts, shape);
-                let Some(spread) = spread else {
-                    notes.push(format!(
-                        "{path}: {} values of {name} fit no interpolation and were left out.",
-                        values.len()
-                    ));
-                    return Ok(None);
+        let mut primvar = |name: &str| -> Result<Option<Vec<Vec3>>, HairFileError> {
+            let Some(found) = layer.primvar(prim, name, points.len().max(1))? else { return Ok(None) };
+            let name = found.name;
+            let mut values = found.values.into_vectors();
+            if let Some(indices) = found.indices {
+                let picked = indices.iter().map(|&i| usize::try_from(i).ok().and_then(|i| values.get(i)));
+                let picked: Option<Vec<Vec3>> = picked.map(Option::<&Vec3>::copied).collect();
+                let Some(picked) = picked else {
+                    let found = format!("{path}: an index of {name} that is out of range");
+                    return Err(layer.malformed(found, "indices of its values"));
                 };
-                return Ok(Some(shape.spread(spread, &values, &counts)));
+                values = picked;
             }
-            Ok(None)
+            let spread = Spread::of(found.interpolation.as_deref(), values.len(), &counts, shape);
+            let Some(spread) = spread else {
+                notes.push(format!(
+                    "{path}: {} values of {name} fit no interpolation and were left out.",
+                    values.len()
+                ));
+                return Ok(None);
+            };
+            Ok(Some(shape.spread(spread, &values, &counts)))
         };
-        let widths = primvar(["widths", "primvars:widths"])?;
-        let colours = primvar(["primvars:displayColor", "displayColor"])?;
+        let widths = primvar("widths")?;
+        let colours = primvar("displayColor")?;
         Ok(Self {
             counts: counts.iter().map(|&count| shape.polyline_points(count) as u32).collect(),
             points: shape.spread(Spread::Vertex, &points, &counts),
@@ -201,5 +209,7 @@ fn shape(layer: &mut Stage<'_>, prim: usize) -> Result<Shape, HairFileError> {
     Ok(Shape::new(basis, wrap))
 }
 
+#[cfg(test)]
+mod hidden_tests;
 #[cfg(test)]
 mod tests;

@@ -1,9 +1,10 @@
 //! A stage whose errors are those of hair files.
 
 use glam::DMat4;
-use lovelock_usd::{CRATE_MAGIC, Layer, StageSpace, UsdError, Value};
+use lovelock_usd::{CRATE_MAGIC, Layer, Primvar, StageSpace, Undrawn, UsdError, Value};
 
 use super::HairFileError;
+use crate::io::hidden::Hidden;
 use crate::io::source::Source;
 
 /// The content of a stage in one file. Prims are numbers.
@@ -29,6 +30,22 @@ impl<'a> Stage<'a> {
     pub(super) fn meshes(&mut self) -> Result<Vec<usize>, HairFileError> {
         let prims = self.0.prims(&["Mesh"]).map_err(refused)?;
         Ok(prims.into_iter().map(|(prim, _)| prim).collect())
+    }
+
+    /// Number of prims of curves that are not on the stage.
+    pub(super) fn undefined_curves(&mut self) -> Result<usize, HairFileError> {
+        self.0.undefined(&["BasisCurves"]).map_err(refused)
+    }
+
+    /// Why the curves of a prim are not drawn, and whether that changes over time.
+    pub(super) fn hidden(&mut self, prim: usize) -> Result<(Option<Hidden>, bool), HairFileError> {
+        let start = self.times(prim, "points")?.first().copied();
+        let why = lovelock_usd::undrawn(&mut *self.0, prim, start).map_err(refused)?;
+        let why = why.map(|why| match why {
+            Undrawn::Invisible => Hidden::Invisible,
+            Undrawn::StandIn => Hidden::StandIn,
+        });
+        Ok((why, lovelock_usd::visibility_changes(&mut *self.0, prim).map_err(refused)?))
     }
 
     /// Path of a prim, for messages.
@@ -75,10 +92,14 @@ impl<'a> Stage<'a> {
         lovelock_usd::transform_times(&mut *self.0, prim).map_err(refused)
     }
 
-    /// The interpolation of an attribute over a prim, if the file states it.
-    pub(super) fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
-        let value = self.0.field(prim, name, "interpolation").map_err(refused)?;
-        Ok(value.as_ref().and_then(Value::token).map(str::to_owned))
+    /// A primvar of a prim, its own or inherited, named without `primvars:`.
+    pub(super) fn primvar(
+        &mut self,
+        prim: usize,
+        name: &str,
+        most: usize,
+    ) -> Result<Option<Primvar>, HairFileError> {
+        lovelock_usd::primvar(&mut *self.0, prim, name, most).map_err(refused)
     }
 
     /// A metadata field of the stage.
