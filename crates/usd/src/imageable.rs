@@ -219,7 +219,7 @@ over "else"
             assert_eq!(undrawn(&mut *layer, prim, None).expect("known"), wanted, "{time}");
         }
         // Without a start of the stage: the start that the caller knows.
-        let text = STAGE.replace("    startTimeCode = 10\n", "");
+        let text = STAGE.replace("startTimeCode = 10", "endTimeCode = 20");
         let mut layer = crate::open("a.usd", Source::Memory(text.as_bytes()), false).expect("a stage");
         assert_eq!(undrawn(&mut *layer, prim, None).expect("known"), None);
         assert_eq!(undrawn(&mut *layer, prim, Some(10.0)).expect("known"), Some(Undrawn::Invisible));

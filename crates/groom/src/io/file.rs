@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::hidden::Hidden;
 use super::units::{Unit, UpAxis};
 use crate::StrandMarks;
 
@@ -40,6 +39,15 @@ impl Bounds {
     pub fn centre(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
+}
+
+/// Why a strand is not drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hidden {
+    /// It or something above it is invisible.
+    Invisible,
+    /// It is a guide or a proxy, which stands for other strands.
+    StandIn,
 }
 
 /// The content of a file before cleaning. The lengths of arrays over points equal the sum of `point_counts`, which fits

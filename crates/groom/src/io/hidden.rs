@@ -3,16 +3,7 @@
 use lovelock_base::words::counted;
 
 use super::HairFileError;
-use super::file::RawHair;
-
-/// Why a strand is not drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Hidden {
-    /// It or something above it is invisible.
-    Invisible,
-    /// It is a guide or a proxy, which stands for other strands.
-    StandIn,
-}
+use super::file::{Hidden, RawHair};
 
 /// The label of the setting that imports hidden strands.
 const SETTING: &str = "the setting *Include hidden and guides*";
@@ -90,8 +81,7 @@ impl RawHair {
             keep(array, &of_points);
         }
         keep(&mut self.point_counts, kept);
-        let marks = std::mem::take(&mut self.marks);
-        self.marks = marks.selected((0..kept.len()).filter(|&strand| kept[strand]));
+        self.marks = self.marks.selected((0..kept.len()).filter(|&strand| kept[strand]));
         self.left_out = Some(of_points);
     }
 }

@@ -49,9 +49,9 @@ impl OverMesh {
         let found = primvar(layer, prim, "displayColor", sizes.corners.max(1))?;
         let usual = [Per::Mesh, Per::Point, Per::Corner, Per::Face];
         // Colours that fit nothing are of use by their first.
-        Ok(found.and_then(|found| match Self::of(found.clone(), sizes, &usual) {
-            None => Self::of(Primvar { indices: Some(vec![0]), ..found }, sizes, &[Per::Mesh]),
-            fits => fits,
+        Ok(found.and_then(|found| {
+            let first = Primvar { indices: Some(vec![0]), ..found.clone() };
+            Self::of(found, sizes, &usual).or_else(|| Self::of(first, sizes, &[Per::Mesh]))
         }))
     }
 

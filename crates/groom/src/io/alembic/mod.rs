@@ -15,10 +15,9 @@ use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as
 
 use super::HairFileError;
 use super::basis::Spread;
-use super::file::RawHair;
+use super::file::{Hidden, RawHair};
 use super::format::HairFormat;
 use super::frames::{FramesOrReason, OpenedFrames};
-use super::hidden::Hidden;
 use super::marks::Marks;
 use super::partial::Partial;
 use super::source::Source;

@@ -293,7 +293,7 @@ fn invisible_objects_are_left_out_as_the_library_decides() {
             if let Some(own) = own {
                 curves = visible(writer, &[own], curves);
             }
-            let mut moved = transform(writer, &[0], [&[0.0; 3], &[0.0; 3]], true, vec![curves]);
+            let mut moved = transform(writer, &[1 << 4], [&[0.0; 3], &[0.0; 3]], true, vec![curves]);
             if let Some(group) = group {
                 moved = visible(writer, &[group], moved);
             }

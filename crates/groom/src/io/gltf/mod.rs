@@ -19,9 +19,8 @@ use serde::Deserialize;
 
 use super::HairFileError;
 use super::chain::{Chains, chain};
-use super::file::{MAX_COPIED_POINTS, RawHair};
+use super::file::{Hidden, MAX_COPIED_POINTS, RawHair};
 use super::format::HairFormat;
-use super::hidden::Hidden;
 use super::partial::Partial;
 use super::source::Source;
 use super::units::{UpAxis, display_from_linear};

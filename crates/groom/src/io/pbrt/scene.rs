@@ -11,8 +11,7 @@ use glam::{DMat4, DVec3, Vec3};
 use super::curve::Parameters;
 use super::tokens::{Token, Tokens};
 use crate::io::HairFileError;
-use crate::io::file::{MAX_COPIED_POINTS, RawHair};
-use crate::io::hidden::Hidden;
+use crate::io::file::{Hidden, MAX_COPIED_POINTS, RawHair};
 use crate::io::source::open_beside;
 
 /// The most open blocks, named coordinate systems, objects and included files. Real scenes have a few hundred.

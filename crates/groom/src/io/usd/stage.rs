@@ -4,7 +4,7 @@ use glam::DMat4;
 use lovelock_usd::{CRATE_MAGIC, Layer, Primvar, StageSpace, Undrawn, UsdError, Value};
 
 use super::HairFileError;
-use crate::io::hidden::Hidden;
+use crate::io::file::Hidden;
 use crate::io::source::Source;
 
 /// The content of a stage in one file. Prims are numbers.
