@@ -167,12 +167,12 @@ mod tests {
         );
         let mut from = at("a.usda");
         for name in ["b.abc", "c.usdc", "d.abc", "e.usda", "f.usd"] {
-            convert(&from, &at(name), Unit::Auto, UpAxis::Auto).expect(name);
+            convert(&from, &at(name), Unit::Auto, UpAxis::Auto, false).expect(name);
             from = at(name);
             assert_eq!(load_hair(&from).expect(name).marks, first.marks, "{name}");
         }
         // Negative control: a format without groups.
-        convert(&from, &at("g.obj"), Unit::Auto, UpAxis::Auto).expect("g.obj");
+        convert(&from, &at("g.obj"), Unit::Auto, UpAxis::Auto, false).expect("g.obj");
         assert!(load_hair(&at("g.obj")).expect("hair").marks.groups.is_empty());
     }
 

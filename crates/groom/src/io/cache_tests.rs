@@ -264,7 +264,7 @@ fn the_axis_of_curves_over_time_is_guessed_and_a_known_program_has_its_own() {
     let (_folder, at) = folder();
     for (name, up, wanted) in [("x.abc", 0, UpAxis::X), ("y.abc", 1, UpAxis::Y), ("z.abc", 2, UpAxis::Z)] {
         write_hanging(&at(name), up, "");
-        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto).expect("curves");
+        let cache = CurveCache::open(&at(name), Unit::Auto, UpAxis::Auto, false).expect("curves");
         assert!(
             cache.notes()[1].starts_with(&format!("Up axis: {}, guessed", wanted.label())),
             "{:?}",
