@@ -71,12 +71,12 @@ fn hair_files_are_described() {
 fn an_up_axis_is_guessed_doubted_and_set() {
     let dir = tempfile::tempdir().expect("a folder");
     // Strands along X, too few to be sure of.
-    let lines: String = (0..3)
+    let strands: Vec<String> = (0..3)
         .map(|k| format!("v 0 0.1 0.0{k}\nv -0.1 0.1 0.0{k}\nv -0.2 0.1 0.0{k}\nl -3 -2 -1\n"))
         .collect();
-    std::fs::write(dir.path().join("a.obj"), lines).expect("a file");
-    let told = run(dir.path(), ["info", "a.obj"]);
-    assert!(told.done().stdout.contains("in doubt") && told.stdout.contains("--up"), "{told:?}");
+    std::fs::write(dir.path().join("a.obj"), strands.concat()).expect("a file");
+    let info = run(dir.path(), ["info", "a.obj"]);
+    assert!(info.done().stdout.contains("in doubt") && info.stdout.contains("--up"), "{info:?}");
     for axis in ["x", "-x", "-y", "-z"] {
         let json = run(dir.path(), ["info", "--json", "--up", axis, "a.obj"]).done().json();
         assert_eq!((json["up"].as_str(), json["up_confidence"].as_f64()), (Some(axis), Some(1.0)), "{json}");
