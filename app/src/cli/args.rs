@@ -9,7 +9,7 @@ use lovelock_groom::{HairFormat, Unit, UpAxis};
 use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::convert::written_extensions;
 use lovelock_jobs::reference::ReferenceScene;
-use lovelock_project::project::RecordingSection;
+use lovelock_project::project::{Assignment, RecordingSection};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
 
@@ -108,15 +108,6 @@ pub(crate) struct SourceArguments {
     /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<Assignment>,
-}
-
-/// A setting with a new value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Assignment {
-    /// The path of the setting.
-    pub(crate) name: String,
-    /// The new value as text.
-    pub(crate) value: String,
 }
 
 /// Size and rate of images.

@@ -12,7 +12,6 @@ use lovelock_render::Backend;
 use super::args::{Bench, BenchTarget};
 use super::output::Output;
 use super::replace::{self, Holds, Replaced};
-use super::source::apply;
 
 /// Measures the scenes and prints the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
@@ -62,7 +61,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
         let message = format!("{}: found {found}; must contain one of the measured scenes", file.display());
         return Err(ProjectError::input(file, message));
     }
-    let change = |project: &mut Project| apply(&task.set, project);
+    let change = |project: &mut Project| project.assign(&task.set);
     let mut report = bench(&request, &change, &mut |what| {
         eprintln!("measuring {what}");
         ControlFlow::Continue(())
@@ -132,7 +131,7 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
         project.shadow.method = task.shadow.unwrap_or(project.shadow.method);
         project.picture.draw = task.draw.unwrap_or(project.picture.draw);
         project.picture.transparency = task.transparency.unwrap_or(project.picture.transparency);
-        apply(&task.set, project)
+        project.assign(&task.set)
     };
     let report = write_reference(&request, &change, &mut |what| {
         eprintln!("rendering {what}");

@@ -21,10 +21,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use lovelock_project::error::ProjectError;
 
-pub(crate) use args::{Arguments, Assignment, Task};
+use args::{Arguments, Task};
 use output::Output;
 use replace::{Holds, Replaced};
-pub(crate) use source::apply;
 
 /// Runs the command, or opens the window if there is none.
 pub(crate) fn run() -> ExitCode {

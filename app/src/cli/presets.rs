@@ -15,7 +15,6 @@ use super::args::Presets;
 use super::bar::Bar;
 use super::output::Output;
 use super::replace::{self, Holds};
-use super::source::apply;
 
 /// Size of a picture of the sheet if none is given, pixels.
 const SIZE: (u32, u32) = (320, 400);
@@ -65,7 +64,7 @@ fn draw_sheet(task: &Presets, styles: &[Listed], path: &Path) -> Result<(), Proj
             (None, None) => SheetRows::Rest,
         },
         backend: task.backend.unwrap_or_default(),
-        change: &|project| apply(&task.set, project),
+        change: &|project| project.assign(&task.set),
     };
     let picture = watched(|progress| sheet(styles, &request, progress))?;
     lovelock_record::write_png(path, picture.width, picture.height, &picture.rgba)

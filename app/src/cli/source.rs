@@ -16,7 +16,7 @@ use lovelock_project::styles::StyleParts;
 use lovelock_session::progress::Progress;
 use lovelock_session::take::{project_of_cache, project_of_take};
 
-use super::args::{Assignment, SourceArguments};
+use super::args::SourceArguments;
 use super::bar::Bar;
 
 /// A project with the changes of the command line.
@@ -81,7 +81,7 @@ impl Source {
                 project.set_sound_file(path);
             }
             set_import(task, &mut project)?;
-            apply(&task.set, &mut project)?;
+            project.assign(&task.set)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
             return Ok(Self { project, access, name, named });
         }
@@ -134,7 +134,7 @@ impl Source {
             project.set_sound_file(path);
         }
         set_import(task, &mut project)?;
-        apply(&task.set, &mut project)?;
+        project.assign(&task.set)?;
         Ok(Self { project, access, name: names.join(", "), named })
     }
 
@@ -189,7 +189,7 @@ impl Source {
             panes.push(Contender { take: Some(FileRef::new(take)), ..own.clone() });
         }
         self.project.compare.panes = panes;
-        Ok(crate::window::sheet_of_panes())
+        Ok(Sheet::default())
     }
 
     /// Runs the work and shows its progress.
@@ -280,32 +280,6 @@ fn set_import(task: &SourceArguments, project: &mut Project) -> Result<(), Proje
     import.up = task.up.unwrap_or(import.up);
     Ok(())
 }
-
-/// Changes settings of a project.
-///
-/// # Errors
-/// A name without a setting, a value that it does not take, or a setting of something that a take has recorded.
-pub(crate) fn apply(set: &[Assignment], project: &mut Project) -> Result<(), ProjectError> {
-    for Assignment { name, value } in set {
-        let section = name.split('.').next().unwrap_or_default();
-        let free = project.plays_curves()
-            && (["body", "motion"].contains(&section) || name.starts_with("hair.import."));
-        if project.take.file.is_some() && RECORDED.contains(&section) && !free {
-            let message = format!(
-                "--set {name}: a take plays as recorded; must be a setting outside the section {section}"
-            );
-            return Err(ProjectError::option(message));
-        }
-        project.set(name, value).map_err(|error| ProjectError::option(format!("--set {error}")))?;
-    }
-    if !set.is_empty() {
-        *project = project.clamped();
-    }
-    Ok(())
-}
-
-/// The sections that a take has recorded.
-const RECORDED: [&str; 4] = ["body", "motion", "hair", "simulation"];
 
 /// Prints the problems in the project's text. The loader reports missing files and their replacements.
 fn print_problems(problems: &[Problem]) {

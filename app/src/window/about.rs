@@ -12,7 +12,7 @@ use super::{Window, manual, palette, theme};
 impl Window {
     /// Shows version, licence and adapter while they are asked for.
     pub(super) fn about(&mut self, ctx: &Context) {
-        if !self.about_shown {
+        if !self.help.about_shown {
             return;
         }
         let adapter = self.session.painter().adapter();
@@ -44,19 +44,19 @@ impl Window {
             ui.add_space(6.0);
             ui.button("Close").clicked()
         });
-        self.about_shown = !(modal.inner || modal.should_close());
+        self.help.about_shown = !(modal.inner || modal.should_close());
     }
 
     /// Explains the control that has the focus, or the one that is clicked next.
     pub(super) fn what_is_this(&mut self, ctx: &Context) {
-        self.what.toggle(ctx);
+        self.help.what.toggle(ctx);
     }
 
     /// Opens what the manual says about a control.
     pub(super) fn explain(&mut self, asked: &Asked) {
         let of_setting = asked.info.and_then(|info| place_of_setting(palette::path_of(info)?));
         if let Some(place) = of_setting.or_else(|| place_of_control(&asked.name)) {
-            self.manual.show_place(place);
+            self.help.manual.show_place(place);
             return;
         }
         // What has no place in the manual has a sentence of its own.
@@ -80,7 +80,7 @@ impl Window {
         let text = format!("{} has no control now, because this project does not use it.", info.label);
         self.notices.push(Kind::Warning, text);
         if let Some(place) = palette::path_of(info).and_then(manual::place_of_setting) {
-            self.manual.show_place(place);
+            self.help.manual.show_place(place);
         }
     }
 }

@@ -2,25 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection, load_project_with};
+use lovelock_project::project::{
+    Assignment, CameraMode, CameraSection, Marker, TimelineSection, load_project_with,
+};
 use lovelock_project::styles::StyleParts;
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
 
-use crate::cli::Assignment;
-
 use super::command::Command;
-use super::files::{place_of, set_part};
+use super::files::{Pending, place_of, set_part};
 use super::opening::{Aim, Found};
 use super::page::Page;
-use super::path_dialog::Purpose;
 use super::pointer_tool::PointerTool;
-use super::{Pending, Window, notices};
+use super::purpose::Purpose;
+use super::{Window, notices};
 
 /// Factor by which a key changes the radius of the brush.
 const BRUSH_STEP: f32 = 1.15;
@@ -48,10 +47,10 @@ pub(super) struct Opened {
 /// Opens the file that is named on the command line, or the default project, and changes settings of it.
 pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
     let (mut opened, place) = path.map_or_else(|| Ok((Opened::default(), None)), open_file)?;
-    crate::cli::apply(set, &mut opened.project)?;
+    opened.project.assign(set)?;
     if let (Some(place), Some(path)) = (place, path) {
         let mut before = Project::default();
-        crate::cli::apply(set, &mut before)?;
+        before.assign(set)?;
         opened.part = Some((place, path.to_owned(), before));
     }
     Ok(opened)
@@ -86,7 +85,7 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
 impl Window {
     /// Carries out a command.
     pub(super) fn run(&mut self, command: Command, ctx: &egui::Context) {
-        if let Some(why_not) = self.why_not(command) {
+        if let Some(why_not) = self.why_not(&command) {
             self.notices.push(notices::Kind::Warning, why_not);
             return;
         }
@@ -108,16 +107,15 @@ impl Window {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
-            Command::Scissors => self.pointer_tool.toggle(PointerTool::Scissors),
-            Command::ShowMask => self.layers.toggle_mask(),
-            Command::PaintMask => {
-                self.pointer_tool.toggle(PointerTool::Mask);
-                self.layers.show_mask |= self.pointer_tool == PointerTool::Mask;
+            Command::Use(tool) => {
+                self.tools.active.toggle(tool);
+                // The mask is shown while it is painted.
+                self.panels.layers.show_mask |= self.tools.active == PointerTool::Mask;
             }
+            Command::ShowMask => self.panels.layers.toggle_mask(),
             Command::BrushSmaller => self.resize_brush(1.0 / BRUSH_STEP),
             Command::BrushLarger => self.resize_brush(BRUSH_STEP),
-            Command::Brushes => self.pointer_tool.toggle(PointerTool::Brush),
-            Command::ShowColliders => self.colliders.on = !self.colliders.on,
+            Command::ShowColliders => self.panels.colliders.on = !self.panels.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {
                 if let Some(path) = self.session.saved_take.clone() {
@@ -144,12 +142,10 @@ impl Window {
             }
             Command::AddMarker => self.add_marker(),
             Command::MarkIn | Command::MarkOut => self.mark_end(command == Command::MarkIn),
-            Command::Record if self.recorder.is_running() => self.recorder.cancel(),
+            Command::Record if self.media.recorder.is_running() => self.media.recorder.cancel(),
             Command::Record => self.open_path_dialog(Purpose::Film),
-            Command::SavePicture => self.open_path_dialog(Purpose::Picture),
-            Command::ExportCurves => self.open_path_dialog(Purpose::Curves),
+            Command::PickFile(purpose) => self.open_path_dialog(purpose),
             Command::ExportReport => self.open_report_dialog(),
-            Command::PickSound => self.open_path_dialog(Purpose::Sound),
             Command::FrameHair => self.frame_hair(ctx),
             Command::ToggleFollow => self.change_seen(ctx, |project| {
                 project.camera.mode = match project.camera.mode {
@@ -167,7 +163,6 @@ impl Window {
                 self.document.redo();
             }
             Command::NewProject => self.unless_modified(Pending::New, ctx),
-            Command::Open => self.open_path_dialog(Purpose::Open),
             Command::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => {
                     if let Err(error) = self.save_to(&path) {
@@ -176,31 +171,55 @@ impl Window {
                 }
                 None => self.open_path_dialog(Purpose::SaveProject),
             },
-            Command::SaveAs => self.open_path_dialog(Purpose::SaveProject),
-            Command::PresetSmooth => self.change_seen(ctx, |project| project.set_preset(Preset::Smooth)),
-            Command::PresetCurly => self.change_seen(ctx, |project| project.set_preset(Preset::Curly)),
-            Command::PresetLong => self.change_seen(ctx, |project| project.set_preset(Preset::Long)),
-            Command::PresetPonytail => self.change_seen(ctx, |project| project.set_preset(Preset::Ponytail)),
-            Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
-            Command::Palette => self.palette.toggle(),
-            Command::CompareTakes => self.open_path_dialog(Purpose::Beside),
-            Command::Compare => self.layout.page.toggle(Page::Compare),
-            Command::Wall => self.layout.page.toggle(Page::Wall),
+            Command::Load(preset) => self.change_seen(ctx, |project| project.set_preset(preset)),
+            Command::Palette => self.keyboard.palette.toggle(),
+            Command::Show(page) => self.layout.page.toggle(page),
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
-            Command::Manual => self.manual.toggle(),
+            Command::Manual => self.help.manual.toggle(),
             Command::WhatIsThis => self.what_is_this(ctx),
-            Command::About => self.about_shown = !self.about_shown,
-            Command::ShowKeys => self.keys_shown = !self.keys_shown,
+            Command::About => self.help.about_shown = !self.help.about_shown,
+            Command::ShowKeys => self.help.keys_shown = !self.help.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Seek(secs) => self.session.worker().seek(secs),
+            Command::SetRate(rate) => self.session.set_rate(rate),
+            Command::TrimToPoints => self.change("trim", Project::trim_to_points),
+            Command::RemoveTrim => self.change("trim", Project::trim_nothing),
+            Command::SetKey { target, value } => self.set_key(&target, value),
+            Command::RemoveKey(target) => self.remove_key(&target),
+            Command::RecordControl { target, label } => self.record_control(target, label),
+            Command::PaintMap(id) => self.paint_map(id),
+            Command::Unfreeze => {
+                self.session.worker().thaw();
+                self.panels.brushes.forget_frozen();
+            }
+            Command::ExportStyle(style) => {
+                self.files.exported = Some(style);
+                self.open_path_dialog(Purpose::ExportStyle);
+            }
+            Command::EditPane(pane) => self.pages.compare.selected = pane,
+            Command::ShowGauge(kind) => self.show_gauge(kind, ctx),
+            Command::Report(text) => self.notices.push(notices::Kind::Done, text),
+            Command::Fail(text) => self.fail(text),
+        }
+    }
+
+    /// Starts to paint where an operation acts. The pointer does not brush hair meanwhile.
+    fn paint_map(&mut self, id: &str) {
+        let mut stack = self.document.project().hair.stack.clone();
+        if self.panels.layers.paint_map(&mut stack, id) {
+            self.change("layer", |project| project.hair.stack = stack);
+            self.tools.active = PointerTool::Mask;
+        } else {
+            self.warn(["The layer limit is reached. Remove a layer first.".to_owned()]);
         }
     }
 
     /// Resizes the brush that is in use: that of the hair, otherwise that of masks.
     fn resize_brush(&mut self, factor: f32) {
-        if self.pointer_tool == PointerTool::Brush {
-            self.brushes.scale_radius(factor, &mut self.layout.brushes);
+        if self.tools.active == PointerTool::Brush {
+            self.panels.brushes.scale_radius(factor);
         } else {
-            self.layers.resize_brush(factor);
+            self.panels.layers.resize_brush(factor);
         }
     }
 
@@ -212,7 +231,7 @@ impl Window {
     }
 
     /// Like [`Window::change`], for values that a track may animate: the change is treated as an edit in a panel.
-    fn change_seen(&mut self, ctx: &egui::Context, change: impl FnOnce(&mut Project)) {
+    pub(super) fn change_seen(&mut self, ctx: &egui::Context, change: impl FnOnce(&mut Project)) {
         let now = self.moment(ctx);
         let refused = self.document.change_seen(now, change);
         self.report_refused(refused);
@@ -266,8 +285,11 @@ impl Window {
 
     fn frame_hair(&mut self, ctx: &egui::Context) {
         let Some(frame) = self.session.frame.clone() else { return };
-        let [width, height] =
-            if self.layout.page == Page::Compare { self.compare.wanted() } else { self.viewport.wanted };
+        let [width, height] = if self.layout.page == Page::Compare {
+            self.pages.compare.wanted()
+        } else {
+            self.pages.image.wanted
+        };
         let aspect = width as f32 / height.max(1) as f32;
         let guides = &frame.guides.guides;
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
@@ -302,7 +324,7 @@ impl Window {
         match purpose {
             Purpose::SaveProject => {
                 self.save_to(path)?;
-                if let Some(pending) = self.after_saving.take() {
+                if let Some(pending) = self.files.after_saving.take() {
                     self.go_on(pending, ctx);
                 }
             }
@@ -317,7 +339,7 @@ impl Window {
                 let panes =
                     (self.layout.page == Page::Compare && pictures).then(|| self.layout.compare.sheet());
                 let resume = purpose == Purpose::Resume;
-                self.recorder.start(self.document.project().clone(), access, path, panes, resume, ctx);
+                self.media.recorder.start(self.document.project().clone(), access, path, panes, resume, ctx);
             }
             Purpose::ExportStyle => self.export_style(path)?,
             Purpose::SaveStrokes => self.save_strokes(path)?,
@@ -344,7 +366,7 @@ impl Window {
 
     fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
         if self.document.is_modified() {
-            self.pending = Some(pending);
+            self.files.pending = Some(pending);
         } else {
             self.go_on(pending, ctx);
         }
@@ -353,12 +375,12 @@ impl Window {
     fn go_on(&mut self, pending: Pending, ctx: &egui::Context) {
         match pending {
             Pending::Quit => {
-                self.quitting = true;
+                self.files.quitting = true;
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Pending::New => {
                 // They were opened for the project that is closed.
-                self.openings.cancel();
+                self.files.openings.cancel();
                 self.replace_document(Project::default(), None);
             }
             Pending::Open(path) => {
@@ -371,7 +393,7 @@ impl Window {
 
     /// Asks for confirmation before unsaved changes are lost.
     pub(super) fn confirm_loss(&mut self, ctx: &egui::Context) {
-        let Some(pending) = self.pending.clone() else { return };
+        let Some(pending) = self.files.pending.clone() else { return };
         let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
             ui.heading("The project has unsaved changes.");
             ui.horizontal(|ui| {
@@ -388,7 +410,7 @@ impl Window {
         });
         let (save, lose, stay) = modal.inner;
         if save {
-            self.pending = None;
+            self.files.pending = None;
             if let Some(path) = self.document.path().map(Path::to_owned) {
                 match self.save_to(&path) {
                     Ok(()) => self.go_on(pending, ctx),
@@ -396,15 +418,15 @@ impl Window {
                 }
             } else {
                 self.open_path_dialog(Purpose::SaveProject);
-                self.after_saving = Some(pending);
+                self.files.after_saving = Some(pending);
             }
         } else if lose {
-            self.pending = None;
+            self.files.pending = None;
             self.go_on(pending, ctx);
         } else if stay || modal.should_close() {
-            self.pending = None;
+            self.files.pending = None;
         }
-        if self.pending.is_none() {
+        if self.files.pending.is_none() {
             // Files that were opened meanwhile have waited for the answer.
             ctx.request_repaint();
         }
@@ -413,9 +435,9 @@ impl Window {
     /// Handles a request to close the window: asks first if changes would be lost.
     pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && !self.quitting && !self.display.is_reopening && self.document.is_modified() {
+        if asked && !self.files.quitting && !self.display.is_reopening && self.document.is_modified() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.pending = Some(Pending::Quit);
+            self.files.pending = Some(Pending::Quit);
         }
     }
 }

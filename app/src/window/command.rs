@@ -2,11 +2,19 @@
 
 mod table;
 
-pub use table::COMMANDS;
+pub(crate) use table::COMMANDS;
 
-/// A command of the interface. [`COMMANDS`] has its names, keys and menu.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Command {
+use lovelock_groom::Preset;
+use lovelock_project::styles::Style;
+use lovelock_session::health::GaugeKind;
+
+use super::page::Page;
+use super::pointer_tool::PointerTool;
+use super::purpose::Purpose;
+
+/// A command of the interface. [`COMMANDS`] has the names, keys and menus of those that the user finds in a menu.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Command {
     /// Starts or pauses playback.
     PlayPause,
     /// Moves one frame forward.
@@ -21,14 +29,10 @@ pub enum Command {
     ToggleLoop,
     /// Resets the hair to its style and lets it settle.
     SettleHair,
-    /// Switches the scissors.
-    Scissors,
+    /// Takes up a tool of the pointer, or puts it down if it is in use.
+    Use(PointerTool),
     /// Shows or hides the mask of the selected layer.
     ShowMask,
-    /// Starts or ends painting the mask of the selected layer.
-    PaintMask,
-    /// Switches the brushes of hair.
-    Brushes,
     /// Makes the brush smaller.
     BrushSmaller,
     /// Makes the brush larger.
@@ -53,14 +57,10 @@ pub enum Command {
     MarkIn,
     /// Sets the out point of recordings to the current frame.
     MarkOut,
-    /// Saves the image in the viewport as a PNG file.
-    SavePicture,
-    /// Exports hair as animated curves, with the body, for other programs.
-    ExportCurves,
+    /// Opens the dialog that picks a file or a folder for a purpose.
+    PickFile(Purpose),
     /// Compares shadow methods and writes a report.
     ExportReport,
-    /// Picks the sound of the dance.
-    PickSound,
     /// Moves the camera until the hair fills the image.
     FrameHair,
     /// Switches whether the camera follows the head.
@@ -73,30 +73,14 @@ pub enum Command {
     Redo,
     /// Starts from the default project.
     NewProject,
-    /// Opens a project, hairstyle, character or motion.
-    Open,
     /// Saves the project.
     Save,
-    /// Saves the project under another name.
-    SaveAs,
-    /// Loads the shipped smooth bob.
-    PresetSmooth,
-    /// Loads the shipped curls.
-    PresetCurly,
-    /// Loads the shipped long hair.
-    PresetLong,
-    /// Loads the shipped ponytail.
-    PresetPonytail,
-    /// Loads the shipped bun.
-    PresetBun,
+    /// Loads a shipped hairstyle.
+    Load(Preset),
     /// Opens the command palette.
     Palette,
-    /// Shows or closes the comparison.
-    Compare,
-    /// Shows or closes the wall of variants.
-    Wall,
-    /// Adds a pane with a take that the user picks.
-    CompareTakes,
+    /// Shows a page, or the image if the page is shown already.
+    Show(Page),
     /// Hides or shows the panels.
     TogglePanels,
     /// Opens or closes the manual.
@@ -109,11 +93,49 @@ pub enum Command {
     About,
     /// Quits the program.
     Quit,
+    /// Seeks to a time of the timeline, seconds.
+    Seek(f64),
+    /// Sets the rate of playback, seconds of the dance per second.
+    SetRate(f64),
+    /// Trims the clip to the in and out points.
+    TrimToPoints,
+    /// Removes the trim of the clip.
+    RemoveTrim,
+    /// Sets the key of a track at the current time.
+    SetKey {
+        /// The target of the track.
+        target: String,
+        /// The numbers of the key.
+        value: Vec<f64>,
+    },
+    /// Removes the key of a track, by its target, at the current time.
+    RemoveKey(String),
+    /// Records one control alone while the dance plays.
+    RecordControl {
+        /// The target of its track.
+        target: String,
+        /// Its label.
+        label: &'static str,
+    },
+    /// Starts to paint where the operation with this id acts.
+    PaintMap(&'static str),
+    /// Unfreezes all locks.
+    Unfreeze,
+    /// Saves a style to a file that the user picks.
+    ExportStyle(Box<Style>),
+    /// Selects the pane of the comparison that the panels edit, by its number from 0.
+    EditPane(usize),
+    /// Marks the place of a gauge in the image and moves the camera there, or removes the mark.
+    ShowGauge(GaugeKind),
+    /// Tells the user that something is done.
+    Report(String),
+    /// Tells the user that something failed, and why.
+    Fail(String),
 }
 
 /// The menu of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum CommandGroup {
+pub(crate) enum CommandGroup {
     /// Time.
     Playback,
     /// The camera and the panels.
@@ -133,7 +155,7 @@ impl CommandGroup {
     pub const ALL: [Self; 6] = [Self::File, Self::Edit, Self::Playback, Self::View, Self::Hair, Self::Help];
 
     /// The name in menus.
-    pub fn label(self) -> &'static str {
+    pub(crate) fn label(self) -> &'static str {
         match self {
             Self::Playback => "Playback",
             Self::View => "View",
@@ -145,7 +167,7 @@ impl CommandGroup {
     }
 
     /// The letter that opens its menu with Alt.
-    pub fn letter(self) -> char {
+    pub(crate) fn letter(self) -> char {
         match self {
             Self::Playback => 'P',
             Self::View => 'V',
@@ -159,48 +181,47 @@ impl CommandGroup {
 }
 
 /// Names, keys and menu of a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CommandInfo {
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CommandInfo {
     /// Which command.
-    pub command: Command,
+    pub(crate) command: Command,
     /// Stable name, for tests and saved layouts.
-    pub id: &'static str,
+    pub(crate) id: &'static str,
     /// The name on buttons, in menus and in the palette.
-    pub label: &'static str,
+    pub(crate) label: &'static str,
     /// A sentence that says what it does.
-    pub tooltip: &'static str,
+    pub(crate) tooltip: &'static str,
     /// Keys, the first one shown in menus, such as `Ctrl+Shift+Z`. `Ctrl` is the command key on a Mac.
-    pub shortcuts: &'static [&'static str],
+    pub(crate) shortcuts: &'static [&'static str],
     /// Its menu.
-    pub group: CommandGroup,
+    pub(crate) group: CommandGroup,
     /// Whether the palette lists it.
-    pub in_palette: bool,
+    pub(crate) in_palette: bool,
 }
 
 impl Command {
-    /// Its names, keys and menu.
-    pub fn info(self) -> &'static CommandInfo {
-        // The table is in the order of the enum, which a test checks.
-        &COMMANDS[self as usize]
+    /// Its names, keys and menu, if it has any.
+    pub(crate) fn info(&self) -> Option<&'static CommandInfo> {
+        COMMANDS.iter().find(|info| info.command == *self)
     }
 }
 
 /// A key with its modifiers, as [`CommandInfo::shortcuts`] writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shortcut<'a> {
+pub(crate) struct Shortcut<'a> {
     /// Control, or the command key on a Mac.
-    pub ctrl: bool,
+    pub(crate) ctrl: bool,
     /// Shift.
-    pub shift: bool,
+    pub(crate) shift: bool,
     /// Alt.
-    pub alt: bool,
+    pub(crate) alt: bool,
     /// The key: `A` to `Z`, `Space`, `Tab`, `Left`, `Right`, `Home`, `End`, `?`, `F1` and so on.
-    pub key: &'a str,
+    pub(crate) key: &'a str,
 }
 
 impl<'a> Shortcut<'a> {
     /// Reads a shortcut such as `Ctrl+Shift+Z`; `None` if a modifier is unknown or the key is missing.
-    pub fn parse(text: &'a str) -> Option<Self> {
+    pub(crate) fn parse(text: &'a str) -> Option<Self> {
         let mut parts = text.split('+').rev();
         let key = parts.next().filter(|key| !key.is_empty())?;
         let mut shortcut = Self { ctrl: false, shift: false, alt: false, key };
@@ -224,26 +245,18 @@ mod tests {
 
     #[test]
     fn hairstyles_have_the_names_of_the_browser() {
-        let commands = [
-            (Command::PresetSmooth, "smooth"),
-            (Command::PresetCurly, "curly"),
-            (Command::PresetLong, "long"),
-            (Command::PresetPonytail, "ponytail"),
-            (Command::PresetBun, "bun"),
-        ];
-        for (command, id) in commands {
-            let name = &lovelock_project::styles::shipped::by_id(id).expect("shipped").style.name;
-            assert_eq!(command.info().label, format!("Hairstyle: {name}"));
+        for preset in Preset::ALL {
+            let name = &lovelock_project::styles::shipped::by_id(preset.id()).expect("shipped").style.name;
+            let info = Command::Load(preset).info().expect("in the table");
+            assert_eq!(info.label, format!("Hairstyle: {name}"));
         }
     }
 
     #[test]
-    fn the_table_is_in_the_order_of_the_enum() {
-        for (i, info) in COMMANDS.iter().enumerate() {
-            assert_eq!(info.command as usize, i, "{}", info.id);
-            assert_eq!(info.command.info(), info);
+    fn every_command_of_the_table_is_listed_once() {
+        for info in COMMANDS {
+            assert_eq!(info.command.info(), Some(info), "{}", info.id);
         }
-        assert_eq!(Command::Quit as usize + 1, COMMANDS.len(), "every command has its row");
     }
 
     #[test]
@@ -279,7 +292,7 @@ mod tests {
             ("End", Command::JumpToEnd),
             ("R", Command::RecordTake),
             ("Ctrl+R", Command::Record),
-            ("C", Command::Compare),
+            ("C", Command::Show(Page::Compare)),
             ("F", Command::FrameHair),
             ("Ctrl+Z", Command::Undo),
             ("Ctrl+Shift+Z", Command::Redo),
@@ -291,7 +304,7 @@ mod tests {
             ("Shift+F1", Command::WhatIsThis),
             ("?", Command::ShowKeys),
         ] {
-            assert!(command.info().shortcuts.contains(&key), "{key}");
+            assert!(command.info().expect("in the table").shortcuts.contains(&key), "{key}");
         }
     }
 }

@@ -8,63 +8,64 @@ use lovelock_project::styles::STYLE_EXTENSION;
 use super::actions::Used;
 use super::command::Command;
 use super::page::Page;
-use super::path_dialog::{Answer, PathDialog, Purpose};
-use super::{Window, keys};
+use super::path_dialog::{Answer, PathDialog};
+use super::purpose::Purpose;
+use super::{Window, key_press, keys};
 
 impl Window {
     /// Whether a dialog is open, which takes all keys until it is answered.
     pub(super) fn holds_keys(&self, ctx: &egui::Context) -> bool {
-        self.dialog.is_some()
-            || self.pending.is_some()
-            || self.keys_shown
-            || self.compare.reporting.is_open()
-            || self.palette.is_open()
-            || self.up_question.is_open()
-            || keys::are_held(ctx)
+        self.files.dialog.is_some()
+            || self.files.pending.is_some()
+            || self.help.keys_shown
+            || self.pages.compare.reporting.is_open()
+            || self.keyboard.palette.is_open()
+            || self.files.up_question.is_open()
+            || key_press::are_held(ctx)
     }
 
     /// Whether a command closes the dialog that is open.
-    pub(super) fn closes(&self, command: Command) -> bool {
+    pub(super) fn closes(&self, command: &Command) -> bool {
         match command {
-            Command::Palette => self.palette.is_open(),
-            Command::ShowKeys => self.keys_shown,
+            Command::Palette => self.keyboard.palette.is_open(),
+            Command::ShowKeys => self.help.keys_shown,
             _ => false,
         }
     }
 
     /// Shows the dialogs above everything else.
     pub(super) fn windows(&mut self, ctx: &egui::Context) {
-        let shown = self.dialog.as_mut().map(|dialog| dialog.show(ctx));
+        let shown = self.files.dialog.as_mut().map(|dialog| dialog.show(ctx));
         match shown {
             None | Some(Answer::Pending) => {}
             Some(Answer::Closed) => {
-                if let Some(path) = self.dialog.as_ref().and_then(PathDialog::waiting) {
-                    self.openings.cancel_asked(path);
+                if let Some(path) = self.files.dialog.as_ref().and_then(PathDialog::waiting) {
+                    self.files.openings.cancel_asked(path);
                 }
-                (self.dialog, self.after_saving) = (None, None);
+                (self.files.dialog, self.files.after_saving) = (None, None);
             }
             // It stays open until the path is known to be good.
             Some(Answer::Path(purpose, path)) => match self.answer(purpose, &path, ctx) {
-                Ok(Used::Done) => self.dialog = None,
+                Ok(Used::Done) => self.files.dialog = None,
                 Ok(Used::Waits) => {
-                    if let Some(dialog) = &mut self.dialog {
+                    if let Some(dialog) = &mut self.files.dialog {
                         dialog.wait(&path);
                     }
                 }
                 Err(error) => {
-                    if let Some(dialog) = &mut self.dialog {
+                    if let Some(dialog) = &mut self.files.dialog {
                         dialog.refuse(error);
                     }
                 }
             },
         }
-        if self.keys_shown {
+        if self.help.keys_shown {
             let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
                 ui.heading("Keys");
                 let most = ctx.content_rect().height() * 0.85;
                 ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
-            self.keys_shown = !modal.should_close();
+            self.help.keys_shown = !modal.should_close();
         }
         self.about(ctx);
         self.report_dialog(ctx);
@@ -97,7 +98,7 @@ impl Window {
             Purpose::Curves => folder.join("out").join("dance.usdc"),
             Purpose::Picture if self.layout.page == Page::Compare => folder.join("comparison.png"),
             Purpose::ExportStyle => {
-                let name = self.exported.as_ref().map_or("", |style| style.name.as_str());
+                let name = self.files.exported.as_ref().map_or("", |style| style.name.as_str());
                 folder.join(name.replace(['/', '\\'], "-")).with_extension(STYLE_EXTENSION)
             }
             Purpose::SaveStrokes => folder.join("hair").with_extension(lovelock_brush::StrokeFile::EXTENSION),
@@ -108,7 +109,7 @@ impl Window {
         let dialog = PathDialog::new(purpose, &suggestion)
             .own(self.document.path().map(std::path::Path::to_owned))
             .recent(recent);
-        self.dialog = Some(match purpose {
+        self.files.dialog = Some(match purpose {
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
                 dialog.about(self.recording_in_words())
             }

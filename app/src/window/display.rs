@@ -11,6 +11,7 @@ use lovelock_project::project::{PROJECT_EXTENSION, save_project};
 use lovelock_session::window_device::WindowDevice;
 
 use super::images::{self, Textures};
+use super::screenshot::Screenshot;
 use super::{LAYOUT_KEY, Window, notices, theme};
 
 /// Environment variable with a number of seconds after which the window's graphics device is destroyed, once, as if it had failed.
@@ -21,6 +22,8 @@ pub(super) struct Display {
     /// The graphics device of the window, and its images there.
     device: WindowDevice,
     pub(super) textures: Textures,
+    /// The screenshot to take.
+    pub(super) screenshot: Option<Screenshot>,
     /// The title that was set last.
     pub(super) title: String,
     /// The context of the window, and its place on the screen, points.
@@ -41,6 +44,7 @@ impl Display {
         Self {
             device,
             textures,
+            screenshot: None,
             title: String::new(),
             ctx: None,
             place: None,
@@ -174,7 +178,7 @@ impl eframe::App for Opened {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         if let Some(window) = &self.window {
-            eframe::set_value(storage, LAYOUT_KEY, &window.layout);
+            eframe::set_value(storage, LAYOUT_KEY, &window.stored_layout());
         }
     }
 }
@@ -193,11 +197,11 @@ impl Window {
         // The glyphs were on the lost device; with other options all are drawn anew.
         set_hinting(ctx, false);
         display.sharpen_text = true;
-        self.viewport.forget_image();
-        self.compare.forget_images();
-        self.wall.forget_images();
-        self.thumbnails.forget();
-        self.styles.forget_images();
+        self.pages.image.forget_image();
+        self.pages.compare.forget_images();
+        self.pages.wall.forget_images();
+        self.media.thumbnails.forget();
+        self.panels.hair.styles.forget_images();
         self.session.draw_again();
         self.notices.push(
             notices::Kind::Warning,

@@ -9,11 +9,63 @@ use lovelock_project::error::Place;
 use lovelock_project::files::FileRef;
 use lovelock_project::history::GestureId;
 use lovelock_project::project::{BodySection, CameraSection, Contender, load_project_with, save_project};
+use lovelock_project::styles::Style;
 use lovelock_session::scene::{Scene, camera_for_size};
 
-use super::opening::{Aim, Found, Opened};
+use super::opening::{Aim, Found, Opened, Openings};
 use super::page::Page;
-use super::{Pending, Window, notices, remember};
+use super::path_dialog::PathDialog;
+use super::up_axis::UpQuestion;
+use super::{Window, notices, remember};
+
+/// The action that waits for the confirmation that unsaved changes may be lost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Pending {
+    Quit,
+    New,
+    Open(PathBuf),
+}
+
+/// Files that are opened and saved, and what waits for them.
+pub(super) struct Files {
+    /// The dialog that asks for a path.
+    pub(super) dialog: Option<PathDialog>,
+    /// The files that are being looked into, and the context that their threads wake.
+    pub(super) openings: Openings,
+    pub(super) ctx: egui::Context,
+    /// The question for the up axis of the hair file that was opened last.
+    pub(super) up_question: UpQuestion,
+    /// The body that was opened last, until it is loaded.
+    pub(super) framing: Option<Framing>,
+    /// Whether what the command line names is not loaded yet: its errors are printed too.
+    pub(super) starting: bool,
+    /// What waits until the user has decided about unsaved changes.
+    pub(super) pending: Option<Pending>,
+    /// What waits until the project is saved under a name.
+    pub(super) after_saving: Option<Pending>,
+    /// The style that is exported, while its path is asked for.
+    pub(super) exported: Option<Box<Style>>,
+    /// Whether the window closes without asking again.
+    pub(super) quitting: bool,
+}
+
+impl Files {
+    /// Those of a window that starts.
+    pub(super) fn new(ctx: &egui::Context, framing: Option<Framing>) -> Self {
+        Self {
+            dialog: None,
+            openings: Openings::default(),
+            ctx: ctx.clone(),
+            up_question: UpQuestion::default(),
+            framing,
+            starting: true,
+            pending: None,
+            after_saving: None,
+            exported: None,
+            quitting: false,
+        }
+    }
+}
 
 /// A body that was opened and is not loaded yet.
 pub(super) struct Framing {
@@ -73,8 +125,9 @@ impl Window {
     /// Starts to look into a file that a dialog has picked.
     pub(super) fn look_into(&mut self, path: &Path, aim: Aim) -> Result<(), String> {
         let hair = self.document.project().hair.clone();
-        self.openings
-            .start(path, aim, hair, &self.ctx)
+        self.files
+            .openings
+            .start(path, aim, hair, &self.files.ctx)
             .map_err(|error| format!("{}: could not start a thread to read it: {error}", path.display()))
     }
 
@@ -87,11 +140,11 @@ impl Window {
     /// Opens the files that were looked into, in their order: those behind a project wait until it is opened, and become parts of it.
     /// The dialog that asked for a file stays open if it cannot be used.
     pub(super) fn take_opened(&mut self) {
-        while self.pending.is_none()
-            && self.after_saving.is_none()
-            && let Some(Opened { path, aim, found }) = self.openings.next()
+        while self.files.pending.is_none()
+            && self.files.after_saving.is_none()
+            && let Some(Opened { path, aim, found }) = self.files.openings.next()
         {
-            let dialog = self.dialog.take_if(|dialog| dialog.waiting() == Some(path.as_path()));
+            let dialog = self.files.dialog.take_if(|dialog| dialog.waiting() == Some(path.as_path()));
             match found
                 .map_err(|error| error.to_string())
                 .and_then(|found| self.open_found(&path, aim, found))
@@ -100,7 +153,7 @@ impl Window {
                 Err(error) => match dialog {
                     Some(mut dialog) => {
                         dialog.refuse(error);
-                        self.dialog = Some(dialog);
+                        self.files.dialog = Some(dialog);
                     }
                     None => self.fail(error),
                 },
@@ -132,7 +185,7 @@ impl Window {
             (_, Found::Curves(curves)) => self.play(path, |project| curves.played_in(project)),
             (_, Found::Document(FileKind::Style)) => self.open_style(path)?,
             (_, Found::Document(_)) if self.document.is_modified() => {
-                self.pending = Some(Pending::Open(path.to_owned()));
+                self.files.pending = Some(Pending::Open(path.to_owned()));
             }
             (_, Found::Document(_)) => self.open_project(path)?,
             (_, Found::Part(kind, unused)) => {
@@ -143,7 +196,8 @@ impl Window {
                     self.open_part(place_of(kind), path, |project| set_part(project, kind, path));
                     if kind == FileKind::Hair {
                         let import = self.document.project().hair.import;
-                        self.up_question.look(path, &import, self.document.gesture() - 1, &self.ctx);
+                        let (files, gesture) = (&mut self.files, self.document.gesture() - 1);
+                        files.up_question.look(path, &import, gesture, &files.ctx);
                     }
                 }
             }
@@ -154,7 +208,7 @@ impl Window {
     /// Makes a character the body of the project. The camera follows its size when it is loaded.
     pub(super) fn open_body(&mut self, path: &Path) {
         self.open_part(Place::Body, path, |project| project.set_body_file(path));
-        self.framing = Some(Framing {
+        self.files.framing = Some(Framing {
             body: self.document.project().body.clone(),
             gesture: self.document.gesture() - 1,
             before: self.session.scene.clone(),
@@ -164,14 +218,14 @@ impl Window {
 
     /// Moves the camera away from a large body and to a small one, as a part of the undo step that opened it. Called when a load has ended.
     pub(super) fn frame_opened_body(&mut self) {
-        let Some(framing) = &self.framing else { return };
+        let Some(framing) = &self.files.framing else { return };
         let before = framing.before.as_ref();
         let is_other =
             |scene: &&Arc<Scene>| before.is_none_or(|before| !Arc::ptr_eq(&before.body, &scene.body));
         let Some(scene) = self.session.scene.as_ref().filter(is_other) else {
             // Another load began earlier, or this one ended without the body: then the next scene is none of its.
             if !self.session.worker().is_loading() {
-                self.framing = None;
+                self.files.framing = None;
             }
             return;
         };
@@ -185,7 +239,7 @@ impl Window {
             let framed = Project { camera, ..(**project).clone() };
             self.document.edit_in(gesture, "file", framed);
         }
-        self.framing = None;
+        self.files.framing = None;
     }
 
     /// Makes a file that the user picked a part of the project. One that cannot be loaded leaves the project again.
@@ -239,7 +293,7 @@ impl Window {
     /// Puts another project in place of this one.
     pub(super) fn replace_document(&mut self, project: Project, path: Option<PathBuf>) {
         self.cancel_strokes();
-        self.framing = None;
+        self.files.framing = None;
         self.document.replace(project, path);
         self.rest_all();
         self.follow_path();

@@ -1,13 +1,10 @@
 //! The keyboard focus: F6 cycles through the areas of the window, Tab moves within one.
 
 use egui::accesskit::{Action, ActionRequest, TreeId};
-use egui::{
-    Context, CornerRadius, Event, FocusDirection, Id, Key, LayerId, Modifiers, Order, Rect, Stroke,
-    StrokeKind, Ui,
-};
+use egui::{Context, CornerRadius, Event, Id, Key, LayerId, Modifiers, Order, Rect, Stroke, StrokeKind, Ui};
 
 use super::control::{close_popups, is_any_open};
-use super::{keys, theme};
+use super::{key_press, theme};
 
 /// A part of the window that Tab does not leave, in the order in which F6 visits them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -71,9 +68,9 @@ impl Focus {
         }
         // A dialog keeps the focus until it is answered.
         if ctx.memory(|memory| memory.top_modal_layer().is_none()) {
-            if keys::consume(ctx, Modifiers::NONE, Key::F6) {
+            if key_press::consume(ctx, Modifiers::NONE, Key::F6) {
                 self.go_round(ctx, true);
-            } else if keys::consume(ctx, Modifiers::SHIFT, Key::F6) {
+            } else if key_press::consume(ctx, Modifiers::SHIFT, Key::F6) {
                 self.go_round(ctx, false);
             } else if let Some(focused) = focused {
                 let ids = match holder {
@@ -83,7 +80,7 @@ impl Focus {
                 self.step(ctx, &ids, focused);
             } else {
                 // Without focus Shift+Tab would enter the last area.
-                keys::consume(ctx, Modifiers::SHIFT, Key::Tab);
+                key_press::consume(ctx, Modifiers::SHIFT, Key::Tab);
             }
         }
         ctx.input(|input| {
@@ -100,9 +97,9 @@ impl Focus {
     fn step(&mut self, ctx: &Context, ids: &[Id], focused: Id) {
         let at = ids.iter().position(|id| *id == focused);
         let count = ids.len();
-        let next = if keys::consume(ctx, Modifiers::NONE, Key::Tab) {
+        let next = if key_press::consume(ctx, Modifiers::NONE, Key::Tab) {
             at.map_or(0, |at| (at + 1) % count.max(1))
-        } else if keys::consume(ctx, Modifiers::SHIFT, Key::Tab) {
+        } else if key_press::consume(ctx, Modifiers::SHIFT, Key::Tab) {
             at.map_or(count.saturating_sub(1), |at| (at + count - 1) % count.max(1))
         } else {
             return;
@@ -228,9 +225,4 @@ fn focusable(ctx: &Context, layer: LayerId, begin: usize) -> Vec<Id> {
             .map(|widget| widget.id)
             .collect()
     })
-}
-
-/// Lets no other control receive a key that also moves the focus.
-pub(super) fn keep(ctx: &Context) {
-    ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
 }

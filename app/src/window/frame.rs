@@ -6,15 +6,15 @@ use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, 
 use lovelock_base::settings::Info;
 use lovelock_project::Project;
 use lovelock_project::document::Shown;
-use lovelock_project::error::Place;
 use lovelock_project::tracks::Track;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
+use super::command::Command;
 use super::control::Keying;
 use super::focus::{Area, Focus};
 use super::page::Page;
-use super::path_dialog::Purpose;
+use super::recorder::State;
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline};
 use crate::window::control::HoverTooltip;
@@ -26,7 +26,7 @@ impl Window {
     /// One pass.
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        if !self.gestures.continues(&ctx, self.document.overdub().writes().next().is_some()) {
+        if !self.tools.gestures.continues(&ctx, self.document.overdub().writes().next().is_some()) {
             self.document.end_gesture();
         }
         let said = self.session.update();
@@ -43,33 +43,33 @@ impl Window {
         for done in std::mem::take(&mut self.session.done) {
             self.notices.push(notices::Kind::Done, done);
         }
-        let said = self.compare.update(self.session.live());
+        let said = self.pages.compare.update(self.session.live());
         self.warn(said);
         self.report_saved();
         self.report_exported();
         // The database is read or made when clusters are first drawn.
-        if !self.record.is_noted
+        if !self.panels.picture.record.is_noted
             && let Some((_, note)) = lovelock_satf::cache::ready()
         {
-            self.record.is_noted = true;
+            self.panels.picture.record.is_noted = true;
             self.warn(note.as_ref().map(ToString::to_string));
         }
-        if let Some(end) = self.recorder.update() {
+        if let Some(end) = self.media.recorder.update() {
             match end {
-                panels::recording::State::Done { what, out } => {
+                State::Done { what, out } => {
                     self.notices.push_written(what.as_str(), out.clone());
                 }
-                panels::recording::State::Failed(why) => {
+                State::Failed(why) => {
                     self.notices.push(notices::Kind::Failed, format!("Recording: {why}"));
                 }
-                panels::recording::State::Cancelled(what) => {
+                State::Cancelled(what) => {
                     self.notices.push(notices::Kind::Done, what.as_str());
                 }
-                panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
+                State::Idle | State::Running { .. } => {}
             }
         }
-        self.focus.begin_pass(&ctx);
-        self.menu_keys.begin_pass(&ctx);
+        self.keyboard.focus.begin_pass(&ctx);
+        self.keyboard.menu_keys.begin_pass(&ctx);
         let held = self.holds_keys(&ctx);
         for command in keys::pressed(&ctx, |command| !held || self.closes(command)) {
             // The dialog that one key opens takes those that follow it.
@@ -84,61 +84,46 @@ impl Window {
 
         let begin = Focus::begin_area(ui);
         self.menu_bar(ui);
-        self.focus.end_area(ui, Area::Menu, begin);
+        self.keyboard.focus.end_area(ui, Area::Menu, begin);
         // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
         let keying = Keying::of(&project, self.now_secs(), &self.document.overdub().writes());
         control::begin_keying(&ctx, keying);
         let begin = Focus::begin_area(ui);
-        let playback = self.timeline(ui, &mut project);
-        self.focus.end_area(ui, Area::Timeline, begin);
-        self.viewport.film = None;
+        let mut commands: Vec<Command> = self.timeline(ui, &mut project).into_iter().collect();
+        self.keyboard.focus.end_area(ui, Area::Timeline, begin);
+        self.pages.image.film = None;
         if !self.layout.panels_hidden {
-            let begin = Focus::begin_area(ui);
-            self.left_panel(ui, &mut project);
-            self.focus.end_area(ui, Area::Left, begin);
-            let begin = Focus::begin_area(ui);
-            self.right_panel(ui, &mut project, &ctx);
-            self.focus.end_area(ui, Area::Right, begin);
+            commands.extend(self.side_panels(ui, &mut project));
         }
         control::keep_free_area(ui);
         let image = ui.available_rect_before_wrap();
-        self.focus.set_image(image);
+        self.keyboard.focus.set_image(image);
         let begin = Focus::begin_area(ui);
         match self.layout.page {
             Page::Image => self.picture(ui, &mut project),
-            Page::Compare => self.comparison(ui, &mut project),
-            Page::Wall => self.wall_page(ui, &mut project),
+            Page::Compare => commands.extend(self.comparison(ui, &mut project)),
+            Page::Wall => commands.extend(self.wall_page(ui, &mut project)),
         }
-        self.focus.end_area(ui, Area::Page, begin);
-        for request in control::end_keying(&ctx) {
-            self.key(request, &mut project);
-        }
-        if !std::mem::take(&mut self.brushes.handled) {
+        self.keyboard.focus.end_area(ui, Area::Page, begin);
+        commands.extend(control::end_keying(&ctx));
+        if !std::mem::take(&mut self.panels.brushes.handled) {
             // Another page, another tool, or no image.
             self.end_stroke();
         }
         let refused = self.document.edit_seen(&seen, project, self.moment(&ctx));
         self.report_refused(refused);
-        self.answer_styles();
         let said = control::said(&ctx);
         self.warn(said);
-        if let Some(ask) = playback {
-            match ask {
-                timeline::TimelineRequest::Run(command) => self.run(command, &ctx),
-                timeline::TimelineRequest::Seek(time_secs) => self.session.worker().seek(time_secs),
-                timeline::TimelineRequest::Rate(rate) => self.session.set_rate(rate),
-                timeline::TimelineRequest::Trim => self.change("trim", Project::trim_to_points),
-                timeline::TimelineRequest::Untrim => self.change("trim", Project::trim_nothing),
-                timeline::TimelineRequest::PickMotion => self.open_path_dialog(Purpose::Motion),
-            }
+        for command in commands {
+            self.run(command, &ctx);
         }
-        let mut palette = std::mem::take(&mut self.palette);
+        let mut palette = std::mem::take(&mut self.keyboard.palette);
         let chosen = palette.show(&ctx, |command| self.can(command));
-        self.palette = palette;
+        self.keyboard.palette = palette;
         match chosen {
-            Some(palette::Found::Command(info)) => self.run(info.command, &ctx),
+            Some(palette::Found::Command(info)) => self.run(info.command.clone(), &ctx),
             Some(palette::Found::Layer(kind)) => self.add_layer(kind, &ctx),
             Some(palette::Found::Setting(_, info)) => self.show_setting(info, &ctx),
             None => {}
@@ -147,20 +132,27 @@ impl Window {
         // The single image is not visible while panes are shown.
         let page = self.layout.page;
         self.rest_hidden_pages();
+        let secs = self.now_secs();
         let Shown { project: shown, drawn: seen } =
-            self.document.shown(self.now_secs(), self.styles.preview());
-        let size = if page == Page::Image { self.viewport.wanted } else { [0, 0] };
-        self.brushes.send(self.session.worker());
+            self.document.shown(secs, self.panels.hair.styles.preview());
+        let size = if page == Page::Image { self.pages.image.wanted } else { [0, 0] };
+        self.panels.brushes.send(self.session.worker());
         self.session.view.rate = (self.layout.view_scale <= 0.0).then_some(self.layout.view_rate);
         self.follow_mask(&seen);
-        let again = self.session.send(&shown, &seen, size, self.shown_mask.as_ref());
+        let again = self.session.send(&shown, &seen, size, self.tools.shown_mask.as_ref());
         if let Some(after) = again {
             ctx.request_repaint_after(after);
         }
         if page == Page::Compare {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
-            self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
+            self.pages.compare.send(
+                live,
+                (&seen, self.session.access()),
+                frame,
+                &self.layout.compare,
+                playing,
+            );
         }
         if page == Page::Wall {
             self.send_wall();
@@ -179,16 +171,16 @@ impl Window {
         if let Some(info) = control::end_reveal(&ctx) {
             self.explain_missing(info);
         }
-        self.manual.show(&ctx);
-        if let Some(asked) = self.what.end_pass(&ctx) {
+        self.help.manual.show(&ctx);
+        if let Some(asked) = self.help.what.end_pass(&ctx) {
             self.explain(&asked);
         }
-        self.focus.end_pass(&ctx);
-        if let Some(screenshot) = &mut self.screenshot {
+        self.keyboard.focus.end_pass(&ctx);
+        if let Some(screenshot) = &mut self.display.screenshot {
             let shown = match page {
                 Page::Image => self.session.painted.is_some(),
-                Page::Compare => self.compare.has_pictures(),
-                Page::Wall => self.wall.has_pictures(),
+                Page::Compare => self.pages.compare.has_pictures(),
+                Page::Wall => self.pages.wall.has_pictures(),
             };
             screenshot.update(&ctx, shown);
         }
@@ -197,7 +189,7 @@ impl Window {
 
     fn menu_bar(&mut self, ui: &mut Ui) {
         let mut open_recent = None;
-        let mut menu_keys = std::mem::take(&mut self.menu_keys);
+        let mut menu_keys = std::mem::take(&mut self.keyboard.menu_keys);
         let chosen = Panel::top("menu")
             .show(ui, |ui| {
                 egui::MenuBar::new()
@@ -241,7 +233,7 @@ impl Window {
                     .inner
             })
             .inner;
-        self.menu_keys = menu_keys;
+        self.keyboard.menu_keys = menu_keys;
         if let Some(path) = open_recent {
             self.open_any(&path);
         }
@@ -251,7 +243,7 @@ impl Window {
         }
     }
 
-    fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<timeline::TimelineRequest> {
+    fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<Command> {
         let session = &self.session;
         let frame = session.frame.as_ref();
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
@@ -260,7 +252,7 @@ impl Window {
         // A style that is only shown leaves no thumbnails.
         let painted = painted.filter(|_| !self.document.is_preview());
         let shown = (self.layout.timeline, duration_secs, ui.available_width());
-        self.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
+        self.media.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
         let view = timeline::View {
             time_secs: frame.map_or(0.0, |frame| frame.position_secs),
@@ -275,7 +267,7 @@ impl Window {
                 backwards: session.backwards,
             }),
             can_play_take: session.saved_take.is_some(),
-            thumbs: self.thumbnails.shown(),
+            thumbs: self.media.thumbnails.shown(),
             writing: timeline::Writing {
                 armed: self.document.overdub().is_armed(),
                 only: self
@@ -287,7 +279,7 @@ impl Window {
             },
             sound: project.sound.file.as_ref().map(|file| timeline::SoundLane {
                 name: file.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                loaded: self.soundtrack.loaded().cloned().unwrap_or_default(),
+                loaded: self.media.soundtrack.loaded().cloned().unwrap_or_default(),
             }),
             recording: session.worker().take_progress().map(|take| {
                 let kept = take.kept as f64 / take.frames.max(1) as f64;
@@ -305,18 +297,18 @@ impl Window {
     /// Reads the sound of the project and plays it in step with the image.
     fn follow_sound(&mut self, ctx: &egui::Context) {
         let project = Arc::clone(self.document.project());
-        let said = self.soundtrack.update(&project.sound, self.session.access(), ctx);
+        let said = self.media.soundtrack.update(&project.sound, self.session.access(), ctx);
         self.judge_sound(said);
         let rate = if self.session.backwards { -self.session.rate } else { self.session.rate };
         let playing = self.session.playing && self.session.frame.is_some();
-        self.soundtrack.follow(&project.sound, self.now_secs(), playing, rate);
+        self.media.soundtrack.follow(&project.sound, self.now_secs(), playing, rate);
     }
 
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let most_pixels = viewport::most_pixels_at_rest(self.session.painter().adapter().as_deref());
             let painted = (self.session.painted.as_deref(), &self.display.textures);
-            let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
+            let response = self.pages.image.show(ui, painted, most_pixels, self.layout.view_scale);
             if response.contains_pointer() && ui.input(|input| input.pointer.any_pressed()) {
                 // The keys are shortcuts again.
                 ui.memory_mut(egui::Memory::stop_text_input);
@@ -343,7 +335,7 @@ impl Window {
         if self.layout.view_scale > 0.0 {
             return String::new();
         }
-        let share = painted.image.size()[0] as f32 / self.viewport.wanted[0].max(1) as f32;
+        let share = painted.image.size()[0] as f32 / self.pages.image.wanted[0].max(1) as f32;
         match painted.samples {
             _ if share < 0.98 => format!(" · {:.0} % size", 100.0 * share),
             samples if samples > 1 => format!(" · {samples} samples"),
@@ -355,17 +347,17 @@ impl Window {
     pub(super) fn running(&mut self, ui: &mut Ui, rect: Rect) {
         {
             let mut row = 0;
-            if let Some((fraction, text)) = self.recorder.state().progress() {
+            if let Some((fraction, text)) = self.media.recorder.state().progress() {
                 let tip = panels::recording::CANCEL;
                 if progress_overlay(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
-                    self.recorder.cancel();
+                    self.media.recorder.cancel();
                 }
                 row += 1;
             }
-            if let Some((fraction, text)) = self.compare.reporting.progress() {
+            if let Some((fraction, text)) = self.pages.compare.reporting.progress() {
                 let tip = "Stops the report. Finished methods are kept in it.";
                 if progress_overlay(ui, rect, row, fraction, &format!("Report · {text}"), tip) {
-                    self.compare.reporting.cancel();
+                    self.pages.compare.reporting.cancel();
                 }
                 row += 1;
             }
@@ -378,28 +370,28 @@ impl Window {
                 let tip = "Stops loading. The scene stays unchanged.";
                 if progress_overlay(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
-                    self.framing = None;
+                    self.files.framing = None;
                 }
                 row += 1;
             }
-            if let Some((name, taken_secs)) = self.openings.running() {
+            if let Some((name, taken_secs)) = self.files.openings.running() {
                 let left = SHOW_READING_SECS - taken_secs;
                 if left > 0.0 {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
                     let tip = "Cancels opening this file. The project stays unchanged.";
                     if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
-                        self.openings.cancel_first();
+                        self.files.openings.cancel_first();
                     }
                     row += 1;
                 }
             }
-            if let Some(loading) = self.soundtrack.loading()
+            if let Some(loading) = self.media.soundtrack.loading()
                 && loading.taken_secs > SHOW_READING_SECS
             {
                 let tip = "Stops reading the sound. The dance is silent.";
                 if progress_overlay(ui, rect, row, loading.fraction, "Reading the sound", tip) {
-                    self.soundtrack.cancel();
+                    self.media.soundtrack.cancel();
                 }
                 row += 1;
             }
@@ -414,29 +406,16 @@ impl Window {
         }
     }
 
-    /// The problems of a part of the project, which are marked where that part is edited.
-    pub(super) fn problems(&self, places: &[Place]) -> Vec<String> {
-        let here = self.session.problems.iter().filter(|problem| places.contains(&problem.place));
-        here.map(|problem| problem.message.clone()).collect()
-    }
-
-    /// Shows problems again, whose mark was clicked.
-    pub(super) fn tell_again(&mut self, problems: Vec<String>, clicked: bool) {
-        for problem in problems.into_iter().filter(|_| clicked) {
-            self.notices.push(notices::Kind::Failed, problem);
-        }
-    }
-
     /// Keeps the mask that the image shows up to date.
     fn follow_mask(&mut self, project: &Project) {
-        let wanted = self.layers.shown_mask(&project.hair.stack);
-        let same = match (&self.shown_mask, wanted) {
+        let wanted = self.panels.layers.shown_mask(&project.hair.stack);
+        let same = match (&self.tools.shown_mask, wanted) {
             (Some(shown), Some(wanted)) => shown.mask == *wanted,
             (shown, wanted) => shown.is_none() && wanted.is_none(),
         };
         if !same {
             let scale = theme::mask_colors();
-            self.shown_mask = wanted.map(|mask| Arc::new(ShownMask { mask: mask.clone(), scale }));
+            self.tools.shown_mask = wanted.map(|mask| Arc::new(ShownMask { mask: mask.clone(), scale }));
         }
     }
 
@@ -450,11 +429,11 @@ impl Window {
     fn add_layer(&mut self, kind: &lovelock_style::Kind, ctx: &egui::Context) {
         let Some(operation) = lovelock_style::Operation::new(kind.id) else { return };
         let first = operation.known().and_then(|known| known.settings().infos().first().copied());
-        let mut layers = std::mem::take(&mut self.layers);
+        let mut layers = std::mem::take(&mut self.panels.layers);
         self.change("layer", |project| {
             layers.add(&mut project.hair.stack, operation);
         });
-        self.layers = layers;
+        self.panels.layers = layers;
         if let Some(info) = first {
             self.show_setting(info, ctx);
         }

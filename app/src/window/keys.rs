@@ -8,23 +8,21 @@ use egui::{
 
 use crate::window::control::HoverTooltip;
 
-use super::{focus, theme};
-
-/// Whether a dialog is open. It holds the keyboard until it is answered: no key means a command or a tool meanwhile.
-pub(crate) fn are_held(ctx: &egui::Context) -> bool {
-    ctx.memory(|memory| memory.top_modal_layer().is_some())
-}
+use super::key_press::{are_held, consume};
+use super::page::Page;
+use super::purpose::Purpose;
+use super::theme;
 
 /// The commands whose keys were pressed in this pass, unless a text field takes the keys. Keys of commands that are not `allowed` stay
 /// for others.
-pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(Command) -> bool) -> Vec<Command> {
+pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(&Command) -> bool) -> Vec<Command> {
     let typing = ctx.egui_wants_keyboard_input();
     let editing = ctx.text_edit_focused();
     let mut commands = Vec::new();
     let bound = COMMANDS
         .iter()
-        .filter(|info| allowed(info.command))
-        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, info.command))));
+        .filter(|info| allowed(&info.command))
+        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, &info.command))));
     for (shortcut, command) in bound {
         let KeyboardShortcut { modifiers, logical_key } = shortcut;
         // A control with the focus takes plain keys. Function keys are never its own.
@@ -36,7 +34,7 @@ pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(Command) -> bool) ->
             continue;
         }
         if consume(ctx, modifiers, logical_key) {
-            commands.push(command);
+            commands.push(command.clone());
         }
     }
     commands
@@ -45,34 +43,6 @@ pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(Command) -> bool) ->
 fn is_function_key(key: Key) -> bool {
     let name = key.name();
     name.len() > 1 && name.starts_with('F')
-}
-
-/// Whether a key was pressed in this pass with these modifiers and no others; the key is consumed.
-///
-/// `?`, `[` and `]` need Shift or `AltGr` on many keyboards, which are therefore no modifiers of these keys.
-pub(crate) fn consume(ctx: &egui::Context, modifiers: Modifiers, key: Key) -> bool {
-    let is_symbol = matches!(key, Key::Questionmark | Key::OpenBracket | Key::CloseBracket);
-    let fits = |pressed: Modifiers| {
-        if is_symbol && modifiers.is_none() {
-            // Control and Alt together are AltGr on some systems.
-            return pressed.alt == pressed.ctrl && (pressed.alt || !pressed.command);
-        }
-        pressed.matches_exact(modifiers)
-    };
-    let mut found = false;
-    ctx.input_mut(|input| {
-        input.events.retain(|event| {
-            let is_it = matches!(event, Event::Key { key: pressed_key, modifiers: pressed, pressed: true, .. }
-                if *pressed_key == key && fits(*pressed));
-            found |= is_it;
-            !is_it
-        });
-    });
-    if found {
-        // Tab and arrow keys also move the keyboard focus to another control, which would then receive all other keys.
-        focus::keep(ctx);
-    }
-    found
 }
 
 /// The menus that are opened by Alt and a letter, and those that the arrow keys leave for the next.
@@ -192,18 +162,18 @@ pub(super) fn key_of(name: &str) -> Option<Key> {
 }
 
 /// Shows a menu per group of commands. Returns the command that was chosen.
-pub(crate) fn menus(ui: &mut Ui, keys: &mut MenuKeys, enabled: impl Fn(Command) -> bool) -> Option<Command> {
+pub(crate) fn menus(ui: &mut Ui, keys: &mut MenuKeys, enabled: impl Fn(&Command) -> bool) -> Option<Command> {
     let mut chosen = None;
     for group in CommandGroup::ALL {
         keys.menu(ui, group.label(), group.letter(), |ui| {
             let mut part = None;
             for info in in_order(group) {
-                if part.is_some_and(|part| part != part_of(info.command)) {
+                if part.is_some_and(|part| part != part_of(&info.command)) {
                     ui.separator();
                 }
-                part = Some(part_of(info.command));
-                if entry(ui, info, enabled(info.command)) {
-                    chosen = Some(info.command);
+                part = Some(part_of(&info.command));
+                if entry(ui, info, enabled(&info.command)) {
+                    chosen = Some(info.command.clone());
                     ui.close();
                 }
             }
@@ -215,15 +185,15 @@ pub(crate) fn menus(ui: &mut Ui, keys: &mut MenuKeys, enabled: impl Fn(Command) 
 /// The commands of a group in the order of its menu, divided into parts.
 fn in_order(group: CommandGroup) -> Vec<&'static CommandInfo> {
     let mut infos: Vec<_> = COMMANDS.iter().filter(|info| info.group == group).collect();
-    infos.sort_by_key(|info| part_of(info.command));
+    infos.sort_by_key(|info| part_of(&info.command));
     infos
 }
 
 /// The part of its menu to which a command belongs. Lines divide the parts.
-fn part_of(command: Command) -> u8 {
+fn part_of(command: &Command) -> u8 {
     match command {
         Command::Save
-        | Command::SaveAs
+        | Command::PickFile(Purpose::SaveProject)
         | Command::ToggleLoop
         | Command::PlayBackwards
         | Command::PlayTake
@@ -231,13 +201,11 @@ fn part_of(command: Command) -> u8 {
         | Command::Palette
         | Command::TogglePanels
         | Command::ShowKeys
-        | Command::Compare => 1,
+        | Command::Show(Page::Compare) => 1,
         Command::RecordTake
         | Command::Record
-        | Command::SavePicture
-        | Command::ExportCurves
+        | Command::PickFile(Purpose::Picture | Purpose::Curves | Purpose::Sound)
         | Command::ExportReport
-        | Command::PickSound
         | Command::AddMarker
         | Command::MarkIn
         | Command::About

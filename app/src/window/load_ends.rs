@@ -23,7 +23,7 @@ impl Window {
     fn report_problems(&mut self, project: &Project, problems: &[Problem]) {
         for problem in self.document.take_problems(project, problems) {
             if problem.is_failure() {
-                if self.starting {
+                if self.files.starting {
                     eprintln!("lovelock: {}", problem.message);
                 }
                 self.fail(&problem.message);
@@ -31,24 +31,24 @@ impl Window {
                 self.warn([problem.message]);
             }
         }
-        self.starting = false;
+        self.files.starting = false;
     }
 
     /// Shows messages about the sound, and takes it out of the project if it could not be read.
     pub(super) fn judge_sound(&mut self, said: Vec<String>) {
         let failed = !said.is_empty();
-        let is_heard = self.soundtrack.loaded().is_some();
+        let is_heard = self.media.soundtrack.loaded().is_some();
         if is_heard {
             self.warn(said);
         } else {
             for sentence in said {
-                if self.starting {
+                if self.files.starting {
                     eprintln!("lovelock: {sentence}");
                 }
                 self.fail(sentence);
             }
         }
-        if is_heard || (failed && self.soundtrack.loading().is_none()) {
+        if is_heard || (failed && self.media.soundtrack.loading().is_none()) {
             self.document.end_sound_trial(is_heard);
         }
     }

@@ -16,6 +16,7 @@ mod frame;
 mod gesture;
 mod health_view;
 mod images;
+mod key_press;
 mod keying;
 mod keys;
 mod light_sphere;
@@ -27,11 +28,14 @@ mod opening;
 mod overlay;
 mod page;
 mod palette;
+mod panel;
 mod panels;
 mod path_dialog;
 mod picker;
 mod pointer_tool;
+mod purpose;
 mod ramp;
+mod readings;
 mod recorder;
 mod screenshot;
 mod search;
@@ -54,10 +58,10 @@ use lovelock_base::words::counted;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::cli::Assignment;
 use command::Command;
 use compare::{Compare, CompareLayout};
 use display::Display;
+use files::Files;
 use gesture::Gestures;
 use images::Textures;
 use lovelock_project::Project;
@@ -65,6 +69,7 @@ use lovelock_project::animation::Moment;
 use lovelock_project::document::Document;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
+use lovelock_project::project::Assignment;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
@@ -73,12 +78,13 @@ use notices::Notices;
 use overlay::scissors::Scissors;
 use page::Page;
 use palette::Palette;
-use path_dialog::PathDialog;
 use pointer_tool::PointerTool;
+use purpose::Purpose;
 use recorder::Recorder;
 use screenshot::Screenshot;
 use serde::{Deserialize, Serialize};
 use session::Session;
+use side_panels::Panels;
 use viewport::Viewport;
 use wall::{WallLayout, WallPage};
 
@@ -129,75 +135,67 @@ impl Default for Layout {
     }
 }
 
-/// The action that waits for the confirmation that unsaved changes may be lost.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Pending {
-    Quit,
-    New,
-    Open(PathBuf),
-}
-
-/// The window and its state.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a dialog or an overlay that is open or not, beside the others"
-)]
-pub(crate) struct Window {
-    document: Document,
-    session: Session,
-    viewport: Viewport,
+/// What the window shows between its panels.
+#[derive(Default)]
+struct Pages {
+    /// The single image.
+    image: Viewport,
     compare: Compare,
     wall: WallPage,
+}
+
+/// The tool of the pointer in the image, with what all tools and marks there remember. What a panel also edits is in its panel.
+#[derive(Default)]
+struct Tools {
+    /// The tool that has the pointer.
+    active: PointerTool,
+    scissors: Scissors,
+    /// The stroke that paints a mask.
+    mask_stroke: overlay::brush::Stroke,
+    /// The mask that the image shows.
+    shown_mask: Option<Arc<ShownMask>>,
+    /// The gauge whose place is marked in the image, with its values when the mark was requested.
+    marked_gauge: Option<Gauge>,
+    gestures: Gestures,
+}
+
+/// What is made and played beside the image: sound, recordings, and the thumbnails of the timeline.
+struct Media {
+    soundtrack: soundtrack::Soundtrack,
     recorder: Recorder,
+    thumbnails: timeline::Thumbnails,
+}
+
+/// What takes keys before the image does.
+#[derive(Default)]
+struct Keyboard {
     palette: Palette,
     focus: focus::Focus,
     menu_keys: keys::MenuKeys,
-    layout: Layout,
-    dialog: Option<PathDialog>,
-    /// The files that are being looked into, and the context that their threads wake.
-    openings: opening::Openings,
-    ctx: egui::Context,
-    /// The question for the up axis of the hair file that was opened last.
-    up_question: up_axis::UpQuestion,
-    /// The body that was opened last, until it is loaded.
-    framing: Option<files::Framing>,
-    /// Whether what the command line names is not loaded yet: its errors are printed too.
-    starting: bool,
-    pending: Option<Pending>,
-    /// What waits until the project is saved under a name.
-    after_saving: Option<Pending>,
-    notices: Notices,
-    keys_shown: bool,
+}
+
+/// What explains the program.
+#[derive(Default)]
+struct Help {
     manual: manual::Manual,
     what: manual::what::WhatIsThis,
+    keys_shown: bool,
     about_shown: bool,
-    selected_light: usize,
-    /// The gauge whose place is marked in the image, with its values when the mark was requested.
-    marked_gauge: Option<Gauge>,
-    colliders: panels::colliders::Shown,
-    selected_tie: usize,
-    /// What is shown of the layers of the style, and the brush that paints their masks.
-    layers: panels::layers::LayersView,
-    stroke: overlay::brush::Stroke,
-    brushes: brushes::Brushes,
-    /// The mask that the image shows.
-    shown_mask: Option<Arc<ShownMask>>,
-    scalp: overlay::scalp::ScalpTool,
-    /// Whether the panel of ties is unfolded; only then their handles are shown.
-    ties_shown: bool,
-    scissors: Scissors,
-    /// The tool that has the pointer in the image.
-    pointer_tool: PointerTool,
-    /// The shown record of the database of clusters.
-    record: panels::records::RecordView,
-    gestures: Gestures,
-    thumbnails: timeline::Thumbnails,
-    soundtrack: soundtrack::Soundtrack,
-    styles: styles::Browser,
-    /// The style that is exported, while its path is asked for.
-    exported: Option<Box<lovelock_project::styles::Style>>,
-    quitting: bool,
-    screenshot: Option<Screenshot>,
+}
+
+/// The window and its state.
+pub(crate) struct Window {
+    document: Document,
+    session: Session,
+    layout: Layout,
+    pages: Pages,
+    tools: Tools,
+    panels: Panels,
+    media: Media,
+    files: Files,
+    keyboard: Keyboard,
+    help: Help,
+    notices: Notices,
     display: Display,
 }
 
@@ -232,7 +230,7 @@ pub(crate) fn open(
     let shown = shown.transpose()?;
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
-        window.layers.reveal(shown);
+        window.panels.layers.reveal(shown);
         if shows.panes {
             window.layout.page = Page::Compare;
         } else if window.layout.page == Page::Wall {
@@ -257,9 +255,11 @@ impl Window {
         let mut window = Self::start(ctx, layout, opened)?;
         let own = lovelock_jobs::presets::own_styles();
         let cache = lovelock_jobs::presets::thumbnail::cache_folder();
-        window.styles = styles::Browser::new(own, cache, ctx);
+        let kept = std::mem::take(&mut window.panels.hair.styles.kept);
+        window.panels.hair.styles = styles::Browser::new(own, cache, ctx);
+        window.panels.hair.styles.kept = kept;
         window.ask_about_started_hair();
-        window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
+        window.display.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
 
@@ -278,57 +278,42 @@ impl Window {
         }
         let (device, textures) = (WindowDevice::default(), Textures::default());
         let session = Session::start(document.project(), access, ctx, &device)?;
+        let thumbnails = timeline::Thumbnails::new(ctx, &device, &textures)?;
+        let mut panels = Panels::default();
+        panels.hair.styles.kept.clone_from(&layout.styles);
+        panels.brushes.kept.clone_from(&layout.brushes);
         let mut window = Self {
             document,
             session,
-            viewport: Viewport::default(),
-            compare: Compare::default(),
-            wall: WallPage::default(),
-            recorder: Recorder::default(),
-            palette: Palette::default(),
-            focus: focus::Focus::default(),
-            menu_keys: keys::MenuKeys::default(),
             layout,
-            dialog: None,
-            openings: opening::Openings::default(),
-            up_question: up_axis::UpQuestion::default(),
-            ctx: ctx.clone(),
-            framing,
-            starting: true,
-            pending: None,
-            after_saving: None,
+            pages: Pages::default(),
+            tools: Tools::default(),
+            panels,
+            media: Media {
+                soundtrack: soundtrack::Soundtrack::default(),
+                recorder: Recorder::default(),
+                thumbnails,
+            },
+            files: Files::new(ctx, framing),
+            keyboard: Keyboard::default(),
+            help: Help::default(),
             notices: Notices::default(),
-            keys_shown: false,
-            manual: manual::Manual::default(),
-            what: manual::what::WhatIsThis::default(),
-            about_shown: false,
-            selected_light: 0,
-            marked_gauge: None,
-            colliders: panels::colliders::Shown::default(),
-            selected_tie: 0,
-            layers: panels::layers::LayersView::default(),
-            stroke: overlay::brush::Stroke::default(),
-            brushes: brushes::Brushes::default(),
-            shown_mask: None,
-            scalp: overlay::scalp::ScalpTool::default(),
-            ties_shown: false,
-            scissors: Scissors::default(),
-            pointer_tool: PointerTool::default(),
-            record: panels::records::RecordView::default(),
-            gestures: Gestures::default(),
-            thumbnails: timeline::Thumbnails::new(ctx, &device, &textures)?,
-            soundtrack: soundtrack::Soundtrack::default(),
-            styles: styles::Browser::default(),
-            exported: None,
             display: Display::new(device, textures),
-            quitting: false,
-            screenshot: None,
         };
         for problem in &problems {
             eprintln!("lovelock: {}", problem.message);
         }
         window.warn(problems.into_iter().map(|problem| problem.message));
         Ok(window)
+    }
+
+    /// What is stored between runs.
+    fn stored_layout(&self) -> Layout {
+        Layout {
+            styles: self.panels.hair.styles.kept.clone(),
+            brushes: self.panels.brushes.kept.clone(),
+            ..self.layout.clone()
+        }
     }
 
     /// Shows messages to the user.
@@ -372,26 +357,28 @@ impl Window {
     }
 
     /// Whether a command is available now.
-    fn can(&self, command: Command) -> bool {
+    fn can(&self, command: &Command) -> bool {
         self.why_not(command).is_none()
     }
 
     /// Why a command is not available now; `None` if it is.
-    fn why_not(&self, command: Command) -> Option<&'static str> {
+    fn why_not(&self, command: &Command) -> Option<&'static str> {
         let takes = self.document.project().take.file.is_some();
         let loaded = self.session.frame.is_some();
         let because = |holds: bool, why: &'static str| holds.then_some(why);
         match command {
             Command::Undo => because(self.document.history().undo_len() == 0, "There is nothing to undo."),
             Command::Redo => because(self.document.history().redo_len() == 0, "There is nothing to redo."),
-            Command::SavePicture if self.layout.page == Page::Wall => {
+            Command::PickFile(Purpose::Picture) if self.layout.page == Page::Wall => {
                 Some("The wall cannot be saved as an image. Close it to save the image of the viewport.")
             }
-            Command::SavePicture if self.layout.page == Page::Compare => {
-                because(!self.compare.has_pictures(), "The panes are not rendered yet.")
+            Command::PickFile(Purpose::Picture) if self.layout.page == Page::Compare => {
+                because(!self.pages.compare.has_pictures(), "The panes are not rendered yet.")
             }
-            Command::SavePicture => because(self.session.painted.is_none(), "There is no image yet."),
-            Command::RecordTake | Command::Scissors if takes => Some(TAKE_PLAYS),
+            Command::PickFile(Purpose::Picture) => {
+                because(self.session.painted.is_none(), "There is no image yet.")
+            }
+            Command::RecordTake | Command::Use(PointerTool::Scissors) if takes => Some(TAKE_PLAYS),
             Command::RecordTake => because(!loaded, "There is no hair to record yet."),
             Command::PlayTake if takes => Some("A take is already playing."),
             Command::PlayTake => because(
@@ -400,14 +387,18 @@ impl Window {
             ),
             Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take is playing."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),
-            Command::PaintMask if self.pointer_tool == PointerTool::Mask => None,
-            Command::PaintMask if takes => Some(TAKE_PLAYS),
-            Command::ShowMask | Command::PaintMask => because(self.layers.selected.is_none(), NO_LAYER),
+            Command::Use(PointerTool::Mask) if self.tools.active == PointerTool::Mask => None,
+            Command::Use(PointerTool::Mask) if takes => Some(TAKE_PLAYS),
+            Command::ShowMask | Command::Use(PointerTool::Mask) => {
+                because(self.panels.layers.selected.is_none(), NO_LAYER)
+            }
             Command::BrushSmaller | Command::BrushLarger => because(
-                !matches!(self.pointer_tool, PointerTool::Mask | PointerTool::Brush),
+                !matches!(self.tools.active, PointerTool::Mask | PointerTool::Brush),
                 "No brush is in use.",
             ),
-            Command::ExportCurves => because(self.recorder.is_running(), "A recording is already running."),
+            Command::PickFile(Purpose::Curves) => {
+                because(self.media.recorder.is_running(), "A recording is already running.")
+            }
             _ => None,
         }
     }
@@ -415,12 +406,6 @@ impl Window {
 
 const TAKE_PLAYS: &str = "A take is playing: body and hair move as recorded. Leave the take (Shift+R) first.";
 const NO_LAYER: &str = "No layer is selected. Select one in the Layers panel to show or paint its mask.";
-
-/// The layout of panes in a recording: side by side, in the colours of the window and without times, so that the same panes give
-/// the same pixels.
-pub(crate) fn sheet_of_panes() -> lovelock_panes::sheet::Sheet {
-    lovelock_panes::sheet::Sheet { figures: false, ..CompareLayout::default().sheet() }
-}
 
 /// Puts `path` first and removes duplicates.
 fn remember(recent: &mut Vec<PathBuf>, path: &Path) {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What is shown between the panels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Page {
+pub(crate) enum Page {
     /// The image of the project.
     #[default]
     Image,
@@ -16,7 +16,7 @@ pub(super) enum Page {
 
 impl Page {
     /// Shows `page`, or the image if it is shown already.
-    pub(super) fn toggle(&mut self, page: Self) {
+    pub(crate) fn toggle(&mut self, page: Self) {
         *self = if *self == page { Self::Image } else { page };
     }
 }

@@ -79,9 +79,9 @@ pub(crate) fn path_of(info: &Info) -> Option<&'static str> {
 }
 
 /// The matches, the best first.
-fn matches(typed: &str, enabled: impl Fn(Command) -> bool) -> Vec<Found> {
+fn matches(typed: &str, enabled: impl Fn(&Command) -> bool) -> Vec<Found> {
     let commands =
-        COMMANDS.iter().filter(|info| info.in_palette && enabled(info.command)).map(Found::Command);
+        COMMANDS.iter().filter(|info| info.in_palette && enabled(&info.command)).map(Found::Command);
     // Without anything typed it is a list of commands.
     let others = !typed.trim().is_empty();
     let layers = Operation::KINDS.iter().filter(|kind| others && kind.id != "scissors").map(Found::Layer);
@@ -108,7 +108,7 @@ impl Palette {
     }
 
     /// Shows the palette if it is open. Returns what was chosen.
-    pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(Command) -> bool) -> Option<Found> {
+    pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(&Command) -> bool) -> Option<Found> {
         if !self.open {
             return None;
         }

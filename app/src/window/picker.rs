@@ -2,7 +2,7 @@
 
 use egui::{Align, Key, Modifiers, Response, TextEdit, Ui, WidgetInfo};
 
-use super::keys;
+use super::key_press;
 
 /// What was typed, and which of the matches is chosen.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +44,7 @@ impl Picker {
         let has_focus = ui.memory(|memory| memory.has_focus(id));
         let mut picked = Picked { has_focus, ..Picked::default() };
         if has_focus {
-            let pressed = |key| keys::consume(ui.ctx(), Modifiers::NONE, key);
+            let pressed = |key| key_press::consume(ui.ctx(), Modifiers::NONE, key);
             picked.down = pressed(Key::ArrowDown);
             picked.entered = pressed(Key::Enter);
             let before = self.chosen;

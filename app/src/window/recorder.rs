@@ -12,7 +12,57 @@ use lovelock_session::clock::Pace;
 use lovelock_session::job::BackgroundJob;
 use lovelock_session::progress::Progress;
 
-use super::panels::recording::{State, bytes_in_words};
+/// The state of the newest recording.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum State {
+    /// None has been made.
+    Idle,
+    /// One runs.
+    Running {
+        /// What is being done.
+        what: String,
+        /// Finished frames.
+        done: u64,
+        /// All frames.
+        total: u64,
+        /// Estimated seconds left.
+        left_secs: Option<f64>,
+    },
+    /// The last one is finished.
+    Done {
+        /// What was written and where.
+        what: String,
+        /// The file or the folder.
+        out: PathBuf,
+    },
+    /// The last one failed; the text says why.
+    Failed(String),
+    /// The user stopped the last one; the text says what is left of it.
+    Cancelled(String),
+}
+
+impl State {
+    /// Progress of the recording that runs, 0 to 1 and in words; `None` if none runs.
+    pub(crate) fn progress(&self) -> Option<(f32, String)> {
+        let Self::Running { what, done, total, left_secs } = self else { return None };
+        let fraction = *done as f32 / (*total).max(1) as f32;
+        // A task without parts has no numbers to show.
+        let count = if *total > 1 { format!(" {done} of {total}") } else { String::new() };
+        let left = left_secs.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
+        Some((fraction, format!("{what}{count}{left}")))
+    }
+}
+
+/// A number of bytes, with a unit.
+pub(crate) fn bytes_in_words(bytes: f64) -> String {
+    let (unit, name) = match bytes {
+        b if b >= 999.5e6 => (1e9, "GB"),
+        b if b >= 999.5e3 => (1e6, "MB"),
+        _ => (1e3, "kB"),
+    };
+    let number = bytes / unit;
+    if number < 9.95 { format!("{number:.1} {name}") } else { format!("{number:.0} {name}") }
+}
 
 /// The recording that runs, if any, and the result of the last one. Dropping it cancels the recording.
 pub(crate) struct Recorder {

@@ -19,7 +19,7 @@ use lovelock_session::strokes::StrokeReport;
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
 
-use super::panels::{body, hair, surroundings};
+use super::readings::{LoadedBody, LoadedHair, LoadedSurroundings};
 use super::work::{SHOW_WORK, Work};
 
 /// Number of frames in the plot of stage times.
@@ -64,9 +64,9 @@ pub(crate) struct Session {
     pub(crate) frame: Option<Arc<FrameSnapshot>>,
     pub(crate) painted: Option<Arc<RenderedImage>>,
     pub(crate) problems: Vec<Problem>,
-    pub(crate) hair: hair::LoadedHair,
-    pub(crate) body: body::LoadedBody,
-    pub(crate) surroundings: surroundings::LoadedSurroundings,
+    pub(crate) hair: LoadedHair,
+    pub(crate) body: LoadedBody,
+    pub(crate) surroundings: LoadedSurroundings,
     /// Notes about the curves that play.
     pub(crate) take_notes: Vec<String>,
     pub(crate) stages: StageHistory,
@@ -137,9 +137,9 @@ impl Session {
             frame: None,
             painted: None,
             problems: Vec::new(),
-            hair: hair::LoadedHair::default(),
-            body: body::LoadedBody::default(),
-            surroundings: surroundings::LoadedSurroundings::default(),
+            hair: LoadedHair::default(),
+            body: LoadedBody::default(),
+            surroundings: LoadedSurroundings::default(),
             take_notes: Vec::new(),
             stages: StageHistory::new(PLOTTED_FRAMES),
             passes: PassHistory::new(PLOTTED_FRAMES),
@@ -430,23 +430,21 @@ impl Session {
                 (low, high)
             },
         );
-        self.hair = hair::LoadedHair {
+        self.hair = LoadedHair {
             counts: [style.wisps.len(), style.strands.count(), style.strands.segments()],
             size_m: std::array::from_fn(|axis| (high[axis] - low[axis]).max(0.0)),
             notes: notes(&[Place::Hair]),
         };
         let joints = lovelock_motion::joint_paths(&scene.body.skeleton);
-        self.body = body::LoadedBody {
+        self.body = LoadedBody {
             clips: scene.clips.iter().map(|clip| clip.name.clone()).collect(),
             clip: scene.clip.as_ref().map_or_else(String::new, |clip| clip.name.clone()),
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
             joints,
             notes: notes(&[Place::Body, Place::Motion]),
         };
-        self.surroundings = surroundings::LoadedSurroundings {
-            picture: scene.surroundings.clone(),
-            notes: notes(&[Place::Surroundings]),
-        };
+        self.surroundings =
+            LoadedSurroundings { picture: scene.surroundings.clone(), notes: notes(&[Place::Surroundings]) };
         self.take_notes = notes(&[Place::Take]);
         self.problems = problems;
         self.scene = Some(scene);

@@ -1,211 +1,228 @@
-//! The panels to the left and to the right of the image.
+//! The columns of panels to the left and to the right of the image.
 
-use egui::{Panel, ScrollArea, Ui};
+use egui::{Panel as Column, ScrollArea, Ui};
+use lovelock_motion::ColliderEdits;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
-use lovelock_project::project::RecordingSection;
-use lovelock_render::HairDrawing;
 
-use super::control::{enter_pane, leave_pane, section, section_with};
-use super::path_dialog::Purpose;
+use super::Window;
+use super::brushes::Brushes;
+use super::command::Command;
+use super::compare::PaneEdit;
+use super::control::{enter_pane, leave_pane, note, section_with};
+use super::focus::{Area, Focus};
+use super::health_view::facts;
+use super::memory::kept_in_memory;
+use super::page::Page;
+use super::panel::Panel;
+use super::panels::body::BodyPanel;
+use super::panels::colliders::CollidersPanel;
+use super::panels::hair::{CurvesPanel, HairPanel};
+use super::panels::health::HealthPanel;
+use super::panels::layers::LayersView;
+use super::panels::light::LightPanel;
+use super::panels::look::{LookPanel, PicturePanel};
+use super::panels::recording::RecordingPanel;
+use super::panels::scalp::ScalpPanel;
+use super::panels::shadow::ShadowPanel;
+use super::panels::simulation::SimulationPanel;
+use super::panels::sound::SoundPanel;
+use super::panels::statistics::StatisticsPanel;
+use super::panels::ties::TiesPanel;
 use super::pointer_tool::PointerTool;
-use super::{Window, camera_control, panels};
+use super::readings::Readings;
+
+/// The panels, with what is selected and unfolded in them.
+#[derive(Default)]
+pub(crate) struct Panels {
+    pub(crate) curves: CurvesPanel,
+    pub(crate) hair: HairPanel,
+    pub(crate) layers: LayersView,
+    pub(crate) brushes: Brushes,
+    pub(crate) ties: TiesPanel,
+    pub(crate) simulation: SimulationPanel,
+    pub(crate) colliders: CollidersPanel,
+    pub(crate) scalp: ScalpPanel,
+    pub(crate) body: BodyPanel,
+    pub(crate) shadow: ShadowPanel,
+    pub(crate) light: LightPanel,
+    pub(crate) look: LookPanel,
+    pub(crate) picture: PicturePanel,
+    pub(crate) sound: SoundPanel,
+    pub(crate) recording: RecordingPanel,
+    pub(crate) health: HealthPanel,
+    pub(crate) statistics: StatisticsPanel,
+}
+
+impl Panels {
+    /// The panels to the left, from top to bottom.
+    pub(crate) fn left(&mut self) -> [&mut dyn Panel; 9] {
+        [
+            &mut self.curves,
+            &mut self.hair,
+            &mut self.layers,
+            &mut self.brushes,
+            &mut self.ties,
+            &mut self.simulation,
+            &mut self.colliders,
+            &mut self.scalp,
+            &mut self.body,
+        ]
+    }
+
+    /// The panels to the right, from top to bottom.
+    pub(crate) fn right(&mut self) -> [&mut dyn Panel; 8] {
+        [
+            &mut self.shadow,
+            &mut self.light,
+            &mut self.look,
+            &mut self.picture,
+            &mut self.sound,
+            &mut self.recording,
+            &mut self.health,
+            &mut self.statistics,
+        ]
+    }
+
+    /// The panel of that title.
+    #[cfg(test)]
+    pub(crate) fn by_title(&mut self, title: &str) -> Option<&mut dyn Panel> {
+        let of_title = |panels: &[&mut dyn Panel]| panels.iter().position(|panel| panel.title() == title);
+        if let Some(at) = of_title(&self.left()) {
+            return self.left().into_iter().nth(at);
+        }
+        let at = of_title(&self.right())?;
+        self.right().into_iter().nth(at)
+    }
+}
+
+/// Shows one panel. Returns what its controls ask the window to do.
+fn show(ui: &mut Ui, panel: &mut dyn Panel, project: &mut Project, readings: &Readings<'_>) -> Vec<Command> {
+    let (problems, opens) = (panel.problems(readings), panel.opens(project, readings));
+    let (asked, clicked) =
+        section_with(ui, panel.title(), opens, &problems, |ui| panel.ui(ui, project, readings));
+    panel.end_pass(asked.is_some());
+    let told = problems.into_iter().filter(|_| clicked).map(Command::Fail);
+    asked.flatten().into_iter().chain(told).collect()
+}
+
+/// Why the controls to the left are disabled while a take plays.
+fn take_note(project: &Project, readings: &Readings<'_>) -> String {
+    // In place of the note, so that nothing below it moves more than it must.
+    let problem = readings.problems.iter().find(|problem| problem.place == Place::Take);
+    let note = if let Some(problem) = problem {
+        problem.message.as_str()
+    } else if project.plays_curves() {
+        "Curves from a file play instead of the simulation. Leave them (Shift+R) to change the hair."
+    } else {
+        "A take is playing: body and hair move as recorded. Leave the take (Shift+R) to change them."
+    };
+    note.to_owned()
+}
+
+/// Shows panels one below the other: while a take plays, those that cannot be used with one are
+/// disabled below the others.
+fn column<const N: usize>(
+    ui: &mut Ui,
+    mut panels: [&mut dyn Panel; N],
+    project: &mut Project,
+    readings: &Readings<'_>,
+    takes: bool,
+) -> Vec<Command> {
+    panels.sort_by_key(|panel| !panel.edits_takes(project));
+    let (mut enabled, mut commands) = (true, Vec::new());
+    for panel in panels {
+        if !panel.is_shown(project) {
+            continue;
+        }
+        if enabled && takes && !panel.edits_takes(project) {
+            ui.disable();
+            enabled = false;
+        }
+        commands.extend(show(ui, panel, project, readings));
+    }
+    commands
+}
 
 impl Window {
-    pub(super) fn left_panel(&mut self, ui: &mut Ui, project: &mut Project) {
-        let mut asked = None;
-        Panel::left("left").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                let curves = project.plays_curves();
-                if project.take.file.is_some() {
-                    let problems = self.problems(&[Place::Take]);
-                    // In place of the note, so that nothing below it moves more than it must.
-                    let note = if let Some(problem) = problems.first() {
-                        problem.as_str()
-                    } else if curves {
-                        "Curves from a file play instead of the simulation. Leave them (Shift+R) to change the hair."
-                    } else {
-                        "A take is playing: body and hair move as recorded. Leave the take (Shift+R) to change them."
-                    };
-                    super::control::note(ui, note);
-                    if curves {
-                        section(ui, "Curves", true, |ui| {
-                            panels::hair::curves(ui, &mut project.hair.import, &self.session.take_notes);
-                        });
-                        asked = self.body_section(ui, project, true);
-                    }
-                    ui.disable();
-                }
-                let problems = self.problems(&[Place::Hair]);
-                let (_, clicked) = section_with(ui, "Hairstyle", true, &problems, |ui| {
-                    super::styles::ui(ui, project, &mut self.styles, &mut self.layout.styles);
-                    let ask = panels::hair::ui(ui, project, &self.session.hair);
-                    asked = asked.or(ask.map(|_| Purpose::Open));
-                });
-                self.tell_again(problems, clicked);
-                section(ui, "Layers", self.layers.is_revealed(), |ui| {
-                    panels::layers::ui(ui, &mut project.hair.stack, &mut self.layers, &mut self.pointer_tool);
-                });
-                section(ui, "Brushes", self.pointer_tool == PointerTool::Brush, |ui| {
-                    let brushes = (&mut self.brushes, &mut self.pointer_tool);
-                    match super::brushes::ui(ui, brushes, &mut self.layout.brushes) {
-                        Some(super::brushes::BrushRequest::Thaw) => {
-                            self.session.worker().thaw();
-                            self.brushes.forget_frozen();
-                        }
-                        Some(super::brushes::BrushRequest::Save) => asked = Some(Purpose::SaveStrokes),
-                        Some(super::brushes::BrushRequest::Paint(id)) => self.paint_map(project, id),
-                        None => {}
-                    }
-                });
-                let unfolded = section(ui, "Ties and scissors", false, |ui| {
-                    let scalp = self.session.scene.as_ref().map(|scene| &*scene.usual_scalp);
-                    panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);
-                    panels::ties::scissors(ui, &mut project.hair.cut, &mut self.pointer_tool);
-                });
-                self.ties_shown = unfolded.is_some();
-                section(ui, "Simulation", true, |ui| {
-                    let axes = camera_control::axes(&project.camera);
-                    let Project { simulation, timeline, hair, .. } = project;
-                    panels::simulation::ui(ui, simulation, &hair.simulation(), timeline, axes);
-                });
-                section(ui, "Colliders", false, |ui| {
-                    let scene = self.session.scene.as_ref();
-                    let edits = &mut project.body.colliders;
-                    let fitted = scene.iter().flat_map(|scene| {
-                        scene.fitted.iter().map(|of| panels::colliders::Fitted {
-                            name: of.name.as_str(),
-                            spared: edits.is_replaced(of, scene.field.as_deref()),
-                        })
-                    });
-                    let fitted: Vec<_> = fitted.collect();
-                    panels::colliders::ui(ui, edits, &fitted, &mut self.colliders);
-                });
-                let unfolded = section(ui, "Scalp", false, |ui| {
-                    let found = self.session.scene.as_ref().is_none_or(|scene| scene.skull.is_some());
-                    let tools = (&mut self.scalp, &mut self.pointer_tool);
-                    panels::scalp::ui(ui, &mut project.body.scalp, tools, found);
-                });
-                if unfolded.is_none() {
-                    self.pointer_tool.set(PointerTool::Scalp, false);
-                }
-                if !curves {
-                    asked = asked.or(self.body_section(ui, project, false));
-                }
-            });
-        });
-        if let Some(purpose) = asked {
-            self.open_path_dialog(purpose);
-        }
-    }
-
-    /// Body and motion; returns what shall be picked.
-    fn body_section(&mut self, ui: &mut Ui, project: &mut Project, open: bool) -> Option<Purpose> {
-        let mut asked = None;
-        let problems = self.problems(&[Place::Body, Place::Motion]);
-        let (_, clicked) = section_with(ui, "Body and motion", open, &problems, |ui| {
-            asked = panels::body::ui(ui, project, &self.session.body).map(|ask| match ask {
-                panels::body::BodyRequest::PickBody => Purpose::Body,
-                panels::body::BodyRequest::PickMotion => Purpose::Motion,
-            });
-        });
-        self.tell_again(problems, clicked);
-        asked
-    }
-
-    pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
-        let (mut recording, mut picks_light, mut picks_sound) = (None, false, false);
-        let axes = camera_control::axes(&project.camera);
-        let pane = self.begin_pane(project);
-        let compares = pane.is_some();
-        if let Some(pane) = &pane {
-            enter_pane(ctx, pane.pane());
-        }
-        Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                section(ui, "Shadow", true, |ui| {
-                    let painted = self.session.painted.as_ref().map(|painted| painted.stats.shadow_bytes);
-                    let bytes = match &pane {
-                        Some(pane) => self.pane_choice(ui, pane.pane(), project),
-                        None => painted,
-                    };
-                    let default = project.hair.groom.look;
-                    let look = (&mut project.look, &default);
-                    panels::shadow::ui(ui, &mut project.shadow, look, bytes, compares);
-                });
-                let problems = self.problems(&[Place::Surroundings]);
-                let (_, clicked) = section_with(ui, "Light", true, &problems, |ui| {
-                    panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);
-                    ui.separator();
-                    picks_light = panels::surroundings::ui(ui, project, &self.session.surroundings).is_some();
-                });
-                self.tell_again(problems, clicked);
-                section(ui, "Look", false, |ui| {
-                    let default = project.hair.groom.look;
-                    panels::look::hair(ui, &mut project.look, &default, &mut project.picture, compares);
-                });
-                section(ui, "Picture", false, |ui| {
-                    panels::look::picture(ui, &mut project.picture, compares);
-                    if project.picture.draw != HairDrawing::Strands {
-                        section(ui, "Record of the database", false, |ui| {
-                            panels::records::ui(ui, &mut self.record);
-                        });
-                    }
-                });
-                let problems: Vec<String> = self.soundtrack.problem().into_iter().collect();
-                let open = project.sound.file.is_some();
-                let (_, clicked) = section_with(ui, "Sound", open, &problems, |ui| {
-                    let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
-                    let loaded = self.soundtrack.loaded().map(|loaded| &**loaded);
-                    picks_sound = panels::sound::ui(ui, project, loaded, duration).is_some();
-                });
-                self.tell_again(problems, clicked);
-                let unfolded = section(ui, "Recording", false, |ui| {
-                    let frames = self.session.frames(project.recording.fps);
-                    recording =
-                        panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
-                });
-                let RecordingSection { width, height, .. } = project.recording;
-                self.viewport.film = unfolded.map(|()| [width, height]);
-                section(ui, "Health", true, |ui| self.health_panel(ui, project));
-                // The panes have their own statistics; the single image is not rendered beside them.
-                section(ui, "Statistics", true, |ui| {
-                    if compares {
-                        super::control::note(
-                            ui,
-                            "Measured on the single image, before the comparison was opened.",
-                        );
-                    }
-                    let session = &self.session;
-                    self.session.view.measured = panels::statistics::ui(
-                        ui,
-                        &session.stages,
-                        &session.passes,
-                        [&self.facts(), &self.kept_in_memory()],
-                    );
-                });
-            });
-        });
-        if let Some(pane) = pane {
-            leave_pane(ctx);
-            pane.end(project);
-        }
-        if picks_light {
-            self.open_path_dialog(Purpose::Surroundings);
-        }
-        if picks_sound {
-            self.open_path_dialog(Purpose::Sound);
-        }
-        match recording {
-            Some(panels::recording::RecordingRequest::Film) => self.open_path_dialog(Purpose::Film),
-            Some(panels::recording::RecordingRequest::Sequence) => self.open_path_dialog(Purpose::Sequence),
-            Some(panels::recording::RecordingRequest::Preview) => self.open_path_dialog(Purpose::Preview),
-            Some(panels::recording::RecordingRequest::Resume) => self.open_path_dialog(Purpose::Resume),
-            Some(panels::recording::RecordingRequest::Curves) => self.open_path_dialog(Purpose::Curves),
-            Some(panels::recording::RecordingRequest::Cancel) => {
-                self.run(crate::window::Command::Record, ctx);
+    /// Shows the panels at both sides of the image. Returns what their controls ask for.
+    pub(super) fn side_panels(&mut self, ui: &mut Ui, project: &mut Project) -> Vec<Command> {
+        let ctx = ui.ctx().clone();
+        let Self { document, session, layout, pages, tools, panels, media, keyboard, .. } = self;
+        let (document, pages_now, media, session_now) = (&*document, &*pages, &*media, &*session);
+        let scene = session_now.scene.as_deref();
+        let is_replaced = |edits: &ColliderEdits, at: usize| {
+            let known = scene.and_then(|scene| Some((scene.fitted.get(at)?, scene)));
+            known.is_some_and(|(fitted, scene)| edits.is_replaced(fitted, scene.field.as_deref()))
+        };
+        let facts = || [facts(session_now), kept_in_memory(session_now, pages_now, media, document)];
+        let mut readings = Readings {
+            tool: tools.active,
+            problems: &session_now.problems,
+            hair: &session_now.hair,
+            body: &session_now.body,
+            surroundings: &session_now.surroundings,
+            take_notes: &session_now.take_notes,
+            scalp: scene.map(|scene| &*scene.usual_scalp),
+            has_skull: scene.is_none_or(|scene| scene.skull.is_some()),
+            colliders: scene
+                .iter()
+                .flat_map(|scene| scene.fitted.iter().map(|of| of.name.as_str()))
+                .collect(),
+            is_replaced: &is_replaced,
+            frame: session_now.frame.as_deref(),
+            shadow_bytes: session_now.painted.as_ref().map(|painted| painted.stats.shadow_bytes),
+            stages: &session_now.stages,
+            passes: &session_now.passes,
+            facts: &facts,
+            pane: None,
+            marked_gauge: tools.marked_gauge.as_ref().map(|gauge| gauge.kind),
+            sound: media.soundtrack.loaded().map(|loaded| &**loaded),
+            sound_problem: media.soundtrack.problem(),
+            duration_secs: session_now.frame.as_ref().map_or(0.0, |frame| frame.duration_secs),
+            recording: media.recorder.state(),
+            film_frames: session_now.frames(project.recording.fps),
+        };
+        let mut commands = Vec::new();
+        let begin = Focus::begin_area(ui);
+        side(Column::left("left"), ui, |ui| {
+            let takes = project.take.file.is_some();
+            if takes {
+                note(ui, take_note(project, &readings));
             }
-            None => {}
+            commands.extend(column(ui, panels.left(), project, &readings, takes));
+        });
+        keyboard.focus.end_area(ui, Area::Left, begin);
+        let begin = Focus::begin_area(ui);
+        let reading =
+            (layout.page == Page::Compare).then(|| pages_now.compare.reading(&layout.compare, project));
+        let edit = reading.as_ref().and_then(|reading| PaneEdit::begin(project, reading.pane));
+        readings.pane = reading.filter(|_| edit.is_some());
+        if let Some(pane) = &readings.pane {
+            enter_pane(&ctx, pane.pane);
         }
+        side(Column::right("right"), ui, |ui| {
+            commands.extend(column(ui, panels.right(), project, &readings, false));
+        });
+        if let Some(edit) = edit {
+            leave_pane(&ctx);
+            edit.end(project);
+        }
+        keyboard.focus.end_area(ui, Area::Right, begin);
+        let Panels { scalp, recording, statistics, .. } = panels;
+        if !scalp.unfolded {
+            tools.active.set(PointerTool::Scalp, false);
+        }
+        let film = &project.recording;
+        pages.image.film = recording.unfolded.then_some([film.width, film.height]);
+        session.view.measured = statistics.shows_passes;
+        commands
     }
+}
+
+/// Shows a column of the window, which scrolls.
+fn side(column: Column, ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    column.default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, add);
+    });
 }

@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "colours come from here")]
 
 use lovelock_metrics::ColorMap;
+use lovelock_panes::sheet::Sheet;
 use lovelock_render::ColorScale;
 
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
@@ -30,14 +31,16 @@ pub(crate) const BRIGHT: Color32 = Color32::from_rgb(236, 238, 242);
 pub(crate) const LINE: Color32 = Color32::from_rgb(46, 49, 55);
 
 /// Colours of the lines in plots, distinguishable with red-green colour blindness (after Okabe and Ito).
-pub(crate) const PLOT: [Color32; 6] = [
-    Color32::from_rgb(230, 159, 0),
-    Color32::from_rgb(86, 180, 233),
-    Color32::from_rgb(0, 158, 115),
-    Color32::from_rgb(240, 228, 66),
-    Color32::from_rgb(213, 94, 0),
-    Color32::from_rgb(204, 121, 167),
-];
+pub(crate) const PLOT: [Color32; Sheet::COLORS.len()] = {
+    let mut colors = [Color32::BLACK; Sheet::COLORS.len()];
+    let mut i = 0;
+    while i < colors.len() {
+        let [r, g, b] = Sheet::COLORS[i];
+        colors[i] = Color32::from_rgb(r, g, b);
+        i += 1;
+    }
+    colors
+};
 
 /// Colours of the components of a vector: x, y, z and one more.
 pub(crate) const AXES: [Color32; 4] = [
@@ -67,11 +70,6 @@ pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
 /// A colour in sRGB.
 pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
-}
-
-/// The sRGB bytes of a colour.
-pub(crate) fn to_srgb(color: Color32) -> [u8; 3] {
-    [color.r(), color.g(), color.b()]
 }
 
 /// Applies the theme to `ctx`.

@@ -18,7 +18,7 @@ impl Window {
     /// Runs the tools and paints their overlays. Returns whether the pointer is free to move the camera.
     pub(super) fn tools(&mut self, ui: &Ui, response: &Response, project: &mut Project) -> bool {
         let painted = self.session.painted.clone();
-        let view = painted.as_ref().zip(self.viewport.place(response.rect));
+        let view = painted.as_ref().zip(self.pages.image.place(response.rect));
         let Some((painted, view)) =
             view.and_then(|(painted, place)| Some((painted, View::new(painted, place)?)))
         else {
@@ -30,7 +30,7 @@ impl Window {
             self.end_stroke();
             return true;
         }
-        let tool = self.pointer_tool;
+        let tool = self.tools.active;
         if tool == PointerTool::Brush && self.brush_hair(ui, response, (view, painted), project) {
             return false;
         }
@@ -38,7 +38,8 @@ impl Window {
         let painter = ui.painter_at(view.place);
         let colors = painter.add(Shape::Noop);
         let paints_mask = self.paint_mask(ui, (view, response), &painted.snapshot, project);
-        if let Some(mask) = self.layers.shown_mask(&project.hair.stack).filter(|_| tool == PointerTool::Mask)
+        if let Some(mask) =
+            self.panels.layers.shown_mask(&project.hair.stack).filter(|_| tool == PointerTool::Mask)
         {
             let shown = ShownMask { mask: mask.clone(), scale: theme::mask_colors() };
             let snapshot = &painted.snapshot;
@@ -46,19 +47,19 @@ impl Window {
                 world_from_head: &snapshot.guides.world_from_head,
                 scalp: &snapshot.scene.style.scalp,
             };
-            let new = overlay::mask::changed(view, head, &mut self.brushes.seen, painted, &shown);
+            let new = overlay::mask::changed(view, head, &mut self.panels.brushes.seen, painted, &shown);
             painter.set(colors, Shape::Vec(new));
         }
         let cuts = tool == PointerTool::Scissors;
         if !cuts {
-            self.scissors = Scissors::default();
-        } else if let Some(line) = self.scissors.drag(ui, view, response) {
+            self.tools.scissors = Scissors::default();
+        } else if let Some(line) = self.tools.scissors.drag(ui, view, response) {
             self.cut(view, painted, line, project);
         }
         let snapshot = &painted.snapshot;
         let world_from_head = &snapshot.guides.world_from_head;
         let ties = &mut project.hair.ties;
-        if self.ties_shown && !matches!(tool, PointerTool::Scissors | PointerTool::Mask) {
+        if self.panels.ties.unfolded && !matches!(tool, PointerTool::Scissors | PointerTool::Mask) {
             // Ties are placed on a head of the usual size.
             let scale = Affine3A::from_scale(Vec3::splat(snapshot.scene.hair_scale));
             let world_from_usual = *world_from_head * scale;
@@ -66,16 +67,16 @@ impl Window {
                 world_from_head: &world_from_usual,
                 scalp: &snapshot.scene.usual_scalp,
             };
-            overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
+            overlay::ties::edit(ui, view, head, ties, &mut self.panels.ties.selected);
         }
         let mut free = !((cuts || paints_mask) && response.dragged_by(PointerButton::Primary));
-        if self.scalp.shown
+        if self.panels.scalp.tool.shown
             && !matches!(tool, PointerTool::Scissors | PointerTool::Mask)
             && let Some(skull) = &snapshot.scene.skull
         {
             let head = overlay::head::Head { world_from_head, scalp: &snapshot.scene.style.scalp };
             let paints = tool == PointerTool::Scalp;
-            let edited = (self.scalp, paints, &mut project.body.scalp);
+            let edited = (self.panels.scalp.tool, paints, &mut project.body.scalp);
             free &= !overlay::scalp::edit(ui, response, view, head, skull, edited);
         }
         free
@@ -89,16 +90,17 @@ impl Window {
         snapshot: &FrameSnapshot,
         project: &mut Project,
     ) -> bool {
-        let layer = self.layers.selected.and_then(|id| project.hair.stack.layer_mut(id));
-        let Some(layer) = layer.filter(|_| self.pointer_tool == PointerTool::Mask) else {
-            self.stroke.end();
+        let layer = self.panels.layers.selected.and_then(|id| project.hair.stack.layer_mut(id));
+        let Some(layer) = layer.filter(|_| self.tools.active == PointerTool::Mask) else {
+            self.tools.mask_stroke.end();
             return false;
         };
         let head = overlay::head::Head {
             world_from_head: &snapshot.guides.world_from_head,
             scalp: &snapshot.scene.style.scalp,
         };
-        let done = self.stroke.paint(ui, place, (head, snapshot), &self.layers.brush, layer);
+        let done =
+            self.tools.mask_stroke.paint(ui, place, (head, snapshot), &self.panels.layers.brush, layer);
         if done.begins {
             // Each stroke is an undo step of its own, however soon it follows the last one.
             self.document.end_gesture();
@@ -141,7 +143,7 @@ impl Window {
         snapshot: &FrameSnapshot,
         project: &mut Project,
     ) {
-        if !self.colliders.on {
+        if !self.panels.colliders.on {
             return;
         }
         let edits = &mut project.body.colliders;
@@ -150,11 +152,11 @@ impl Window {
             && let Some(at) = response.interact_pointer_pos()
             && let Some(chosen) = overlay::colliders::at(view, &shapes, at)
         {
-            self.colliders.selected = chosen;
+            self.panels.colliders.selected = chosen;
         }
-        overlay::colliders::paint(ui, view, &shapes, Some(self.colliders.selected));
-        let Some(fitted) = snapshot.scene.fitted.get(self.colliders.selected) else { return };
-        if project.take.file.is_some() || self.pointer_tool == PointerTool::Scissors {
+        overlay::colliders::paint(ui, view, &shapes, Some(self.panels.colliders.selected));
+        let Some(fitted) = snapshot.scene.fitted.get(self.panels.colliders.selected) else { return };
+        if project.take.file.is_some() || self.tools.active == PointerTool::Scissors {
             return;
         }
         let edit = edits.of(&fitted.name);

@@ -39,7 +39,18 @@ pub type SheetPane<'a> = (usize, &'a LivePane, f64);
 /// A rectangle: left, top, width, height; pixels.
 type Place = [u32; 4];
 
+impl Default for Sheet {
+    /// Side by side and without times, so that the same panes give the same pixels.
+    fn default() -> Self {
+        Self { wipe: None, view: LiveView::default(), figures: false, colors: Self::COLORS }
+    }
+}
+
 impl Sheet {
+    /// Colours that colour-blind people can tell apart (Okabe and Ito, *Color universal design*, 2008), sRGB.
+    pub const COLORS: [[u8; 3]; CompareSection::MAX_PANES] =
+        [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [213, 94, 0], [204, 121, 167]];
+
     /// Numbers of the shown panes out of `panes`.
     pub fn panes(&self, panes: usize) -> Vec<usize> {
         let last = panes.saturating_sub(1);

@@ -4,7 +4,7 @@ use egui::{Key, Pos2, Ui};
 use lovelock_base::settings::Settings as _;
 use lovelock_brush::BrushSettings;
 
-use super::{Brushes, Kept};
+use super::Brushes;
 
 /// How far the pointer moves to double the radius, points.
 const DOUBLES: f32 = 90.0;
@@ -20,8 +20,8 @@ pub(super) struct Resize {
 
 impl Brushes {
     /// While B is held, the pointer changes the radius, and with Shift the strength. Returns where the circle stays meanwhile.
-    pub(super) fn resize(&mut self, ui: &Ui, kept: &mut Kept) -> Option<Pos2> {
-        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
+    pub(super) fn resize(&mut self, ui: &Ui) -> Option<Pos2> {
+        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::key_press::are_held(ui.ctx());
         let (held, shift, pointer) = ui.input(|input| {
             let others = input.modifiers.command || input.modifiers.ctrl || input.modifiers.alt;
             (input.key_down(Key::B) && !others, input.modifiers.shift, input.pointer.latest_pos())
@@ -30,7 +30,7 @@ impl Brushes {
             self.resize = None;
             return None;
         };
-        let start = self.resize.get_or_insert_with(|| Resize { at: pointer, from: kept.of(self.tool) });
+        let start = self.resize.get_or_insert_with(|| Resize { at: pointer, from: self.kept.of(self.tool) });
         let moved = pointer.x - start.at.x;
         let from = start.from.clone();
         let at = start.at;
@@ -39,7 +39,7 @@ impl Brushes {
         } else {
             BrushSettings { radius: from.radius * (moved / DOUBLES).exp2(), ..from }
         };
-        kept.set(self.tool, changed.clamped());
+        self.kept.set(self.tool, changed.clamped());
         Some(at)
     }
 }

@@ -5,7 +5,6 @@ mod circle;
 mod keys;
 mod mirror;
 mod panel;
-mod pick;
 mod pointer;
 mod strokes;
 
@@ -15,9 +14,7 @@ use lovelock_base::settings::{Choices as _, Settings as _};
 use lovelock_brush::{BrushMirror, BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
-use super::pointer_tool::PointerTool;
-pub(crate) use panel::{BrushRequest, ui};
-pub(crate) use pick::SeenHair;
+use super::overlay::pick::SeenHair;
 use pointer::PointerStroke;
 use strokes::Strokes;
 
@@ -53,6 +50,8 @@ impl Kept {
 /// The brushes of the window.
 #[derive(Default)]
 pub(crate) struct Brushes {
+    /// The settings of the tools.
+    pub(crate) kept: Kept,
     /// The tool.
     pub(crate) tool: Tool,
     /// Whether the hair is shown at rest, without its simulation.
@@ -72,9 +71,9 @@ pub(crate) struct Brushes {
 
 impl Brushes {
     /// Makes the brush larger or smaller.
-    pub(crate) fn scale_radius(&self, factor: f32, kept: &mut Kept) {
-        let settings = kept.of(self.tool);
-        kept.set(self.tool, BrushSettings { radius: settings.radius * factor, ..settings }.clamped());
+    pub(crate) fn scale_radius(&mut self, factor: f32) {
+        let settings = self.kept.of(self.tool);
+        self.kept.set(self.tool, BrushSettings { radius: settings.radius * factor, ..settings }.clamped());
     }
 
     /// Tells the simulation whether the hair is shown at rest.
@@ -100,18 +99,6 @@ impl Brushes {
     /// Forgets which locks are protected.
     pub(crate) fn forget_frozen(&mut self) {
         self.strokes.frozen = std::sync::Arc::default();
-    }
-}
-
-impl crate::window::Window {
-    /// Starts to paint where an operation acts. The pointer does not brush hair meanwhile.
-    pub(in crate::window) fn paint_map(&mut self, project: &mut lovelock_project::Project, id: &str) {
-        if self.layers.paint_map(&mut project.hair.stack, id) {
-            self.pointer_tool = PointerTool::Mask;
-        } else {
-            let why = "The layer limit is reached. Remove a layer first.";
-            self.notices.push(crate::window::notices::Kind::Warning, why.to_owned());
-        }
     }
 }
 

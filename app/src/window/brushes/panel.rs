@@ -1,25 +1,19 @@
 //! The settings of the brush, in the panel and in its menu.
 
-use egui::{RichText, Ui};
+use egui::{RichText, Ui, WidgetInfo};
 use egui_material_icons::icons::{ICON_AC_UNIT, ICON_BRUSH, ICON_PAUSE};
 use lovelock_base::settings::Choices as _;
 use lovelock_brush::{BrushSettings, Tool};
+use lovelock_project::Project;
 
 use super::{Brushes, Kept};
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{context_popup, curve, note, restore_all, section, settings};
+use crate::window::panel::Panel;
 use crate::window::pointer_tool::PointerTool;
-
-/// What the panel requests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum BrushRequest {
-    /// Free all protected locks.
-    Thaw,
-    /// Save the strokes of this run.
-    Save,
-    /// Paint where the operation with this id acts.
-    Paint(&'static str),
-}
+use crate::window::purpose::Purpose;
+use crate::window::readings::Readings;
 
 /// Operations that are painted as maps of the scalp, and what painting does.
 const MAPS: [(&str, &str, &str); 5] = [
@@ -30,12 +24,22 @@ const MAPS: [(&str, &str, &str); 5] = [
     ("dye", "Colour", "Paints where hair is dyed."),
 ];
 
+impl Panel for Brushes {
+    fn title(&self) -> &'static str {
+        "Brushes"
+    }
+
+    fn opens(&self, _project: &Project, readings: &Readings<'_>) -> bool {
+        readings.tool == PointerTool::Brush
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, self, readings.tool)
+    }
+}
+
 /// The switches of brushes and the settings of the tool.
-pub(crate) fn ui(
-    ui: &mut Ui,
-    (brushes, pointer): (&mut Brushes, &mut PointerTool),
-    kept: &mut Kept,
-) -> Option<BrushRequest> {
+fn controls(ui: &mut Ui, brushes: &mut Brushes, pointer: PointerTool) -> Option<Command> {
     let mut request = None;
     ui.horizontal_wrapped(|ui| {
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: &mut bool, tip: &str| {
@@ -46,19 +50,21 @@ pub(crate) fn ui(
             }
         };
         let tip = "Brushes the hair with the pointer, even during playback. Drag outside the hair to move the camera. Key: H";
-        let mut used = *pointer == PointerTool::Brush;
+        let mut used = pointer == PointerTool::Brush;
         toggle(ICON_BRUSH, "Brush", &mut used, tip);
-        pointer.set(PointerTool::Brush, used);
+        if used != (pointer == PointerTool::Brush) {
+            request = Some(Command::Use(PointerTool::Brush));
+        }
         let tip = "Shows the hairstyle without its simulation. Pause (Space) instead to brush one pose of the moving hair.";
         toggle(ICON_PAUSE, "No physics", &mut brushes.still, tip);
         if brushes.strokes.frozen.contains(&true) {
             let thaw = ui.button((ICON_AC_UNIT.rich_text(), "Unfreeze all"));
             if thaw.hover_tooltip("Unfreezes all locks, so that tools act on them again.").clicked() {
-                request = Some(BrushRequest::Thaw);
+                request = Some(Command::Unfreeze);
             }
         }
     });
-    egui::ComboBox::from_id_salt("tool")
+    let tools = egui::ComboBox::from_id_salt("tool")
         .selected_text(brushes.tool.names().1)
         .width(ui.available_width() - 8.0)
         .show_ui(ui, |ui| {
@@ -66,13 +72,15 @@ pub(crate) fn ui(
                 ui.selectable_value(&mut brushes.tool, *tool, tool.names().1);
             }
         });
+    tools.response.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, true, "Tool"));
+    tools.response.hover_tooltip("What the brush does to the hair.");
     note(ui, brushes.tool.text());
-    tool_settings(ui, brushes.tool, kept);
+    tool_settings(ui, brushes.tool, &mut brushes.kept);
     let recorded = brushes.strokes.recorded.len();
     let save = ui.add_enabled(recorded > 0, egui::Button::new("Save strokes…"));
     let tip = "Saves the strokes made since the program started, for replay with `lovelock style`.";
     if save.hover_tooltip(tip).disabled_hover_tooltip("There are no strokes yet.").clicked() {
-        request = Some(BrushRequest::Save);
+        request = Some(Command::PickFile(Purpose::SaveStrokes));
     }
     note(ui, "Strokes go into the selected By hand layer, or into the last one.");
     ui.horizontal_wrapped(|ui| {
@@ -82,7 +90,7 @@ pub(crate) fn ui(
                 "{tip} The map is the painted mask of a layer, and the layer's settings set the amount. Ctrl erases."
             );
             if ui.button(name).hover_tooltip(tip).clicked() {
-                request = Some(BrushRequest::Paint(id));
+                request = Some(Command::PaintMap(id));
             }
         }
     });
@@ -117,11 +125,11 @@ pub(super) fn tool_settings(ui: &mut Ui, tool: Tool, kept: &mut Kept) {
 
 impl Brushes {
     /// The menu of the brush, opened by a right click on the image.
-    pub(in crate::window) fn menu(&mut self, response: &egui::Response, kept: &mut Kept) {
+    pub(in crate::window) fn menu(&mut self, response: &egui::Response) {
         context_popup(response, |ui| {
             ui.set_width(260.0);
             ui.label(RichText::new(self.tool.names().1).strong());
-            tool_settings(ui, self.tool, kept);
+            tool_settings(ui, self.tool, &mut self.kept);
         });
     }
 }

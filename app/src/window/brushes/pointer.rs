@@ -37,46 +37,49 @@ impl Window {
         (view, painted): (View, &RenderedImage),
         project: &mut Project,
     ) -> bool {
-        self.brushes.handled = true;
-        self.brushes.bar(ui, view.place);
-        self.brushes.menu(response, &mut self.layout.brushes);
+        self.panels.brushes.handled = true;
+        self.panels.brushes.bar(ui, view.place);
+        self.panels.brushes.menu(response);
         let snapshot = &*painted.snapshot;
         let head =
             Head { world_from_head: &snapshot.guides.world_from_head, scalp: &snapshot.scene.style.scalp };
-        let resizing = self.brushes.resize(ui, &mut self.layout.brushes);
+        let resizing = self.panels.brushes.resize(ui);
         let (modifiers, pointer, pressed, down) = ui.input(|input| {
             let pointer = &input.pointer;
             (input.modifiers, pointer.interact_pos(), pointer.primary_pressed(), pointer.primary_down())
         });
-        let tool = if modifiers.shift && resizing.is_none() { Tool::Smooth } else { self.brushes.tool };
+        let tool =
+            if modifiers.shift && resizing.is_none() { Tool::Smooth } else { self.panels.brushes.tool };
         let inverted = modifiers.command && tool.inverse_text().is_some();
-        let settings = self.layout.brushes.of(self.brushes.tool);
-        let over = response.contains_pointer() || self.brushes.held.is_some();
+        let settings = self.panels.brushes.kept.of(self.panels.brushes.tool);
+        let over = response.contains_pointer() || self.panels.brushes.held.is_some();
         let at = resizing.or_else(|| pointer.filter(|_| over));
-        let under = at.and_then(|at| self.brushes.seen.at(view, head, snapshot, at));
+        let under = at.and_then(|at| self.panels.brushes.seen.at(view, head, snapshot, at));
         let place = under.or_else(|| {
-            let held = self.brushes.held?;
+            let held = self.panels.brushes.held?;
             Some(view.at_depth_of(at?, head.world_from_head.transform_point3(held.place)))
         });
         if let Some(place) = place {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
             let (tool, inverted) =
-                self.brushes.held.map_or((tool, inverted), |held| (held.tool, held.inverted));
-            let look = Look { color: color_of(tool, inverted), lit: self.brushes.held.is_none() };
+                self.panels.brushes.held.map_or((tool, inverted), |held| (held.tool, held.inverted));
+            let look = Look { color: color_of(tool, inverted), lit: self.panels.brushes.held.is_none() };
             circle::paint(ui, view, snapshot, &settings, place, look);
         }
-        let begins =
-            pressed && response.contains_pointer() && resizing.is_none() && self.brushes.held.is_none();
+        let begins = pressed
+            && response.contains_pointer()
+            && resizing.is_none()
+            && self.panels.brushes.held.is_none();
         if let Some((place, at)) = under.zip(at).filter(|_| begins) {
             self.press(project, (tool, inverted), &settings, (snapshot, place, at));
         }
-        let holds = self.brushes.held.is_some() || self.brushes.spent || resizing.is_some();
-        if self.brushes.held.is_some() {
+        let holds = self.panels.brushes.held.is_some() || self.panels.brushes.spent || resizing.is_some();
+        if self.panels.brushes.held.is_some() {
             self.drag(ui, (view, head), snapshot, begins);
         }
         if !down {
             self.end_stroke();
-            self.brushes.spent = false;
+            self.panels.brushes.spent = false;
         }
         holds
     }
@@ -92,20 +95,20 @@ impl Window {
             let why = "Brushes cannot work during a morph. End it, or choose Become.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         }
-        let Some(layer) = strokes::layer_of(project, self.layers.selected) else {
+        let Some(layer) = strokes::layer_of(project, self.panels.layers.selected) else {
             let why = "The layer limit is reached. Remove a layer first.";
             return self.notices.push(notices::Kind::Warning, why.to_owned());
         };
         let place = snapshot.guides.world_from_head.inverse().transform_point3(place);
         let id = self.begin_stroke(project, layer, (tool, inverted), settings.clone());
-        self.brushes.held = Some(PointerStroke { id, place, at, tool, inverted });
+        self.panels.brushes.held = Some(PointerStroke { id, place, at, tool, inverted });
     }
 
     /// Sends the way of the pointer since the last pass.
     fn drag(&mut self, ui: &Ui, (view, head): (View, Head<'_>), snapshot: &FrameSnapshot, begins: bool) {
-        let Some(held) = &mut self.brushes.held else { return };
+        let Some(held) = &mut self.panels.brushes.held else { return };
         let (way, pressure) = ui.input(|input| (way_of(&input.events), pressure_of(&input.events)));
-        let radius = self.layout.brushes.of(self.brushes.tool).radius;
+        let radius = self.panels.brushes.kept.of(self.panels.brushes.tool).radius;
         let head_from_world: Affine3A = head.world_from_head.inverse();
         let mut samples = Vec::new();
         if begins {
@@ -117,7 +120,7 @@ impl Window {
             // Only what the pointer has moved: hair that dances past it is not combed by that.
             let from = view.at_depth_of(held.at, before);
             // The brush follows the hair in depth, but does not fall from a lock onto what is far behind it.
-            let found = self.brushes.seen.at(view, head, snapshot, at);
+            let found = self.panels.brushes.seen.at(view, head, snapshot, at);
             let now = found.filter(|found| found.distance(moved) < radius).unwrap_or(moved);
             if !now.is_finite() {
                 continue;
@@ -135,7 +138,7 @@ impl Window {
 
     /// Ends the stroke of the pointer, if there is one.
     pub(in crate::window) fn end_stroke(&mut self) {
-        if let Some(held) = self.brushes.held.take() {
+        if let Some(held) = self.panels.brushes.held.take() {
             self.session.worker().end_stroke(held.id);
         }
     }

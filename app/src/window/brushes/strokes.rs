@@ -75,7 +75,7 @@ impl Window {
     ) -> u64 {
         // Each stroke is an undo step of its own, however soon it follows the last one.
         self.document.end_gesture();
-        let strokes = &mut self.brushes.strokes;
+        let strokes = &mut self.panels.brushes.strokes;
         let left = project.hair.stack.hand(layer).cloned().unwrap_or_default();
         // What an earlier stroke did may still be on its way: the simulation has it already.
         let last = strokes.open.iter().rev().find(|open| open.layer == layer);
@@ -101,7 +101,7 @@ impl Window {
         samples: Vec<StrokeSample>,
         world_from_head: &Affine3A,
     ) {
-        let strokes = &mut self.brushes.strokes;
+        let strokes = &mut self.panels.brushes.strokes;
         if let Some(stroke) = strokes.recorded.last_mut() {
             let room = StrokeFile::MAX_SAMPLES.saturating_sub(stroke.samples.len());
             let room = room.min(MAX_SAMPLES.saturating_sub(strokes.samples)).min(samples.len());
@@ -118,7 +118,7 @@ impl Window {
 
     /// Saves the strokes of this run.
     pub(in crate::window) fn save_strokes(&mut self, path: &Path) -> Result<(), String> {
-        let text = StrokeFile::new(self.brushes.strokes.recorded.clone()).to_text()?;
+        let text = StrokeFile::new(self.panels.brushes.strokes.recorded.clone()).to_text()?;
         write_whole(path, text.as_bytes()).map_err(|error| error.to_string())?;
         self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
         Ok(())
@@ -134,12 +134,12 @@ impl Window {
     /// Forgets the strokes whose results have not arrived.
     pub(in crate::window) fn cancel_strokes(&mut self) {
         self.session.worker().cancel_strokes();
-        self.brushes.strokes.open.clear();
-        self.brushes.spent |= self.brushes.held.take().is_some();
+        self.panels.brushes.strokes.open.clear();
+        self.panels.brushes.spent |= self.panels.brushes.held.take().is_some();
     }
 
     fn write_brushed(&mut self, brushed: StrokeReport) {
-        let strokes = &mut self.brushes.strokes;
+        let strokes = &mut self.panels.brushes.strokes;
         if let Some(frozen) = brushed.frozen {
             strokes.frozen = frozen;
             strokes.freezes = Some(brushed.stroke);
@@ -177,15 +177,15 @@ impl Window {
 
     /// Ends a stroke that has written nothing: it makes no undo step, and a layer that was added for it is removed.
     fn end_without_change(&mut self, stroke: &OpenStroke) {
-        let strokes = &self.brushes.strokes;
+        let strokes = &self.panels.brushes.strokes;
         let is_last = strokes.open.iter().all(|open| open.layer != stroke.layer);
         if let Some(added) = stroke.added.filter(|_| is_last) {
             self.document.take_back_gesture(added);
         }
-        if stroke.tool == Tool::Freeze && self.brushes.strokes.freezes == Some(stroke.id) {
+        if stroke.tool == Tool::Freeze && self.panels.brushes.strokes.freezes == Some(stroke.id) {
             return;
         }
-        let held = if self.brushes.strokes.frozen.contains(&true) && stroke.tool != Tool::Freeze {
+        let held = if self.panels.brushes.strokes.frozen.contains(&true) && stroke.tool != Tool::Freeze {
             " Frozen locks stay as they are."
         } else {
             ""

@@ -1,6 +1,11 @@
 //! The table of all commands.
 
+use lovelock_groom::Preset;
+
 use super::{Command, CommandGroup, CommandInfo};
+use crate::window::page::Page;
+use crate::window::pointer_tool::PointerTool;
+use crate::window::purpose::Purpose;
 
 const fn entry(
     command: Command,
@@ -13,8 +18,8 @@ const fn entry(
     CommandInfo { command, id, label, tooltip, shortcuts, group, in_palette: true }
 }
 
-/// Every command, in the order of [`Command`].
-pub const COMMANDS: &[CommandInfo] = {
+/// Every command that the user finds in a menu, in the order of the palette.
+pub(crate) const COMMANDS: &[CommandInfo] = {
     use Command as C;
     use CommandGroup as G;
     &[
@@ -75,7 +80,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::Scissors,
+            C::Use(PointerTool::Scissors),
             "scissors",
             "Scissors",
             "Turns the scissors on or off. Draw a line across hair to cut it.",
@@ -91,7 +96,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::PaintMask,
+            C::Use(PointerTool::Mask),
             "paint-mask",
             "Paint mask",
             "Paints the mask of the selected layer in the image. Press again to stop.",
@@ -99,7 +104,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::Brushes,
+            C::Use(PointerTool::Brush),
             "brushes",
             "Brush hair",
             "Turns the brushes on or off. They comb, cut and curl hair in the image, even during playback.",
@@ -189,7 +194,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Playback,
         ),
         entry(
-            C::SavePicture,
+            C::PickFile(Purpose::Picture),
             "save-picture",
             "Save image",
             "Saves the frame in the viewport as a PNG file.",
@@ -197,7 +202,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
-            C::ExportCurves,
+            C::PickFile(Purpose::Curves),
             "export-curves",
             "Export curves",
             "Exports the hair as animated curves, with the body, for other programs: USD or glTF.",
@@ -213,7 +218,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
-            C::PickSound,
+            C::PickFile(Purpose::Sound),
             "pick-sound",
             "Sound…",
             "Adds a sound to the dance: WAV, MP3, Ogg Vorbis or FLAC.",
@@ -262,7 +267,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
-            C::Open,
+            C::PickFile(Purpose::Open),
             "open",
             "Open…",
             "Opens a project, take, hair, character or motion file.",
@@ -271,7 +276,7 @@ pub const COMMANDS: &[CommandInfo] = {
         ),
         entry(C::Save, "save", "Save", "Saves the project.", &["Ctrl+S"], G::File),
         entry(
-            C::SaveAs,
+            C::PickFile(Purpose::SaveProject),
             "save-as",
             "Save as…",
             "Saves the project under another name.",
@@ -279,7 +284,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::File,
         ),
         entry(
-            C::PresetSmooth,
+            C::Load(Preset::Smooth),
             "preset-smooth",
             "Hairstyle: Smooth bob",
             "Grows the shipped smooth hairstyle, with its colour.",
@@ -287,7 +292,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::PresetCurly,
+            C::Load(Preset::Curly),
             "preset-curly",
             "Hairstyle: Red curls",
             "Grows the shipped curls, with their colour.",
@@ -295,7 +300,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::PresetLong,
+            C::Load(Preset::Long),
             "preset-long",
             "Hairstyle: Golden waves",
             "Grows the shipped long hairstyle, with its colour.",
@@ -303,7 +308,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::PresetPonytail,
+            C::Load(Preset::Ponytail),
             "preset-ponytail",
             "Hairstyle: Ponytail",
             "Grows the shipped ponytail, with its tie and colour.",
@@ -311,7 +316,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::PresetBun,
+            C::Load(Preset::Bun),
             "preset-bun",
             "Hairstyle: Bun",
             "Grows the shipped bun, with its tie and colour.",
@@ -330,7 +335,7 @@ pub const COMMANDS: &[CommandInfo] = {
             )
         },
         entry(
-            C::Compare,
+            C::Show(Page::Compare),
             "compare",
             "Compare methods",
             "Shows renderings by several methods side by side.",
@@ -338,7 +343,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::View,
         ),
         entry(
-            C::Wall,
+            C::Show(Page::Wall),
             "wall",
             "Wall of variants",
             "Shows nine dancing variants of the hairstyle, to adopt or breed.",
@@ -346,7 +351,7 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::CompareTakes,
+            C::PickFile(Purpose::Beside),
             "compare-takes",
             "Compare with a take…",
             "Adds a take beside the current scene, at the same time of the dance.",

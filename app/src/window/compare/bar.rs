@@ -8,24 +8,21 @@ use lovelock_project::project::CompareSection;
 
 use super::layout::CompareLayout;
 use super::legend::LARGEST;
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
+use crate::window::page::Page;
+use crate::window::purpose::Purpose;
 use crate::window::theme;
 
 /// An action that the toolbar requests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum ToolbarAction {
     /// Add a pane.
     Add,
-    /// Save the panes as an image file.
-    Save,
-    /// Record the dance as a film of the panes.
-    Film,
-    /// Write a report of any number of methods.
-    Report,
     /// Show the whole images again.
     WholePicture,
-    /// Close the comparison.
-    Close,
+    /// Run a command.
+    Run(Command),
 }
 
 /// Shows the toolbar. `magnified` is the magnification of the panes.
@@ -118,7 +115,7 @@ pub(super) fn ui(
             "Save comparison",
             "Saves the panes with their labels as an image (Ctrl+P).",
             true,
-            ToolbarAction::Save,
+            ToolbarAction::Run(Command::PickFile(Purpose::Picture)),
         );
         button(
             ui,
@@ -126,7 +123,7 @@ pub(super) fn ui(
             "Record comparison",
             "Records the dance as a film of all panes (Ctrl+R).",
             true,
-            ToolbarAction::Film,
+            ToolbarAction::Run(Command::Record),
         );
         button(
             ui,
@@ -134,9 +131,10 @@ pub(super) fn ui(
             "Export report",
             "Compares any number of methods and writes a report with errors, times and images.",
             true,
-            ToolbarAction::Report,
+            ToolbarAction::Run(Command::ExportReport),
         );
-        button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, ToolbarAction::Close);
+        let close = ToolbarAction::Run(Command::Show(Page::Compare));
+        button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, close);
     });
     action
 }

@@ -4,8 +4,6 @@ use lovelock_panes::sheet::Sheet;
 use lovelock_panes::view::{LiveShows, LiveView};
 use serde::{Deserialize, Serialize};
 
-use crate::window::theme;
-
 /// The layout of the comparison.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -109,7 +107,7 @@ impl CompareLayout {
             wipe: self.wipe.then_some((self.pair, self.split)),
             view: self.view(),
             figures: true,
-            colors: theme::PLOT.map(theme::to_srgb),
+            colors: Sheet::COLORS,
         }
     }
 

@@ -30,14 +30,14 @@ use lovelock_project::project::{CompareSection, Contender};
 use lovelock_session::snapshot::FrameSnapshot;
 use report::Reporting;
 use save::Saving;
-use selected::PaneEdit;
+pub(super) use selected::PaneEdit;
 use texture::PaneTextures;
 use zoom::Zoom;
 
 use super::Window;
 use super::command::Command;
 use super::control::is_any_open;
-use super::page::Page;
+use super::readings::PaneReading;
 
 /// The state of the comparison, and its last request.
 #[derive(Default)]
@@ -196,43 +196,35 @@ fn next_pane(project: &Project) -> Contender {
     next
 }
 
-impl Window {
-    /// Puts the settings of the selected pane in place of the project's while panes are shown, so that the panels edit the pane.
-    pub(super) fn begin_pane(&self, project: &mut Project) -> Option<PaneEdit> {
-        let shown = self.layout.page == Page::Compare;
-        let pane = shown.then(|| self.edited_pane(project))?;
-        PaneEdit::begin(project, pane)
-    }
-
+impl Compare {
     /// The pane that the panels edit.
-    fn edited_pane(&self, project: &Project) -> usize {
-        selected::of(&self.layout.compare, self.compare.selected, project.compare.panes.len())
+    fn edited_pane(&self, layout: &CompareLayout, project: &Project) -> usize {
+        selected::of(layout, self.selected, project.compare.panes.len())
     }
 
-    /// Shows the choice of the pane that the panels edit. Returns the memory of its shadow maps, if it is drawn.
-    pub(super) fn pane_choice(&mut self, ui: &mut Ui, pane: usize, project: &Project) -> Option<u64> {
-        let visible = self.layout.compare.visible(project.compare.panes.len());
-        if let Some(chosen) = selected::choice(ui, pane, &visible) {
-            self.compare.selected = chosen;
-        }
-        let drawn = self.compare.panes.get(pane).and_then(Option::as_ref)?;
-        drawn.problem.is_none().then_some(drawn.shadow_bytes)
+    /// What the panels show of the pane that they edit.
+    pub(super) fn reading(&self, layout: &CompareLayout, project: &Project) -> PaneReading {
+        let pane = self.edited_pane(layout, project);
+        let drawn = self.panes.get(pane).and_then(Option::as_ref);
+        let shadow_bytes = drawn.filter(|drawn| drawn.problem.is_none()).map(|drawn| drawn.shadow_bytes);
+        PaneReading { pane, visible: layout.visible(project.compare.panes.len()), shadow_bytes }
     }
+}
 
-    /// Shows the panes in place of the image.
-    pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) {
+impl Window {
+    /// Shows the panes in place of the image. Returns what the toolbar asks for.
+    pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) -> Option<Command> {
         let ctx = ui.ctx().clone();
         // Must be read before this pass closes the menu.
         let open = is_any_open(&ctx);
         if ctx.input(|input| input.pointer.any_pressed()) {
-            self.compare.menu_open = open;
+            self.pages.compare.menu_open = open;
         }
-        self.compare.menu_open |= open;
+        self.pages.compare.menu_open |= open;
         let mut command = None;
-        let mut film = false;
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let layout = &mut self.layout.compare;
-            let magnified = self.compare.zoom.factor();
+            let magnified = self.pages.compare.zoom.factor();
             let asked =
                 Panel::top("compare bar").show(ui, |ui| bar::ui(ui, layout, project, magnified)).inner;
             match asked {
@@ -240,13 +232,10 @@ impl Window {
                     let next = next_pane(project);
                     project.compare.panes.push(next);
                     project.compare.panes.truncate(CompareSection::MAX_PANES);
-                    self.compare.selected = project.compare.panes.len() - 1;
+                    self.pages.compare.selected = project.compare.panes.len() - 1;
                 }
-                Some(bar::ToolbarAction::WholePicture) => self.compare.zoom = Zoom::default(),
-                Some(bar::ToolbarAction::Save) => command = Some(Command::SavePicture),
-                Some(bar::ToolbarAction::Film) => film = true,
-                Some(bar::ToolbarAction::Report) => command = Some(Command::ExportReport),
-                Some(bar::ToolbarAction::Close) => command = Some(Command::Compare),
+                Some(bar::ToolbarAction::WholePicture) => self.pages.compare.zoom = Zoom::default(),
+                Some(bar::ToolbarAction::Run(asked)) => command = Some(asked),
                 None => {}
             }
             self.dock(ui, project);
@@ -258,17 +247,12 @@ impl Window {
             }
             let page = ui.available_rect_before_wrap();
             ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
-            self.compare.page = page.size();
+            self.pages.compare.page = page.size();
             self.panes(ui, page, project);
             // Below the title bars of the panes, whose buttons stay clickable.
-            self.running(ui, page.with_min_y(page.top() + self.compare.bar));
+            self.running(ui, page.with_min_y(page.top() + self.pages.compare.bar));
         });
-        if film {
-            command = Some(Command::Record);
-        }
-        if let Some(command) = command {
-            self.run(command, &ctx);
-        }
+        command
     }
 
     /// Shows the plots below the panes.
@@ -279,7 +263,7 @@ impl Window {
             return;
         }
         let panes = layout.visible(project.compare.panes.len());
-        let compare = &self.compare;
+        let compare = &self.pages.compare;
         Panel::bottom("compare dock").resizable(true).default_size(270.0).size_range(170.0..=460.0).show(
             ui,
             |ui| {
@@ -306,8 +290,8 @@ impl Window {
     /// Shows the panes on their page.
     fn panes(&mut self, ui: &mut Ui, page: Rect, project: &mut Project) {
         let count = project.compare.panes.len();
-        self.compare.textures.keep(count);
-        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
+        self.pages.compare.textures.keep(count);
+        let typing = ui.ctx().egui_wants_keyboard_input() || crate::window::key_press::are_held(ui.ctx());
         let flicked = !typing && ui.input(|input| input.key_down(Key::V) && input.modifiers.is_none());
         let asked = if self.layout.compare.wipe {
             self.wipe(ui, page, project, flicked)
@@ -315,7 +299,7 @@ impl Window {
             self.grid(ui, page, project, flicked)
         };
         let panes = &mut project.compare.panes;
-        let selected = &mut self.compare.selected;
+        let selected = &mut self.pages.compare.selected;
         match asked {
             Some(header::PaneAction::Use(index)) => {
                 if let Some(pane) = panes.get(index).cloned() {

@@ -31,10 +31,10 @@ impl Window {
         let count = project.compare.panes.len();
         let mut asked = None;
         for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
-            self.compare.bar = header::height(cell.width());
+            self.pages.compare.bar = header::height(cell.width());
             asked = self.header(ui, cell, index, project).or(asked);
             let mut place = cell;
-            place.min.y += self.compare.bar;
+            place.min.y += self.pages.compare.bar;
             if index == 0 {
                 self.want(ui, place, count);
             }
@@ -50,7 +50,7 @@ impl Window {
             let shape = ui.painter();
             let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
             shape.rect_stroke(place, 0.0, Stroke::new(1.0, edge), StrokeKind::Inside);
-            if index == self.edited_pane(project) {
+            if index == self.pages.compare.edited_pane(&self.layout.compare, project) {
                 frame(ui, cell);
             }
         }
@@ -63,7 +63,7 @@ impl Window {
         let pressed = pressed.flatten().filter(|at| cell.contains(*at));
         // Not through a list or a dialog.
         if pressed.is_some_and(|at| ui.ctx().layer_id_at(at) == Some(ui.layer_id())) {
-            self.compare.selected = index;
+            self.pages.compare.selected = index;
         }
     }
 
@@ -77,40 +77,40 @@ impl Window {
     ) -> Option<header::PaneAction> {
         let mut pair = self.layout.compare.pair_of(project.compare.panes.len());
         let half = 0.5 * page.width();
-        self.compare.bar = header::height(half);
+        self.pages.compare.bar = header::height(half);
         let mut asked = None;
         for (side, index) in pair.into_iter().enumerate() {
             let left = page.left() + half * side as f32;
             let line = Rect::from_min_size(pos2(left, page.top()), vec2(half, page.height()));
             asked = self.header(ui, line, index, project).or(asked);
             self.select(ui, line, index);
-            if index == self.edited_pane(project) {
-                frame(ui, line.with_max_y(line.top() + self.compare.bar));
+            if index == self.pages.compare.edited_pane(&self.layout.compare, project) {
+                frame(ui, line.with_max_y(line.top() + self.pages.compare.bar));
             }
             if pair[0] == pair[1] {
                 break;
             }
         }
         let mut place = page;
-        place.min.y += self.compare.bar;
+        place.min.y += self.pages.compare.bar;
         self.want(ui, place, 2);
         if flicked {
             pair.reverse();
         }
-        let zoom = self.compare.zoom;
+        let zoom = self.pages.compare.zoom;
         let split = self.layout.compare.split.clamp(0.0, 1.0);
         let x = zoom.to_screen(place, pos2(split, 0.5)).x;
         let near = ui.input(|input| input.pointer.hover_pos()).is_some_and(|at| (at.x - x).abs() < REACH);
         // The line is grabbed where the pointer is pressed and released with the pointer.
         let pressed = ui.input(|input| input.pointer.primary_pressed());
         if pressed && near {
-            self.compare.splitting = true;
+            self.pages.compare.splitting = true;
         } else if !ui.input(|input| input.pointer.primary_down()) {
-            self.compare.splitting = false;
+            self.pages.compare.splitting = false;
         }
-        let response = if self.compare.splitting || near {
+        let response = if self.pages.compare.splitting || near {
             let response = ui.interact(place, Id::unique("wipe"), Sense::click_and_drag());
-            if self.compare.splitting
+            if self.pages.compare.splitting
                 && response.dragged()
                 && let Some(at) = response.interact_pointer_pos()
             {
@@ -131,7 +131,7 @@ impl Window {
             .zip(pair)
             .zip([(Align2::LEFT_TOP, Align2::LEFT_BOTTOM), (Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM)])
         {
-            if !near && !self.compare.splitting {
+            if !near && !self.pages.compare.splitting {
                 self.select(ui, part, index);
             }
             ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
@@ -141,7 +141,7 @@ impl Window {
             });
         }
         let painter = ui.painter_at(place.expand(1.0));
-        let strong = if near || self.compare.splitting { theme::ACCENT } else { Color32::WHITE };
+        let strong = if near || self.pages.compare.splitting { theme::ACCENT } else { Color32::WHITE };
         painter.line_segment([pos2(x, place.top()), pos2(x, place.bottom())], Stroke::new(1.5, strong));
         let knob = pos2(x, place.bottom() - 46.0);
         painter.circle(knob, 10.0, theme::PAGE.gamma_multiply(0.8), Stroke::new(1.5, strong));
@@ -163,21 +163,21 @@ impl Window {
     ) -> Option<header::PaneAction> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
-        let line = Rect::from_min_size(cell.min, vec2(cell.width(), self.compare.bar));
+        let line = Rect::from_min_size(cell.min, vec2(cell.width(), self.pages.compare.bar));
         ui.painter().rect_filled(line, 0.0, theme::PANEL);
-        let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
+        let drawn = self.pages.compare.panes.get(index).and_then(Option::as_deref);
         header::ui(ui, line, (index, panes), pane, drawn)
     }
 
     /// The size at which panes that are shown at `place` should be rendered.
     fn want(&mut self, ui: &Ui, place: Rect, panes: usize) {
-        let shown = self.compare.panes.iter().take(panes).flatten();
+        let shown = self.pages.compare.panes.iter().take(panes).flatten();
         let each = shown
             .map(|pane| viewport::most_pixels(Some(&pane.adapter)))
             .fold(viewport::most_pixels(self.session.painter().adapter().as_deref()), f32::min);
         let most = (each / panes.max(1) as f32).max(LEAST_PIXELS);
         let points = ui.ctx().pixels_per_point();
-        self.compare.wanted = viewport::size_for(place.size(), points, most, self.layout.view_scale);
+        self.pages.compare.wanted = viewport::size_for(place.size(), points, most, self.layout.view_scale);
     }
 
     /// Applies the pointer's input over a pane to the camera, the magnification and the probe.
@@ -185,15 +185,15 @@ impl Window {
         let response = ui.interact(place, Id::unique(("pane", index)), Sense::CLICK | Sense::DRAG);
         let name = format!("Pane {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
-        if !self.compare.zoom.apply(&response, place) {
+        if !self.pages.compare.zoom.apply(&response, place) {
             camera_control::steer(&mut project.camera, &response);
         }
         if response.clicked()
-            && !self.compare.menu_open
+            && !self.pages.compare.menu_open
             && let Some(at) = response.interact_pointer_pos()
         {
-            let at = self.compare.zoom.at(place, at);
-            self.compare.probe_at(at.x, at.y);
+            let at = self.pages.compare.zoom.at(place, at);
+            self.pages.compare.probe_at(at.x, at.y);
             self.layout.compare.probe = true;
         }
         response
@@ -202,7 +202,7 @@ impl Window {
     /// The image of a pane with its status in a corner.
     fn pane(&mut self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
-        let compare = &mut self.compare;
+        let compare = &mut self.pages.compare;
         let Some(pane) = compare.panes.get(index).cloned().flatten() else {
             let font = FontId::proportional(14.0);
             painter.text(place.center(), Align2::CENTER_CENTER, "Getting ready…", font, theme::QUIET);
@@ -235,7 +235,7 @@ impl Window {
             return;
         }
         let newest = self.session.frame.as_ref().map_or(0.0, |frame| frame.time_secs);
-        let ms = self.compare.costs.of(&pane.contender).map_or(pane.times.whole, Way::whole);
+        let ms = self.pages.compare.costs.of(&pane.contender).map_or(pane.times.whole, Way::whole);
         let mut said = pane.figures_label(ms);
         if let Some(age) = age_label(newest - pane.time_secs) {
             said = format!("{said} · {age}");
@@ -253,7 +253,7 @@ impl Window {
     /// The name of the pane whose image is visible, in a corner.
     fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let Some(pane) = project.compare.panes.get(index) else { return };
-        let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
+        let drawn = self.pages.compare.panes.get(index).and_then(Option::as_deref);
         let label =
             drawn.filter(|drawn| drawn.contender == *pane).map_or_else(|| pane.label(), LivePane::label);
         let text = format!("{} · {label}", index + 1);
@@ -262,7 +262,7 @@ impl Window {
 
     /// A ring around the hair whose transmittance is plotted.
     fn mark(&self, ui: &Ui, place: Rect, pane: &LivePane, project: &Project) {
-        let probed = self.compare.probed.as_deref().filter(|_| self.layout.compare.probe);
+        let probed = self.pages.compare.probed.as_deref().filter(|_| self.layout.compare.probe);
         let Some(hair) = probed.and_then(|probed| probed.hair.as_ref()) else { return };
         let camera = self.session.frame.as_ref().map_or(pane.camera, |frame| frame.camera(&project.camera));
         let aspect = place.width() / place.height().max(1.0);
@@ -271,7 +271,7 @@ impl Window {
             return;
         }
         let at = pos2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
-        let at: Pos2 = self.compare.zoom.to_screen(place, at);
+        let at: Pos2 = self.pages.compare.zoom.to_screen(place, at);
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
         painter.circle_stroke(at, 7.0, Stroke::new(3.0, theme::PAGE.gamma_multiply(0.7)));
         painter.circle_stroke(at, 7.0, Stroke::new(1.5, theme::ACCENT));

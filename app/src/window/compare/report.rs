@@ -13,7 +13,7 @@ use lovelock_study::batch::{CompareRequest, compare};
 use lovelock_study::report::CompareReport;
 
 use crate::window::control::{HoverTooltip, note};
-use crate::window::path_dialog::Purpose;
+use crate::window::purpose::Purpose;
 use crate::window::{Window, images, notices, theme};
 
 /// The options of a report.
@@ -214,7 +214,7 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
 impl Window {
     /// Opens the dialog of a report with the options of the last one, at the present frame.
     pub(in crate::window) fn open_report_dialog(&mut self) {
-        if self.compare.reporting.is_running() {
+        if self.pages.compare.reporting.is_running() {
             self.warn(["A report is being written. Wait for it, or cancel it above the image.".to_owned()]);
             return;
         }
@@ -222,7 +222,7 @@ impl Window {
         let recording = &project.recording;
         let clip = self.session.frames(recording.fps);
         let now = ((self.now_secs() * recording.fps).round().max(0.0) as u64).min(clip.saturating_sub(1));
-        let options = self.compare.reporting.options.get_or_insert_with(|| ReportOptions {
+        let options = self.pages.compare.reporting.options.get_or_insert_with(|| ReportOptions {
             methods: ShadowMethod::ALL.to_vec(),
             backends: vec![project.picture.backend],
             size: [640, 360],
@@ -230,13 +230,13 @@ impl Window {
             quick: true,
         });
         options.frames[0] = now;
-        self.compare.reporting.is_open = true;
+        self.pages.compare.reporting.is_open = true;
     }
 
     /// Shows the dialog of a report.
     pub(in crate::window) fn report_dialog(&mut self, ctx: &egui::Context) {
         let clip = self.session.frames(self.document.project().recording.fps);
-        let reporting = &mut self.compare.reporting;
+        let reporting = &mut self.pages.compare.reporting;
         let Some(options) = reporting.options.as_mut().filter(|_| reporting.is_open) else { return };
         let modal = Modal::new(egui::Id::unique("report")).show(ctx, |ui| options_ui(ui, options, clip));
         match modal.inner {
@@ -252,7 +252,7 @@ impl Window {
 
     /// Starts to write the report to a folder.
     pub(in crate::window) fn export_report(&mut self, out: &Path, ctx: &egui::Context) {
-        let Some(options) = &self.compare.reporting.options else { return };
+        let Some(options) = &self.pages.compare.reporting.options else { return };
         let project = Arc::clone(self.document.project());
         let clip = self.session.frames(project.recording.fps);
         let name = self.document.path().and_then(std::path::Path::file_name);
@@ -268,8 +268,8 @@ impl Window {
         };
         match BackgroundJob::start("comparison", wake, work) {
             Ok(job) => {
-                self.compare.reporting.is_cancelled = false;
-                self.compare.reporting.running = Some((job, out.to_owned()));
+                self.pages.compare.reporting.is_cancelled = false;
+                self.pages.compare.reporting.running = Some((job, out.to_owned()));
             }
             Err(error) => self.fail(error.to_string()),
         }
@@ -277,7 +277,7 @@ impl Window {
 
     /// Shows a message that a report was written, or why not.
     pub(in crate::window) fn report_exported(&mut self) {
-        match self.compare.reporting.ended() {
+        match self.pages.compare.reporting.ended() {
             None => {}
             Some(Ok((report, out))) => {
                 let page = out.join("report.html");
@@ -288,7 +288,7 @@ impl Window {
                 };
                 self.notices.push_written(said, page);
             }
-            Some(Err(_)) if self.compare.reporting.is_cancelled => {
+            Some(Err(_)) if self.pages.compare.reporting.is_cancelled => {
                 self.notices.push(notices::Kind::Done, "The report was stopped before anything was written.");
             }
             Some(Err(why)) => self.notices.push(notices::Kind::Failed, format!("Report: {why}")),

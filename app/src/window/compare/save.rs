@@ -70,14 +70,14 @@ impl Window {
     pub(in crate::window) fn save_panes(&mut self, path: &Path, ctx: &egui::Context) {
         let layout = &self.layout.compare;
         let panes = layout.visible(self.document.project().compare.panes.len());
-        let columns = grid::columns(panes.len(), self.compare.page, header::HEIGHT);
+        let columns = grid::columns(panes.len(), self.pages.compare.page, header::HEIGHT);
         let sheet = layout.sheet();
-        self.compare.save(sheet, columns, &panes, path, ctx);
+        self.pages.compare.save(sheet, columns, &panes, path, ctx);
     }
 
     /// Shows a message that the image of the panes was saved, or why not.
     pub(in crate::window) fn report_saved(&mut self) {
-        while let Some(saved) = self.compare.saved() {
+        while let Some(saved) = self.pages.compare.saved() {
             match saved {
                 Ok(path) => self.notices.push_written(format!("Saved {}", path.display()), path),
                 Err(why) => self.fail(why),

@@ -1,13 +1,10 @@
 //! The pane that the panels edit.
 
-use egui::{RichText, Ui};
 use lovelock_groom::HairShading;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 
 use super::CompareLayout;
-use crate::window::control::HoverTooltip;
-use crate::window::theme;
 
 /// The project's own settings, while those of a pane are in their place so that the panels edit the pane.
 pub(in crate::window) struct PaneEdit {
@@ -26,11 +23,6 @@ impl PaneEdit {
         Some(edit)
     }
 
-    /// The number of the pane.
-    pub(in crate::window) fn pane(&self) -> usize {
-        self.pane
-    }
-
     /// Gives the pane what was edited, and the project its own settings.
     pub(in crate::window) fn end(self, project: &mut Project) {
         project.compare.shading = project.look.shading;
@@ -47,27 +39,6 @@ impl PaneEdit {
 pub(super) fn of(layout: &CompareLayout, selected: usize, panes: usize) -> usize {
     let visible = layout.visible(panes);
     if visible.contains(&selected) { selected } else { visible.first().copied().unwrap_or_default() }
-}
-
-/// The choice of the pane that the panels edit.
-pub(in crate::window) fn choice(ui: &mut Ui, edited: usize, visible: &[usize]) -> Option<usize> {
-    let mut chosen = None;
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("Edits pane").strong());
-        for &pane in visible {
-            let text = RichText::new(format!("{}", pane + 1)).color(theme::PLOT[pane % theme::PLOT.len()]);
-            let tip = "Shows the settings of this pane below. Clicking the pane also selects it.";
-            let response = ui.selectable_label(pane == edited, text).hover_tooltip(tip);
-            let name = format!("Edit pane {}", pane + 1);
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::RadioButton, true, pane == edited, &name)
-            });
-            if response.clicked() {
-                chosen = Some(pane);
-            }
-        }
-    });
-    chosen
 }
 
 #[cfg(test)]

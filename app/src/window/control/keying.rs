@@ -14,31 +14,8 @@ use lovelock_project::Project;
 use lovelock_project::animation::{is_keyable, key_numbers};
 
 use super::HoverTooltip;
+use crate::window::command::Command;
 use crate::window::theme;
-
-/// What the user asked for at a control.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum KeyRequest {
-    /// Sets the key at the current time.
-    Add {
-        /// The target of the track.
-        target: String,
-        /// The numbers of the key.
-        value: Vec<f64>,
-    },
-    /// Removes the key at the current time.
-    Remove {
-        /// The target of the track.
-        target: String,
-    },
-    /// Records this control alone while the dance plays.
-    Record {
-        /// The target of the track.
-        target: String,
-        /// The label of the control.
-        label: &'static str,
-    },
-}
 
 /// A struct of settings in the project that is edited.
 struct Part {
@@ -109,12 +86,12 @@ pub(crate) fn begin(ctx: &Context, keying_of: Keying) {
     ctx.data_mut(|data| data.insert_temp(keying(), Arc::new(keying_of)));
 }
 
-/// Ends the pass; returns what the user asked for.
-pub(crate) fn end(ctx: &Context) -> Vec<KeyRequest> {
+/// Ends the pass; returns the commands of the rows.
+pub(crate) fn end(ctx: &Context) -> Vec<Command> {
     ctx.data_mut(|data| {
         data.remove::<Arc<Keying>>(keying());
         data.remove::<EditedPane>(keying());
-        data.remove_temp::<Vec<KeyRequest>>(keying()).unwrap_or_default()
+        data.remove_temp::<Vec<Command>>(keying()).unwrap_or_default()
     })
 }
 
@@ -224,18 +201,18 @@ impl KeyedRow {
         })
     }
 
-    fn ask(ui: &Ui, request: KeyRequest) {
-        ui.data_mut(|data| data.get_temp_mut_or_default::<Vec<KeyRequest>>(keying()).push(request));
+    fn ask(ui: &Ui, request: Command) {
+        ui.data_mut(|data| data.get_temp_mut_or_default::<Vec<Command>>(keying()).push(request));
     }
 
     fn add(&self, ui: &Ui) {
         if let Some(value) = self.numbers() {
-            Self::ask(ui, KeyRequest::Add { target: self.target.clone(), value });
+            Self::ask(ui, Command::SetKey { target: self.target.clone(), value });
         }
     }
 
     fn remove(&self, ui: &Ui) {
-        Self::ask(ui, KeyRequest::Remove { target: self.target.clone() });
+        Self::ask(ui, Command::RemoveKey(self.target.clone()));
     }
 
     /// The diamond to the left of the label: filled at a key, outlined where there are keys at other times, and faint under the
@@ -310,7 +287,7 @@ fn menu(ui: &Ui, whole: Rect, name: &Response, row: Option<&KeyedRow>, differs: 
                 }
                 if entry(ui, "Record this", why_not) {
                     let (target, label) = (row.target.clone(), row.label);
-                    KeyedRow::ask(ui, KeyRequest::Record { target, label });
+                    KeyedRow::ask(ui, Command::RecordControl { target, label });
                 }
                 ui.separator();
             }

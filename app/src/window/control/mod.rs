@@ -6,6 +6,7 @@ mod number;
 mod plot_axis;
 mod popup;
 mod reveal;
+pub(crate) mod rows;
 mod setting;
 mod tooltip;
 
@@ -13,7 +14,7 @@ use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
 pub(crate) use keying::{
-    KeyRequest, Keying, begin as begin_keying, end as end_keying, enter_pane, leave_pane, of_setting,
+    Keying, begin as begin_keying, end as end_keying, enter_pane, leave_pane, of_setting,
 };
 pub(crate) use number::{Limits, Number, is_escaped, typed};
 pub(crate) use plot_axis::axis_number;

@@ -4,8 +4,8 @@ use egui::{Response, Ui};
 use lovelock_base::settings::{AnySettings, Counts, Info, Kind, Setting, Settings, Value};
 
 use super::number::{Number, count};
+use super::rows::note_row;
 use super::{choice, color, of_setting, reveal, toggle};
-use crate::window::manual::what::note_row;
 
 /// The rows of several settings of one struct, in this order.
 pub(crate) fn settings<S: Settings>(ui: &mut Ui, names: &[&str], settings: &mut S, default: &S) {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use egui::{Align2, Context, Key, Modifiers, TextureHandle, Vec2, vec2};
 
-use super::keys;
+use super::key_press;
 use super::picker::Picker;
 use pages::PAGES;
 
@@ -117,7 +117,7 @@ impl Manual {
             .collapsible(false)
             .show(ctx, |ui| self.contents(ui));
         let is_free = ctx.memory(|memory| memory.top_modal_layer().is_none()) && !ctx.any_popup_open();
-        if is_free && keys::consume(ctx, Modifiers::NONE, Key::Escape) {
+        if is_free && key_press::consume(ctx, Modifiers::NONE, Key::Escape) {
             is_open = false;
         }
         self.is_open = is_open;

@@ -6,7 +6,8 @@ use egui::{
 };
 use lovelock_base::settings::Info;
 
-use crate::window::{keys, theme};
+use crate::window::control::rows::{self, Row};
+use crate::window::{key_press, theme};
 
 /// A control that the user asks about.
 #[derive(Clone, Debug)]
@@ -27,24 +28,8 @@ pub(crate) struct WhatIsThis {
     focused: Option<Id>,
 }
 
-/// The rows of this pass that are made from tables: where they are, and what they set.
-#[derive(Clone, Default)]
-struct Rows(Vec<(Rect, LayerId, &'static Info)>);
-
 fn key() -> Id {
     Id::unique("what is this")
-}
-
-/// Notes where the row of a setting is, if anybody asks.
-pub(crate) fn note_row(ui: &egui::Ui, info: &'static Info, control: Rect) {
-    let rect = Rect::from_x_y_ranges(ui.max_rect().x_range(), control.y_range()).intersect(ui.clip_rect());
-    let layer = ui.layer_id();
-    ui.data_mut(|data| {
-        if let Some(mut rows) = data.get_temp::<Rows>(key()) {
-            rows.0.push((rect, layer, info));
-            data.insert_temp(key(), rows);
-        }
-    });
 }
 
 impl WhatIsThis {
@@ -60,7 +45,7 @@ impl WhatIsThis {
                 let layer = ctx.viewport(|viewport| viewport.prev_pass.widgets.order(*id));
                 layer.is_some_and(|(layer, _)| layer.order == Order::Background)
             });
-            ctx.data_mut(|data| data.insert_temp(key(), Rows::default()));
+            rows::begin(ctx);
         } else {
             self.end(ctx);
         }
@@ -72,7 +57,7 @@ impl WhatIsThis {
         if !self.had_names {
             ctx.disable_accesskit();
         }
-        ctx.data_mut(|data| data.remove::<Rows>(key()));
+        rows::end(ctx);
     }
 
     /// Shows what the pointer is over and ends with a click. Comes after all controls. Returns what was clicked; its name is empty
@@ -81,12 +66,12 @@ impl WhatIsThis {
         if !self.is_on {
             return None;
         }
-        if keys::consume(ctx, Modifiers::NONE, Key::Escape) {
+        if key_press::consume(ctx, Modifiers::NONE, Key::Escape) {
             self.end(ctx);
             return None;
         }
         if let Some(id) = self.focused {
-            let rows = take_rows(ctx);
+            let rows = rows::take(ctx);
             let has_names = ctx.viewport(|viewport| viewport.this_pass.accesskit_state.is_some());
             let rect = ctx.viewport(|viewport| viewport.this_pass.widgets.get(id).map(|w| w.interact_rect));
             ctx.request_repaint();
@@ -111,7 +96,7 @@ impl WhatIsThis {
                 response.on_hover_cursor(egui::CursorIcon::Help)
             });
         let cover = cover.inner;
-        let rows = take_rows(ctx);
+        let rows = rows::take(ctx);
         ctx.request_repaint();
         let at = cover.hover_pos().or_else(|| cover.interact_pointer_pos())?;
         let found = under(ctx, at, &rows);
@@ -128,23 +113,14 @@ impl WhatIsThis {
     }
 }
 
-/// The rows of this pass. They are recorded again in each pass.
-fn take_rows(ctx: &Context) -> Rows {
-    ctx.data_mut(|data| {
-        let rows = data.get_temp::<Rows>(key()).unwrap_or_default();
-        data.insert_temp(key(), Rows::default());
-        rows
-    })
-}
-
 /// The control at a place: the row of a setting, or whatever has a name.
-fn under(ctx: &Context, at: Pos2, rows: &Rows) -> Option<(Rect, Asked)> {
+fn under(ctx: &Context, at: Pos2, rows: &[Row]) -> Option<(Rect, Asked)> {
     // From the top layer down.
     let layers: Vec<LayerId> = ctx.memory(|memory| memory.layer_ids().collect());
     let above = layers.into_iter().rev().chain([LayerId::background()]);
     for layer in above.filter(|layer| layer.order != Order::Tooltip) {
         if let Some((rect, _, info)) =
-            rows.0.iter().rev().find(|(rect, of, _)| *of == layer && rect.contains(at))
+            rows.iter().rev().find(|(rect, of, _)| *of == layer && rect.contains(at))
         {
             return Some((*rect, Asked { name: info.label.to_owned(), info: Some(info) }));
         }

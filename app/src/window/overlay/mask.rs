@@ -8,7 +8,7 @@ use lovelock_style::{HeadBox, Mask};
 
 use super::View;
 use super::head::Head;
-use crate::window::brushes::SeenHair;
+use super::pick::SeenHair;
 use crate::window::theme;
 
 /// Values that differ by less look the same.

@@ -5,6 +5,7 @@ pub(crate) mod colliders;
 pub(crate) mod head;
 pub(crate) mod mark;
 pub(crate) mod mask;
+pub(crate) mod pick;
 pub(crate) mod scalp;
 pub(crate) mod scissors;
 pub(crate) mod ties;
@@ -119,6 +120,9 @@ impl View {
         self.eye + ray * (depth / ray.dot(self.ray(self.place.center())).max(1e-3))
     }
 }
+
+#[cfg(test)]
+mod tool_tests;
 
 #[cfg(test)]
 mod tests {

@@ -3,37 +3,44 @@
 use egui::Ui;
 use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{note, row, section, settings};
+use crate::window::panel::Panel;
+use crate::window::purpose::Purpose;
+use crate::window::readings::{LoadedBody, Readings};
 
-/// What the panel shows of the body that is loaded.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct LoadedBody {
-    /// Names of the clips.
-    pub(crate) clips: Vec<String>,
-    /// The name of the clip that plays; empty where none does.
-    pub(crate) clip: String,
-    /// Paths of the joints, such as `hips/spine/neck/head`.
-    pub(crate) joints: Vec<String>,
-    /// Path of the joint that carries the hair.
-    pub(crate) head: String,
-    /// Notes of the loaders.
-    pub(crate) notes: Vec<String>,
-}
+/// The body and its motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BodyPanel;
 
-/// What the panel requests beyond a change of the project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum BodyRequest {
-    /// A dialog that picks a character.
-    PickBody,
-    /// A dialog that picks a motion.
-    PickMotion,
+impl Panel for BodyPanel {
+    fn title(&self) -> &'static str {
+        "Body and motion"
+    }
+
+    fn opens(&self, project: &Project, _readings: &Readings<'_>) -> bool {
+        project.plays_curves()
+    }
+
+    fn edits_takes(&self, project: &Project) -> bool {
+        project.plays_curves()
+    }
+
+    fn places(&self) -> &'static [Place] {
+        &[Place::Body, Place::Motion]
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, project, readings.body)
+    }
 }
 
 /// The controls of the project's body and motion.
-pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<BodyRequest> {
+fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Command> {
     let mut request = None;
     ui.horizontal_wrapped(|ui| {
         let body = &mut project.body;
@@ -53,7 +60,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Opt
             if body.file.is_some() && !on {
                 body.switch(body.file.clone());
             } else {
-                request = Some(BodyRequest::PickBody);
+                request = Some(Command::PickFile(Purpose::Body));
             }
         }
     });
@@ -102,7 +109,7 @@ fn head_joint(ui: &mut Ui, chosen: &mut Option<String>, loaded: &LoadedBody) {
     });
 }
 
-fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<BodyRequest> {
+fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Command> {
     let mut request = None;
     let default = MotionSection::default();
     let motion = &mut project.motion;
@@ -124,7 +131,7 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Bod
             if motion.file.is_some() && !on {
                 motion.source = MotionSource::File;
             } else {
-                request = Some(BodyRequest::PickMotion);
+                request = Some(Command::PickFile(Purpose::Motion));
             }
         }
         if ui

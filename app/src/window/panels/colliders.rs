@@ -2,29 +2,36 @@
 
 use egui::Ui;
 use lovelock_motion::{ColliderEdit, ColliderEdits, FieldEdit};
+use lovelock_project::Project;
 
+use crate::window::command::Command;
 use crate::window::control::{choice, entry, note, restore_all, section, setting, settings, toggle, unless};
+use crate::window::panel::Panel;
+use crate::window::readings::Readings;
 
-/// A collider that was fitted to the body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Fitted<'a> {
-    /// Named after its joint.
-    pub(crate) name: &'a str,
-    /// Whether hair collides with the skin of head and shoulders in its place.
-    pub(crate) spared: bool,
-}
-
-/// How the colliders are shown over the image.
+/// What hair collides with, and how it is shown over the image.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Shown {
+pub(crate) struct CollidersPanel {
     /// Whether they are visible.
     pub(crate) on: bool,
     /// The one that is edited.
     pub(crate) selected: usize,
 }
 
-/// The controls of `edits`, of the colliders that were `fitted` to the body.
-pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], shown: &mut Shown) {
+impl Panel for CollidersPanel {
+    fn title(&self) -> &'static str {
+        "Colliders"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, &mut project.body.colliders, readings, self);
+        None
+    }
+}
+
+/// The controls of `edits`, of the colliders that were fitted to the body.
+fn controls(ui: &mut Ui, edits: &mut ColliderEdits, readings: &Readings<'_>, shown: &mut CollidersPanel) {
+    let fitted = &readings.colliders;
     toggle(
         ui,
         "Show",
@@ -38,7 +45,7 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
         return;
     }
     shown.selected = shown.selected.min(fitted.len() - 1);
-    let options: Vec<(usize, &str)> = fitted.iter().map(|of| of.name).enumerate().collect();
+    let options: Vec<(usize, &str)> = fitted.iter().copied().enumerate().collect();
     let before = shown.selected;
     choice(
         ui,
@@ -48,7 +55,7 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], 
         before,
         &options,
     );
-    let Fitted { name, spared } = fitted[shown.selected];
+    let (name, spared) = (fitted[shown.selected], (readings.is_replaced)(edits, shown.selected));
     let default = ColliderEdit::default();
     let mut edit = edits.of(name);
     if spared {

@@ -5,31 +5,77 @@ use lovelock_base::settings::Choices;
 use lovelock_base::words::counted;
 use lovelock_groom::{HAIR_FORMATS, ImportSettings, Unit};
 use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_project::project::{HairSection, HairSource};
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{choice, entry, note, restore_all, section, setting, settings};
+use crate::window::panel::Panel;
+use crate::window::purpose::Purpose;
+use crate::window::readings::{LoadedHair, Readings};
+use crate::window::styles::{self, Browser};
 
-/// What the panel shows of the hairstyle that is loaded.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct LoadedHair {
-    /// Wisps, strands and segments.
-    pub(crate) counts: [usize; 3],
-    /// Width, height and depth at rest, metres.
-    pub(crate) size_m: [f32; 3],
-    /// Notes of the loader: what was guessed and what was dropped.
-    pub(crate) notes: Vec<String>,
+/// The styles, and the controls of the project's hairstyle.
+#[derive(Clone, Default)]
+pub(crate) struct HairPanel {
+    pub(crate) styles: Browser,
 }
 
-/// What the panel requests beyond a change of the project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HairRequest {
-    /// A dialog that picks a file.
-    PickFile,
+impl Panel for HairPanel {
+    fn title(&self) -> &'static str {
+        "Hairstyle"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn places(&self) -> &'static [Place] {
+        &[Place::Hair]
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        let asked = styles::ui(ui, project, &mut self.styles);
+        source(ui, project, readings.hair).or(asked)
+    }
+}
+
+/// The unit and the up axis of curves that play in place of the simulation.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CurvesPanel;
+
+impl Panel for CurvesPanel {
+    fn title(&self) -> &'static str {
+        "Curves"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn is_shown(&self, project: &Project) -> bool {
+        project.plays_curves()
+    }
+
+    fn edits_takes(&self, _project: &Project) -> bool {
+        true
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        let default = ImportSettings::default();
+        let import = &mut project.hair.import;
+        unit(ui, &mut import.unit, default.unit);
+        settings(ui, &["up", "include_hidden"], import, &default);
+        for text in readings.take_notes {
+            note(ui, text.as_str());
+        }
+        None
+    }
 }
 
 /// The controls of the project's hairstyle.
-pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Option<HairRequest> {
+fn source(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Option<Command> {
     let mut request = None;
     ui.horizontal_wrapped(|ui| {
         let on = project.hair.source == HairSource::File;
@@ -38,7 +84,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedHair) -> Opt
             if project.hair.file.is_some() && !on {
                 project.set_hair_source(HairSource::File);
             } else {
-                request = Some(HairRequest::PickFile);
+                request = Some(Command::PickFile(Purpose::Open));
             }
         }
     });
@@ -120,16 +166,6 @@ fn imported(ui: &mut Ui, hair: &mut HairSection) {
         settings(ui, &["placement.scale", "placement.turn", "placement.offset_m"], import, &default);
     });
     setting(ui, "seed", import, &default);
-}
-
-/// The unit and the up axis of curves that play, and where they come from.
-pub(crate) fn curves(ui: &mut Ui, import: &mut ImportSettings, notes: &[String]) {
-    let default = ImportSettings::default();
-    unit(ui, &mut import.unit, default.unit);
-    settings(ui, &["up", "include_hidden"], import, &default);
-    for text in notes {
-        note(ui, text.as_str());
-    }
 }
 
 /// The unit of the file; one that has no name is shown in metres.

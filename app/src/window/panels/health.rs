@@ -2,10 +2,14 @@
 
 use egui::{Align, Color32, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo};
 use egui_material_icons::icons;
+use lovelock_project::Project;
 use lovelock_session::health::{Gauge, GaugeKind, HealthLevel};
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::note;
+use crate::window::panel::Panel;
+use crate::window::readings::Readings;
 use crate::window::theme;
 
 /// The colour of a level.
@@ -17,9 +21,30 @@ pub(crate) fn color(level: HealthLevel) -> Color32 {
     }
 }
 
+/// The health of the simulation.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct HealthPanel;
+
+impl Panel for HealthPanel {
+    fn title(&self) -> &'static str {
+        "Health"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        let plays_take = project.take.file.is_some();
+        let frame = readings.frame.filter(|_| !plays_take);
+        let gauges = frame.map_or_else(Vec::new, |frame| frame.health(&project.simulation));
+        list(ui, &gauges, plays_take, readings.marked_gauge).map(Command::ShowGauge)
+    }
+}
+
 /// Shows the gauges, each with a button that marks the place of its value. `shown` is the gauge that is marked in the image.
 /// Returns the gauge whose place should be shown. There are no gauges while a take plays, and before the first frame.
-pub(crate) fn ui(
+pub(crate) fn list(
     ui: &mut Ui,
     gauges: &[Gauge],
     plays_take: bool,

@@ -5,14 +5,48 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use egui::Ui;
 use glam::Vec3;
 use lovelock_base::settings::{Unit, Value};
+use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_render::{Light, MAX_LIGHTS};
 
+use crate::window::camera_control;
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, entry, note, of_setting, setting, settings};
 use crate::window::light_sphere::light_sphere;
+use crate::window::panel::Panel;
+use crate::window::readings::Readings;
+
+/// The lights and the surroundings.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LightPanel {
+    /// The light that is edited, by its place in the list.
+    pub(crate) selected: usize,
+}
+
+impl Panel for LightPanel {
+    fn title(&self) -> &'static str {
+        "Light"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn places(&self) -> &'static [Place] {
+        &[Place::Surroundings]
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        let axes = camera_control::axes(&project.camera);
+        list(ui, &mut project.lights, &mut self.selected, axes);
+        ui.separator();
+        super::surroundings::ui(ui, project, readings.surroundings)
+    }
+}
 
 /// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back.
-pub(crate) fn ui(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3; 3]) {
+fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3; 3]) {
     ui.horizontal_wrapped(|ui| {
         for (i, light) in lights.iter().enumerate() {
             ui.selectable_value(selected, i, &light.name).hover_tooltip("Shows the controls of this light.");

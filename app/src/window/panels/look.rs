@@ -2,10 +2,15 @@
 
 use egui::Ui;
 use lovelock_groom::{HAIR_COLOURS, HairColour, HairLook, HairShading};
+use lovelock_project::Project;
 use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PictureSettings, StrandCount};
 
+use super::records::RecordView;
 use super::swatch::swatch;
+use crate::window::command::Command;
 use crate::window::control::{section, setting, settings, unless};
+use crate::window::panel::Panel;
+use crate::window::readings::Readings;
 
 const PIGMENT: [&str; 5] = ["eumelanin", "pheomelanin", "variation", "grey", "tip_lightening"];
 
@@ -34,9 +39,46 @@ const PUBLISHED: [&str; 3] = ["diffuse", "primary", "secondary"];
 
 const BACKGROUND: [&str; 3] = ["ground", "background_top", "background_bottom"];
 
+/// Colour and width of the hair.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LookPanel;
+
+impl Panel for LookPanel {
+    fn title(&self) -> &'static str {
+        "Look"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        let Project { look, picture, hair, .. } = project;
+        hair_look(ui, look, &hair.groom.look, picture, readings.pane.is_some());
+        None
+    }
+}
+
+/// The image as a whole.
+#[derive(Clone, Default)]
+pub(crate) struct PicturePanel {
+    /// The shown record of the database of clusters.
+    pub(crate) record: RecordView,
+}
+
+impl Panel for PicturePanel {
+    fn title(&self) -> &'static str {
+        "Picture"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        picture(ui, &mut project.picture, readings.pane.is_some());
+        if project.picture.draw != HairDrawing::Strands {
+            section(ui, "Record of the database", false, |ui| super::records::ui(ui, &mut self.record));
+        }
+        None
+    }
+}
+
 /// The controls of the hair's look; `default` is that of the style. `picture` has the number of strands. `compares` says that panes are
 /// shown.
-pub(crate) fn hair(
+fn hair_look(
     ui: &mut Ui,
     look: &mut HairLook,
     default: &HairLook,
@@ -97,7 +139,7 @@ fn strands(ui: &mut Ui, picture: &mut PictureSettings) {
 }
 
 /// The controls of the image. `compares` says that a pane is edited, which shares the rest with the others.
-pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings, compares: bool) {
+fn picture(ui: &mut Ui, picture: &mut PictureSettings, compares: bool) {
     let default = PictureSettings::default();
     setting(ui, "draw", picture, &default);
     if compares {

@@ -1,4 +1,4 @@
-//! The panels. Each is a function of the part of the project that it edits.
+//! The panels beside the image.
 
 pub(crate) mod body;
 pub(crate) mod colliders;
@@ -22,4 +22,4 @@ pub(crate) mod ties;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
-pub(crate) use tests::clicks;
+pub(crate) use tests::{Bench, clicks};

@@ -1,73 +1,18 @@
 //! The settings of recordings, and the recording that runs.
 
-use std::path::PathBuf;
-
 use egui::{ProgressBar, RichText, Ui};
+use lovelock_project::Project;
 use lovelock_project::project::RecordingSection;
 use lovelock_record::FilmQuality;
-use lovelock_session::clock::Pace;
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Limits, choice, entry, note, row, setting, settings};
+use crate::window::panel::Panel;
+use crate::window::purpose::Purpose;
+use crate::window::readings::Readings;
+use crate::window::recorder::{State, bytes_in_words};
 use crate::window::theme;
-
-/// The state of the newest recording.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum State {
-    /// None has been made.
-    Idle,
-    /// One runs.
-    Running {
-        /// What is being done.
-        what: String,
-        /// Finished frames.
-        done: u64,
-        /// All frames.
-        total: u64,
-        /// Estimated seconds left.
-        left_secs: Option<f64>,
-    },
-    /// The last one is finished.
-    Done {
-        /// What was written and where.
-        what: String,
-        /// The file or the folder.
-        out: PathBuf,
-    },
-    /// The last one failed; the text says why.
-    Failed(String),
-    /// The user stopped the last one; the text says what is left of it.
-    Cancelled(String),
-}
-
-impl State {
-    /// Progress of the recording that runs, 0 to 1 and in words; `None` if none runs.
-    pub(crate) fn progress(&self) -> Option<(f32, String)> {
-        let Self::Running { what, done, total, left_secs } = self else { return None };
-        let fraction = *done as f32 / (*total).max(1) as f32;
-        // A task without parts has no numbers to show.
-        let count = if *total > 1 { format!(" {done} of {total}") } else { String::new() };
-        let left = left_secs.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
-        Some((fraction, format!("{what}{count}{left}")))
-    }
-}
-
-/// What the panel requests beyond a change of the project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RecordingRequest {
-    /// Record a film to a file that a dialog picks.
-    Film,
-    /// Record a folder of images.
-    Sequence,
-    /// Record an animated preview.
-    Preview,
-    /// Continue a folder of images that a dialog picks.
-    Resume,
-    /// Record curves for other programs.
-    Curves,
-    /// Stop the recording that runs.
-    Cancel,
-}
 
 const SIZES: [((u32, u32), &str); 6] = [
     ((640, 360), "640 × 360"),
@@ -141,17 +86,6 @@ fn frame_range(ui: &mut Ui, section: &mut RecordingSection, default: &RecordingS
     }
 }
 
-/// A number of bytes, with a unit.
-pub(crate) fn bytes_in_words(bytes: f64) -> String {
-    let (unit, name) = match bytes {
-        b if b >= 999.5e6 => (1e9, "GB"),
-        b if b >= 999.5e3 => (1e6, "MB"),
-        _ => (1e3, "kB"),
-    };
-    let number = bytes / unit;
-    if number < 9.95 { format!("{number:.1} {name}") } else { format!("{number:.0} {name}") }
-}
-
 /// Bits per pixel of a film. Measured are 0.038, 0.073, 0.12 and 0.22: six frames of the default hair of 640 × 360 pixels.
 fn bits_per_pixel(quality: FilmQuality) -> f64 {
     match quality {
@@ -181,13 +115,29 @@ fn summary(section: &RecordingSection, clip_frames: u64) -> String {
 pub(crate) const CANCEL: &str = "Stops the recording. Complete images in a folder are kept. An unfinished film is \
                                  discarded, and an existing film of that name is unchanged.";
 
+/// The settings of recordings, and the recording that runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RecordingPanel {
+    /// Whether it is unfolded; only then the image shows what a film shows.
+    pub(crate) unfolded: bool,
+}
+
+impl Panel for RecordingPanel {
+    fn title(&self) -> &'static str {
+        "Recording"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, &mut project.recording, readings.recording, readings.film_frames)
+    }
+
+    fn end_pass(&mut self, unfolded: bool) {
+        self.unfolded = unfolded;
+    }
+}
+
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
-pub(crate) fn ui(
-    ui: &mut Ui,
-    section: &mut RecordingSection,
-    state: &State,
-    clip_frames: u64,
-) -> Option<RecordingRequest> {
+fn controls(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_frames: u64) -> Option<Command> {
     let default = RecordingSection::default();
     let mut request = None;
     size(ui, section, &default);
@@ -204,32 +154,32 @@ pub(crate) fn ui(
     if let Some((fraction, text)) = state.progress() {
         ui.add(ProgressBar::new(fraction).text(text).corner_radius(4));
         if ui.button("Cancel").hover_tooltip(CANCEL).clicked() {
-            request = Some(RecordingRequest::Cancel);
+            request = Some(Command::Record);
         }
     } else {
         ui.horizontal(|ui| {
             let dot = RichText::new("Record film…").color(theme::RECORDING);
             if ui.button(dot).hover_tooltip("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
-                request = Some(RecordingRequest::Film);
+                request = Some(Command::PickFile(Purpose::Film));
             }
             let tip = "Records the dance as a folder of PNG or EXR files.";
             if ui.button("Images…").hover_tooltip(tip).clicked() {
-                request = Some(RecordingRequest::Sequence);
+                request = Some(Command::PickFile(Purpose::Sequence));
             }
             let curves =
                 "Writes the hair as animated curves, with the body, for other programs: USD or glTF.";
             if ui.button("Curves…").hover_tooltip(curves).clicked() {
-                request = Some(RecordingRequest::Curves);
+                request = Some(Command::PickFile(Purpose::Curves));
             }
         });
         ui.horizontal(|ui| {
             let tip = "Records the dance as an animated PNG for a web page or a message.";
             if ui.button("Preview…").hover_tooltip(tip).clicked() {
-                request = Some(RecordingRequest::Preview);
+                request = Some(Command::PickFile(Purpose::Preview));
             }
             let tip = "Continues a folder of images whose recording was stopped. Complete frames are kept.";
             if ui.button("Resume…").hover_tooltip(tip).clicked() {
-                request = Some(RecordingRequest::Resume);
+                request = Some(Command::PickFile(Purpose::Resume));
             }
         });
     }

@@ -48,7 +48,7 @@ impl Default for Shown {
 }
 
 /// Shows the record of a sector from all sides, with the choice of sector and light.
-pub(crate) fn ui(ui: &mut Ui, view: &mut RecordView) {
+pub(super) fn ui(ui: &mut Ui, view: &mut RecordView) {
     let Shown { sector, light } = &mut view.shown;
     let tip = "The sector of the database whose records are shown, 0 to 383.";
     row(ui, "Sector", tip, *sector != FIRST, sector, FIRST, |ui, sector| {

@@ -3,39 +3,63 @@
 use egui::Ui;
 use lovelock_base::settings::Unit;
 use lovelock_motion::ScalpFit;
+use lovelock_project::Project;
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, note, settings};
 use crate::window::overlay::scalp::ScalpTool;
+use crate::window::panel::Panel;
 use crate::window::pointer_tool::PointerTool;
+use crate::window::readings::Readings;
 
-/// The controls of the scalp of a body. `found` is whether the body has one.
-pub(crate) fn ui(
+/// The scalp of the body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ScalpPanel {
+    pub(crate) tool: ScalpTool,
+    /// Whether it is unfolded; only then the scalp can be painted.
+    pub(crate) unfolded: bool,
+}
+
+impl Panel for ScalpPanel {
+    fn title(&self) -> &'static str {
+        "Scalp"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, &mut project.body.scalp, &mut self.tool, readings)
+    }
+
+    fn end_pass(&mut self, unfolded: bool) {
+        self.unfolded = unfolded;
+    }
+}
+
+/// The controls of the scalp of a body.
+fn controls(
     ui: &mut Ui,
     fit: &mut ScalpFit,
-    (tool, pointer): (&mut ScalpTool, &mut PointerTool),
-    found: bool,
-) {
-    if !found {
+    tool: &mut ScalpTool,
+    readings: &Readings<'_>,
+) -> Option<Command> {
+    let is_used = readings.tool == PointerTool::Scalp;
+    let mut paints = is_used;
+    if !readings.has_skull {
         note(ui, "This body has no surface on which hair can grow.");
     }
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(&mut tool.shown, "Show scalp").hover_tooltip(
             "Shows where hair grows. Drag the handles of its outline in the image; double-click one to restore it.",
         );
-        if !tool.shown {
-            pointer.set(PointerTool::Scalp, false);
-        }
-        let mut paints = *pointer == PointerTool::Scalp;
+        paints &= tool.shown;
         let paint = ui
             .checkbox(&mut paints, "Paint scalp")
             .hover_tooltip("Drag over the head to add hair, Ctrl+drag to remove it.");
         if paint.changed() {
-            pointer.set(PointerTool::Scalp, paints);
             tool.shown |= paints;
         }
     });
-    if *pointer == PointerTool::Scalp {
+    if paints {
         Number::new(
             "Brush",
             0.03..=0.8,
@@ -75,4 +99,5 @@ pub(crate) fn ui(
             *fit = default.clone();
         }
     });
+    (paints != is_used).then_some(Command::Use(PointerTool::Scalp))
 }

@@ -5,16 +5,42 @@ use std::f64::consts::PI;
 use egui::Ui;
 use glam::Vec3;
 use lovelock_base::settings::{Kind, Unit, Value};
+use lovelock_project::Project;
 use lovelock_project::project::TimelineSection;
 use lovelock_simulation::{Integrator, RepulsionMode, SimulationSettings, Wind};
 
+use crate::window::camera_control;
+use crate::window::command::Command;
 use crate::window::control::{Number, entry, of_setting, restore_all, section, setting, settings, unless};
 use crate::window::light_sphere::{Sphere, sphere};
+use crate::window::panel::Panel;
 use crate::window::ramp::{Ramp, RampValue};
+use crate::window::readings::Readings;
+
+/// How hair moves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SimulationPanel;
+
+impl Panel for SimulationPanel {
+    fn title(&self) -> &'static str {
+        "Simulation"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, _readings: &Readings<'_>) -> Option<Command> {
+        let axes = camera_control::axes(&project.camera);
+        let Project { simulation, timeline, hair, .. } = project;
+        controls(ui, simulation, &hair.simulation(), timeline, axes);
+        None
+    }
+}
 
 /// The controls of `simulation`, whose defaults are `default`, and of the pre-roll in `timeline`. `axes` are the camera's right, up
 /// and back.
-pub(crate) fn ui(
+fn controls(
     ui: &mut Ui,
     simulation: &mut SimulationSettings,
     default: &SimulationSettings,

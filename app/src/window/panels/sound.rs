@@ -4,25 +4,44 @@ use egui::{Label, RichText, Sense, Ui};
 use lovelock_project::Project;
 use lovelock_project::project::{Marker, SoundSection, TimelineSection};
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{note, row, settings, unless};
+use crate::window::panel::Panel;
+use crate::window::purpose::Purpose;
+use crate::window::readings::Readings;
 use crate::window::soundtrack::Loaded;
 use crate::window::theme;
 
-/// What the panel requests beyond a change of the project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SoundRequest {
-    /// A dialog that picks a sound.
-    PickFile,
+/// The sound of the dance.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SoundPanel;
+
+impl Panel for SoundPanel {
+    fn title(&self) -> &'static str {
+        "Sound"
+    }
+
+    fn opens(&self, project: &Project, _readings: &Readings<'_>) -> bool {
+        project.sound.file.is_some()
+    }
+
+    fn problems(&self, readings: &Readings<'_>) -> Vec<String> {
+        readings.sound_problem.iter().cloned().collect()
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        controls(ui, project, readings.sound, readings.duration_secs)
+    }
 }
 
 /// The controls of the project's sound.
-pub(crate) fn ui(
+fn controls(
     ui: &mut Ui,
     project: &mut Project,
     loaded: Option<&Loaded>,
     duration_secs: f64,
-) -> Option<SoundRequest> {
+) -> Option<Command> {
     let mut request = None;
     let file = &mut project.sound.file;
     let tip = "The sound that plays with the dance and in films.";
@@ -34,7 +53,7 @@ pub(crate) fn ui(
     ui.horizontal_wrapped(|ui| {
         let tip = "Adds a sound to the dance: WAV, MP3, Ogg Vorbis or FLAC.";
         if ui.button("Sound file…").hover_tooltip(tip).clicked() {
-            request = Some(SoundRequest::PickFile);
+            request = Some(Command::PickFile(Purpose::Sound));
         }
         if file.is_some() && ui.button("Remove sound").hover_tooltip("Removes the sound.").clicked() {
             *file = None;

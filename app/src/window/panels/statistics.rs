@@ -3,23 +3,16 @@
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
 use lovelock_base::words::counted;
+use lovelock_project::Project;
 use lovelock_render::PassTime;
 use lovelock_session::stats::{PassHistory, Stage, StageHistory};
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{axis_number, note};
+use crate::window::panel::Panel;
+use crate::window::readings::{Fact, Readings};
 use crate::window::theme;
-
-/// One line of facts.
-#[derive(Clone, Debug)]
-pub(crate) struct Fact {
-    /// Its name.
-    pub(crate) name: &'static str,
-    /// Its description, a sentence.
-    pub(crate) tip: &'static str,
-    /// Its value with its unit.
-    pub(crate) value: String,
-}
 
 /// Groups of passes: the prefix of their names, a title, and a description.
 const GROUPS: [(&str, &str, &str); 2] = [
@@ -27,14 +20,36 @@ const GROUPS: [(&str, &str, &str); 2] = [
     ("draw/", "Draw", "Shades the strands and composites them with the body and the background."),
 ];
 
+/// Rendering times and facts about the scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StatisticsPanel {
+    /// Whether the passes are unfolded; only then they must be measured.
+    pub(crate) shows_passes: bool,
+}
+
+impl Panel for StatisticsPanel {
+    fn title(&self) -> &'static str {
+        "Statistics"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        true
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        // The panes have their own statistics; the single image is not rendered beside them.
+        if readings.pane.is_some() {
+            note(ui, "Measured on the single image, before the comparison was opened.");
+        }
+        let [facts, kept] = (readings.facts)();
+        self.shows_passes = times(ui, readings.stages, readings.passes, [&facts, &kept]);
+        None
+    }
+}
+
 /// Shows the plot of stage times, the passes, the facts, and what is kept in memory.
-/// Returns whether the passes are unfolded; only then they need to be measured.
-pub(crate) fn ui(
-    ui: &mut Ui,
-    history: &StageHistory,
-    passes: &PassHistory,
-    [facts, kept]: [&[Fact]; 2],
-) -> bool {
+/// Returns whether the passes are unfolded.
+fn times(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, [facts, kept]: [&[Fact]; 2]) -> bool {
     Plot::new("stage times")
         .height(112.0)
         .allow_zoom(false)

@@ -1,7 +1,6 @@
 //! The light from all directions: a picture of the surroundings, and how it is turned.
 
 use std::f32::consts::{PI, TAU};
-use std::sync::Arc;
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{CursorIcon, Label, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, vec2};
@@ -10,32 +9,15 @@ use lovelock_appearance::environment::{Panorama, Strongest};
 use lovelock_project::Project;
 use lovelock_render::PictureSettings;
 
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{row, setting};
+use crate::window::purpose::Purpose;
+use crate::window::readings::LoadedSurroundings;
 use crate::window::theme;
 
-/// What the panel shows of the picture that is loaded.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct LoadedSurroundings {
-    /// The picture that gives light.
-    pub(crate) picture: Option<Arc<Panorama>>,
-    /// Notes of the loader.
-    pub(crate) notes: Vec<String>,
-}
-
-/// What the panel requests beyond a change of the project.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SurroundingsRequest {
-    /// A dialog that picks a picture.
-    PickFile,
-}
-
 /// The controls of the project's surroundings.
-pub(crate) fn ui(
-    ui: &mut Ui,
-    project: &mut Project,
-    loaded: &LoadedSurroundings,
-) -> Option<SurroundingsRequest> {
+pub(super) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedSurroundings) -> Option<Command> {
     let mut request = None;
     let file = &mut project.surroundings.file;
     let tip = "The source of the light from all directions. Ambient light in the Picture panel sets its brightness.";
@@ -47,7 +29,7 @@ pub(crate) fn ui(
     ui.horizontal_wrapped(|ui| {
         let tip = "Lights the scene with a picture of the surroundings: Radiance (.hdr) or OpenEXR (.exr).";
         if ui.button("Picture file…").hover_tooltip(tip).clicked() {
-            request = Some(SurroundingsRequest::PickFile);
+            request = Some(Command::PickFile(Purpose::Surroundings));
         }
         if file.is_some() {
             let tip = "Returns to light from sky and ground.";

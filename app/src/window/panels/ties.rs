@@ -7,21 +7,49 @@ use egui::Ui;
 use glam::Vec3;
 use lovelock_base::settings::Unit;
 use lovelock_groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
+use lovelock_project::Project;
 use lovelock_project::project::HairSection;
 
 use crate::window::aim::Aim;
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{Number, choice, entry, note, setting, settings};
+use crate::window::panel::Panel;
 use crate::window::pointer_tool::PointerTool;
+use crate::window::readings::Readings;
 
 const FULL: &str = "The tie limit is reached. Remove a tie first.";
 
 /// Range of the positions of ties, metres.
 const REACH: RangeInclusive<f64> = -0.6..=0.6;
 
+/// Ties, and the scissors.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct TiesPanel {
+    /// The tie that is edited, by its place in the list.
+    pub(crate) selected: usize,
+    /// Whether it is unfolded; only then the handles of ties are shown.
+    pub(crate) unfolded: bool,
+}
+
+impl Panel for TiesPanel {
+    fn title(&self) -> &'static str {
+        "Ties and scissors"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        list(ui, &mut project.hair, &mut self.selected, readings.scalp);
+        scissors(ui, &mut project.hair.cut, readings.tool)
+    }
+
+    fn end_pass(&mut self, unfolded: bool) {
+        self.unfolded = unfolded;
+    }
+}
+
 /// The controls of the ties of `hair`. `selected` is the one that is edited and whose handle is shown in the image; a new one is
 /// placed on `scalp`.
-pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
+fn list(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
     let shipped = hair.shipped_ties();
     let ties = &mut hair.ties;
     *selected = (*selected).min(ties.len().saturating_sub(1));
@@ -68,22 +96,22 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
 }
 
 /// The scissors, and the button that undoes their cuts.
-pub(crate) fn scissors(ui: &mut Ui, cut: &mut Haircut, pointer: &mut PointerTool) {
+fn scissors(ui: &mut Ui, cut: &mut Haircut, tool: PointerTool) -> Option<Command> {
+    let mut clicked = false;
     ui.separator();
     ui.horizontal_wrapped(|ui| {
-        let button = ui.selectable_label(*pointer == PointerTool::Scissors, "Scissors").hover_tooltip(
+        let button = ui.selectable_label(tool == PointerTool::Scissors, "Scissors").hover_tooltip(
             "Drag a line across the hair in the image to cut off what is beyond it, seen from the head. Works while the hair moves. \
              Shortcut: X.",
         );
-        if button.clicked() {
-            pointer.toggle(PointerTool::Scissors);
-        }
+        clicked = button.clicked();
         let grow = ui.add_enabled(!cut.is_empty(), egui::Button::new("Grow back"));
         let grow = grow.hover_tooltip("Undoes all cuts.").disabled_hover_tooltip("There are no cuts.");
         if grow.clicked() {
             *cut = Haircut::default();
         }
     });
+    clicked.then_some(Command::Use(PointerTool::Scissors))
 }
 
 fn label(kind: TieKind) -> &'static str {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
-use super::purpose::Purpose;
+use crate::window::purpose::Purpose;
 
 /// The most entries of a folder that are listed.
 const MAX: usize = 5000;

@@ -2,7 +2,6 @@
 
 mod folder;
 mod list;
-mod purpose;
 #[cfg(test)]
 mod tests;
 
@@ -13,11 +12,10 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Align, Id, Key, Layout, Modal, Modifiers, RichText, Ui, vec2};
 use lovelock_base::clock::Stopwatch;
 
+use super::purpose::{Purpose, Replaces};
 use super::theme;
 use crate::window::control::HoverTooltip;
 use folder::Folder;
-pub(crate) use purpose::Purpose;
-use purpose::Replaces;
 
 /// A dialog that returns sooner than this without a path was never shown, seconds: no user closes a dialog so quickly, and the
 /// system's answer is the same in both cases.

@@ -7,7 +7,8 @@ use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::styles::{OwnStyles, Style, own_id};
 
-use super::{Browser, Entry, Request, short};
+use super::{Browser, Entry, short};
+use crate::window::command::Command;
 use crate::window::theme;
 
 /// Height of the line that says why a name cannot be used, points: it is there from the start, so that no button moves.
@@ -94,7 +95,7 @@ pub(super) fn show(ctx: &Context, project: &mut Project, browser: &mut Browser) 
                     browser.reveal(own_id(&path));
                 }
                 browser.refresh();
-                browser.requests.push(Request::Done(said));
+                browser.requests.push_back(Command::Report(said));
             }
             Err(error) => {
                 let is_named = matches!(dialog, Dialog::Save { .. } | Dialog::Rename { .. });
@@ -103,7 +104,7 @@ pub(super) fn show(ctx: &Context, project: &mut Project, browser: &mut Browser) 
                     browser.dialog_error = Some(error.to_string());
                     browser.dialog = Some(dialog);
                 } else {
-                    browser.requests.push(Request::Failed(error.to_string()));
+                    browser.requests.push_back(Command::Fail(error.to_string()));
                 }
             }
         }

@@ -9,7 +9,7 @@ mod tests;
 mod tile;
 mod window;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -20,6 +20,7 @@ use lovelock_project::project::HairSource;
 use lovelock_project::styles::{OwnStyle, OwnStyles, Style, StyleParts, shipped};
 use serde::{Deserialize, Serialize};
 
+use super::command::Command;
 use super::picker::Picker;
 use super::search::{best_first, fit};
 use dialogs::Dialog;
@@ -32,17 +33,6 @@ use shelf::Shelf;
 pub(crate) struct Kept {
     /// The ids of the favourites.
     favourites: BTreeSet<String>,
-}
-
-/// What the browser asks the window to do.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Request {
-    /// Save a style to a file that the user picks.
-    Export(Box<Style>),
-    /// Tell that something was done.
-    Done(String),
-    /// Tell that something failed.
-    Failed(String),
 }
 
 /// A style that can be picked.
@@ -88,7 +78,10 @@ pub(crate) struct Browser {
     dialog_error: Option<String>,
     /// The style that the grid scrolls to as soon as it is listed.
     reveal: Option<String>,
-    requests: Vec<Request>,
+    /// What it asks the window to do, the first first.
+    requests: VecDeque<Command>,
+    /// What of it is stored between runs.
+    pub(crate) kept: Kept,
 }
 
 impl Default for Browser {
@@ -111,7 +104,8 @@ impl Default for Browser {
             dialog: None,
             dialog_error: None,
             reveal: None,
-            requests: Vec::new(),
+            requests: VecDeque::new(),
+            kept: Kept::default(),
         };
         browser.list(&[]);
         browser
@@ -188,11 +182,6 @@ impl Browser {
         self.own.as_ref()
     }
 
-    /// What the browser has asked for since the last call.
-    pub(crate) fn requests(&mut self) -> Vec<Request> {
-        std::mem::take(&mut self.requests)
-    }
-
     /// The style that is shown without being applied, and what of it.
     pub(crate) fn preview(&self) -> Option<(&str, &Style, StyleParts)> {
         let id = self.preview.as_deref()?;
@@ -201,10 +190,10 @@ impl Browser {
     }
 
     /// The entries that are shown: the best matches of the search come first.
-    fn shown(&self, kept: &Kept) -> Vec<Entry> {
+    fn shown(&self) -> Vec<Entry> {
         let fits = |entry: &&Entry| {
             self.tags.iter().all(|tag| tags_of(entry).any(|own| own == tag))
-                && (!self.only_favourites || kept.favourites.contains(&entry.id))
+                && (!self.only_favourites || self.kept.favourites.contains(&entry.id))
         };
         let found = best_first(&self.search.typed, self.entries.iter().filter(fits), |typed, entry| {
             let mut others = vec![entry.style.text.as_str()];

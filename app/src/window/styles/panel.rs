@@ -7,11 +7,12 @@ use lovelock_project::styles::{Style, StyleParts};
 
 use super::dialogs::{self, Dialog};
 use super::tile::{GAP, Tile, height, tile};
-use super::{Browser, Entry, Hover, Kept, Request, current};
+use super::{Browser, Entry, Hover, current};
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::note;
 use crate::window::picker::Picked;
-use crate::window::{keys, theme};
+use crate::window::{key_press, theme};
 
 /// Time for which the pointer rests on a tile before the hair is shown in that style, seconds.
 const REST_SECS: f64 = 0.3;
@@ -31,8 +32,8 @@ enum Action {
     Delete,
 }
 
-/// The browser: what is applied to `project`, and the user's own styles.
-pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+/// The browser: what is applied to `project`, and the user's own styles. Returns what it asks the window to do.
+pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser) -> Option<Command> {
     browser.update(ui.ctx());
     let picked = ui.horizontal(|ui| {
         let width = ui.available_width() - 104.0;
@@ -56,8 +57,9 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept
     super::morph::ui(ui, project);
     parts(ui, project, browser);
     chips(ui, browser);
-    grid(ui, project, browser, kept, picked.inner);
+    grid(ui, project, browser, picked.inner);
     dialogs::show(ui.ctx(), project, browser);
+    browser.requests.pop_front()
 }
 
 /// The three parts that a click applies, and the button that keeps changes of a style of the user's own.
@@ -132,8 +134,8 @@ fn chips(ui: &mut Ui, browser: &mut Browser) {
     });
 }
 
-fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Kept, picked: Picked) {
-    let shown = browser.shown(kept);
+fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, picked: Picked) {
+    let shown = browser.shown();
     arrows(ui, browser, picked);
     let entered = picked.entered && !browser.search.typed.trim().is_empty();
     if shown.is_empty() {
@@ -151,7 +153,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
         for row in shown.chunks(COLUMNS) {
             ui.horizontal(|ui| {
                 for entry in row {
-                    let (asked, over) = one(ui, width, entry, project, browser, kept);
+                    let (asked, over) = one(ui, width, entry, project, browser);
                     action = action.take().or(asked.map(|asked| (entry.clone(), asked)));
                     if over {
                         hovered = Some(entry.id.clone());
@@ -166,7 +168,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, kept: &mut Ke
     });
     preview(ui, browser, hovered);
     if let Some((entry, action)) = action {
-        act(&entry, &action, project, browser, kept);
+        act(&entry, &action, project, browser);
     }
 }
 
@@ -178,7 +180,7 @@ fn arrows(ui: &Ui, browser: &mut Browser, picked: Picked) {
         None if picked.down => Some(0),
         None => None,
         Some(at) => {
-            let pressed = |key| keys::consume(ui.ctx(), Modifiers::NONE, key);
+            let pressed = |key| key_press::consume(ui.ctx(), Modifiers::NONE, key);
             let last = browser.tiles.len() - 1;
             if pressed(Key::ArrowRight) {
                 Some((at + 1).min(last))
@@ -205,10 +207,9 @@ fn one(
     entry: &Entry,
     project: &Project,
     browser: &mut Browser,
-    kept: &Kept,
 ) -> (Option<Action>, bool) {
     let style = &entry.style;
-    let favourite = kept.favourites.contains(&entry.id);
+    let favourite = browser.kept.favourites.contains(&entry.id);
     let place = egui::Rect::from_min_size(ui.cursor().min, vec2(width, height(width)));
     // Pictures are read when their tiles are first seen.
     let picture = if ui.is_rect_visible(place) { browser.picture(ui.ctx(), &entry.id) } else { None };
@@ -261,7 +262,7 @@ fn one(
             && ui.button("Show folder").hover_tooltip(own.folder().display().to_string()).clicked()
         {
             if let Err(why) = show_folder(own.folder()) {
-                browser.requests.push(Request::Failed(why));
+                browser.requests.push_back(Command::Fail(why));
             }
             ui.close();
         }
@@ -293,7 +294,7 @@ fn preview(ui: &Ui, browser: &mut Browser, hovered: Option<String>) {
     }
 }
 
-fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Browser, kept: &mut Kept) {
+fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Browser) {
     let file = || entry.file.clone().unwrap_or_default();
     match *action {
         Action::Apply(parts) => {
@@ -304,7 +305,7 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
                     "{layers} on top of {}. Remove what you do not want in Layers.",
                     entry.style.name
                 );
-                browser.requests.push(Request::Done(said));
+                browser.requests.push_back(Command::Report(said));
             }
             browser.clicked = Some(entry.id.clone());
             browser.preview = None;
@@ -315,11 +316,12 @@ fn act(entry: &Entry, action: &Action, project: &mut Project, browser: &mut Brow
             browser.preview = None;
         }
         Action::Favourite => {
-            if !kept.favourites.remove(&entry.id) {
-                kept.favourites.insert(entry.id.clone());
+            let favourites = &mut browser.kept.favourites;
+            if !favourites.remove(&entry.id) {
+                favourites.insert(entry.id.clone());
             }
         }
-        Action::Export => browser.requests.push(Request::Export(Box::new((*entry.style).clone()))),
+        Action::Export => browser.requests.push_back(Command::ExportStyle(Box::new((*entry.style).clone()))),
         Action::Update => browser.dialog = Some(Dialog::update(entry, project)),
         Action::Rename => {
             browser.dialog = Some(Dialog::Rename { path: file(), name: entry.style.name.clone() });

@@ -7,7 +7,8 @@ use lovelock_project::document::Document;
 use lovelock_project::styles::{OwnStyles, Style, StyleParts, shipped};
 use lovelock_testkit::wait::wait_until;
 
-use super::{Browser, Kept, Request};
+use super::{Browser, Kept};
+use crate::window::command::Command;
 use crate::window::gesture::Gestures;
 use crate::window::testing::{Shown, click, control, screen, tooltip_at};
 
@@ -16,7 +17,7 @@ struct Edited {
     document: Document,
     gestures: Gestures,
     browser: Browser,
-    kept: Kept,
+    requests: Vec<Command>,
 }
 
 type Shelf = Harness<'static, Shown<Edited>>;
@@ -26,7 +27,7 @@ fn shelf(own: Option<(OwnStyles, std::path::PathBuf)>) -> Shelf {
         document: Document::new(Project::default(), None),
         gestures: Gestures::default(),
         browser: Browser::default(),
-        kept: Kept::default(),
+        requests: Vec::new(),
     };
     let mut own = own;
     screen(state, move |ui, edited: &mut Edited| {
@@ -37,7 +38,8 @@ fn shelf(own: Option<(OwnStyles, std::path::PathBuf)>) -> Shelf {
             edited.document.end_gesture();
         }
         let mut project = (**edited.document.project()).clone();
-        super::ui(ui, &mut project, &mut edited.browser, &mut edited.kept);
+        let asked = super::ui(ui, &mut project, &mut edited.browser);
+        edited.requests.extend(asked);
         edited.document.edit("style", project);
     })
 }
@@ -203,7 +205,7 @@ fn favourites_are_kept_and_shown_alone() {
     control(&harness, Role::Button, "Favourites only").click();
     harness.run();
     assert_eq!(names(&harness), ["Red curls"]);
-    let kept = harness.state().state.kept.clone();
+    let kept = harness.state().state.browser.kept.clone();
     let text = serde_json::to_string(&kept).expect("text");
     assert_eq!(serde_json::from_str::<Kept>(&text).expect("what is kept"), kept);
     assert_eq!(serde_json::from_str::<Kept>("{}").expect("nothing"), Kept::default());
@@ -237,8 +239,8 @@ fn own_styles_are_saved_renamed_and_deleted() {
     harness.run_steps(2);
     control(&harness, Role::Button, "Save style").click();
     harness.run_steps(3);
-    let requests = harness.state_mut().state.browser.requests();
-    assert!(matches!(&requests[..], [Request::Done(_)]), "{requests:?}");
+    let requests = std::mem::take(&mut harness.state_mut().state.requests);
+    assert!(matches!(&requests[..], [Command::Report(_)]), "{requests:?}");
     wait(&mut harness, "the style", |harness| names(harness).contains(&"Few hairs".to_owned()));
     assert_eq!(self::project(&harness).hair.style, "own/Few hairs", "the hair has the style from now on");
     let path = own.folder().join("Few hairs.lovelockstyle");
@@ -416,8 +418,8 @@ fn layers_of_the_user_stay_when_a_style_is_applied() {
     let after = project(&harness);
     assert_eq!(after.hair.preset, lovelock_groom::Preset::Curly);
     assert!(after.hair.stack.layer(id).is_some(), "it stays, under its number");
-    let requests = harness.state_mut().state.browser.requests();
-    assert!(matches!(&requests[..], [Request::Done(said)] if said.contains("Red curls")), "{requests:?}");
+    let requests = std::mem::take(&mut harness.state_mut().state.requests);
+    assert!(matches!(&requests[..], [Command::Report(said)] if said.contains("Red curls")), "{requests:?}");
     let document = &mut harness.state_mut().state.document;
     document.undo();
     assert_eq!(**document.project(), before, "one step brings all back");

@@ -4,30 +4,14 @@ use std::path::Path;
 
 use lovelock_project::styles::{Style, StyleParts, own_id};
 
-use super::Request;
-use crate::window::path_dialog::Purpose;
 use crate::window::{Window, notices};
 
 impl Window {
-    /// Does what the browser asks for.
-    pub(in crate::window) fn answer_styles(&mut self) {
-        for request in self.styles.requests() {
-            match request {
-                Request::Export(style) => {
-                    self.exported = Some(style);
-                    self.open_path_dialog(Purpose::ExportStyle);
-                }
-                Request::Done(said) => self.notices.push(notices::Kind::Done, said),
-                Request::Failed(why) => self.fail(why),
-            }
-        }
-    }
-
     /// Saves the style that is exported.
     pub(in crate::window) fn export_style(&mut self, path: &Path) -> Result<(), String> {
-        let Some(style) = &self.exported else { return Ok(()) };
+        let Some(style) = &self.files.exported else { return Ok(()) };
         style.save(path).map_err(|error| error.to_string())?;
-        self.exported = None;
+        self.files.exported = None;
         self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));
         Ok(())
     }
@@ -37,10 +21,10 @@ impl Window {
         let (mut style, problems) = Style::load(path).map_err(|error| error.to_string())?;
         self.warn(problems.into_iter().map(|problem| problem.message));
         style.hair.style = own_id(path);
-        match self.styles.own().map(|own| own.import(path)) {
+        match self.panels.hair.styles.own().map(|own| own.import(path)) {
             Some(Ok(copy)) => {
                 style.hair.style = own_id(&copy);
-                self.styles.refresh();
+                self.panels.hair.styles.refresh();
                 let text = format!("Added {} to your styles", style.name);
                 self.notices.push(notices::Kind::Done, text);
             }

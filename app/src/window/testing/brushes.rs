@@ -18,12 +18,12 @@ use crate::window::pointer_tool::PointerTool;
 fn brushing() -> Option<(Whole, Pos2)> {
     let mut harness = with_picture()?;
     key(&mut harness, Modifiers::NONE, Key::H);
-    assert_eq!(of(&harness).pointer_tool, PointerTool::Brush);
+    assert_eq!(of(&harness).tools.active, PointerTool::Brush);
     for tool in Tool::ALL {
         let settings =
             BrushSettings { radius: 0.07, strength: 1.0, front_only: false, ..BrushSettings::default() };
         let window = harness.state_mut().state.as_mut().expect("a window");
-        window.layout.brushes.set_for_tests(*tool, settings);
+        window.panels.brushes.kept.set_for_tests(*tool, settings);
     }
     let painted = of(&harness).session.painted.clone().expect("an image");
     let guides = &painted.snapshot.guides.guides;
@@ -55,7 +55,7 @@ fn edits(harness: &Whole) -> Option<HandEdits> {
 }
 
 fn done(harness: &mut Whole) {
-    wait(harness, "the end of the stroke", |window| !window.brushes.has_open_strokes());
+    wait(harness, "the end of the stroke", |window| !window.panels.brushes.has_open_strokes());
     // The hair of the project must be there before the next stroke.
     let project = project(harness);
     wait(harness, "the hair", |window| {
@@ -73,14 +73,14 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         let (_, name) = tool.names();
         control(&harness, egui::accesskit::Role::RadioButton, name).click();
         go(&mut harness);
-        assert_eq!(of(&harness).brushes.tool, *tool);
+        assert_eq!(of(&harness).panels.brushes.tool, *tool);
         let way =
             if *tool == Tool::Part { beside_the_parting(&harness) } else { [at, at + vec2(40.0, 14.0)] };
         drag_over(&mut harness, way[0], way[1]);
         done(&mut harness);
         assert_eq!(project(&harness).camera, before.camera, "{name}: the camera stands");
         if *tool == Tool::Freeze {
-            assert!(of(&harness).brushes.has_frozen(), "{name}");
+            assert!(of(&harness).panels.brushes.has_frozen(), "{name}");
             let redo = of(&harness).document.history().redo_len();
             assert!(redo > 0, "the tool before can be done again");
             // A stroke on frozen hair is no undo step, and says so.
@@ -155,13 +155,13 @@ fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
             && !window.session.worker().is_loading()
     });
     assert_eq!(project(&harness), before, "nothing of the stroke is left");
-    assert!(!of(&harness).brushes.has_open_strokes());
+    assert!(!of(&harness).panels.brushes.has_open_strokes());
 }
 
 #[test]
 fn b_and_the_brackets_change_the_radius_and_shift_b_the_strength() {
     let Some((mut harness, at)) = brushing() else { return };
-    let settings = |harness: &Whole| of(harness).layout.brushes.of(Tool::Comb);
+    let settings = |harness: &Whole| of(harness).panels.brushes.kept.of(Tool::Comb);
     let before = settings(&harness);
     key(&mut harness, Modifiers::NONE, Key::CloseBracket);
     let larger = settings(&harness);

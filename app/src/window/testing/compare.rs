@@ -25,7 +25,11 @@ fn drawn(window: &Window, panes: usize) -> bool {
     let wanted = &window.document.project().compare.panes;
     wanted.len() == panes
         && wanted.iter().enumerate().all(|(index, wanted)| {
-            window.compare.pane(index).is_some_and(|pane| pane.contender == *wanted && pane.problem.is_none())
+            window
+                .pages
+                .compare
+                .pane(index)
+                .is_some_and(|pane| pane.contender == *wanted && pane.problem.is_none())
         })
 }
 
@@ -39,7 +43,7 @@ fn panes_are_drawn_with_their_cost_and_error() {
     harness.check_accessibility();
     let panes = methods(&harness);
     for (index, method) in panes.iter().enumerate() {
-        let pane = of(&harness).compare.pane(index).expect("a pane");
+        let pane = of(&harness).pages.compare.pane(index).expect("a pane");
         assert_eq!(pane.contender.shadow.method, *method);
         assert!(pane.times.whole > 0.0 && !pane.image.is_empty());
         // On the GPU the exact method has an error too.
@@ -125,7 +129,7 @@ fn errors_are_shown_in_colour_and_a_click_probes_hair() {
     of_mut(&mut harness).layout.compare.shows = LiveShows::TransmittanceBias;
     go(&mut harness);
     wait(&mut harness, "colours", |window| {
-        window.compare.pane(0).is_some_and(|pane| pane.shows == LiveShows::TransmittanceBias)
+        window.pages.compare.pane(0).is_some_and(|pane| pane.shows == LiveShows::TransmittanceBias)
     });
     assert!(harness.query_by_role_and_label(Role::Image, "Scale of transmittance - exact").is_some());
     // There is hair at the guides, although the head hides some of it.
@@ -144,14 +148,14 @@ fn errors_are_shown_in_colour_and_a_click_probes_hair() {
         }
         super::click_at(&mut harness, pane.lerp_inside(share));
         wait(&mut harness, "an answer", |window| {
-            let [probed, asked] = window.compare.probed_and_asked();
+            let [probed, asked] = window.pages.compare.probed_and_asked();
             probed == asked
         });
-        if of(&harness).compare.probed_hair().is_some() {
+        if of(&harness).pages.compare.probed_hair().is_some() {
             break;
         }
     }
-    let hair = of(&harness).compare.probed_hair().expect("hair where guides are");
+    let hair = of(&harness).pages.compare.probed_hair().expect("hair where guides are");
     assert_eq!(hair.curves.len(), 4);
     for (index, curve) in &hair.curves {
         assert!((0.0..=1.0).contains(&curve.value), "pane {index}");
@@ -174,7 +178,7 @@ fn holding_v_shows_the_other_pane() {
     let pane = control(&harness, Role::Image, "Pane 1").rect();
     harness.hover_at(pane.center());
     go(&mut harness);
-    let second = of(&harness).compare.pane(1).expect("a pane").label();
+    let second = of(&harness).pages.compare.pane(1).expect("a pane").label();
     assert!(second.ends_with("CPU") || second.ends_with("GPU"), "what drew it: {second}");
     let second = format!("2 · {second}");
     assert!(!name(&harness, &second));
@@ -211,7 +215,7 @@ fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     let bytes = std::fs::read(&path).expect("a file");
     assert_eq!(&bytes[1..4], b"PNG");
     let side = |at: usize| u32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-    let pane = of(&harness).compare.pane(0).expect("a pane").image.picture().expect("pixels");
+    let pane = of(&harness).pages.compare.pane(0).expect("a pane").image.picture().expect("pixels");
     assert!(side(16) >= 2 * pane.width && side(20) >= 2 * pane.height, "four panes and their labels");
 
     let window = of_mut(&mut harness);
@@ -222,7 +226,7 @@ fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     let film = dir.path().join("film.mp4");
     press_button(&mut harness, "Record comparison");
     super::whole::answer(&mut harness, &film);
-    wait(&mut harness, "the film", |window| !window.recorder.is_running() && film.is_file());
+    wait(&mut harness, "the film", |window| !window.media.recorder.is_running() && film.is_file());
     assert!(std::fs::metadata(&film).expect("a file").len() > 500);
 }
 
@@ -235,11 +239,11 @@ fn a_click_that_closes_a_menu_does_not_probe() {
     super::click_at(&mut harness, pane.center());
     go(&mut harness);
     assert!(harness.query_by_label("Transparency").is_none(), "the menu is closed");
-    assert_eq!(of(&harness).compare.probed_and_asked()[1], 0);
+    assert_eq!(of(&harness).pages.compare.probed_and_asked()[1], 0);
     // The next click probes.
     super::click_at(&mut harness, pane.center());
     go(&mut harness);
-    assert_eq!(of(&harness).compare.probed_and_asked()[1], 1);
+    assert_eq!(of(&harness).pages.compare.probed_and_asked()[1], 1);
 }
 
 #[test]
@@ -299,14 +303,14 @@ fn a_report_is_written_in_the_background_with_its_options() {
         control(&harness, Role::CheckBox, method.label()).click();
         go(&mut harness);
     }
-    let options = of_mut(&mut harness).compare.reporting.options.as_mut().expect("options");
+    let options = of_mut(&mut harness).pages.compare.reporting.options.as_mut().expect("options");
     assert_eq!(options.methods, [ShadowMethod::None, ShadowMethod::VoxelMap]);
     (options.size, options.backends) = ([64, 64], vec![lovelock_render::Backend::Cpu]);
     press_button(&mut harness, "Choose folder…");
     let out = dir.path().join("a report");
     super::whole::answer(&mut harness, &out);
-    assert!(of(&harness).compare.reporting.is_running());
-    wait(&mut harness, "the report", |window| !window.compare.reporting.is_running());
+    assert!(of(&harness).pages.compare.reporting.is_running());
+    wait(&mut harness, "the report", |window| !window.pages.compare.reporting.is_running());
     let json = std::fs::read_to_string(out.join("report.json")).expect("a report");
     let report: lovelock_study::report::CompareReport = serde_json::from_str(&json).expect("JSON");
     let ids: Vec<_> = report.methods.iter().map(|method| method.id.as_str()).collect();
@@ -319,7 +323,7 @@ fn a_report_is_written_in_the_background_with_its_options() {
     press_button(&mut harness, "All");
     press_button(&mut harness, "Choose folder…");
     super::whole::answer(&mut harness, &dir.path().join("stopped"));
-    of_mut(&mut harness).compare.reporting.cancel();
-    wait(&mut harness, "the end", |window| !window.compare.reporting.is_running());
+    of_mut(&mut harness).pages.compare.reporting.cancel();
+    wait(&mut harness, "the end", |window| !window.pages.compare.reporting.is_running());
     assert!(super::texts(&harness).iter().any(|(text, ..)| text.contains("stopped")));
 }

@@ -9,15 +9,16 @@ use egui_kittest::kittest::Queryable;
 
 use super::{Shown, double_click, screen_of};
 use crate::window::palette::{Found, Palette};
-use crate::window::path_dialog::{Answer, PathDialog, Purpose};
+use crate::window::path_dialog::{Answer, PathDialog};
+use crate::window::purpose::Purpose;
 
 fn palette() -> Harness<'static, Shown<(Palette, Vec<Command>)>> {
     let mut state = (Palette::default(), Vec::new());
     state.0.toggle();
     screen_of(vec2(800.0, 600.0), state, |ui, (palette, chosen): &mut (Palette, Vec<Command>)| {
-        let found = palette.show(ui.ctx(), |command| command != Command::Undo);
+        let found = palette.show(ui.ctx(), |command: &Command| *command != Command::Undo);
         chosen.extend(found.and_then(|found| match found {
-            Found::Command(info) => Some(info.command),
+            Found::Command(info) => Some(info.command.clone()),
             _ => None,
         }));
     })
@@ -30,11 +31,14 @@ fn the_palette_finds_a_command_by_its_words() {
     assert!(harness.query_by_label("Undo").is_none(), "what cannot be done is not offered");
     harness.event(Event::Text("hair fra".to_owned()));
     harness.run();
-    assert!(harness.query_by_label(Command::Save.info().label).is_none());
+    assert!(harness.query_by_label(Command::Save.info().expect("in the table").label).is_none());
     harness.key_press(Key::Enter);
     harness.run();
     assert_eq!(harness.state().state.1, [Command::FrameHair]);
-    assert!(harness.query_by_label(Command::FrameHair.info().label).is_none(), "it closes");
+    assert!(
+        harness.query_by_label(Command::FrameHair.info().expect("in the table").label).is_none(),
+        "it closes"
+    );
 }
 
 #[test]

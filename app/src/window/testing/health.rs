@@ -33,7 +33,7 @@ fn small() -> Project {
 fn gauges_show_advice_and_places() {
     let state = (bad_gauges(), None, Vec::new());
     let mut harness = screen(state, |ui, (gauges, shown, asked): &mut (Vec<Gauge>, _, Vec<_>)| {
-        asked.extend(panels::health::ui(ui, gauges, false, *shown));
+        asked.extend(panels::health::list(ui, gauges, false, *shown));
     });
     assert!(harness.query_by_label("Problems:").is_some());
     let said = texts(&harness);
@@ -76,10 +76,10 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     });
     let before = project(&harness);
     press_button(&mut harness, "Show: Largest stretch");
-    let pointed = |window: &Window| window.marked_gauge.as_ref().map(|gauge| gauge.kind);
+    let pointed = |window: &Window| window.tools.marked_gauge.as_ref().map(|gauge| gauge.kind);
     assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
     // The button goes to the time at which the value was found, and the measured value is kept.
-    let asked = of(&harness).marked_gauge.clone().expect("a gauge");
+    let asked = of(&harness).tools.marked_gauge.clone().expect("a gauge");
     let found = asked.found.expect("found");
     let secs = asked.found_secs().expect("a time");
     wait(&mut harness, "hair settled where it was found", |window| {

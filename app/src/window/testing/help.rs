@@ -25,14 +25,14 @@ fn every_setting_of_the_palette_has_a_place_in_the_manual() {
 fn help_opens_the_manual_and_about_and_explains_a_control() {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::F1);
-    assert!(of(&harness).manual.is_open());
+    assert!(of(&harness).help.manual.is_open());
     assert!(
         harness.query_all_by_label("Five minutes with Lovelock").next().is_some(),
         "the contents of the guide"
     );
     key(&mut harness, Modifiers::NONE, Key::Escape);
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(!of(&harness).manual.is_open());
+    assert!(!of(&harness).help.manual.is_open());
 
     let ctx = harness.ctx.clone();
     harness.state_mut().state.as_mut().expect("a window").run(Command::About, &ctx);
@@ -47,15 +47,15 @@ fn help_opens_the_manual_and_about_and_explains_a_control() {
     key(&mut harness, Modifiers::SHIFT, Key::F1);
     super::click_at(&mut harness, slider);
     assert_eq!(project(&harness), before);
-    let here = of(&harness).manual.text_here();
-    assert!(of(&harness).manual.is_open() && here.contains("groom.length"), "{here}");
+    let here = of(&harness).help.manual.text_here();
+    assert!(of(&harness).help.manual.is_open() && here.contains("groom.length"), "{here}");
     // Other controls are explained where the guide mentions them.
     key(&mut harness, Modifiers::NONE, Key::Escape);
     key(&mut harness, Modifiers::NONE, Key::Escape);
     let save = control(&harness, Role::Button, "Save as style…").rect().center();
     key(&mut harness, Modifiers::SHIFT, Key::F1);
     super::click_at(&mut harness, save);
-    let here = of(&harness).manual.text_here();
+    let here = of(&harness).help.manual.text_here();
     assert!(here.contains("Save as style"), "{here}");
 }
 

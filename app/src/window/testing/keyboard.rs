@@ -51,7 +51,7 @@ fn every_shortcut_runs_only_its_command() {
             harness.state_mut().state.1.clear();
             harness.key_press_modifiers(modifiers, key);
             harness.run();
-            assert_eq!(harness.state().state.1, [info.command], "{text}");
+            assert_eq!(harness.state().state.1, [info.command.clone()], "{text}");
         }
     }
 }
@@ -134,10 +134,10 @@ pub(super) fn entry<'t, S>(harness: &'t Harness<'_, S>, info: &CommandInfo) -> N
 #[test]
 fn menus_contain_every_command_once_and_disable_unavailable_ones() {
     let mut harness = screen_of(vec2(900.0, 700.0), None, |ui, chosen: &mut Option<Command>| {
-        let enabled = |command| command != Command::Undo;
+        let enabled = |command: &Command| *command != Command::Undo;
         let asked =
             egui::MenuBar::new().ui(ui, |ui| keys::menus(ui, &mut keys::MenuKeys::default(), enabled)).inner;
-        *chosen = asked.or(*chosen);
+        *chosen = asked.or(chosen.take());
     });
     for group in CommandGroup::ALL {
         for info in COMMANDS.iter().filter(|info| info.group == group) {
@@ -146,7 +146,7 @@ fn menus_contain_every_command_once_and_disable_unavailable_ones() {
             harness.run();
             entry(&harness, info).click();
             harness.run();
-            let wanted = (info.command != Command::Undo).then_some(info.command);
+            let wanted = (info.command != Command::Undo).then(|| info.command.clone());
             assert_eq!(harness.state().state, wanted, "{}", info.id);
             harness.key_press(Key::Escape);
             harness.run();

@@ -4,18 +4,18 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, OutputCommand, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use glam::Vec3;
 use lovelock_project::Project;
 
 use super::{Shown, click, control, screen};
-use crate::window::control::{self, KeyRequest, Keying};
-use crate::window::panels;
+use crate::window::command::Command;
+use crate::window::control::{self, Keying};
+use crate::window::panels::Bench;
 
-/// A project at a time of its timeline, and what was asked for.
+/// Panels of a project at a time of its timeline, and what was asked for.
 struct State {
-    project: Project,
+    bench: Bench,
     secs: f64,
-    asked: Vec<KeyRequest>,
+    asked: Vec<Command>,
 }
 
 /// The panels of light and shadow and the lengths of the hair, as the window shows them.
@@ -25,32 +25,31 @@ fn desk() -> Harness<'static, Shown<State>> {
 
 /// The same while the panels edit a pane of a comparison.
 fn desk_of(pane: Option<usize>) -> Harness<'static, Shown<State>> {
-    let state = State { project: Project::default(), secs: 1.0, asked: Vec::new() };
+    let state = State { bench: Bench::new(Project::default()), secs: 1.0, asked: Vec::new() };
     let mut harness = screen(state, move |ui, state: &mut State| {
-        let keying = Keying::of(&state.project, state.secs, &std::iter::empty::<&str>());
+        let keying = Keying::of(&state.bench.project, state.secs, &std::iter::empty::<&str>());
         control::begin_keying(ui.ctx(), keying);
         if let Some(pane) = pane {
             control::enter_pane(ui.ctx(), pane);
         }
         // As in a section of the window, beside whose rows the diamonds are.
         ui.indent("section", |ui| {
-            let project = &mut state.project;
-            let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-            panels::light::ui(ui, &mut project.lights, &mut 0, axes);
-            let default = project.hair.groom.look;
-            panels::shadow::ui(ui, &mut project.shadow, (&mut project.look, &default), Some(0), false);
-            let default = project.hair.shipped_groom();
-            control::setting(ui, "length", &mut project.hair.groom, &default);
+            for title in ["Light", "Shadow"] {
+                state.bench.show(ui, title);
+            }
+            let hair = &mut state.bench.project.hair;
+            let default = hair.shipped_groom();
+            control::setting(ui, "length", &mut hair.groom, &default);
         });
         for request in control::end_keying(ui.ctx()) {
             match &request {
-                KeyRequest::Add { target, value } => {
-                    state.project.set_key(target, state.secs, value.clone());
+                Command::SetKey { target, value } => {
+                    state.bench.project.set_key(target, state.secs, value.clone());
                 }
-                KeyRequest::Remove { target } => {
-                    state.project.remove_key(target, state.secs);
+                Command::RemoveKey(target) => {
+                    state.bench.project.remove_key(target, state.secs);
                 }
-                KeyRequest::Record { .. } => {}
+                _ => {}
             }
             state.asked.push(request);
         }
@@ -77,7 +76,7 @@ fn choose(harness: &mut Harness<'_, Shown<State>>, (role, name): (Role, &str), e
 }
 
 fn keys(harness: &Harness<'_, Shown<State>>) -> Vec<(String, usize)> {
-    let tracks = &harness.state().state.project.timeline.tracks;
+    let tracks = &harness.state().state.bench.project.timeline.tracks;
     tracks.iter().map(|track| (track.target.clone(), track.keys.len())).collect()
 }
 
@@ -91,14 +90,14 @@ fn every_kind_of_control_sets_a_key_by_its_menu() {
         (Role::Slider, "Azimuth", "lights/0/direction", 3),
     ] {
         choose(&mut harness, (role, name), "Add key");
-        let track = harness.state().state.project.timeline.tracks.last().expect("a track");
+        let track = harness.state().state.bench.project.timeline.tracks.last().expect("a track");
         assert_eq!((track.target.as_str(), track.keys[0].value.len()), (target, numbers), "{name}");
     }
     choose(&mut harness, (Role::Slider, "Intensity"), "Remove key");
     assert_eq!(keys(&harness).len(), 3, "the last key takes its track along");
     choose(&mut harness, (Role::Slider, "Intensity"), "Record this");
     let target = "lights/0/intensity".to_owned();
-    let record = KeyRequest::Record { target, label: "Intensity" };
+    let record = Command::RecordControl { target, label: "Intensity" };
     assert_eq!(harness.state().state.asked.last(), Some(&record));
 }
 
@@ -139,8 +138,8 @@ fn the_menu_restores_and_copies() {
             _ => None,
         })
     };
-    let default = harness.state().state.project.lights[0].intensity;
-    harness.state_mut().state.project.lights[0].intensity = 3.25;
+    let default = harness.state().state.bench.project.lights[0].intensity;
+    harness.state_mut().state.bench.project.lights[0].intensity = 3.25;
     harness.run_ok();
     for (entry, text) in [("Copy value", "3.25"), ("Copy setting's name", "lights.0.intensity")] {
         let at = control(&harness, Role::Slider, "Intensity").rect().center();
@@ -155,7 +154,7 @@ fn the_menu_restores_and_copies() {
         harness.run_ok();
     }
     choose(&mut harness, (Role::Slider, "Intensity"), "Reset");
-    assert_eq!(harness.state().state.project.lights[0].intensity.to_bits(), default.to_bits());
+    assert_eq!(harness.state().state.bench.project.lights[0].intensity.to_bits(), default.to_bits());
 }
 
 #[test]

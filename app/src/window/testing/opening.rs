@@ -47,7 +47,7 @@ fn write_curves(path: &Path, grows: bool) {
 }
 
 fn is_idle(window: &Window) -> bool {
-    window.openings.running().is_none()
+    window.files.openings.running().is_none()
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn a_new_project_gets_no_file_of_the_one_before_and_cancel_leaves_the_next_file(
     open_both(harness.state_mut().state.as_mut().expect("a window"));
     wait(&mut harness, "the progress", |window| {
         let is_shown =
-            window.openings.running().is_some_and(|(name, secs)| name == "slow.usda" && secs > 0.6);
+            window.files.openings.running().is_some_and(|(name, secs)| name == "slow.usda" && secs > 0.6);
         // The scene of the new project has a progress with a button of its own.
         is_shown && window.session.worker().load_progress().is_none()
     });

@@ -9,9 +9,9 @@ use lovelock_style::{HeadBox, Layer};
 
 use super::tools::{drag_over, into_view, unfold, view, with_picture};
 use super::whole::{CTRL, Whole, go, key, of, project, wait};
-use crate::window::brushes::SeenHair;
 use crate::window::overlay;
 use crate::window::overlay::head::Head;
+use crate::window::overlay::pick::SeenHair;
 use crate::window::pointer_tool::PointerTool;
 
 /// The window with a layer that is selected, and its mask being painted.
@@ -21,10 +21,10 @@ fn painting() -> Option<Whole> {
     let id = changed.hair.stack.push(Layer::of(Lift::default()));
     let window = harness.state_mut().state.as_mut().expect("a window");
     window.document.change("layer", |project| *project = changed);
-    window.layers.selected = id;
+    window.panels.layers.selected = id;
     go(&mut harness);
     key(&mut harness, Modifiers::SHIFT, Key::K);
-    assert!(of(&harness).pointer_tool == PointerTool::Mask && of(&harness).shown_mask.is_some());
+    assert!(of(&harness).tools.active == PointerTool::Mask && of(&harness).tools.shown_mask.is_some());
     Some(harness)
 }
 
@@ -46,7 +46,7 @@ fn on_screen(harness: &Whole, relative: Vec3) -> Pos2 {
 const FOREHEAD: Vec3 = Vec3::new(0.0, 0.55, 0.85);
 
 fn set_brush(harness: &mut Whole, change: impl FnOnce(&mut lovelock_style::MaskBrush)) {
-    change(&mut harness.state_mut().state.as_mut().expect("a window").layers.brush);
+    change(&mut harness.state_mut().state.as_mut().expect("a window").panels.layers.brush);
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn a_stroke_paints_the_mask_in_one_undo_step() {
     assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one stroke is one step");
     assert_eq!(project(&harness).camera, before.camera, "the camera stands while it paints");
     // Hair and image follow.
-    let shown = of(&harness).shown_mask.clone().expect("a mask");
+    let shown = of(&harness).tools.shown_mask.clone().expect("a mask");
     assert_eq!(shown.mask, project(&harness).hair.stack.layers[0].mask);
     // A second stroke at once is a step of its own; Ctrl erases.
     harness.event_modifiers(Event::PointerMoved(middle), CTRL);
@@ -80,11 +80,11 @@ fn a_stroke_paints_the_mask_in_one_undo_step() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
     // Keys change the radius.
-    let radius = of(&harness).layers.brush.radius;
+    let radius = of(&harness).panels.layers.brush.radius;
     key(&mut harness, Modifiers::NONE, Key::CloseBracket);
-    assert!(of(&harness).layers.brush.radius > 1.1 * radius);
+    assert!(of(&harness).panels.layers.brush.radius > 1.1 * radius);
     key(&mut harness, Modifiers::NONE, Key::OpenBracket);
-    assert!((of(&harness).layers.brush.radius - radius).abs() < 1e-6);
+    assert!((of(&harness).panels.layers.brush.radius - radius).abs() < 1e-6);
     // The image of the mask arrives, and another after it is hidden.
     wait(&mut harness, "the image of the mask", |window| {
         window.session.drawn.as_ref().is_some_and(|drawn| drawn.mask.is_some())
@@ -125,7 +125,7 @@ fn a_map_is_painted_into_a_layer_of_its_own() {
         go(harness);
     };
     start(&mut harness);
-    assert_eq!(of(&harness).pointer_tool, PointerTool::Mask, "painting takes the place of the brush");
+    assert_eq!(of(&harness).tools.active, PointerTool::Mask, "painting takes the place of the brush");
     let layers = project(&harness).hair.stack.layers.clone();
     assert_eq!(layers.iter().map(|layer| layer.operation.id()).collect::<Vec<_>>(), ["density"]);
     assert_eq!(mask_at(&harness, FOREHEAD), 0.0, "it acts nowhere yet");
@@ -221,7 +221,7 @@ fn paint_is_seen_on_the_image_of_before() {
     let Some(mut harness) = painting() else { return };
     set_brush(&mut harness, |brush| (brush.radius, brush.strength) = (0.03, 1.0));
     wait(&mut harness, "the image of the mask", |window| {
-        window.session.painted.as_ref().is_some_and(|painted| painted.mask == window.shown_mask)
+        window.session.painted.as_ref().is_some_and(|painted| painted.mask == window.tools.shown_mask)
     });
     let image = of(&harness).session.painted.clone().expect("an image");
     let at = on_screen(&harness, FOREHEAD);

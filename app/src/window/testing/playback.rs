@@ -10,7 +10,8 @@ use lovelock_style::StyleStack;
 
 use super::super::command::Command;
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
-use crate::window::timeline::{self, Edited, Recorded, Take, TimelineRequest, View, Writing, Zoom};
+use crate::window::purpose::Purpose;
+use crate::window::timeline::{self, Edited, Recorded, Take, View, Writing, Zoom};
 
 pub(super) struct State {
     pub(super) view: View,
@@ -23,7 +24,7 @@ pub(super) struct State {
     pub(super) tracks: Vec<Track>,
     motion: MotionSection,
     sound: SoundSection,
-    asked: Vec<TimelineRequest>,
+    asked: Vec<Command>,
 }
 
 pub(super) fn state(view: View) -> State {
@@ -104,20 +105,20 @@ fn every_button_requests_its_command() {
     ] {
         let mut harness = bar(view);
         for command in commands {
-            let rect = control(&harness, Role::Button, command.info().label).rect();
+            let rect = control(&harness, Role::Button, command.info().expect("in the table").label).rect();
             harness.state_mut().state.asked.clear();
             click(&mut harness, rect.center());
-            assert_eq!(harness.state().state.asked, [TimelineRequest::Run(command)]);
+            assert_eq!(harness.state().state.asked, [command.clone()]);
             let said = tooltip_at(&mut harness, rect.center()).expect("a tooltip");
-            assert!(said.contains(command.info().shortcuts[0]), "{command:?}: {said}");
+            assert!(said.contains(command.info().expect("in the table").shortcuts[0]), "{command:?}: {said}");
         }
     }
     let mut harness = bar(take());
     for command in [Command::ToggleLoop, Command::PlayBackwards, Command::WriteTracks] {
-        let rect = control(&harness, Role::CheckBox, command.info().label).rect();
+        let rect = control(&harness, Role::CheckBox, command.info().expect("in the table").label).rect();
         harness.state_mut().state.asked.clear();
         click(&mut harness, rect.center());
-        assert_eq!(harness.state().state.asked, [TimelineRequest::Run(command)]);
+        assert_eq!(harness.state().state.asked, [command]);
     }
 }
 
@@ -129,15 +130,15 @@ fn a_click_seeks_and_a_drag_stays_in_range() {
     let (left, right) = (rect.left() + 52.0, rect.right());
     let at = pos2(0.5 * (left + right), rect.bottom() - 4.0);
     click(&mut harness, at);
-    let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
+    let Some(&Command::Seek(secs)) = harness.state().state.asked.last() else {
         panic!("no time was asked for")
     };
     // One point on the ruler is a hundredth of a second here.
     assert!((secs - 4.0).abs() < 0.02, "{secs}");
     drag(&mut harness, at, pos2(1e6, at.y));
-    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(8.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&Command::Seek(8.0)));
     drag(&mut harness, at, pos2(-1e6, at.y));
-    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(0.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&Command::Seek(0.0)));
     let said = tooltip_at(&mut harness, at + vec2(40.0, 0.0));
     assert!(said.is_some(), "the bar says what it does");
 }
@@ -161,7 +162,7 @@ fn the_wheel_magnifies_and_a_click_seeks_in_the_shown_range() {
     assert_ne!(harness.state().state.zoom, Zoom::default());
     harness.state_mut().state.asked.clear();
     click(&mut harness, pos2(rect.left() + 54.0, right.y));
-    let Some(TimelineRequest::Seek(secs)) = harness.state().state.asked.last().copied() else {
+    let Some(&Command::Seek(secs)) = harness.state().state.asked.last() else {
         panic!("no time was asked for")
     };
     assert!((6.0..8.0).contains(&secs), "magnified about the end, the left edge is near it: {secs}");
@@ -186,7 +187,7 @@ fn markers_seek_and_can_be_removed() {
     let mut harness = bar(view());
     let flag = control(&harness, Role::Button, "Marker turn").rect().center();
     click(&mut harness, flag);
-    assert_eq!(harness.state().state.asked.last(), Some(&TimelineRequest::Seek(6.0)));
+    assert_eq!(harness.state().state.asked.last(), Some(&Command::Seek(6.0)));
     for pressed in [true, false] {
         let button = PointerButton::Secondary;
         harness.event(Event::PointerButton { pos: flag, button, pressed, modifiers: Modifiers::NONE });
@@ -210,7 +211,7 @@ fn clips_of_zero_length_and_of_days_are_shown() {
             click(&mut harness, pos2(rect.center().x, rect.bottom() - 4.0));
             for request in &harness.state().state.asked {
                 assert!(
-                    matches!(request, TimelineRequest::Seek(secs) if secs.is_finite()),
+                    matches!(request, Command::Seek(secs) if secs.is_finite()),
                     "{duration_secs}: {request:?}"
                 );
             }
@@ -288,7 +289,7 @@ fn keys_are_moved_added_and_removed() {
     let beside = key_at(&harness, 3.0, 0.1);
     click(&mut harness, beside);
     assert!(
-        matches!(harness.state().state.asked.last(), Some(TimelineRequest::Seek(secs)) if (secs - 3.0).abs() < 0.02)
+        matches!(harness.state().state.asked.last(), Some(Command::Seek(secs)) if (secs - 3.0).abs() < 0.02)
     );
     let curve = harness.state().state.tracks[0].value_at(3.0).expect("keys");
     super::double_click(&mut harness, beside);
@@ -320,9 +321,10 @@ fn the_clip_menu_changes_clip_tempo_and_trim() {
     press(&mut harness, Role::Button, "idle");
     assert_eq!(harness.state().state.motion.clip, "idle");
     harness.state_mut().state.motion.source = MotionSource::Rest;
-    for (name, request) in
-        [("Trim to in and out points", TimelineRequest::Trim), ("Motion file…", TimelineRequest::PickMotion)]
-    {
+    for (name, request) in [
+        ("Trim to in and out points", Command::TrimToPoints),
+        ("Motion file…", Command::PickFile(Purpose::Motion)),
+    ] {
         harness.state_mut().state.recording.first_frame = 30;
         let mut fresh = bar(view());
         fresh.state_mut().state.recording.first_frame = 30;

@@ -34,13 +34,13 @@ fn a_style_file_is_imported_and_applied() {
     let mut harness = window();
     let ctx = harness.ctx.clone();
     let window = harness.state_mut().state.as_mut().expect("a window");
-    window.styles = Browser::new(Some(own.clone()), None, &ctx);
+    window.panels.hair.styles = Browser::new(Some(own.clone()), None, &ctx);
     let before = project(&harness);
     let path = dir.path().join("friend ü.lovelockstyle");
     let style = &shipped::by_id("curly").expect("shipped").style;
     Style { name: "A friend's".to_owned(), ..style.clone() }.save(&path).expect("saved");
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
-    wait(&mut harness, "the style", |window| window.openings.running().is_none());
+    wait(&mut harness, "the style", |window| window.files.openings.running().is_none());
     let after = project(&harness);
     let mut wanted = (*before).clone();
     wanted.apply_style(style, StyleParts::ALL);
@@ -51,7 +51,7 @@ fn a_style_file_is_imported_and_applied() {
     // A file that is none changes nothing and is told.
     std::fs::write(&path, "(version: 3, hair: (").expect("a file");
     harness.state_mut().state.as_mut().expect("a window").open_any(&path);
-    wait(&mut harness, "the style", |window| window.openings.running().is_none());
+    wait(&mut harness, "the style", |window| window.files.openings.running().is_none());
     assert_eq!(project(&harness), after);
     assert_eq!(own.list().len(), 1);
 }

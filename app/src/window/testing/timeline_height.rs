@@ -37,7 +37,7 @@ fn check(harness: &Harness<'_, Shown<State>>, size: Vec2, what: &str) {
     let screen = Rect::from_min_size(egui::Pos2::ZERO, size);
     let ruler = control(harness, Role::Slider, "Time").rect();
     for command in [Command::JumpToStart, Command::PlayPause, Command::JumpToEnd] {
-        let button = control(harness, Role::Button, command.info().label).rect();
+        let button = control(harness, Role::Button, command.info().expect("in the table").label).rect();
         assert!(
             screen.contains_rect(button) && button.top() >= above.bottom(),
             "{what}: {button:?} {above:?}"

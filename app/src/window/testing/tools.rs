@@ -49,7 +49,7 @@ pub(super) fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
     let window = of(harness);
     let rect = control(harness, Role::Image, "Viewport").rect();
     let painted = window.session.painted.as_ref().expect("a picture");
-    View::new(painted, window.viewport.place(rect).expect("a place")).expect("a view")
+    View::new(painted, window.pages.image.place(rect).expect("a place")).expect("a view")
 }
 
 pub(super) fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
@@ -83,7 +83,7 @@ fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
             && window.session.drawn.as_ref().is_some_and(|drawn| drawn.project.camera == before.camera)
     });
     key(&mut harness, Modifiers::NONE, Key::X);
-    assert_eq!(of(&harness).pointer_tool, PointerTool::Scissors);
+    assert_eq!(of(&harness).tools.active, PointerTool::Scissors);
     let points =
         |window: &Window| window.session.frame.as_ref().map_or(0, |frame| frame.scene.style.strands.points());
     let whole = points(of(&harness));
@@ -130,7 +130,7 @@ fn a_tie_can_be_dragged_in_the_viewport() {
 fn colliders_are_shown_and_edited() {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::G);
-    assert!(of(&harness).colliders.on);
+    assert!(of(&harness).panels.colliders.on);
     let scene = of(&harness).session.scene.clone().expect("a scene");
     assert!(scene.field.is_some() && !scene.fitted.is_empty());
     assert!(scene.colliders.len() < scene.fitted.len(), "the skin replaces no shape");

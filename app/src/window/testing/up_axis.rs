@@ -37,7 +37,7 @@ fn hair_in_doubt_is_asked_about_and_the_answer_is_one_step_with_its_file() {
     let before = project(&harness);
     for by_mouse in [false, true] {
         harness.state_mut().state.as_mut().expect("a window").open_any(&ball);
-        wait(&mut harness, "the question", |window| window.up_question.is_open());
+        wait(&mut harness, "the question", |window| window.files.up_question.is_open());
         assert_eq!(of(&harness).document.history().undo_len(), 1);
         assert_eq!(project(&harness).hair.import.up, UpAxis::Auto);
         let wanted = if by_mouse {
@@ -49,7 +49,7 @@ fn hair_in_doubt_is_asked_about_and_the_answer_is_one_step_with_its_file() {
             key(&mut harness, egui::Modifiers::NONE, Key::Enter);
             UpAxis::Y
         };
-        assert!(!of(&harness).up_question.is_open());
+        assert!(!of(&harness).files.up_question.is_open());
         assert_eq!(project(&harness).hair.import.up, wanted);
         assert_eq!(of(&harness).document.history().undo_len(), 1, "the file and its axis are one step");
         key(&mut harness, CTRL, Key::Z);
@@ -57,17 +57,17 @@ fn hair_in_doubt_is_asked_about_and_the_answer_is_one_step_with_its_file() {
     }
     // Escape keeps the guess, and the axis stays automatic.
     harness.state_mut().state.as_mut().expect("a window").open_any(&ball);
-    wait(&mut harness, "the question", |window| window.up_question.is_open());
+    wait(&mut harness, "the question", |window| window.files.up_question.is_open());
     key(&mut harness, egui::Modifiers::NONE, Key::Escape);
-    assert!(!of(&harness).up_question.is_open());
+    assert!(!of(&harness).files.up_question.is_open());
     assert_eq!(project(&harness).hair.import.up, UpAxis::Auto);
 
     // The control: hair that hangs is not asked about.
     harness.state_mut().state.as_mut().expect("a window").open_any(&hangs);
     wait(&mut harness, "the hair", |window| {
         let file = window.document.project().hair.file.as_ref();
-        file.is_some_and(|file| file.path.ends_with("hangs.data")) && !window.up_question.looks()
+        file.is_some_and(|file| file.path.ends_with("hangs.data")) && !window.files.up_question.looks()
     });
     assert_eq!(project(&harness).hair.source, HairSource::File);
-    assert!(!of(&harness).up_question.is_open());
+    assert!(!of(&harness).files.up_question.is_open());
 }

@@ -14,7 +14,7 @@ use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window
 fn wall() -> Whole {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::N);
-    wait(&mut harness, "the variants", |window| window.wall.variants().len() == Wall::CELLS);
+    wait(&mut harness, "the variants", |window| window.pages.wall.variants().len() == Wall::CELLS);
     harness
 }
 
@@ -34,15 +34,19 @@ fn click_with(harness: &mut Whole, name: &str, modifiers: Modifiers) {
 #[test]
 fn a_click_adopts_a_variant_in_one_undo_step() {
     let mut harness = wall();
-    let (before, variant) = (project(&harness), Arc::clone(&of(&harness).wall.variants()[2]));
-    assert_eq!(of(&harness).wall.variants().len(), Wall::CELLS);
+    let (before, variant) = (project(&harness), Arc::clone(&of(&harness).pages.wall.variants()[2]));
+    assert_eq!(of(&harness).pages.wall.variants().len(), Wall::CELLS);
     assert_ne!(variant.hair, before.hair);
     click_with(&mut harness, "Variant 3", Modifiers::NONE);
     let adopted = project(&harness);
     assert_eq!((&adopted.hair, adopted.look), (&variant.hair, variant.look));
     assert_eq!((adopted.camera, &adopted.lights), (before.camera, &before.lights));
     assert_eq!(of(&harness).document.history().undo_len(), 1);
-    assert_eq!(of(&harness).wall.variants()[4].hair, adopted.hair, "the present style is in the middle");
+    assert_eq!(
+        of(&harness).pages.wall.variants()[4].hair,
+        adopted.hair,
+        "the present style is in the middle"
+    );
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).hair, before.hair);
     // The present style itself changes nothing.
@@ -54,7 +58,7 @@ fn a_click_adopts_a_variant_in_one_undo_step() {
 fn shift_and_two_clicks_breed_in_one_undo_step() {
     let mut harness = wall();
     let before = project(&harness);
-    let parents = [0, 8].map(|index| Arc::clone(&of(&harness).wall.variants()[index]));
+    let parents = [0, 8].map(|index| Arc::clone(&of(&harness).pages.wall.variants()[index]));
     click_with(&mut harness, "Variant 1", Modifiers::SHIFT);
     assert_eq!(of(&harness).document.history().undo_len(), 0);
     assert_eq!(project(&harness).hair, before.hair);
@@ -76,11 +80,11 @@ fn shift_and_two_clicks_breed_in_one_undo_step() {
 fn locks_hold_and_other_variants_come() {
     let mut harness = wall();
     let look = project(&harness).look;
-    let first = of(&harness).wall.variants().to_vec();
+    let first = of(&harness).pages.wall.variants().to_vec();
     assert!(first.iter().any(|variant| variant.look != look));
     control(&harness, Role::CheckBox, "Lock Colour").click();
     go(&mut harness);
-    assert!(of(&harness).wall.variants().iter().all(|variant| variant.look == look));
+    assert!(of(&harness).pages.wall.variants().iter().all(|variant| variant.look == look));
     press_button(&mut harness, "Variants before");
     control(&harness, Role::CheckBox, "Lock Colour").click();
     go(&mut harness);

@@ -107,7 +107,7 @@ pub(super) fn press_button(harness: &mut Harness<'_, Shown<Option<Window>>>, nam
 
 /// Chooses a command from its menu.
 fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: Command) {
-    let info = command.info();
+    let info = command.info().expect("in the table");
     press_button(harness, info.group.label());
     entry(harness, info).click();
     go(harness);
@@ -142,7 +142,7 @@ fn changes_by_menu_and_key_can_be_undone() {
     let mut harness = window();
     harness.check_accessibility();
     let before = project(&harness);
-    menu(&mut harness, Command::PresetCurly);
+    menu(&mut harness, Command::Load(Preset::Curly));
     assert_eq!(project(&harness).hair.preset, Preset::Curly, "the menu's change stays");
     assert_eq!(of(&harness).document.history().undo_len(), 1);
     menu(&mut harness, Command::Undo);
@@ -195,7 +195,7 @@ fn keys_pause_playback_and_hide_the_panels() {
     key(&mut harness, Modifiers::NONE, Key::Escape);
     assert!(harness.query_by_label_contains("Restore, key or copy a control").is_none());
     let looping = project(&harness).motion.looping;
-    press_button(&mut harness, Command::PlayPause.info().label);
+    press_button(&mut harness, Command::PlayPause.info().expect("in the table").label);
     assert!(of(&harness).session.playing);
     key(&mut harness, Modifiers::NONE, Key::L);
     assert_eq!(project(&harness).motion.looping, !looping);
@@ -262,7 +262,7 @@ fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
 
     key(&mut harness, CTRL, Key::O);
     answer(&mut harness, &path);
-    wait(&mut harness, "the project", |window| window.openings.running().is_none());
+    wait(&mut harness, "the project", |window| window.files.openings.running().is_none());
     assert_eq!(*project(&harness), saved);
     assert_eq!(of(&harness).document.path(), Some(path.as_path()));
     assert_eq!(of(&harness).document.history().undo_len(), 0);
@@ -307,7 +307,7 @@ fn a_broken_hair_file_is_reported_and_the_scene_stays() {
     for path in [note, dir.path().join("no such.hair"), dir.path().to_owned()] {
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
         go(&mut harness);
-        wait(&mut harness, "the refusal", |window| window.openings.running().is_none());
+        wait(&mut harness, "the refusal", |window| window.files.openings.running().is_none());
         assert_eq!(project(&harness), before);
     }
 }
@@ -322,15 +322,15 @@ fn a_dropped_sound_plays_beside_the_dance_and_one_that_is_none_says_so() {
         harness.state_mut().state.as_mut().expect("a window").open_any(path);
     };
     open(&mut harness, &path);
-    wait(&mut harness, "the sound", |window| window.soundtrack.loaded().is_some());
-    let loaded = Arc::clone(of(&harness).soundtrack.loaded().expect("a sound"));
+    wait(&mut harness, "the sound", |window| window.media.soundtrack.loaded().is_some());
+    let loaded = Arc::clone(of(&harness).media.soundtrack.loaded().expect("a sound"));
     assert!((loaded.beats.tempo.expect("a tempo") - 120.0).abs() < 1.0, "{:?}", loaded.beats);
     assert_eq!(project(&harness).sound.file.as_ref().expect("a file").path, path);
     assert!(harness.query_by_role_and_label(Role::Slider, "Sound on the timeline").is_some());
     // Undo returns to silence, redo to the sound, without asking for the file again.
     harness.key_press_modifiers(CTRL, Key::Z);
     harness.run_steps(3);
-    assert!(project(&harness).sound.file.is_none() && of(&harness).soundtrack.loaded().is_none());
+    assert!(project(&harness).sound.file.is_none() && of(&harness).media.soundtrack.loaded().is_none());
 
     let bad = folder.path().join("bad.wav");
     std::fs::write(&bad, b"RIFF\0\0\0\0WAVE and nothing more").expect("a file");
@@ -347,7 +347,7 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
     let mut harness = playing_window();
     let state = |harness: &Harness<'_, Shown<Option<Window>>>| {
         let window = of(harness);
-        (window.layout.page, window.pointer_tool, window.document.overdub().is_armed())
+        (window.layout.page, window.tools.active, window.document.overdub().is_armed())
     };
     let before = state(&harness);
     // The keys come in the same pass as the one that opens the dialog, and after its text is refused.
@@ -365,25 +365,27 @@ fn a_dialog_holds_the_keyboard_until_it_is_answered() {
         harness.key_press(letter);
     }
     go(&mut harness);
-    assert!(of(&harness).dialog.is_some() && of(&harness).session.playing);
+    assert!(of(&harness).files.dialog.is_some() && of(&harness).session.playing);
     assert_eq!(state(&harness), before);
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(of(&harness).dialog.is_none());
+    assert!(of(&harness).files.dialog.is_none());
     // The control: without a dialog the same key works.
     key(&mut harness, Modifiers::NONE, Key::X);
-    assert_eq!(of(&harness).pointer_tool, PointerTool::Scissors);
+    assert_eq!(of(&harness).tools.active, PointerTool::Scissors);
 
     // The list of keys and the palette hold it too, and close by the key that opened them.
     for (modifiers, opens) in [(Modifiers::SHIFT, Key::Questionmark), (CTRL, Key::K)] {
         let is_open = |harness: &Harness<'_, Shown<Option<Window>>>| {
-            of(harness).keys_shown || of(harness).palette.is_open()
+            of(harness).help.keys_shown || of(harness).keyboard.palette.is_open()
         };
         key(&mut harness, modifiers, opens);
         assert!(is_open(&harness));
         key(&mut harness, CTRL, Key::N);
         key(&mut harness, Modifiers::NONE, Key::N);
         assert!(
-            is_open(&harness) && of(&harness).pending.is_none() && of(&harness).layout.page == Page::Image
+            is_open(&harness)
+                && of(&harness).files.pending.is_none()
+                && of(&harness).layout.page == Page::Image
         );
         key(&mut harness, modifiers, opens);
         assert!(!is_open(&harness));
@@ -398,7 +400,7 @@ fn enter_answers_the_question_on_unsaved_changes_and_what_waited_goes_on() {
     key(&mut harness, Modifiers::ALT, Key::Num2);
     key(&mut harness, CTRL, Key::N);
     key(&mut harness, Modifiers::NONE, Key::Enter);
-    assert!(of(&harness).pending.is_none() && of(&harness).dialog.is_some(), "it saves");
+    assert!(of(&harness).files.pending.is_none() && of(&harness).files.dialog.is_some(), "it saves");
     answer(&mut harness, &path);
     assert!(path.is_file());
     assert_eq!(*project(&harness), Project::default(), "the new project follows");

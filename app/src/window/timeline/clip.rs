@@ -3,18 +3,15 @@
 use egui::{Rect, RichText, Ui, UiBuilder};
 use lovelock_project::project::{MotionSection, MotionSource};
 
-use super::{Edited, TimelineRequest, View};
+use super::{Edited, View};
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{popup, settings};
+use crate::window::purpose::Purpose;
 use crate::window::theme;
 
 /// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
-pub(super) fn menu(
-    ui: &mut Ui,
-    place: Rect,
-    view: &View,
-    edited: &mut Edited<'_>,
-) -> Option<TimelineRequest> {
+pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Command> {
     let mut request = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
@@ -31,7 +28,7 @@ pub(super) fn menu(
     request
 }
 
-fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<TimelineRequest> {
+fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Command> {
     let mut request = None;
     let d = MotionSection::default();
     let recording = &*edited.recording;
@@ -46,19 +43,19 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Timelin
         }
     }
     if ui.selectable_label(motion.source == MotionSource::File, "Motion file…").clicked() {
-        request = Some(TimelineRequest::PickMotion);
+        request = Some(Command::PickFile(Purpose::Motion));
         ui.close();
     }
     ui.separator();
     let trim = ui.add_enabled(pointed, egui::Button::new("Trim to in and out points"));
     if trim.hover_tooltip("Plays only the part between the brackets on the ruler.").clicked() {
-        request = Some(TimelineRequest::Trim);
+        request = Some(Command::TrimToPoints);
         ui.close();
     }
     let trimmed = motion.start_secs > 0.0 || motion.end_secs.is_some();
     let whole = ui.add_enabled(trimmed, egui::Button::new("Whole clip"));
     if whole.hover_tooltip("Removes the trim.").clicked() {
-        request = Some(TimelineRequest::Untrim);
+        request = Some(Command::RemoveTrim);
         ui.close();
     }
     if trimmed {

@@ -5,7 +5,8 @@ use lovelock_project::project::Marker;
 
 use super::scale::Scale;
 use super::zoom::{FRAMES_BELOW_SECS, tick_secs};
-use super::{Edited, Recorded, TimelineRequest, View, Zoom, sound, thumbnails};
+use super::{Edited, Recorded, View, Zoom, sound, thumbnails};
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
@@ -15,12 +16,7 @@ const LANE: f32 = 15.0;
 const NAMES: f32 = 52.0;
 const NAMES_OF_TRACKS: f32 = 170.0;
 
-pub(super) fn ui(
-    ui: &mut Ui,
-    view: &View,
-    zoom: &mut Zoom,
-    edited: &mut Edited<'_>,
-) -> Option<TimelineRequest> {
+pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Command> {
     let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
     let names = if edited.tracks.is_empty() { NAMES } else { NAMES_OF_TRACKS };
     let of_sound = if view.sound.is_some() { sound::HEIGHT } else { 0.0 };
@@ -91,7 +87,7 @@ pub(super) fn ui(
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
     let at_track = super::tracks::ui(ui, (names, &beats), scale, view, edited);
-    of_clip.or(flagged.or(at).or(at_track).map(TimelineRequest::Seek))
+    of_clip.or(flagged.or(at).or(at_track).map(Command::Seek))
 }
 
 /// The parts of a dance of `duration` that were recorded in `secs` from `from` on: a dance that repeats goes on at its start.

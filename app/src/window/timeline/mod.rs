@@ -42,7 +42,7 @@ pub(crate) fn panel(
     view: &View,
     (zoom, tracks_height): (&mut Zoom, &mut Option<f32>),
     edited: &mut Edited<'_>,
-) -> Option<TimelineRequest> {
+) -> Option<Command> {
     let fixed = fixed_height(view.sound.is_some());
     let most = MAX_SHARE_OF_WINDOW * ui.ctx().content_rect().height() - fixed;
     let rows = edited.tracks.len();
@@ -158,23 +158,6 @@ pub(crate) struct Take {
     pub(crate) backwards: bool,
 }
 
-/// What the timeline requests beyond changes of the project.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum TimelineRequest {
-    /// Run a command.
-    Run(Command),
-    /// Seek to a time, seconds.
-    Seek(f64),
-    /// Change the rate of playback.
-    Rate(f64),
-    /// Trim the clip to the in and out points.
-    Trim,
-    /// Remove the trim.
-    Untrim,
-    /// Pick a motion file.
-    PickMotion,
-}
-
 /// The parts of the project that the timeline edits.
 pub(crate) struct Edited<'a> {
     /// The frames of a recording, which are the in and out points.
@@ -197,12 +180,7 @@ fn fps(recording: &RecordingSection) -> f64 {
 }
 
 /// The row of buttons, and the ruler with its lanes.
-pub(crate) fn ui(
-    ui: &mut Ui,
-    view: &View,
-    zoom: &mut Zoom,
-    edited: &mut Edited<'_>,
-) -> Option<TimelineRequest> {
+pub(crate) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Command> {
     ui.spacing_mut().item_spacing.y = 2.0;
     let pressed = ui.horizontal(|ui| transport::ui(ui, view, fps(edited.recording))).inner;
     let sought = lanes::ui(ui, view, zoom, edited);

@@ -1,10 +1,10 @@
 //! The row of buttons: play, step, rate, record.
 
-use super::super::command::{Command, CommandInfo};
+use super::super::command::Command;
 use egui::{RichText, Ui, Vec2};
 use egui_material_icons::icons;
 
-use super::{Recorded, TimelineRequest, View};
+use super::{Recorded, View};
 use crate::window::control::HoverTooltip;
 use crate::window::theme;
 
@@ -15,7 +15,7 @@ const RATES: [(f64, &str); 6] =
 /// The longest name of the control that is recorded alone, characters.
 const LONGEST_NAME: usize = 24;
 
-pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> {
+pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<Command> {
     let mut request = None;
     let play = if view.playing { icons::ICON_PAUSE } else { icons::ICON_PLAY_ARROW };
     for (icon, command) in [
@@ -25,20 +25,20 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> 
         (icons::ICON_CHEVRON_RIGHT, Command::StepForward),
         (icons::ICON_SKIP_NEXT, Command::JumpToEnd),
     ] {
-        if button(ui, icon.into(), command.info()) {
-            request = Some(TimelineRequest::Run(command));
+        if button(ui, icon.into(), &command) {
+            request = Some(command);
         }
     }
-    if toggle(ui, view.looping, icons::ICON_REPEAT, Command::ToggleLoop.info()) {
-        request = Some(TimelineRequest::Run(Command::ToggleLoop));
+    if toggle(ui, view.looping, icons::ICON_REPEAT, &Command::ToggleLoop) {
+        request = Some(Command::ToggleLoop);
     }
     if let Some(take) = &view.take
-        && toggle(ui, take.backwards, icons::ICON_FAST_REWIND, Command::PlayBackwards.info())
+        && toggle(ui, take.backwards, icons::ICON_FAST_REWIND, &Command::PlayBackwards)
     {
-        request = Some(TimelineRequest::Run(Command::PlayBackwards));
+        request = Some(Command::PlayBackwards);
     }
-    if toggle(ui, view.writing.armed, icons::ICON_TIMELINE, Command::WriteTracks.info()) {
-        request = Some(TimelineRequest::Run(Command::WriteTracks));
+    if toggle(ui, view.writing.armed, icons::ICON_TIMELINE, &Command::WriteTracks) {
+        request = Some(Command::WriteTracks);
     }
     if let Some(only) = &view.writing.only {
         let name: String = only.chars().take(LONGEST_NAME).collect();
@@ -58,19 +58,18 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<TimelineRequest> 
         (Some(take), _) => {
             ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
                 .hover_tooltip("Body and hair move as recorded. Lights, look and camera can be changed.");
-            if button(ui, icons::ICON_CLOSE.into(), Command::LeaveTake.info()) {
-                request = Some(TimelineRequest::Run(Command::LeaveTake));
+            if button(ui, icons::ICON_CLOSE.into(), &Command::LeaveTake) {
+                request = Some(Command::LeaveTake);
             }
         }
         (None, recording) => {
             let running = recording.is_some();
             let icon = if running { icons::ICON_STOP } else { icons::ICON_FIBER_MANUAL_RECORD };
-            if button(ui, RichText::from(icon).color(theme::RECORDING), Command::RecordTake.info()) {
-                request = Some(TimelineRequest::Run(Command::RecordTake));
+            if button(ui, RichText::from(icon).color(theme::RECORDING), &Command::RecordTake) {
+                request = Some(Command::RecordTake);
             }
-            if !running && view.can_play_take && button(ui, "Play the take".into(), Command::PlayTake.info())
-            {
-                request = Some(TimelineRequest::Run(Command::PlayTake));
+            if !running && view.can_play_take && button(ui, "Play the take".into(), &Command::PlayTake) {
+                request = Some(Command::PlayTake);
             }
             if let Some(Recorded { secs, kept_secs, .. }) = recording {
                 ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
@@ -89,19 +88,24 @@ fn frame(secs: f64, fps: f64) -> String {
 }
 
 /// A button for a command, which screen readers announce by the command's name.
-fn button(ui: &mut Ui, icon: RichText, info: &CommandInfo) -> bool {
-    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).hover_tooltip(tip(info));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, info.label));
+fn button(ui: &mut Ui, icon: RichText, command: &Command) -> bool {
+    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).hover_tooltip(tip(command));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label(command)));
     response.clicked()
 }
 
-fn toggle(ui: &mut Ui, on: bool, icon: egui_material_icons::MaterialIcon, info: &CommandInfo) -> bool {
-    let response = ui.selectable_label(on, icon).hover_tooltip(tip(info));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, info.label));
+fn toggle(ui: &mut Ui, on: bool, icon: egui_material_icons::MaterialIcon, command: &Command) -> bool {
+    let response = ui.selectable_label(on, icon).hover_tooltip(tip(command));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, label(command)));
     response.clicked()
 }
 
-fn tip(info: &CommandInfo) -> String {
+fn label(command: &Command) -> &'static str {
+    command.info().map_or("", |info| info.label)
+}
+
+fn tip(command: &Command) -> String {
+    let Some(info) = command.info() else { return String::new() };
     if info.shortcuts.is_empty() {
         info.tooltip.to_owned()
     } else {
@@ -109,7 +113,7 @@ fn tip(info: &CommandInfo) -> String {
     }
 }
 
-fn rate(ui: &mut Ui, rate: f64) -> Option<TimelineRequest> {
+fn rate(ui: &mut Ui, rate: f64) -> Option<Command> {
     let mut chosen = rate;
     let name = RATES.iter().find(|(value, _)| *value == rate).map_or("other", |(_, name)| *name);
     let response = egui::ComboBox::from_id_salt("rate").width(64.0).selected_text(name).show_ui(ui, |ui| {
@@ -121,7 +125,7 @@ fn rate(ui: &mut Ui, rate: f64) -> Option<TimelineRequest> {
     response
         .response
         .hover_tooltip("Speed of playback: seconds of the dance per second. Hair slows down with it.");
-    (chosen != rate).then_some(TimelineRequest::Rate(chosen))
+    (chosen != rate).then_some(Command::SetRate(chosen))
 }
 
 #[cfg(test)]

@@ -126,15 +126,15 @@ impl Window {
             && project.hair.source == HairSource::File
             && let Some(file) = &project.hair.file
         {
-            self.up_question.look(&file.path, &project.hair.import, 0, &self.ctx);
+            self.files.up_question.look(&file.path, &project.hair.import, 0, &self.files.ctx);
         }
     }
 
     /// Asks which axis of the hair file points up, if that is in doubt. The answer is a part of the step that opened the file.
     pub(super) fn ask_up_axis(&mut self, ctx: &Context) {
-        self.up_question.poll(self.document.project(), ctx);
+        self.files.up_question.poll(self.document.project(), ctx);
         let Some(Asked { path, gesture, state: State::Asks { guess, percent, images, is_new } }) =
-            &mut self.up_question.0
+            &mut self.files.up_question.0
         else {
             return;
         };
@@ -182,7 +182,7 @@ impl Window {
             self.document.edit_in(*gesture, "file", project);
         }
         if chosen.is_some() || later || modal.should_close() {
-            self.up_question.0 = None;
+            self.files.up_question.0 = None;
         }
     }
 }

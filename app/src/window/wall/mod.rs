@@ -118,25 +118,32 @@ impl WallPage {
 }
 
 impl Window {
-    /// Shows the variants in place of the image.
-    pub(super) fn wall_page(&mut self, ui: &mut Ui, project: &mut Project) {
+    /// Shows the variants in place of the image. Returns what the toolbar asks for.
+    pub(super) fn wall_page(&mut self, ui: &mut Ui, project: &mut Project) -> Option<Command> {
         let ctx = ui.ctx().clone();
-        if self.wall.wall.is_none() {
+        let mut command = None;
+        if self.pages.wall.wall.is_none() {
             self.start_wall(&ctx);
         }
-        self.wall.update();
-        self.wall.rounds.follow(self.document.project(), &self.layout.wall);
+        self.pages.wall.update();
+        self.pages.wall.rounds.follow(self.document.project(), &self.layout.wall);
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let rounds = self.wall.wall.as_ref().and_then(|wall| wall.rounds().latest());
+            let rounds = self.pages.wall.wall.as_ref().and_then(|wall| wall.rounds().latest());
             let asked = Panel::top("wall bar")
                 .show(ui, |ui| {
-                    bar::ui(ui, &mut self.layout.wall, project, &self.wall.rounds, rounds.as_deref().copied())
+                    bar::ui(
+                        ui,
+                        &mut self.layout.wall,
+                        project,
+                        &self.pages.wall.rounds,
+                        rounds.as_deref().copied(),
+                    )
                 })
                 .inner;
             match asked {
-                Some(bar::Action::Again) => self.wall.rounds.again(&self.layout.wall),
-                Some(bar::Action::Back) => self.wall.rounds.back(),
-                Some(bar::Action::Close) => self.run(Command::Wall, &ctx),
+                Some(bar::Action::Again) => self.pages.wall.rounds.again(&self.layout.wall),
+                Some(bar::Action::Back) => self.pages.wall.rounds.back(),
+                Some(bar::Action::Close) => command = Some(Command::Show(Page::Wall)),
                 None => {}
             }
             let page = ui.available_rect_before_wrap();
@@ -145,12 +152,13 @@ impl Window {
             self.choose(choice.as_ref(), project);
             self.running(ui, page);
         });
+        command
     }
 
     fn start_wall(&mut self, ctx: &egui::Context) {
         let wake = ctx.clone();
         match Wall::start(self.display.device().clone(), move || images::wake(&wake)) {
-            Ok(wall) => self.wall.wall = Some(wall),
+            Ok(wall) => self.pages.wall.wall = Some(wall),
             Err(error) => {
                 self.layout.page = Page::Image;
                 self.fail(format!("the thread of the wall could not be started: {error}"));
@@ -169,7 +177,8 @@ impl Window {
                 let most = viewport::most_pixels(adapter.as_deref()).min(MAX_PIXELS.max(page.area()));
                 let each = most.min(MAX_PIXELS * if is_card(adapter.as_deref()) { 8.0 } else { 1.0 })
                     / Wall::CELLS as f32;
-                self.wall.wanted = viewport::size_for(place.size(), points, each, self.layout.view_scale);
+                self.pages.wall.wanted =
+                    viewport::size_for(place.size(), points, each, self.layout.view_scale);
             }
             let name =
                 if index == PRESENT { "Present style".to_owned() } else { format!("Variant {}", index + 1) };
@@ -189,7 +198,7 @@ impl Window {
     fn cell(&mut self, ui: &Ui, place: Rect, index: usize, response: &egui::Response) {
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
         let font = FontId::proportional(13.0);
-        let wall = &mut self.wall;
+        let wall = &mut self.pages.wall;
         let wanted = wall.rounds.variants().get(index);
         match wall.cells[index].as_ref() {
             Some(cell) => {
@@ -250,19 +259,21 @@ impl Window {
         let variant = |page: &WallPage, index: usize| page.rounds.variants().get(index).cloned();
         match choice {
             Some(&Choice::Adopt(index)) => {
-                self.wall.marked = None;
-                if let Some(variant) = variant(&self.wall, index).filter(|_| index != PRESENT) {
+                self.pages.wall.marked = None;
+                if let Some(variant) = variant(&self.pages.wall, index).filter(|_| index != PRESENT) {
                     adopt(project, &variant);
                 }
             }
-            Some(&Choice::Parent(index)) => match self.wall.marked.take() {
+            Some(&Choice::Parent(index)) => match self.pages.wall.marked.take() {
                 Some(first) if first == index => {}
                 Some(first) => {
-                    if let (Some(a), Some(b)) = (variant(&self.wall, first), variant(&self.wall, index)) {
-                        adopt(project, &breed(&a, &b, self.wall.rounds.next_seed()));
+                    if let (Some(a), Some(b)) =
+                        (variant(&self.pages.wall, first), variant(&self.pages.wall, index))
+                    {
+                        adopt(project, &breed(&a, &b, self.pages.wall.rounds.next_seed()));
                     }
                 }
-                None => self.wall.marked = Some(index),
+                None => self.pages.wall.marked = Some(index),
             },
             None => {}
         }
@@ -273,7 +284,7 @@ impl Window {
         let seen = self.seen();
         let access = self.session.access().clone();
         let playing = self.session.playing;
-        let page = &mut self.wall;
+        let page = &mut self.pages.wall;
         let (Some(wall), Some(frame)) = (&page.wall, self.session.frame.as_ref()) else { return };
         if page.wanted[0] == 0 || page.wanted[1] == 0 {
             return;

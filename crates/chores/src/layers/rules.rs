@@ -171,22 +171,7 @@ pub(crate) fn faults(graph: &Graph) -> Vec<String> {
 }
 
 /// Circles that stand, each with its crate, its modules and the reason.
-const CIRCLES: [(&str, &[&str], &str); 10] = [
-    (
-        "app",
-        &["cli", "window"],
-        "the command line opens the window, which applies the assignments of `--set`",
-    ),
-    (
-        "app",
-        &["window::brushes", "window::overlay"],
-        "the circle of a brush is an overlay, and painting a mask finds the hair that brushes find",
-    ),
-    (
-        "app",
-        &["window::control", "window::focus", "window::keys", "window::manual", "window::picker"],
-        "controls have keys and places in the manual, whose window has controls",
-    ),
+const CIRCLES: [(&str, &[&str], &str); 7] = [
     ("gpu", &["device", "shader"], "a device compiles shaders, whose faults are device errors"),
     ("jobs", &["record::curves", "record::request"], "a request says which curves it exports"),
     (

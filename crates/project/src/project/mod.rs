@@ -32,7 +32,9 @@ pub use sections::{
 
 pub use sound::SoundSection;
 
-pub use settings::{all_settings, settings_json, settings_of, settings_page, settings_table, settings_text};
+pub use settings::{
+    Assignment, all_settings, settings_json, settings_of, settings_page, settings_table, settings_text,
+};
 
 use lovelock_groom::{Facing, GroomSettings, HairLook, Preset, UpAxis};
 use lovelock_motion::LoopBlend;

@@ -7,8 +7,44 @@ use lovelock_groom::HairTie;
 use serde_json::json;
 
 use super::super::Project;
+use crate::error::ProjectError;
+
+/// A setting with a new value, as `--set` names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The path of the setting.
+    pub name: String,
+    /// The new value as text.
+    pub value: String,
+}
+
+/// The sections that a take has recorded.
+const RECORDED: [&str; 4] = ["body", "motion", "hair", "simulation"];
 
 impl Project {
+    /// Changes settings.
+    ///
+    /// # Errors
+    /// A name without a setting, a value that it does not take, or a setting of something that a take has recorded.
+    pub fn assign(&mut self, set: &[Assignment]) -> Result<(), ProjectError> {
+        for Assignment { name, value } in set {
+            let section = name.split('.').next().unwrap_or_default();
+            let free = self.plays_curves()
+                && (["body", "motion"].contains(&section) || name.starts_with("hair.import."));
+            if self.take.file.is_some() && RECORDED.contains(&section) && !free {
+                let message = format!(
+                    "--set {name}: a take plays as recorded; must be a setting outside the section {section}"
+                );
+                return Err(ProjectError::option(message));
+            }
+            self.set(name, value).map_err(|error| ProjectError::option(format!("--set {error}")))?;
+        }
+        if !set.is_empty() {
+            *self = self.clamped();
+        }
+        Ok(())
+    }
+
     /// What the setting at `path` is, and its value. Paths are those of the project file with dots, such as `simulation.wind.speed`
     /// or `lights.0.intensity`.
     pub fn setting(&self, path: &str) -> Option<(&'static Info, Value)> {

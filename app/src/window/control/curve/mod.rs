@@ -13,7 +13,7 @@ pub(crate) use model::CurveModel;
 
 use super::number::Limits;
 use crate::window::control::HoverTooltip;
-use crate::window::{keys, theme};
+use crate::window::{key_press, theme};
 
 /// Height of the curve, points, and the margin around it for the handles.
 const HEIGHT: f32 = 74.0;
@@ -217,7 +217,7 @@ impl Curve<'_> {
             }
             let none = egui::Modifiers::NONE;
             let removing = [Key::Delete, Key::Backspace];
-            if can_go && removing.into_iter().any(|key| keys::consume(ui.ctx(), none, key)) {
+            if can_go && removing.into_iter().any(|key| key_press::consume(ui.ctx(), none, key)) {
                 removes = Some(true);
             }
         }

@@ -6,16 +6,16 @@ use lovelock_style::StyleStack;
 use super::LayersView;
 use super::list::Row;
 use super::picked::{duplicate, remove};
-use crate::window::keys;
+use crate::window::key_press;
 
 /// Carries out the keys that were pressed while the list has them.
 pub(super) fn run(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView) {
     // Delete at a point of a curve, or an arrow key at a slider, is meant for that control.
-    let taken = ui.ctx().egui_wants_keyboard_input() || crate::window::keys::are_held(ui.ctx());
+    let taken = ui.ctx().egui_wants_keyboard_input() || crate::window::key_press::are_held(ui.ctx());
     if !view.has_keys || !ui.is_enabled() || taken || view.renamed.is_some() {
         return;
     }
-    let pressed = |modifiers: Modifiers, key: Key| keys::consume(ui.ctx(), modifiers, key);
+    let pressed = |modifiers: Modifiers, key: Key| key_press::consume(ui.ctx(), modifiers, key);
     if pressed(Modifiers::COMMAND, Key::D) {
         duplicate(stack, view);
     }

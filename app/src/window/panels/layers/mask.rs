@@ -5,11 +5,13 @@ use egui_material_icons::icons::{ICON_BRUSH, ICON_CLOSE, ICON_VISIBILITY};
 use lovelock_style::{Mask, MaskBrush, MaskPart, MaskRegion};
 
 use super::LayersView;
+use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
 use crate::window::control::{note, settings};
 use crate::window::pointer_tool::PointerTool;
 
-pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView, pointer: &mut PointerTool) {
+pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView, tool: PointerTool) -> Option<Command> {
+    let mut clicked = false;
     ui.horizontal(|ui| {
         let mut toggle = |icon: egui_material_icons::MaterialIcon, name: &str, on: bool, tip: &str| {
             let response = ui.add(egui::Button::selectable(on, (icon.rich_text(), name)));
@@ -22,16 +24,13 @@ pub(super) fn ui(ui: &mut Ui, mask: &mut Mask, view: &mut LayersView, pointer: &
         }
         let tip = "Paints the mask in the image: drag over the head. Ctrl erases, Shift smooths, [ and ] change the radius. Key: \
                    Shift+K";
-        if toggle(ICON_BRUSH, "Paint", *pointer == PointerTool::Mask, tip) {
-            pointer.toggle(PointerTool::Mask);
-            // The mask is shown while it is painted.
-            view.show_mask |= *pointer == PointerTool::Mask;
-        }
+        clicked = toggle(ICON_BRUSH, "Paint", tool == PointerTool::Mask, tip);
     });
-    if *pointer == PointerTool::Mask {
+    if tool == PointerTool::Mask {
         painting(ui, mask, view);
     }
     parts(ui, mask);
+    clicked.then_some(Command::Use(PointerTool::Mask))
 }
 
 /// The brush, and what changes the painted mask as a whole.

@@ -11,12 +11,16 @@ mod thumbnail;
 use std::collections::BTreeSet;
 
 use egui::Ui;
+use lovelock_project::Project;
 use lovelock_style::{Layer, Mask, MaskBrush, Operation, StyleStack};
 
 use super::pigments::pigments;
+use crate::window::command::Command;
 use crate::window::control::{all_settings, curve, note, section, settings};
+use crate::window::panel::Panel;
 use crate::window::picker::Picker;
 use crate::window::pointer_tool::PointerTool;
+use crate::window::readings::Readings;
 use list::Row;
 use thumbnail::Thumbnails;
 
@@ -97,8 +101,27 @@ impl LayersView {
     }
 }
 
+impl Panel for LayersView {
+    fn title(&self) -> &'static str {
+        "Layers"
+    }
+
+    fn opens(&self, _project: &Project, _readings: &Readings<'_>) -> bool {
+        self.is_revealed()
+    }
+
+    fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
+        stack_of_layers(ui, &mut project.hair.stack, self, readings.tool)
+    }
+}
+
 /// The list of layers and the controls of the one that is selected.
-pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView, pointer: &mut PointerTool) {
+fn stack_of_layers(
+    ui: &mut Ui,
+    stack: &mut StyleStack,
+    view: &mut LayersView,
+    tool: PointerTool,
+) -> Option<Command> {
     if view.revealed > 0 {
         view.revealed -= 1;
         ui.scroll_to_cursor(Some(egui::Align::TOP));
@@ -107,23 +130,22 @@ pub(crate) fn ui(ui: &mut Ui, stack: &mut StyleStack, view: &mut LayersView, poi
     add::menu(ui, stack, view);
     if stack.layers.is_empty() {
         note(ui, "No layers. A layer changes the hair, everywhere or within its mask.");
-        return;
+        return None;
     }
     keyboard::run(ui, stack, view);
     list::show(ui, stack, view);
     view.follow(stack);
     let Some(id) = view.selected else {
         note(ui, "Click a layer to edit it.");
-        return;
+        return None;
     };
-    if let Some(layer) = stack.layer_mut(id) {
-        ui.separator();
-        ui.push_id(id, |ui| controls(ui, layer, view, pointer));
-    }
+    let layer = stack.layer_mut(id)?;
+    ui.separator();
+    ui.push_id(id, |ui| controls(ui, layer, view, tool)).inner
 }
 
 /// The controls of one layer.
-fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView, pointer: &mut PointerTool) {
+fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView, tool: PointerTool) -> Option<Command> {
     let fresh = Operation::new(layer.operation.id());
     match (layer.operation.known_mut(), fresh.as_ref().and_then(Operation::known)) {
         (Some(operation), Some(default)) => {
@@ -144,6 +166,6 @@ fn controls(ui: &mut Ui, layer: &mut Layer, view: &mut LayersView, pointer: &mut
         let tip = "Strength of the layer from the root to the tip.";
         curve(ui, "Strength along the hair", tip, &mut layer.ramp, &default.ramp);
     });
-    let open = *pointer == PointerTool::Mask || view.show_mask;
-    section(ui, "Mask", open, |ui| mask::ui(ui, &mut layer.mask, view, pointer));
+    let open = tool == PointerTool::Mask || view.show_mask;
+    section(ui, "Mask", open, |ui| mask::ui(ui, &mut layer.mask, view, tool)).flatten()
 }

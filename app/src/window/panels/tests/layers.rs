@@ -42,7 +42,7 @@ fn names(harness: &Panel) -> Vec<String> {
 }
 
 fn selected(harness: &Panel) -> Option<&str> {
-    let id = harness.state().state.layers.selected?;
+    let id = harness.state().state.panels.layers.selected?;
     stack(harness).layer(id).map(|layer| layer.operation.id())
 }
 
@@ -84,7 +84,7 @@ fn a_layer_is_added_from_the_menu_and_selected() {
         click_at(&mut harness, found);
     }
     assert_eq!(kinds(&harness), ["curl"]);
-    assert_eq!(harness.state().state.layers.selected, Some(stack(&harness).layers[0].id));
+    assert_eq!(harness.state().state.panels.layers.selected, Some(stack(&harness).layers[0].id));
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Pitch").is_some(), "its controls are shown");
 }
 
@@ -389,7 +389,7 @@ fn the_mask_is_shown_and_filled() {
     let mut harness = with_layers();
     click(&mut harness, "Curl");
     unfold(&mut harness);
-    let shown = |harness: &Panel| harness.state().state.layers.shown_mask(stack(harness)).cloned();
+    let shown = |harness: &Panel| harness.state().state.panels.layers.shown_mask(stack(harness)).cloned();
     assert_eq!(shown(&harness), None);
     click(&mut harness, "Show mask");
     assert_eq!(shown(&harness), Some(stack(&harness).layers[2].mask.clone()));
@@ -397,7 +397,7 @@ fn the_mask_is_shown_and_filled() {
     assert_eq!(shown(&harness), None);
     click(&mut harness, "Paint");
     assert!(
-        harness.state().state.pointer_tool == PointerTool::Mask && shown(&harness).is_some(),
+        harness.state().state.tool == PointerTool::Mask && shown(&harness).is_some(),
         "painting shows it"
     );
     click(&mut harness, "Fill");

@@ -11,14 +11,14 @@ mod ties;
 mod undo;
 mod untouched;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use egui::Ui;
 use egui_kittest::Harness;
 use glam::Vec3;
 use lovelock_appearance::environment::Panorama;
 use lovelock_groom::{HairShading, HairTie, Preset, TieKind, TieReach};
-use lovelock_motion::ColliderEdit;
+use lovelock_motion::{ColliderEdit, ColliderEdits};
 use lovelock_project::Project;
 use lovelock_project::project::HairSource;
 use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PassTime, StrandCount, VoxelDeposit};
@@ -27,36 +27,34 @@ use lovelock_sound::Sound;
 use lovelock_style::operations::{Curl, Lift, Wave};
 use lovelock_style::{Layer, Mask, MaskPart, MaskRegion, Operation};
 
-use super::recording::State;
+use crate::window::command::Command;
 use crate::window::control::section;
-use crate::window::overlay::scalp::ScalpTool;
 use crate::window::pointer_tool::PointerTool;
+use crate::window::readings::{Fact, LoadedBody, LoadedHair, LoadedSurroundings, Readings};
+use crate::window::recorder::State;
+use crate::window::side_panels::Panels;
 use crate::window::soundtrack::Loaded;
 use crate::window::testing::{Shown, screen, unfold};
 
-/// A project and the other data that the panels show.
-#[derive(Clone)]
-pub(super) struct Bench {
-    pub(super) project: Project,
-    pub(super) selected_light: usize,
-    pub(super) hair: super::hair::LoadedHair,
-    pub(super) body: super::body::LoadedBody,
-    pub(super) surroundings: super::surroundings::LoadedSurroundings,
-    pub(super) sound: Arc<Loaded>,
-    pub(super) stages: StageHistory,
-    pub(super) passes: PassHistory,
-    pub(super) clip_frames: u64,
-    pub(super) colliders: super::colliders::Shown,
-    pub(super) selected_tie: usize,
-    pub(super) layers: super::layers::LayersView,
-    pub(super) pointer_tool: PointerTool,
-    pub(super) scalp: ScalpTool,
-    pub(super) styles: crate::window::styles::Browser,
-    pub(super) kept: crate::window::styles::Kept,
+/// A project, the panels, and what they show besides the project.
+pub(crate) struct Bench {
+    pub(crate) project: Project,
+    pub(crate) panels: Panels,
+    pub(crate) tool: PointerTool,
+    pub(crate) hair: LoadedHair,
+    pub(crate) body: LoadedBody,
+    pub(crate) surroundings: LoadedSurroundings,
+    pub(crate) sound: Arc<Loaded>,
+    pub(crate) stages: StageHistory,
+    pub(crate) passes: PassHistory,
+    pub(crate) recording: State,
+    pub(crate) clip_frames: u64,
+    /// What the panels have asked for.
+    pub(crate) asked: Vec<Command>,
 }
 
 impl Bench {
-    pub(super) fn new(project: Project) -> Self {
+    pub(crate) fn new(project: Project) -> Self {
         let mut stages = StageHistory::new(8);
         stages.push(StageTimes { draw: 3.25, ..StageTimes::default() });
         let mut passes = PassHistory::new(8);
@@ -70,35 +68,75 @@ impl Bench {
         ]);
         Self {
             project,
-            selected_light: 0,
-            hair: super::hair::LoadedHair {
+            panels: Panels::default(),
+            tool: PointerTool::default(),
+            hair: LoadedHair {
                 counts: [134, 3350, 100_500],
                 size_m: [0.2, 0.4, 0.3],
                 notes: vec!["A note on the hair that is long enough to need a second line.".to_owned()],
             },
-            body: super::body::LoadedBody {
+            body: LoadedBody {
                 clips: vec!["dance".to_owned(), "walk".to_owned()],
                 clip: "dance".to_owned(),
                 joints: vec!["hips".to_owned(), "hips/spine/neck/head".to_owned()],
                 head: "hips/spine/neck/head".to_owned(),
                 notes: Vec::new(),
             },
-            surroundings: super::surroundings::LoadedSurroundings {
+            surroundings: LoadedSurroundings {
                 picture: Some(surroundings()),
                 notes: vec!["3 pixels negative: set to 0".to_owned()],
             },
             sound: Arc::new(clicks()),
             stages,
             passes,
+            recording: State::Idle,
             clip_frames: 480,
-            colliders: super::colliders::Shown::default(),
-            selected_tie: 0,
-            layers: super::layers::LayersView::default(),
-            pointer_tool: PointerTool::default(),
-            scalp: ScalpTool::default(),
-            styles: crate::window::styles::Browser::default(),
-            kept: crate::window::styles::Kept::default(),
+            asked: Vec::new(),
         }
+    }
+
+    /// Shows the panel of that title, and takes up the tool that it asks for, as the window does.
+    pub(crate) fn show(&mut self, ui: &mut Ui, title: &str) {
+        let fact = |name, tip, value: &str| Fact { name, tip, value: value.to_owned() };
+        let facts = || {
+            let kept = fact("Undo steps", "Projects that undo returns to.", "1.5 of 256 MiB");
+            [vec![fact("Picture", "Size of the picture.", "1280 × 720")], vec![kept]]
+        };
+        // The skin replaces the skull's shape until that shape is edited.
+        let is_replaced = |edits: &ColliderEdits, at: usize| {
+            at == 2 && edits.of("skull").scale == 1.0 && edits.field.enabled
+        };
+        let readings = Readings {
+            tool: self.tool,
+            problems: &[],
+            hair: &self.hair,
+            body: &self.body,
+            surroundings: &self.surroundings,
+            take_notes: &[],
+            scalp: None,
+            has_skull: true,
+            colliders: vec!["neck", "upper arm left of a rather long name", "skull"],
+            is_replaced: &is_replaced,
+            frame: None,
+            shadow_bytes: Some(1 << 21),
+            stages: &self.stages,
+            passes: &self.passes,
+            facts: &facts,
+            pane: None,
+            marked_gauge: None,
+            sound: Some(&self.sound),
+            sound_problem: None,
+            duration_secs: 8.0,
+            recording: &self.recording,
+            film_frames: self.clip_frames,
+        };
+        let panel = self.panels.by_title(title).expect("a panel of that title");
+        let asked = panel.ui(ui, &mut self.project, &readings);
+        if let Some(Command::Use(tool)) = asked {
+            self.tool.toggle(tool);
+            self.panels.layers.show_mask |= self.tool == PointerTool::Mask;
+        }
+        self.asked.extend(asked);
     }
 }
 
@@ -115,80 +153,21 @@ pub(crate) fn clicks() -> Loaded {
     Loaded::of(Sound::new((0..8 * 48_000).map(value).collect(), 1), None)
 }
 
-pub(super) type Show = fn(&mut Ui, &mut Bench);
-
-/// Every panel, inside a section as in the window.
-pub(super) const PANELS: [(&str, Show); 14] = [
-    ("Hairstyle", |ui, b| {
-        crate::window::styles::ui(ui, &mut b.project, &mut b.styles, &mut b.kept);
-        super::hair::ui(ui, &mut b.project, &b.hair);
-    }),
-    ("Simulation", |ui, b| {
-        super::simulation::ui(
-            ui,
-            &mut b.project.simulation,
-            &b.project.hair.simulation(),
-            &mut b.project.timeline,
-            [Vec3::X, Vec3::Y, Vec3::Z],
-        );
-    }),
-    ("Body and motion", |ui, b| {
-        super::body::ui(ui, &mut b.project, &b.body);
-    }),
-    ("Scalp", |ui, b| {
-        super::scalp::ui(ui, &mut b.project.body.scalp, (&mut b.scalp, &mut b.pointer_tool), true);
-    }),
-    ("Colliders", |ui, b| {
-        let edits = &mut b.project.body.colliders;
-        // The skin replaces the skull's shape until that shape is edited.
-        let skull = edits.of("skull").scale == 1.0 && edits.field.enabled;
-        let shapes = [("neck", false), ("upper arm left of a rather long name", false), ("skull", skull)];
-        let fitted = shapes.map(|(name, spared)| super::colliders::Fitted { name, spared });
-        super::colliders::ui(ui, edits, &fitted, &mut b.colliders);
-    }),
-    ("Layers", |ui, b| {
-        super::layers::ui(ui, &mut b.project.hair.stack, &mut b.layers, &mut b.pointer_tool);
-    }),
-    ("Ties and scissors", |ui, b| {
-        super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
-        super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.pointer_tool);
-    }),
-    ("Shadow", |ui, b| {
-        let default = b.project.hair.groom.look;
-        super::shadow::ui(ui, &mut b.project.shadow, (&mut b.project.look, &default), Some(1 << 21), false);
-    }),
-    ("Light", |ui, b| {
-        super::light::ui(ui, &mut b.project.lights, &mut b.selected_light, [Vec3::X, Vec3::Y, Vec3::Z]);
-        super::surroundings::ui(ui, &mut b.project, &b.surroundings);
-    }),
-    ("Look", |ui, b| {
-        let default = b.project.hair.groom.look;
-        super::look::hair(ui, &mut b.project.look, &default, &mut b.project.picture, false);
-    }),
-    ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture, false)),
-    ("Sound", |ui, b| {
-        super::sound::ui(ui, &mut b.project, Some(&b.sound), 8.0);
-    }),
-    ("Recording", |ui, b| {
-        super::recording::ui(ui, &mut b.project.recording, &State::Idle, b.clip_frames);
-    }),
-    ("Statistics", |ui, b| {
-        let (name, tip, value) = ("Picture", "Size of the picture.", "1280 × 720".to_owned());
-        let kept = super::statistics::Fact {
-            name: "Undo steps",
-            tip: "Projects that undo returns to.",
-            value: "1.5 of 256 MiB".to_owned(),
-        };
-        let facts = [super::statistics::Fact { name, tip, value }];
-        super::statistics::ui(ui, &b.stages, &b.passes, [&facts, &[kept]]);
-    }),
-];
+/// The titles of all panels. That of curves is shown only with curves that play.
+pub(super) fn titles() -> impl Iterator<Item = &'static str> {
+    static TITLES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+        let (mut panels, project) = (Panels::default(), Project::default());
+        let left = panels.left().map(|panel| (panel.is_shown(&project), panel.title()));
+        let right = panels.right().map(|panel| (panel.is_shown(&project), panel.title()));
+        left.into_iter().chain(right).filter(|(is_shown, _)| *is_shown).map(|(_, title)| title).collect()
+    });
+    TITLES.iter().copied()
+}
 
 /// A panel with all its sections open.
 pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, Shown<Bench>> {
-    let show = PANELS.iter().find(|(name, _)| *name == title).expect("a panel of that title").1;
     let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| {
-        section(ui, title, true, |ui| show(ui, bench));
+        section(ui, title, true, |ui| bench.show(ui, title));
     });
     unfold(&mut harness);
     harness

@@ -11,9 +11,10 @@ use lovelock_session::stats::Stage;
 use lovelock_simulation::SimulationSettings;
 
 use super::{Bench, panel};
-use crate::window::panels::{body, hair};
+use crate::window::command::Command;
 use crate::window::pointer_tool::PointerTool;
-use crate::window::testing::{Shown, control, drag, is_on, screen, texts, tooltip_at, type_at};
+use crate::window::purpose::Purpose;
+use crate::window::testing::{Shown, control, drag, is_on, texts, tooltip_at, type_at};
 
 /// Chooses an entry of a combo box.
 pub(super) fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, entry: &str) {
@@ -48,63 +49,56 @@ fn presets_are_applied_with_their_colours() {
 
 #[test]
 fn a_hair_file_is_requested_only_if_there_is_none() {
-    let state = (Project::default(), None);
-    let mut harness = screen(state, |ui, (project, asked)| {
-        *asked = hair::ui(ui, project, &hair::LoadedHair::default()).or(*asked);
-    });
+    let mut harness = panel("Hairstyle", Project::default());
     harness.get_by_label("From file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(hair::HairRequest::PickFile));
+    assert_eq!(harness.state().state.asked, [Command::PickFile(Purpose::Open)]);
     let mut project = Project::default();
     project.set_hair_file("/x.hair");
     project.hair.source = HairSource::Grown;
-    harness.state_mut().state = (project, None);
+    harness.state_mut().state = Bench::new(project);
     harness.run();
     harness.get_by_label("From file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, None);
-    assert_eq!(harness.state().state.0.hair.source, HairSource::File);
+    assert_eq!(harness.state().state.asked, []);
+    assert_eq!(harness.state().state.project.hair.source, HairSource::File);
     choose(&mut harness, "Unit", "Inches");
-    assert_eq!(harness.state().state.0.hair.import.unit, Unit::Inch);
-    harness.state_mut().state.0.hair.import.unit = Unit::Custom(0.5);
+    assert_eq!(harness.state().state.project.hair.import.unit, Unit::Inch);
+    harness.state_mut().state.project.hair.import.unit = Unit::Custom(0.5);
     harness.run();
     assert_eq!(control(&harness, Role::ComboBox, "Unit").value().as_deref(), Some("0.5 m"), "not left empty");
 }
 
 #[test]
 fn body_clip_file_and_head_joint_are_chosen() {
-    let state = (Project::default(), None);
-    let loaded = body::LoadedBody {
-        clips: vec!["dance".to_owned(), "walk".to_owned()],
-        clip: "dance".to_owned(),
-        joints: vec!["hips".to_owned(), "hips/head".to_owned()],
-        head: "hips/head".to_owned(),
-        notes: vec!["one note".to_owned()],
-    };
-    let mut harness =
-        screen(state, move |ui, (project, asked)| *asked = body::ui(ui, project, &loaded).or(*asked));
+    let mut harness = panel("Body and motion", Project::default());
+    let body = &mut harness.state_mut().state.body;
+    body.joints = vec!["hips".to_owned(), "hips/head".to_owned()];
+    body.head = "hips/head".to_owned();
+    body.notes = vec!["one note".to_owned()];
+    harness.run();
     assert!(harness.query_by_label("one note").is_some());
     harness.get_by_label("walk").click();
     harness.run();
-    assert_eq!(harness.state().state.0.motion.clip, "walk");
+    assert_eq!(harness.state().state.project.motion.clip, "walk");
     harness.get_by_label("Rest").click();
     harness.run();
-    assert_eq!(harness.state().state.0.motion.source, MotionSource::Rest);
+    assert_eq!(harness.state().state.project.motion.source, MotionSource::Rest);
     harness.get_by_label("Motion file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(body::BodyRequest::PickMotion));
+    assert_eq!(harness.state().state.asked, [Command::PickFile(Purpose::Motion)]);
     harness.get_by_label("Character file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(body::BodyRequest::PickBody));
-    assert_eq!(harness.state().state.0.body.source, BodySource::Dancer, "no file yet");
+    assert_eq!(harness.state().state.asked.last(), Some(&Command::PickFile(Purpose::Body)));
+    assert_eq!(harness.state().state.project.body.source, BodySource::Dancer, "no file yet");
     choose(&mut harness, "Head joint", "hips");
-    assert_eq!(harness.state().state.0.body.head_joint.as_deref(), Some("hips"));
+    assert_eq!(harness.state().state.project.body.head_joint.as_deref(), Some("hips"));
     choose(&mut harness, "Head joint", "Guess");
-    assert_eq!(harness.state().state.0.body.head_joint, None);
+    assert_eq!(harness.state().state.project.body.head_joint, None);
     let on = is_on(&control(&harness, Role::CheckBox, "Loop"));
     control(&harness, Role::CheckBox, "Loop").click();
     harness.run();
-    assert_eq!(harness.state().state.0.motion.looping, !on);
+    assert_eq!(harness.state().state.project.motion.looping, !on);
     assert!(harness.query_by_label("Loop blend").is_none(), "it says nothing where nothing loops");
 }
 
@@ -195,7 +189,7 @@ fn colliders_are_edited_by_name_and_restored() {
     assert!(is_on(&control(&harness, Role::CheckBox, "Enabled")), "the other one is as it was");
     control(&harness, Role::CheckBox, "Show").click();
     harness.run();
-    assert!(harness.state().state.colliders.on);
+    assert!(harness.state().state.panels.colliders.on);
     assert_eq!(harness.state().state.project.body.colliders, edits, "to look is no change");
     control(&harness, Role::Button, "Colliders").click();
     harness.run();
@@ -229,7 +223,7 @@ fn ties_are_added_chosen_and_removed() {
     assert_eq!(kinds(&harness).len(), HairTie::MAX);
     harness.get_by_label("Scissors").click();
     harness.run();
-    assert_eq!(harness.state().state.pointer_tool, PointerTool::Scissors);
+    assert_eq!(harness.state().state.tool, PointerTool::Scissors);
     harness.state_mut().state.project.hair.cut.kept = vec![0.5];
     harness.run();
     control(&harness, Role::Button, "Grow back").click();
@@ -262,7 +256,7 @@ fn lights_are_added_and_removed() {
     }
     let bench = &harness.state().state;
     assert_eq!(bench.project.lights.len(), MAX_LIGHTS);
-    assert!(MAX_LIGHTS > few && bench.selected_light == MAX_LIGHTS - 1, "the new one is selected");
+    assert!(MAX_LIGHTS > few && bench.panels.light.selected == MAX_LIGHTS - 1, "the new one is selected");
     for left in (0..MAX_LIGHTS).rev() {
         harness.get_by_label("Remove").click();
         harness.run();

@@ -3,14 +3,14 @@
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use lovelock_project::Project;
-use lovelock_project::project::RecordingSection;
 use lovelock_record::SequenceFormat;
 
 use super::one_by_one::choose;
 use super::panel;
-use crate::window::panels::recording;
-use crate::window::panels::recording::{RecordingRequest, State};
-use crate::window::testing::{control, screen, type_at};
+use crate::window::command::Command;
+use crate::window::purpose::Purpose;
+use crate::window::recorder::State;
+use crate::window::testing::{control, type_at};
 
 #[test]
 fn the_frame_range_is_never_empty() {
@@ -65,23 +65,19 @@ fn a_size_outside_the_list_is_shown() {
 
 #[test]
 fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
-    let state = (State::Idle, None);
-    let mut harness = screen(state, |ui, (state, asked)| {
-        let mut section = RecordingSection::default();
-        *asked = recording::ui(ui, &mut section, state, 480).or(*asked);
-    });
+    let mut harness = panel("Recording", Project::default());
     for (button, ask) in [
-        ("Record film…", RecordingRequest::Film),
-        ("Images…", RecordingRequest::Sequence),
-        ("Preview…", RecordingRequest::Preview),
-        ("Resume…", RecordingRequest::Resume),
+        ("Record film…", Purpose::Film),
+        ("Images…", Purpose::Sequence),
+        ("Preview…", Purpose::Preview),
+        ("Resume…", Purpose::Resume),
     ] {
         harness.get_by_label(button).click();
         harness.run();
-        assert_eq!(harness.state().state.1, Some(ask));
+        assert_eq!(harness.state().state.asked.last(), Some(&Command::PickFile(ask)));
     }
     let running = State::Running { what: "Frame".to_owned(), done: 12, total: 48, left_secs: Some(30.0) };
-    harness.state_mut().state = (running, None);
+    harness.state_mut().state.recording = running;
     // The progress bar animates, so the harness never comes to rest.
     harness.run_steps(3);
     assert!(harness.query_by_label("Record film…").is_none(), "one at a time");
@@ -89,13 +85,13 @@ fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
     assert!(format!("{bar:?}").contains("25"), "a quarter is done: {bar:?}");
     harness.get_by_label("Cancel").click();
     harness.run_steps(5);
-    assert_eq!(harness.state().state.1, Some(RecordingRequest::Cancel));
+    assert_eq!(harness.state().state.asked.last(), Some(&Command::Record));
     for (state, text) in [
         (State::Done { what: "48 frames in a b.mp4".to_owned(), out: "a b.mp4".into() }, "48 frames"),
         (State::Failed("out.mp4: the disk is full".to_owned()), "disk is full"),
         (State::Cancelled("Recording cancelled.".to_owned()), "cancelled"),
     ] {
-        harness.state_mut().state = (state, None);
+        harness.state_mut().state.recording = state;
         harness.run();
         assert!(harness.query_by_label_contains(text).is_some(), "{text}");
     }

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use lovelock_project::Project;
 use lovelock_project::project::settings_of;
 
-use super::{Bench, PANELS};
+use super::{Bench, titles};
 use crate::window::control::{self, section};
 use crate::window::testing::{Shown, screen_of};
 
@@ -15,8 +15,8 @@ fn panels() -> Harness<'static, Shown<(Bench, Vec<&'static str>)>> {
     let state = (Bench::new(Project::default()), Vec::new());
     screen_of(vec2(300.0, 500.0), state, |ui, (bench, missing): &mut (Bench, Vec<&'static str>)| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (title, show) in PANELS {
-                section(ui, title, false, |ui| show(ui, bench));
+            for title in titles() {
+                section(ui, title, false, |ui| bench.show(ui, title));
             }
         });
         missing.extend(control::end_reveal(ui.ctx()).map(|info| info.name));

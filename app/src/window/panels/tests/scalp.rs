@@ -12,16 +12,16 @@ use crate::window::testing::{control, type_at};
 #[test]
 fn the_scalp_is_shown_corrected_and_fitted_again() {
     let mut harness = panel("Scalp", Project::default());
-    assert!(!harness.state().state.scalp.shown);
+    assert!(!harness.state().state.panels.scalp.tool.shown);
     control(&harness, Role::CheckBox, "Paint scalp").click();
     harness.run();
     let bench = &harness.state().state;
-    assert!(bench.scalp.shown && bench.pointer_tool == PointerTool::Scalp, "what is painted is shown");
+    assert!(bench.panels.scalp.tool.shown && bench.tool == PointerTool::Scalp, "what is painted is shown");
     assert!(harness.query_all_by_label("Brush").next().is_some());
     control(&harness, Role::CheckBox, "Show scalp").click();
     harness.run();
     let bench = &harness.state().state;
-    assert!(!bench.scalp.shown && bench.pointer_tool == PointerTool::Camera, "{:?}", bench.pointer_tool);
+    assert!(!bench.panels.scalp.tool.shown && bench.tool == PointerTool::Camera, "{:?}", bench.tool);
     let at = control(&harness, Role::SpinButton, "Temples").rect().center();
     type_at(&mut harness, at, "10");
     let fit = harness.state().state.project.body.scalp.clone();

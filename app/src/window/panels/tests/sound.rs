@@ -5,9 +5,10 @@ use egui_kittest::kittest::Queryable;
 use lovelock_project::Project;
 use lovelock_project::project::TimelineSection;
 
-use super::{Bench, clicks, panel};
-use crate::window::panels::sound::{SoundRequest, ui};
-use crate::window::testing::{Shown, control, screen};
+use super::{Bench, panel};
+use crate::window::command::Command;
+use crate::window::purpose::Purpose;
+use crate::window::testing::{Shown, control};
 
 fn heard() -> Project {
     let mut project = Project::default();
@@ -17,23 +18,19 @@ fn heard() -> Project {
 
 #[test]
 fn a_sound_is_requested_named_muted_and_removed() {
-    let loaded = clicks();
-    let state = (heard(), None);
-    let mut harness = screen(state, move |place, (project, asked)| {
-        *asked = ui(place, project, Some(&loaded), 8.0).or(*asked);
-    });
+    let mut harness = panel("Sound", heard());
     for shown in ["dance.ogg", "0:08.0, 120.0 beats per minute"] {
         assert!(harness.query_by_label(shown).is_some(), "{shown}");
     }
     control(&harness, Role::Button, "Sound file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(SoundRequest::PickFile));
+    assert_eq!(harness.state().state.asked, [Command::PickFile(Purpose::Sound)]);
     control(&harness, Role::CheckBox, "Mute").click();
     harness.run();
-    assert!(harness.state().state.0.sound.muted);
+    assert!(harness.state().state.project.sound.muted);
     control(&harness, Role::Button, "Remove sound").click();
     harness.run();
-    assert_eq!(harness.state().state.0.sound.file, None);
+    assert_eq!(harness.state().state.project.sound.file, None);
     assert!(harness.query_by_label("Silence").is_some());
     for gone in ["Remove sound", "Markers at the beats"] {
         assert!(harness.query_by_label(gone).is_none(), "{gone} is about the sound");

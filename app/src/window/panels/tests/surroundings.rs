@@ -9,9 +9,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec3;
 use lovelock_project::Project;
 
-use super::{Bench, panel, surroundings};
-use crate::window::panels::surroundings::{LoadedSurroundings, SurroundingsRequest, ui};
-use crate::window::testing::{Shown, control, double_click, drag, screen, tooltip_at};
+use super::{Bench, panel};
+use crate::window::command::Command;
+use crate::window::purpose::Purpose;
+use crate::window::testing::{Shown, control, double_click, drag, tooltip_at};
 
 const KEY: &str = "Key light from the surroundings";
 const THUMBNAIL: &str = "Picture of the surroundings";
@@ -24,20 +25,18 @@ fn lit() -> Project {
 
 #[test]
 fn a_picture_is_requested_named_and_removed() {
-    let state = (lit(), None);
-    let loaded = LoadedSurroundings { picture: Some(surroundings()), notes: vec!["one note".to_owned()] };
-    let mut harness = screen(state, move |place, (project, asked)| {
-        *asked = ui(place, project, &loaded).or(*asked);
-    });
-    assert!(harness.query_by_label("dusk.hdr").is_some() && harness.query_by_label("one note").is_some());
+    let mut harness = panel("Light", lit());
+    assert!(
+        harness.query_by_label("dusk.hdr").is_some() && harness.query_by_label_contains("3 pixels").is_some()
+    );
     control(&harness, Role::Button, "Picture file…").click();
     harness.run();
-    assert_eq!(harness.state().state.1, Some(SurroundingsRequest::PickFile));
+    assert_eq!(harness.state().state.asked, [Command::PickFile(Purpose::Surroundings)]);
     control(&harness, Role::Button, "Remove picture").click();
     harness.run();
-    assert_eq!(harness.state().state.0, Project::default());
-    for gone in ["Remove picture", KEY, THUMBNAIL, "one note"] {
-        assert!(harness.query_by_label(gone).is_none(), "{gone} is about the picture");
+    assert_eq!(harness.state().state.project, Project::default());
+    for gone in ["Remove picture", KEY, THUMBNAIL, "3 pixels"] {
+        assert!(harness.query_by_label_contains(gone).is_none(), "{gone} is about the picture");
     }
     assert!(harness.query_by_label("Sky and ground").is_some());
 }

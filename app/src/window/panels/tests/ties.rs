@@ -107,7 +107,7 @@ fn mirroring_a_tie_divides_the_hair_between_both() {
     assert_eq!(right, left.mirrored());
     assert_eq!((left.plane_normal, right.plane_normal), (Vec3::X, Vec3::NEG_X));
     assert!([left, right].iter().all(|tie| tie.reach == TieReach::AbovePlane && tie.plane_point.x == 0.0));
-    assert_eq!(harness.state().state.selected_tie, 1, "the new one is chosen");
+    assert_eq!(harness.state().state.panels.ties.selected, 1, "the new one is chosen");
     let (sanitised, problems) = harness.state().state.project.sanitised();
     assert!(problems.is_empty() && sanitised == harness.state().state.project, "{problems:?}");
     // Mirroring the tie of the other side gives the opposite order.

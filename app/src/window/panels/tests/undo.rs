@@ -3,36 +3,36 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::Harness;
-use glam::Vec3;
 use lovelock_project::Project;
 use lovelock_project::document::Document;
 
+use super::Bench;
 use crate::window::camera_control;
 use crate::window::gesture::Gestures;
-use crate::window::panels::simulation;
 use crate::window::testing::{Shown, control, double_click, drag, press, screen};
 
 /// A document and its gestures, as the window holds them.
 struct Edited {
     document: Document,
     gestures: Gestures,
+    bench: Bench,
 }
 
 /// The simulation panel above a viewport, with the window's handling of edits.
 fn editor() -> Harness<'static, Shown<Edited>> {
-    let state = Edited { document: Document::new(Project::default(), None), gestures: Gestures::default() };
+    let state = Edited {
+        document: Document::new(Project::default(), None),
+        gestures: Gestures::default(),
+        bench: Bench::new(Project::default()),
+    };
     screen(state, |ui, edited: &mut Edited| {
         if !edited.gestures.continues(ui.ctx(), false) {
             edited.document.end_gesture();
         }
-        let mut project = (**edited.document.project()).clone();
-        simulation::ui(
-            ui,
-            &mut project.simulation,
-            &project.hair.simulation(),
-            &mut project.timeline,
-            [Vec3::X, Vec3::Y, Vec3::Z],
-        );
+        let project = (**edited.document.project()).clone();
+        edited.bench.project = project;
+        edited.bench.show(ui, "Simulation");
+        let mut project = edited.bench.project.clone();
         let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
         viewport.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         camera_control::apply(&mut project.camera, &viewport);

@@ -5,7 +5,7 @@ use lovelock_project::Project;
 use lovelock_project::project::{BodySource, HairSource, MotionSource};
 use serde_json::Value;
 
-use super::{Bench, PANELS, projects};
+use super::{Bench, projects, titles};
 use crate::window::control::HoverTooltip;
 use crate::window::control::section;
 use crate::window::testing::{screen, unfold};
@@ -61,8 +61,8 @@ fn showing_a_panel_changes_nothing() {
         shown.push(("random", random_project(&base, &mut random)));
     }
     let all = |ui: &mut egui::Ui, bench: &mut Bench| {
-        for (title, show) in PANELS {
-            section(ui, title, true, |ui| show(ui, bench));
+        for title in titles() {
+            section(ui, title, true, |ui| bench.show(ui, title));
         }
     };
     let mut harness = screen(Bench::new(Project::default()), all);
@@ -73,7 +73,7 @@ fn showing_a_panel_changes_nothing() {
         harness.run();
         unfold(&mut harness);
         for light in 0..project.lights.len() {
-            harness.state_mut().state.selected_light = light;
+            harness.state_mut().state.panels.light.selected = light;
             harness.run();
         }
         // The clip is as long as the recording.

@@ -4,7 +4,7 @@ use lovelock_base::settings::{Kind, Settings, Value, entries, find};
 use lovelock_groom::{GroomSettings, HairTie, Preset};
 use serde_json::Value as Json;
 
-use super::{all_settings, settings_page};
+use super::{Assignment, all_settings, settings_page};
 use crate::project::Project;
 
 /// Numbers, switches and choices of a project file, by their paths.
@@ -142,4 +142,18 @@ fn settings_are_set_by_path() {
     assert!(error.contains("simulation.wind.speed"), "{error}");
     assert!(project.set("simulation.wind.speed", "fast").is_err());
     assert_eq!(project, before, "what is wrong changes nothing");
+}
+
+#[test]
+fn settings_are_assigned_and_those_that_a_take_has_recorded_are_refused() {
+    let set = |name: &str, value: &str| [Assignment { name: name.to_owned(), value: value.to_owned() }];
+    let mut project = Project::default();
+    project.assign(&set("simulation.wind.speed", "3")).expect("a setting");
+    assert_eq!(project.simulation.wind.speed, 3.0);
+    let unknown = project.assign(&set("simulation.wind.sped", "3")).expect_err("no setting");
+    assert!(unknown.to_string().starts_with("--set simulation.wind.sped"), "{unknown}");
+    project.set_take("/a/dance.take");
+    project.assign(&set("picture.exposure_stops", "1")).expect("the image is drawn anew");
+    let recorded = project.assign(&set("simulation.wind.speed", "4")).expect_err("the hair was recorded");
+    assert!(recorded.to_string().contains("a take plays as recorded"), "{recorded}");
 }

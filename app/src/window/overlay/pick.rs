@@ -8,8 +8,8 @@ use lovelock_groom::{Hairstyle, Strands, interpolate};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_style::strand_roots;
 
-use crate::window::overlay::View;
-use crate::window::overlay::head::Head;
+use super::View;
+use super::head::Head;
 
 /// Hair within this distance of the pointer is under it, points.
 const NEAR: f32 = 5.0;
@@ -57,7 +57,7 @@ struct Depths(Vec<f32>);
 impl SeenHair {
     /// The place of the nearest hair under a point of the screen, at the instant of the image, or on the body where that is nearer. On the
     /// head also without hair. World space; `None` beside the hair.
-    pub(super) fn at(
+    pub(crate) fn at(
         &mut self,
         view: View,
         head: Head<'_>,
