@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Save a screenshot of the window as a PNG file and exit.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
-    /// Replace an existing file of the screenshot's name even if it is not an image.
+    /// Replace an existing file of the screenshot's name even if it is no image of this program.
     #[arg(long, requires = "screenshot")]
     pub(crate) force: bool,
     /// Open the window with the comparison of the project's panes, like key C.
@@ -355,7 +355,7 @@ pub(crate) struct Presets {
     /// Hairstyles side by side in the sheet.
     #[arg(long, value_name = "N", requires = "sheet", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) columns: Option<u32>,
-    /// Replace an existing file of the name of the sheet or of a thumbnail even if it is not an image.
+    /// Replace an existing file of the name of the sheet or of a thumbnail even if it is no image of this program.
     #[arg(long)]
     pub(crate) force: bool,
     /// Write the thumbnails of the window's browser into this folder, as ID.jpg; the program's own are in assets/styles.

@@ -33,7 +33,7 @@ pub(crate) fn run(task: &Presets, output: Output) -> Result<(), ProjectError> {
     }
     if let Some(folder) = &task.thumbnails {
         let names = styles.iter().map(thumbnail_name);
-        let replaced = replace::check_in(folder, names, Holds::THUMBNAIL, task.force)?;
+        let replaced = replace::check_in(folder, names, Holds::IMAGE, task.force)?;
         draw_thumbnails(&styles, folder)?;
         replaced.tell();
     }

@@ -6,7 +6,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use lovelock_project::error::ProjectError;
-use lovelock_record::MANIFEST_NAME;
+use lovelock_record::{IMAGE_MARK, MANIFEST_NAME};
 
 /// The bytes at both ends of a file in which the mark of this program is looked for.
 const SEARCHED: u64 = 4 << 20;
@@ -24,11 +24,9 @@ pub(super) enum Holds {
 
 impl Holds {
     /// A film, a preview or curves.
-    pub(super) const RECORDING: Self = Self::Made(&[b"Lovelock", b"acTL"]);
-    /// A single image.
-    pub(super) const IMAGE: Self = Self::Made(&[b"\x89PNG\r\n\x1a\n"]);
-    /// A small image of a hairstyle.
-    pub(super) const THUMBNAIL: Self = Self::Made(&[b"\xff\xd8\xff"]);
+    pub(super) const RECORDING: Self = Self::Made(&[b"Lovelock"]);
+    /// A single image, or a small one of a hairstyle.
+    pub(super) const IMAGE: Self = Self::Made(&[IMAGE_MARK]);
     /// A table of times.
     pub(super) const BENCH: Self = Self::Made(&[b"scene,backend,adapter,shadow,"]);
     /// The list of the scenes of a path tracer.
@@ -156,6 +154,21 @@ mod tests {
         std::fs::write(&path, b"....hdlr....Lovelock\0").expect("a file");
         assert!(check(&path, Holds::RECORDING, false).is_ok());
         assert!(check(&path, Holds::Work("a take"), false).is_err(), "whoever made it");
+    }
+
+    #[test]
+    fn images_of_others_are_kept() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("a.png");
+        lovelock_record::write_png(&path, 1, 1, &[1, 2, 3, 255]).expect("an image");
+        assert!(check(&path, Holds::IMAGE, false).is_ok());
+        // The same image without the text that names the program.
+        let bytes = std::fs::read(&path).expect("the image");
+        let at = bytes.windows(4).position(|name| name == b"tEXt").expect("the text") - 4;
+        let length = u32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
+        std::fs::write(&path, [&bytes[..at], &bytes[at + 12 + length..]].concat()).expect("a file");
+        assert!(check(&path, Holds::IMAGE, false).is_err());
+        assert!(check(&path, Holds::RECORDING, false).is_err());
     }
 
     #[test]

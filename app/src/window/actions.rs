@@ -120,7 +120,6 @@ impl Window {
             Command::PlayTake => {
                 if let Some(path) = self.session.saved_take.clone() {
                     self.open_take(&path);
-                    self.session.set_playing(true);
                 }
             }
             Command::LeaveTake => {
@@ -158,9 +157,11 @@ impl Window {
             }
             Command::Undo => {
                 self.document.undo();
+                self.follow_path();
             }
             Command::Redo => {
                 self.document.redo();
+                self.follow_path();
             }
             Command::NewProject => self.unless_modified(Pending::New, ctx),
             Command::Save => match self.document.path().map(Path::to_owned) {
@@ -267,18 +268,22 @@ impl Window {
         });
     }
 
-    /// Sets the in or out point of recordings to the current frame.
+    /// Makes the current frame the first or the last one of recordings.
     fn mark_end(&mut self, first: bool) {
         let secs = self.now_secs();
+        let duration_secs = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
         self.change("recording", |project| {
             let recording = &mut project.recording;
             let frame = (secs * recording.fps).round() as u64;
+            // At the very end the frame that is shown is the one after the last.
+            let frames = (duration_secs * recording.fps).round() as u64;
+            let frame = if frames > 0 { frame.min(frames - 1) } else { frame };
             if first {
                 recording.first_frame = frame;
                 recording.end_frame = recording.end_frame.filter(|end| *end > frame);
             } else {
-                recording.end_frame = Some(frame.max(1));
-                recording.first_frame = recording.first_frame.min(frame.max(1) - 1);
+                recording.end_frame = Some(frame + 1);
+                recording.first_frame = recording.first_frame.min(frame);
             }
         });
     }

@@ -8,7 +8,9 @@ use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::files::FileRef;
 use lovelock_project::history::GestureId;
-use lovelock_project::project::{BodySection, CameraSection, Contender, load_project_with, save_project};
+use lovelock_project::project::{
+    BodySection, CameraSection, CompareSection, Contender, load_project_with, save_project,
+};
 use lovelock_project::styles::Style;
 use lovelock_session::scene::{Scene, camera_for_size};
 
@@ -180,6 +182,9 @@ impl Window {
                     // Saving must not write the take's project to the file of the previous project.
                     self.document.detach();
                     self.follow_path();
+                } else {
+                    // Not sooner: the dance would go on until the take is found.
+                    self.session.set_playing(true);
                 }
             }
             (_, Found::Curves(curves)) => self.play(path, |project| curves.played_in(project)),
@@ -259,16 +264,26 @@ impl Window {
         self.session.reload(&project);
     }
 
-    /// Adds a pane that shows a take, rendered with the settings of the project.
+    /// Adds a pane that shows a take, rendered with the settings of the project. Panes that nobody has changed make place for it.
     fn put_beside(&mut self, path: &Path, found: &Found) -> Result<(), String> {
         match found {
             Found::Take(..) | Found::Curves(_) => {
+                let panes = &self.document.project().compare.panes;
+                let untouched = *panes == CompareSection::default().panes;
+                if !untouched && panes.len() >= CompareSection::MAX_PANES {
+                    let most = CompareSection::MAX_PANES;
+                    return Err(format!(
+                        "There are {most} panes, the most. Remove one, then open the take again."
+                    ));
+                }
                 self.session.pick(path);
                 let file = FileRef::new(path);
                 self.change("compare", |project| {
                     let own = Contender::of(project);
-                    let other = Contender { take: Some(file), ..own.clone() };
-                    project.compare.panes = vec![own, other];
+                    if untouched {
+                        project.compare.panes = vec![own.clone()];
+                    }
+                    project.compare.panes.push(Contender { take: Some(file), ..own });
                 });
                 self.layout.page = Page::Compare;
             }

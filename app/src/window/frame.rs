@@ -249,8 +249,12 @@ impl Window {
         let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
         let (project_and_access, painted) =
             ((self.document.project(), session.access()), session.painted.as_ref());
-        // A style that is only shown leaves no thumbnails.
-        let painted = painted.filter(|_| !self.document.is_preview());
+        // A style that is only shown leaves no thumbnails, and neither do the hair, body or take before, which are seen until the next
+        // ones are loaded.
+        let painted = painted.filter(|painted| {
+            let is_of_now = frame.is_some_and(|frame| Arc::ptr_eq(&frame.scene, &painted.snapshot.scene));
+            !self.document.is_preview() && is_of_now && !session.worker().is_loading()
+        });
         let shown = (self.layout.timeline, duration_secs, ui.available_width());
         self.media.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
@@ -324,8 +328,10 @@ impl Window {
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
             let size = self.size_label();
-            Viewport::caption(ui, rect, Align2::RIGHT_TOP, &caption(ms, &size, &name), theme::QUIET);
-            self.running(ui, rect);
+            let is_covered = self.running(ui, rect) && rect.width() < ROOM_BESIDE_PROGRESS;
+            if !is_covered {
+                Viewport::caption(ui, rect, Align2::RIGHT_TOP, &caption(ms, &size, &name), theme::QUIET);
+            }
         });
     }
 
@@ -343,8 +349,8 @@ impl Window {
         }
     }
 
-    /// Shows background work over the image as well, because the panels may be hidden.
-    pub(super) fn running(&mut self, ui: &mut Ui, rect: Rect) {
+    /// Shows background work over the image as well, because the panels may be hidden. Returns whether there is any.
+    pub(super) fn running(&mut self, ui: &mut Ui, rect: Rect) -> bool {
         {
             let mut row = 0;
             if let Some((fraction, text)) = self.media.recorder.state().progress() {
@@ -368,7 +374,8 @@ impl Window {
             }
             if let Some(progress) = self.session.worker().load_progress().filter(|_| loads) {
                 let tip = "Stops loading. The scene stays unchanged.";
-                if progress_overlay(ui, rect, row, progress.fraction, &progress.what, tip) {
+                let what = as_sentence(&progress.what);
+                if progress_overlay(ui, rect, row, progress.fraction, &what, tip) {
                     self.session.worker().cancel_load();
                     self.files.framing = None;
                 }
@@ -402,7 +409,9 @@ impl Window {
                 if progress_overlay(ui, rect, row, fraction, &text, tip) {
                     self.session.worker().cancel_settle();
                 }
+                row += 1;
             }
+            row > 0
         }
     }
 
@@ -445,6 +454,15 @@ fn caption(ms: f64, size: &str, adapter: &str) -> String {
     let took = if ms > 0.0 { format!("{ms:.0} ms{size}") } else { String::new() };
     let parts = [took.as_str(), adapter].into_iter().filter(|part| !part.is_empty());
     parts.collect::<Vec<_>>().join(" · ")
+}
+
+/// The width of an image beside whose bars of progress its caption has room, points.
+const ROOM_BESIDE_PROGRESS: f32 = 720.0;
+
+/// A text with a capital at its beginning.
+fn as_sentence(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
 }
 
 /// Shows a progress bar in the corner of the image, `row` from the top, and a button that stops the work. Returns whether the

@@ -227,7 +227,7 @@ fn entry(ui: &mut Ui, info: &CommandInfo, enabled: bool) -> bool {
 type KeyRow = (String, &'static str, Option<&'static str>);
 
 /// What the pointer and keys do where no command is run.
-const IN_PLACE: [(&str, &str); 14] = [
+const IN_PLACE: [(&str, &str); 15] = [
     ("F6, Shift+F6", "Next, previous area of the window"),
     ("Tab, Shift+Tab", "Next, previous control of the area"),
     ("Alt+letter", "Open the menu of that letter"),
@@ -238,7 +238,8 @@ const IN_PLACE: [(&str, &str); 14] = [
     ("Ctrl+wheel", "Magnify the panes of a comparison"),
     ("Hold V", "Show another pane in place of a pane"),
     ("Click a pane", "Plot the light along its ray"),
-    ("Double-click, right-click", "Restore, key or copy a control"),
+    ("Double-click", "Restore the default of a control"),
+    ("Right-click, Shift+F10", "Open the menu of a control"),
     ("Ctrl+drag, Shift+drag", "Erase, smooth a mask"),
     ("Up, Down", "Select a layer of the list"),
     ("Delete, Ctrl+D, Ctrl+G, F2", "Remove, duplicate, group, rename"),

@@ -6,7 +6,13 @@ use lovelock_metrics::ColorMap;
 use lovelock_panes::sheet::Sheet;
 use lovelock_render::ColorScale;
 
-use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
+use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
+use egui::{
+    Color32, CornerRadius, FontData, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals,
+};
+
+/// A font with the one sign that egui's controls show and its other fonts lack: two sheets, on the button that copies a colour.
+const COPY_FONT: &[u8] = include_bytes!("../../../assets/fonts/copy.ttf");
 
 /// Values that differ from their default, selected items, running work.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(232, 164, 92);
@@ -74,7 +80,11 @@ pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
 
 /// Applies the theme to `ctx`.
 pub(crate) fn apply(ctx: &egui::Context) {
+    ctx.add_plugin(super::control::MenuKey::default());
     ctx.set_theme(Theme::Dark);
+    let families = [FontFamily::Proportional, FontFamily::Monospace]
+        .map(|family| InsertFontFamily { family, priority: FontPriority::Lowest });
+    ctx.add_font(FontInsert::new("copy", FontData::from_static(COPY_FONT), families.to_vec()));
     let mut visuals = Visuals::dark();
     // The window is already cleared to the panels' colour.
     visuals.panel_fill = Color32::TRANSPARENT;

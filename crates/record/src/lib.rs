@@ -54,7 +54,7 @@ pub use sequence::{
 };
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use sound::{SOUND_RATE, SoundSource};
-pub use still::{jpeg_within, read_jpeg, write_png};
+pub use still::{IMAGE_MARK, jpeg_within, read_jpeg, write_png};
 pub use take::{
     AssetState, CACHE_BYTES, MAX_ERROR_M, MAX_GUIDE_POINTS, MAX_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION,
     TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport,

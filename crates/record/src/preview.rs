@@ -126,6 +126,7 @@ impl PreviewWriter {
         encoder.set_animated(settings.frames as u32, 0).map_err(coded)?;
         let (num, den) = delay(rate);
         encoder.set_frame_delay(num, den).map_err(coded)?;
+        crate::still::mark_png(&mut encoder).map_err(coded)?;
         let writer = encoder.write_header().map_err(coded)?;
         Ok(Self {
             path: path.to_owned(),

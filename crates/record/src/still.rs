@@ -4,11 +4,31 @@ use std::io::Write;
 use std::path::Path;
 
 use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
-use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageDecoder, ImageEncoder};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
 
 use crate::RecordError;
 use crate::partial::{PartialFile, open_file};
+
+/// The keyword of a PNG file's text that names the program by which it was written, and that of a JPEG file's comment.
+const SOFTWARE: &str = "Software";
+const PROGRAM: &str = concat!("Lovelock ", env!("CARGO_PKG_VERSION"));
+
+/// What every image of this program that is a file of its own contains: the name of the program, of any version.
+pub const IMAGE_MARK: &[u8] = b"Software\0Lovelock ";
+
+/// Adds [`IMAGE_MARK`] to a PNG file.
+pub(crate) fn mark_png<W: Write>(encoder: &mut Encoder<'_, W>) -> Result<(), EncodingError> {
+    encoder.add_text_chunk(SOFTWARE.to_owned(), PROGRAM.to_owned())
+}
+
+/// Adds [`IMAGE_MARK`] to a JPEG file, as a comment behind its first marker.
+fn mark_jpeg(file: &mut Vec<u8>) {
+    let text = format!("{SOFTWARE}\0{PROGRAM}");
+    let length = (text.len() + 2) as u16;
+    let comment = [0xff, 0xfe].into_iter().chain(length.to_be_bytes()).chain(text.into_bytes());
+    file.splice(2..2, comment);
+}
 
 /// Writes an image as a PNG file, under a temporary name that is changed at the end. An existing file is replaced.
 ///
@@ -19,12 +39,21 @@ use crate::partial::{PartialFile, open_file};
 pub fn write_png(path: &Path, width: u32, height: u32, rgba: &[u8]) -> Result<(), RecordError> {
     let failed = |error| RecordError::io(path, "write the image", error);
     let mut file = Vec::new();
-    PngEncoder::new(&mut file)
-        .write_image(rgba, width, height, ExtendedColorType::Rgba8)
-        .map_err(|error| failed(std::io::Error::other(error)))?;
+    encode_png(&mut file, width, height, rgba).map_err(|error| failed(std::io::Error::other(error)))?;
     let mut partial = PartialFile::create(path, &open_file).map_err(failed)?;
     partial.write_all(&file).map_err(failed)?;
     partial.commit(true).map_err(failed)
+}
+
+fn encode_png(file: &mut Vec<u8>, width: u32, height: u32, rgba: &[u8]) -> Result<(), EncodingError> {
+    let mut encoder = Encoder::new(file, width, height);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    mark_png(&mut encoder)?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgba)?;
+    writer.finish()
 }
 
 /// An image as JPEG in at most `most_bytes`, by the best quality that fits; `None` if none does. Alpha is left out.
@@ -39,6 +68,7 @@ pub fn jpeg_within(most_bytes: usize, width: u32, height: u32, rgba: &[u8]) -> O
         let mut file = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut file, quality);
         encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8).ok()?;
+        mark_jpeg(&mut file);
         (file.len() <= most_bytes).then_some(file)
     })
 }
@@ -66,9 +96,15 @@ mod tests {
         write_png(&path, 3, 2, &rgba).expect("written");
         let read = image::open(&path).expect("a picture").into_rgba8();
         assert_eq!((read.width(), read.height(), read.into_raw()), (3, 2, rgba.clone()));
+        assert!(is_marked(&std::fs::read(&path).expect("the file")));
+        assert!(write_png(&path, 3, 3, &rgba).is_err(), "not those pixels");
         let nowhere = folder.path().join("none").join("x.png");
         let error = write_png(&nowhere, 3, 2, &rgba).expect_err("no folder").to_string();
         assert!(error.contains("x.png"), "{error}");
+    }
+
+    fn is_marked(file: &[u8]) -> bool {
+        file.windows(IMAGE_MARK.len()).any(|window| window == IMAGE_MARK)
     }
 
     #[test]
@@ -81,6 +117,7 @@ mod tests {
         assert!(small.len() <= large.len() / 2);
         let (w, h, read) = read_jpeg(&large, 100).expect("an image");
         let error = rgba.iter().zip(&read).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
+        assert!(is_marked(&large) && is_marked(&small));
         assert!((w, h) == (width, height) && error / (read.len() as f64) < 20.0, "{error}");
         assert_eq!(jpeg_within(100, width, height, &rgba), None, "too small for any quality");
         assert_eq!(jpeg_within(usize::MAX, width, height + 1, &rgba), None, "not those pixels");

@@ -142,6 +142,10 @@ impl FrameStats {
     pub fn made_anew(&self) -> Self {
         let mut anew = self.clone();
         for pass in anew.kept.drain(..) {
+            if pass.name == INTERPOLATE {
+                anew.interpolate_ms += pass.ms;
+                continue;
+            }
             let stage =
                 if pass.name.starts_with("shadow/") { &mut anew.shadow_ms } else { &mut anew.draw_ms };
             *stage += pass.ms;
@@ -154,6 +158,9 @@ impl FrameStats {
         self.passes.iter().filter(|pass| of(&pass.name)).map(|pass| pass.ms).fold(0.0, |sum, ms| sum + ms)
     }
 }
+
+/// The name of the interpolation of strands among what is kept. Its time is that of a stage, and no pass of shadows or drawing.
+pub(crate) const INTERPOLATE: &str = "interpolate";
 
 /// Passes that look up finished maps.
 const ASKING: [&str; 2] = ["shadow/ask", "shadow/columns"];
@@ -168,12 +175,19 @@ mod tests {
         let stats = FrameStats {
             draw_ms: 5.0,
             passes: vec![pass("draw/tiles", 5.0)],
-            kept: vec![pass("shadow/build", 2.0), pass("shadow/ask", 1.0), pass("draw/body-depth", 0.5)],
+            kept: vec![
+                pass("shadow/build", 2.0),
+                pass("shadow/ask", 1.0),
+                pass("draw/body-depth", 0.5),
+                pass(INTERPOLATE, 4.0),
+            ],
             ..FrameStats::default()
         };
         let anew = stats.made_anew();
         assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.query_ms()), (3.0, 5.5, 2.0, 1.0));
+        assert_eq!(anew.interpolate_ms, 4.0);
         assert!(anew.kept.is_empty() && anew.made_anew() == anew);
+        assert!(anew.passes.iter().all(|pass| pass.name != INTERPOLATE), "a stage and no pass");
         assert_eq!((stats.build_ms(), stats.query_ms()), (0.0, 0.0), "the picture itself built nothing");
     }
 

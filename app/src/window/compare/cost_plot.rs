@@ -11,7 +11,7 @@ use lovelock_project::Project;
 use super::costs::{Costs, PLOTTED_SECS, Way};
 use super::layout::CostPlot;
 use crate::window::control::HoverTooltip;
-use crate::window::control::note;
+use crate::window::control::{axis_of_short_numbers, note};
 use crate::window::panels::statistics::round_steps;
 use crate::window::theme;
 
@@ -91,10 +91,11 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         .include_x(0.0)
         .include_y(0.0)
         .y_axis_label("ms")
-        .x_axis_label("seconds ago")
+        .custom_x_axes(vec![axis_of_short_numbers("seconds ago", |mark, _| {
+            format!("{:.0}", mark.value.abs())
+        })])
         .x_grid_spacer(|_| (0..=6).map(|i| GridMark { value: -2.0 * f64::from(i), step_size: 2.0 }).collect())
         .y_grid_spacer(|input| round_steps(input.bounds))
-        .x_axis_formatter(|mark, _| format!("{:.0}", mark.value.abs()))
         .label_formatter(|at| match at {
             HoverPosition::NearDataPoint { plot_name, position, .. } => {
                 Some(format!("{plot_name}\n{:.1} ms", position.y))

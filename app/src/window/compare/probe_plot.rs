@@ -69,8 +69,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         .include_y(1.02)
         .include_y(-ROW * (rows as f64 + 0.4))
         .set_margin_fraction(egui::vec2(0.01, 0.03))
-        .x_axis_label("depth along the light from the hair, mm")
-        .x_axis_formatter(axis_number)
+        .custom_x_axes(vec![axis_of_short_numbers("depth along the light from the hair, mm", axis_number)])
         .y_grid_spacer(|_| (0..=2).map(|i| GridMark { value: 0.5 * f64::from(i), step_size: 0.5 }).collect())
         .y_axis_formatter(|mark, shown| {
             // Below zero are the rows of marks.

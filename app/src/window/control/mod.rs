@@ -2,6 +2,7 @@
 
 mod curve;
 mod keying;
+mod menu_key;
 mod number;
 mod plot_axis;
 mod popup;
@@ -16,8 +17,9 @@ pub(crate) use curve::{Axis, Curve, CurveModel, curve};
 pub(crate) use keying::{
     Keying, begin as begin_keying, end as end_keying, enter_pane, leave_pane, of_setting,
 };
+pub(crate) use menu_key::MenuKey;
 pub(crate) use number::{Limits, Number, is_escaped, typed};
-pub(crate) use plot_axis::axis_number;
+pub(crate) use plot_axis::{axis_number, axis_of_short_numbers};
 pub(crate) use popup::{close_all as close_popups, context_popup, is_any_open, popup};
 pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
 pub(crate) use setting::{all_settings, entry, setting, settings};

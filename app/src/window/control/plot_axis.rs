@@ -2,7 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use egui_plot::GridMark;
+use egui::Rangef;
+use egui_plot::{AxisHints, GridMark};
 
 /// The number of a mark on an axis, with as many digits after the point as the distance of the marks needs. Rounding errors of zero
 /// have no sign.
@@ -14,6 +15,14 @@ pub(crate) fn axis_number(mark: GridMark, _shown: &RangeInclusive<f64>) -> Strin
     let decimals = (0..6).find(whole).unwrap_or(6);
     let value = if mark.value.abs() < 1e-6 * mark.step_size { 0.0 } else { mark.value };
     format!("{value:.decimals$}")
+}
+
+/// A horizontal axis. Its numbers are short, so they stand nearer to each other than egui's limit of 60 points.
+pub(crate) fn axis_of_short_numbers(
+    label: &str,
+    text: impl Fn(GridMark, &RangeInclusive<f64>) -> String + 'static,
+) -> AxisHints<'static> {
+    AxisHints::new_x().label(label.to_owned()).formatter(text).label_spacing(Rangef::new(20.0, 36.0))
 }
 
 #[cfg(test)]

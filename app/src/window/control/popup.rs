@@ -12,9 +12,11 @@ struct State {
     /// Where a context menu was opened.
     at: Option<Pos2>,
     pass: u64,
+    /// Whether a text or a number was being typed in the last pass.
+    typing: bool,
 }
 
-/// Shows controls below `button` after a click on it, until a click beside them, Escape, or `Ui::close`.
+/// Shows controls below `button` after a click on it, until a click beside them, Escape outside of a text, or `Ui::close`.
 pub(crate) fn popup<R>(button: &Response, content: impl FnOnce(&mut Ui) -> R) -> Option<R> {
     show(button, None, button.clicked(), content)
 }
@@ -68,8 +70,9 @@ fn show<R>(
         ctx.data_mut(|data| data.remove::<State>(id));
         return None;
     }
-    // A click or Escape that closes a list inside leaves the popup open.
+    // A click or Escape that closes a list inside leaves the popup open, and Escape that ends typing does.
     let has_inner = Popup::is_any_open(ctx);
+    let ends_typing = state.typing && ctx.input(|input| input.key_pressed(egui::Key::Escape));
     let mut open = true;
     let mut menu = Popup::menu(response)
         .id(id.with("area"))
@@ -83,8 +86,8 @@ fn show<R>(
         (result, ui.will_parent_close())
     });
     let (result, is_done) = shown.map(|shown| shown.inner).unzip();
-    state.open = (open || has_inner) && is_done != Some(true);
-    state.pass = pass;
+    state.open = (open || has_inner || ends_typing) && is_done != Some(true);
+    (state.pass, state.typing) = (pass, ctx.text_edit_focused());
     ctx.data_mut(|data| {
         if state.open {
             data.insert_temp(id, state);
@@ -111,6 +114,7 @@ mod tests {
         choice: usize,
         colour: Color32,
         count: u32,
+        number: f32,
     }
 
     fn contents(ui: &mut Ui, bench: &mut Bench) {
@@ -123,6 +127,8 @@ mod tests {
         if ui.button("Count").clicked() {
             bench.count += 1;
         }
+        let number = ui.add(egui::DragValue::new(&mut bench.number).update_while_editing(false));
+        number.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Number"));
         ui.button("More").context_menu(|ui| {
             if ui.button("Count twice").clicked() {
                 bench.count += 2;
@@ -135,16 +141,13 @@ mod tests {
     }
 
     fn bench() -> Harness<'static, Shown<Bench>> {
-        let harness = screen_of(egui::vec2(700.0, 700.0), Bench::default(), |ui, bench: &mut Bench| {
+        screen_of(egui::vec2(700.0, 700.0), Bench::default(), |ui, bench: &mut Bench| {
             let button = ui.button("Settings");
             popup(&button, |ui| contents(ui, bench));
             ui.add_space(300.0);
             let area = ui.button("An area of the image");
             context_popup(&area, |ui| contents(ui, bench));
-        });
-        // The copy button of egui's colour picker has no glyph in egui's fonts.
-        harness.ctx.set_missing_glyph_policy(egui::MissingGlyphPolicy::Tofu);
-        harness
+        })
     }
 
     fn press(harness: &mut Harness<'_, Shown<Bench>>, name: &str) {
@@ -203,6 +206,22 @@ mod tests {
             assert!(!is_any_open(&harness.ctx));
             press(&mut harness, "Settings");
         }
+    }
+
+    #[test]
+    fn escape_in_a_number_ends_typing_alone() {
+        let mut harness = bench();
+        press(&mut harness, "Settings");
+        let at = control(&harness, Role::SpinButton, "Number").rect().center();
+        click(&mut harness, at);
+        harness.event(egui::Event::Text("7".to_owned()));
+        harness.run();
+        harness.key_press(Key::Escape);
+        harness.run();
+        assert!(is_open(&harness) && harness.state().state.number == 0.0);
+        harness.key_press(Key::Escape);
+        harness.run();
+        assert!(!is_open(&harness), "the next one closes the popup");
     }
 
     #[test]

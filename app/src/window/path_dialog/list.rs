@@ -73,8 +73,8 @@ pub(super) fn show(ui: &mut Ui, rows: &[Row], chosen: Option<usize>, folder: &Fo
                 let Some(row) = rows.get(at) else { break };
                 let text = RichText::new(format!("{}  {}", row.icon.codepoint, row.label));
                 let button = Button::selectable(chosen == Some(at), text).truncate();
-                let response =
-                    ui.add_sized(vec2(ui.available_width(), height), button.min_size(vec2(0.0, height)));
+                // As wide as the list, with the name at its left.
+                let response = ui.add(button.min_size(vec2(ui.available_width(), height)));
                 let label = row.label.clone();
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListItem, true, &label));
                 if response.clicked() {

@@ -209,6 +209,7 @@ impl PathDialog {
                 // Escape takes back the question and not the whole dialog.
                 Stage::Asks(_) => {
                     self.stage = Stage::Types;
+                    self.select_name();
                     Answer::Pending
                 }
                 Stage::Types | Stage::Waits(_) => Answer::Closed,
@@ -270,8 +271,24 @@ impl PathDialog {
         if field.changed() {
             self.is_edited = true;
             (self.chosen, self.error) = (None, None);
+            self.drop_second_extension();
         }
         entered
+    }
+
+    /// Removes the extension of the suggestion behind a whole name that was typed over its selected part.
+    fn drop_second_extension(&mut self) {
+        let typed = Path::new(&self.typed);
+        if let Some(name) = self.before_second_extension(typed) {
+            let surplus = typed.file_name().unwrap_or_default().len() - name.len();
+            self.typed.truncate(self.typed.len() - surplus);
+        }
+    }
+
+    /// The name of `path` without its extension, if what remains has an extension of this purpose too.
+    fn before_second_extension<'p>(&self, path: &'p Path) -> Option<&'p std::ffi::OsStr> {
+        let name = path.file_stem().filter(|name| self.purpose.lists(Path::new(name)))?;
+        (self.purpose.extension().is_some() && self.purpose.lists(path)).then_some(name)
     }
 
     /// The line with the whole path that the text means.
@@ -435,11 +452,8 @@ impl PathDialog {
         if path.is_dir() {
             return Some(path);
         }
-        // Who types a whole name over the selected part of the suggestion leaves a second extension behind.
-        if let Some(inner) = path.file_stem().map(Path::new).filter(|inner| self.purpose.lists(inner))
-            && self.purpose.lists(&path)
-        {
-            path = path.with_file_name(inner);
+        if let Some(name) = self.before_second_extension(&path) {
+            path = path.with_file_name(name);
         }
         if !self.purpose.lists(&path) && path.extension().is_none_or(|found| !looks_like_extension(found)) {
             let mut name = path.file_name()?.to_owned();

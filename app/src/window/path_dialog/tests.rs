@@ -24,6 +24,22 @@ fn a_name_gets_the_folder_and_the_extension_that_it_lacks() {
 }
 
 #[test]
+fn a_whole_name_typed_over_the_selected_part_has_one_extension() {
+    let typed = |purpose, typed: &str| {
+        let mut dialog = dialog(purpose, "/a/dance.mp4", typed);
+        dialog.drop_second_extension();
+        dialog.typed
+    };
+    assert_eq!(typed(Purpose::Film, "ü.mp4.mp4"), "ü.mp4");
+    assert_eq!(typed(Purpose::Film, "b/x.mp4.mp4"), "b/x.mp4");
+    assert_eq!(typed(Purpose::Curves, "x.glb.usdc"), "x.glb");
+    for whole in ["x.mp4", "v1.2.mp4", ".mp4", "", "b/"] {
+        assert_eq!(typed(Purpose::Film, whole), whole);
+    }
+    assert_eq!(typed(Purpose::Sequence, "a.png.png"), "a.png.png", "a folder may be called anything");
+}
+
+#[test]
 fn the_name_is_selected_when_the_dialog_opens() {
     let selected = |purpose, suggestion: &str| {
         let dialog = PathDialog::new(purpose, Path::new(suggestion));

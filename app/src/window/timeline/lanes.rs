@@ -133,6 +133,7 @@ fn ruler(ui: &Ui, rect: Rect, scale: Scale, fps: f64) {
     let first = (scale.from / every).floor() as i64;
     // The number of labels is bounded by the width.
     let count = ((scale.to - scale.from) / every).ceil().clamp(0.0, 1000.0) as i64 + 1;
+    let font = FontId::proportional(9.5);
     for i in first..=first + count {
         let secs = i as f64 * every;
         let x = scale.x(secs);
@@ -144,8 +145,11 @@ fn ruler(ui: &Ui, rect: Rect, scale: Scale, fps: f64) {
             e if e < 60.0 => format!("{secs:.0}"),
             _ => format!("{}:{:02}", secs as i64 / 60, secs as i64 % 60),
         };
-        let font = FontId::proportional(9.5);
-        painter.text(pos2(x + 3.0, ground.top() + 2.0), Align2::LEFT_TOP, text, font, theme::QUIET);
+        let text = painter.layout_no_wrap(text, font.clone(), theme::QUIET);
+        // A number that the edge would cut is left out.
+        if x + 3.0 + text.size().x <= ground.right() {
+            painter.galley(pos2(x + 3.0, ground.top() + 2.0), text, theme::QUIET);
+        }
     }
 }
 
@@ -178,8 +182,10 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
             let frame = (scale.secs(at.x) * fps).round() as u64;
             ends[i] = if i == 0 { frame.min(ends[1].saturating_sub(1)) } else { frame.max(ends[0] + 1) };
         }
-        let response =
-            response.hover_tooltip(format!("{label} of recordings: frame {} at {fps} a second.", ends[i]));
+        // The last frame is the one before the out point.
+        let (which, frame) = if i == 0 { ("first", ends[0]) } else { ("last", ends[1].saturating_sub(1)) };
+        let tip = format!("{label}: the {which} frame of recordings is {frame}, at {fps} a second.");
+        let response = response.hover_tooltip(tip);
         let hot = response.hovered() || response.dragged();
         let color = if hot { theme::BRIGHT } else { theme::ACCENT };
         let (x, inward) = (scale.x(ends[i] as f64 / fps), if i == 0 { 4.0 } else { -4.0 });

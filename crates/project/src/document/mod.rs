@@ -17,6 +17,8 @@ use trial::Trial;
 pub struct Document {
     history: History,
     path: Option<PathBuf>,
+    /// The projects that were put in place of another one by an undo step, and the files of those before them.
+    detached: Vec<(Arc<Project>, Option<PathBuf>)>,
     overdub: Overdub,
     gesture: GestureId,
     /// The project at a time, with its tracks applied.
@@ -65,6 +67,7 @@ impl Document {
         Self {
             history: History::new(project),
             path,
+            detached: Vec::new(),
             overdub: Overdub::default(),
             gesture: 1,
             at_time: None,
@@ -93,14 +96,21 @@ impl Document {
         self.path.as_deref()
     }
 
-    /// The project belongs to no file from now on.
+    /// The project belongs to no file from now on. Undoing the newest step returns to the file before, and redoing it leaves that file.
     pub fn detach(&mut self) {
-        self.path = None;
+        self.detached.push((Arc::clone(self.history.project()), self.path.take()));
+    }
+
+    /// The file of the project before `project`, if that was put in place of it.
+    fn file_before(&self, project: &Arc<Project>) -> Option<Option<PathBuf>> {
+        let found = self.detached.iter().rev().find(|(detached, _)| Arc::ptr_eq(detached, project));
+        found.map(|(_, path)| path.clone())
     }
 
     /// Records that the project has been saved to `path`.
     pub fn mark_saved(&mut self, path: &Path) {
         self.history.mark_saved();
+        self.detached.clear();
         self.path = Some(path.to_owned());
     }
 
@@ -127,13 +137,22 @@ impl Document {
     /// Undoes the newest step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.overdub.let_go();
-        self.history.undo().is_some()
+        let file = self.file_before(self.history.project());
+        let is_undone = self.history.undo().is_some();
+        if let Some(file) = file.filter(|_| is_undone) {
+            self.path = file;
+        }
+        is_undone
     }
 
     /// Redoes the step that was undone last. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
         self.overdub.let_go();
-        self.history.redo().is_some()
+        let is_redone = self.history.redo().is_some();
+        if is_redone && self.file_before(self.history.project()).is_some() {
+            self.path = None;
+        }
+        is_redone
     }
 
     /// The number of the gesture to which changes belong.

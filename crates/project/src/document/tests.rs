@@ -159,6 +159,29 @@ fn a_take_that_is_not_loaded_gives_the_project_its_file_back() {
 }
 
 #[test]
+fn undo_of_an_opened_take_returns_to_the_file_of_the_project() {
+    let (path, saved) = (Path::new("/a/dance.take"), Path::new("/a/hair.lovelock"));
+    let mut document = Document::new(Project::default(), Some(saved.to_owned()));
+    document.change("look", |project| project.look.grey = 0.5);
+    document.change("take", |project| project.set_take(path));
+    document.detach();
+    document.change("look", |project| project.look.grey = 0.1);
+    let steps = [false, false, true, true].map(|redo| {
+        assert!(if redo { document.redo() } else { document.undo() });
+        document.path().map(Path::to_owned)
+    });
+    assert_eq!(steps, [None, Some(saved.to_owned()), None, None]);
+    // Saved under a name of its own, it keeps that name.
+    let other = Path::new("/a/take.lovelock");
+    document.mark_saved(other);
+    for _ in 0..3 {
+        assert!(document.undo());
+        assert_eq!(document.path(), Some(other));
+    }
+    assert!(!document.undo());
+}
+
+#[test]
 fn a_sound_is_judged_by_itself() {
     let path = Path::new("/missing/dance.ogg");
     let mut document = Document::new(Project::default(), None);

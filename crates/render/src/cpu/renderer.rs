@@ -25,6 +25,7 @@ use super::view::{FibreView, View};
 use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
+use crate::frame::INTERPOLATE;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
@@ -50,6 +51,9 @@ pub struct CpuRenderer {
     depth: Vec<DepthMap>,
     /// How long the depth maps took when they were last drawn, milliseconds.
     depth_ms: f64,
+    /// How long it took to interpolate the stored strands, and to follow them with those that are drawn, when that was last done,
+    /// milliseconds.
+    interpolated_ms: [f64; 2],
     tiles: Vec<u8>,
     plain: PlainTiles,
     layers: LayerTiles,
@@ -104,6 +108,7 @@ impl Default for CpuRenderer {
             placed: PlacedScene::new(Width::widest()),
             depth: Vec::new(),
             depth_ms: 0.0,
+            interpolated_ms: [0.0; 2],
             tiles: Vec::new(),
             plain: PlainTiles::default(),
             layers: LayerTiles::default(),
@@ -226,9 +231,21 @@ impl CpuRenderer {
             HairPose::Guides(_) if unchanged.hair => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
+        let stored_ms = watch.ms();
         let mut drawn = std::mem::take(&mut self.drawn);
         let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
         let interpolate_ms = watch.ms();
+        let now = [stored_ms, interpolate_ms - stored_ms];
+        let mut kept_ms = 0.0;
+        for ((made, now), is_kept) in
+            self.interpolated_ms.iter_mut().zip(now).zip([unchanged.hair, same_points])
+        {
+            if is_kept {
+                kept_ms += *made;
+            } else {
+                *made = now;
+            }
+        }
         let mut light = self.light.take().unwrap_or_default();
         let watch = Stopwatch::start();
         light.follow(input);
@@ -239,6 +256,9 @@ impl CpuRenderer {
         if let Ok(stats) = &mut stats {
             stats.draw_ms += ambient_ms;
             stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms: ambient_ms });
+            if unchanged.hair {
+                stats.kept.push(PassTime { name: INTERPOLATE.to_owned(), ms: kept_ms });
+            }
         }
         if stats.is_err() {
             self.kept.forget();

@@ -63,6 +63,14 @@ fn keeps(mut scene: Scene) {
         let stats = renderer.picture(&scene.input(), 96, 72, &mut picture).expect("a picture");
         (picture, stats)
     };
+    // Every pass of a picture, whether it was run or kept.
+    let all = |stats: &FrameStats| {
+        let kept = stats.kept.iter().filter(|pass| pass.name != "interpolate");
+        let mut names: Vec<_> = stats.passes.iter().chain(kept).map(|pass| pass.name.clone()).collect();
+        names.sort_unstable();
+        names
+    };
+    let mut passes = None;
     let mut before = Picture::default();
     for (name, change, [body, hair]) in changes {
         change(&mut scene);
@@ -75,6 +83,12 @@ fn keeps(mut scene: Scene) {
             (!body, !hair),
             "{name}"
         );
+        let whole = stats.made_anew();
+        assert_eq!(all(&stats), all(&whole), "{name}");
+        assert_eq!(passes.get_or_insert_with(|| all(&stats)), &all(&stats), "{name}");
+        let is_kept = stats.kept.iter().any(|pass| pass.name == "interpolate");
+        assert_eq!(is_kept, hair, "{name}: the time of interpolated strands");
+        assert!(!hair || whole.interpolate_ms > stats.interpolate_ms, "{name}");
         before = kept;
     }
     // A picture that fails leaves nothing behind.
