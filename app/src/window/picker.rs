@@ -63,7 +63,8 @@ impl Picker {
             self.moved |= self.chosen != before;
         }
         let field = TextEdit::singleline(&mut self.typed).id(id).hint_text(name).char_limit(80);
-        let response = ui.add(field.desired_width(width));
+        // Menus have no padding above the text.
+        let response = ui.add(field.desired_width(width).vertical_align(Align::Center));
         let typed = self.typed.clone();
         response.widget_info(|| WidgetInfo {
             label: Some(name.to_owned()),

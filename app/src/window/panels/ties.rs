@@ -90,7 +90,7 @@ fn list(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option
         note(ui, "No ties: the hair falls freely.");
         return;
     };
-    let shipped = shipped.get(*selected).copied().unwrap_or_default();
+    let shipped = shipped.get(*selected).copied().unwrap_or_else(|| known_tie(ui, tie.kind, scalp));
     let d = HairTie { kind: tie.kind, ..shipped };
     controls(ui, tie, &d);
 }
@@ -127,6 +127,20 @@ fn new_tie(kind: TieKind, scalp: Option<&Scalp>) -> HairTie {
         TieKind::Bun => Vec3::new(0.0, 1.0, -0.6),
     };
     scalp.map_or_else(|| HairTie { kind, ..HairTie::default() }, |scalp| HairTie::on(scalp, toward, kind))
+}
+
+/// As [`new_tie`], the defaults of a tie that the user has added. Kept for the scalp, because the search for its place takes too long for
+/// every pass.
+fn known_tie(ui: &Ui, kind: TieKind, scalp: Option<&Scalp>) -> HairTie {
+    let of = scalp.map(|scalp| std::ptr::from_ref(scalp).addr());
+    let id = egui::Id::unique(("new tie", kind == TieKind::Bun));
+    let known: Option<(Option<usize>, HairTie)> = ui.data(|data| data.get_temp(id));
+    if let Some((_, tie)) = known.filter(|(known, _)| *known == of) {
+        return tie;
+    }
+    let tie = new_tie(kind, scalp);
+    ui.data_mut(|data| data.insert_temp(id, (of, tie)));
+    tie
 }
 
 fn controls(ui: &mut Ui, tie: &mut HairTie, default: &HairTie) {
@@ -198,7 +212,7 @@ impl Gathered {
 fn gathered(ui: &mut Ui, tie: &mut HairTie, default: &HairTie) {
     let before = Gathered::of(tie);
     let mut options = vec![
-        (Gathered::All, "All that is long enough"),
+        (Gathered::All, "All hair"),
         (Gathered::BehindEars, "Hair behind the ears"),
         (Gathered::Above, "Hair above a height"),
         (Gathered::Left, "Hair on the left"),

@@ -12,7 +12,7 @@ use super::{Bench, panel};
 use crate::window::pointer_tool::PointerTool;
 use crate::window::search::{best_first, fit};
 use crate::window::testing::{
-    Shown, click_at, control, controls, double_click, drag, is_marked, type_at, unfold,
+    Shown, click_at, control, controls, double_click, drag, is_marked, texts, type_at, unfold,
 };
 
 /// The text of the handles by which layers are dragged.
@@ -114,6 +114,9 @@ fn the_menu_of_layers_is_searched() {
     harness.event(egui::Event::Text("fRiz".to_owned()));
     harness.run();
     assert!(harness.query_by_label("Braid").is_none(), "others are left out");
+    let field = control(&harness, Role::TextInput, "Search layers").rect().center();
+    let typed = texts(&harness).into_iter().find(|(text, ..)| text == "fRiz").expect("the text").1.center();
+    assert!((typed.y - field.y).abs() < 3.0, "{typed} in the middle of the field at {field}");
     click(&mut harness, "Frizz");
     assert_eq!(kinds(&harness), ["length", "wave", "frizz", "curl"], "after the selected one");
     assert_eq!(selected(&harness), Some("frizz"));
