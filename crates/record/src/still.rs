@@ -27,7 +27,7 @@ fn mark_jpeg(file: &mut Vec<u8>) {
     let text = format!("{SOFTWARE}\0{PROGRAM}");
     let length = (text.len() + 2) as u16;
     let comment = [0xff, 0xfe].into_iter().chain(length.to_be_bytes()).chain(text.into_bytes());
-    file.splice(2..2, comment);
+    drop(file.splice(2..2, comment));
 }
 
 /// Writes an image as a PNG file, under a temporary name that is changed at the end. An existing file is replaced.

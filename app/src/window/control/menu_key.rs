@@ -46,7 +46,7 @@ impl egui::Plugin for MenuKey {
             pressed,
             modifiers: egui::Modifiers::NONE,
         };
-        input.events.splice(at..at, [Event::PointerMoved(pos), click(true), click(false)]);
+        drop(input.events.splice(at..at, [Event::PointerMoved(pos), click(true), click(false)]));
         (self.control, self.waits) = (Some(id), Some((popups(ctx), PASSES)));
     }
 
