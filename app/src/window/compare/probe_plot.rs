@@ -6,7 +6,7 @@ use lovelock_panes::probe::{LiveProbe, ProbedHair};
 use lovelock_project::Project;
 
 use crate::window::control::HoverTooltip;
-use crate::window::control::{axis_number, note};
+use crate::window::control::{axis_number, axis_of_short_numbers, note};
 use crate::window::theme;
 
 /// Height of a pane's row of marks, as a fraction of the range of transmittance.
