@@ -4,29 +4,78 @@ use egui::{Context, Event, Id, Key, LayerId, Order, PointerButton, Pos2, RawInpu
 
 use super::is_any_open;
 
-/// The number of passes within which the menu must appear.
+/// The number of passes within which a menu appears or disappears.
 const PASSES: u8 = 4;
 
 /// Turns the key into a click, and moves the keyboard focus into the menu and back.
 #[derive(Debug, Default)]
-pub(crate) struct MenuKey {
-    /// The control whose menu was asked for, while its menu is not known to be closed.
-    control: Option<Id>,
-    /// The layers that were there before the menu, and the passes that are left for it to appear.
-    waits: Option<(Vec<LayerId>, u8)>,
+pub(crate) struct MenuKey(Option<Asked>);
+
+/// The menu of a control that was asked for.
+#[derive(Debug)]
+struct Asked {
+    control: Id,
+    /// The popups that were there before the menu; `None` when the menu has appeared.
+    before: Option<Vec<LayerId>>,
+    /// The passes that are left for it to appear or to disappear.
+    left: u8,
 }
 
 fn popups(ctx: &Context) -> Vec<LayerId> {
     ctx.viewport(|viewport| {
-        let layers = viewport.this_pass.widgets.layer_ids();
-        layers.filter(|layer| layer.order == Order::Foreground).collect()
+        let widgets = &viewport.this_pass.widgets;
+        // Layers are remembered without widgets after they are gone.
+        let is_popup =
+            |layer: &LayerId| layer.order == Order::Foreground && widgets.get_layer(*layer).next().is_some();
+        widgets.layer_ids().filter(is_popup).collect()
     })
 }
 
-/// The part of a control that is visible has this middle.
+/// The first control of a layer that takes the focus.
+fn first_in(ctx: &Context, layer: LayerId) -> Option<Id> {
+    ctx.viewport(|viewport| {
+        let mut widgets = viewport.this_pass.widgets.get_layer(layer);
+        let found = widgets.find(|widget| widget.enabled && widget.visible && widget.sense.is_focusable());
+        found.map(|widget| widget.id)
+    })
+}
+
+/// The middle of the visible part of a control.
 fn middle(ctx: &Context, id: Id) -> Option<Pos2> {
     let rect = ctx.read_response(id)?.interact_rect;
     rect.is_positive().then(|| rect.center())
+}
+
+impl Asked {
+    /// What is left to do after a pass.
+    fn next(mut self, ctx: &Context) -> Option<Self> {
+        if let Some(before) = &self.before {
+            let new = popups(ctx).into_iter().find(|layer| !before.contains(layer));
+            if let Some(first) = new.and_then(|layer| first_in(ctx, layer)) {
+                ctx.memory_mut(|memory| memory.request_focus(first));
+                (self.before, self.left) = (None, PASSES);
+                return Some(self);
+            }
+        } else if is_any_open(ctx) {
+            return Some(self);
+        } else {
+            let focused = ctx.memory(egui::Memory::focused);
+            let layer = focused.and_then(|id| {
+                ctx.viewport(|viewport| viewport.this_pass.widgets.get(id).map(|widget| widget.layer_id))
+            });
+            // The entry that was chosen has the focus for a pass more.
+            if layer.is_none_or(|layer| layer.order != Order::Foreground) {
+                let is_free = layer.is_none() && ctx.memory(|memory| memory.top_modal_layer().is_none());
+                if is_free {
+                    ctx.memory_mut(|memory| memory.request_focus(self.control));
+                }
+                return None;
+            }
+        }
+        self.left = self.left.checked_sub(1)?;
+        ctx.request_repaint();
+        Some(self)
+    }
 }
 
 impl egui::Plugin for MenuKey {
@@ -35,11 +84,16 @@ impl egui::Plugin for MenuKey {
     }
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
-        let is_it = |event: &Event| matches!(event, Event::Key { key: Key::F10, pressed: true, modifiers, .. } if modifiers.shift_only());
+        let is_it = |event: &Event| match event {
+            Event::Key { key, pressed, modifiers, .. } => {
+                *key == Key::F10 && *pressed && modifiers.shift_only()
+            }
+            _ => false,
+        };
         let Some(at) = input.events.iter().position(is_it) else { return };
         input.events.remove(at);
-        let Some(id) = ctx.memory(egui::Memory::focused) else { return };
-        let Some(pos) = middle(ctx, id) else { return };
+        let Some(control) = ctx.memory(egui::Memory::focused) else { return };
+        let Some(pos) = middle(ctx, control) else { return };
         let click = |pressed| Event::PointerButton {
             pos,
             button: PointerButton::Secondary,
@@ -47,38 +101,11 @@ impl egui::Plugin for MenuKey {
             modifiers: egui::Modifiers::NONE,
         };
         drop(input.events.splice(at..at, [Event::PointerMoved(pos), click(true), click(false)]));
-        (self.control, self.waits) = (Some(id), Some((popups(ctx), PASSES)));
+        self.0 = Some(Asked { control, before: Some(popups(ctx)), left: PASSES });
     }
 
     fn on_end_pass(&mut self, ui: &mut Ui) {
-        let ctx = ui.ctx();
-        if let Some((before, left)) = &mut self.waits {
-            let new = popups(ctx).into_iter().find(|layer| !before.contains(layer));
-            let first = new.and_then(|layer| {
-                ctx.viewport(|viewport| {
-                    let mut widgets = viewport.this_pass.widgets.get_layer(layer);
-                    widgets
-                        .find(|widget| widget.enabled && widget.visible && widget.sense.is_focusable())
-                        .map(|widget| widget.id)
-                })
-            });
-            *left -= 1;
-            if let Some(first) = first {
-                ctx.memory_mut(|memory| memory.request_focus(first));
-                self.waits = None;
-            } else if *left == 0 {
-                (self.control, self.waits) = (None, None);
-            } else {
-                ctx.request_repaint();
-            }
-        } else if let Some(control) = self.control
-            && !is_any_open(ctx)
-        {
-            self.control = None;
-            if ctx.memory(|memory| memory.focused().is_none()) {
-                ctx.memory_mut(|memory| memory.request_focus(control));
-            }
-        }
+        self.0 = self.0.take().and_then(|asked| asked.next(ui.ctx()));
     }
 }
 
