@@ -383,7 +383,7 @@ impl Window {
             Command::PlayTake if takes => Some("A take is already playing."),
             Command::PlayTake => because(
                 self.session.saved_take.is_none(),
-                "No take has been recorded. Press R to record one, or play a saved one with File, Open….",
+                "No take has been recorded. Press R to record one, or Ctrl+O to open a saved one.",
             ),
             Command::LeaveTake | Command::PlayBackwards => because(!takes, "No take is playing."),
             Command::FrameHair => because(!loaded, "There is no hair to frame yet."),

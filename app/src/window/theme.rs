@@ -11,7 +11,8 @@ use egui::{
     Color32, CornerRadius, FontData, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals,
 };
 
-/// A font with the one sign that egui's controls show and its other fonts lack: two sheets, on the button that copies a colour.
+/// A font, made for this program, with the one sign that egui's controls show and its other fonts lack: two sheets, on the button that
+/// copies a colour.
 const COPY_FONT: &[u8] = include_bytes!("../../../assets/fonts/copy.ttf");
 
 /// Values that differ from their default, selected items, running work.
