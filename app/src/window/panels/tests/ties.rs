@@ -4,12 +4,14 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use lovelock_groom::{HairTie, TieReach};
+use lovelock_groom::{HairTie, PlainHead, TieReach};
 use lovelock_project::Project;
+use lovelock_project::project::HairSection;
 
 use super::one_by_one::choose;
 use super::{Bench, panel};
-use crate::window::testing::{Shown, control, double_click, is_marked, tooltip_at, type_at};
+use crate::window::panels;
+use crate::window::testing::{Shown, control, double_click, is_marked, screen, tooltip_at, type_at};
 
 fn with_ties(ties: &[HairTie]) -> Harness<'static, Shown<Bench>> {
     let mut project = Project::default();
@@ -49,6 +51,28 @@ fn heading_and_rise_set_the_direction_of_a_tie() {
         harness.run();
     }
     assert_eq!(tie(&harness, 0), shipped, "restored, it is the very same");
+}
+
+#[test]
+fn a_tie_that_was_added_has_its_place_as_its_default() {
+    let scalp = PlainHead.scalp(12);
+    let state = (HairSection::default(), 0);
+    let mut harness = screen(state, move |ui, (hair, selected): &mut (HairSection, usize)| {
+        panels::ties::ui(ui, hair, selected, Some(&scalp));
+    });
+    control(&harness, Role::Button, "+ Ponytail").click();
+    harness.run();
+    let at = |harness: &Harness<'_, Shown<(HairSection, usize)>>| harness.state().state.0.ties[0].at;
+    let placed = at(&harness);
+    assert_ne!(placed, HairTie::default().at, "not placed on this head");
+    assert!(!is_marked(&harness, "Upward"));
+    let number = control(&harness, Role::SpinButton, "Upward").rect().center();
+    type_at(&mut harness, number, "20");
+    assert!(is_marked(&harness, "Upward") && at(&harness) != placed);
+    double_click(&mut harness, number);
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    assert_eq!(at(&harness), placed);
 }
 
 #[test]
