@@ -1,5 +1,5 @@
 use super::*;
-use crate::error::Place;
+use crate::error::{Place, ProblemKind};
 use crate::styles::shipped;
 use crate::tracks::{Key, Track};
 
@@ -113,8 +113,8 @@ fn a_file_that_is_not_loaded_leaves_the_project_and_its_undo_steps() {
     let before = Arc::clone(document.project());
     document.try_file("file", Place::Body, path, |project| project.set_body_file(path));
     let loaded = Arc::clone(document.project());
-    let problem =
-        Problem::new(Place::Body, ProblemKind::NotLoaded, "/missing/body.glb: not found".to_owned());
+    let problems =
+        [Problem::new(Place::Body, ProblemKind::NotLoaded, "/missing/body.glb: not found".to_owned())];
     // A load of the project before says nothing about the file.
     assert_eq!(document.take_problems(&before, &problems), problems);
     assert_eq!(document.take_problems(&before, &[]), []);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use lovelock_base::settings::{Entry, Info, Kind, SettingError, Value, entries, find, set};
+use lovelock_base::settings::{Entry, Info, Kind, SettingError, Settings as _, Value, entries, find, set};
 use lovelock_groom::HairTie;
 use serde_json::json;
 
