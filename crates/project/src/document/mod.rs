@@ -101,10 +101,9 @@ impl Document {
         self.detached.push((Arc::clone(self.history.project()), self.path.take()));
     }
 
-    /// The file of the project before `project`, if that was put in place of it.
-    fn file_before(&self, project: &Arc<Project>) -> Option<Option<PathBuf>> {
-        let found = self.detached.iter().rev().find(|(detached, _)| Arc::ptr_eq(detached, project));
-        found.map(|(_, path)| path.clone())
+    /// The index in `detached` of the newest step that put `project` in place of another.
+    fn detached_by(&self, project: &Arc<Project>) -> Option<usize> {
+        self.detached.iter().rposition(|(detached, _)| Arc::ptr_eq(detached, project))
     }
 
     /// Records that the project has been saved to `path`.
@@ -137,10 +136,10 @@ impl Document {
     /// Undoes the newest step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.overdub.let_go();
-        let file = self.file_before(self.history.project());
+        let detached = self.detached_by(self.history.project());
         let is_undone = self.history.undo().is_some();
-        if let Some(file) = file.filter(|_| is_undone) {
-            self.path = file;
+        if let Some(index) = detached.filter(|_| is_undone) {
+            self.path.clone_from(&self.detached[index].1);
         }
         is_undone
     }
@@ -149,7 +148,7 @@ impl Document {
     pub fn redo(&mut self) -> bool {
         self.overdub.let_go();
         let is_redone = self.history.redo().is_some();
-        if is_redone && self.file_before(self.history.project()).is_some() {
+        if is_redone && self.detached_by(self.history.project()).is_some() {
             self.path = None;
         }
         is_redone
