@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use lovelock_base::settings::Settings;
 use lovelock_groom::CurveMotion;
 use lovelock_jobs::info::FileKind;
 use lovelock_jobs::presets::style_named;

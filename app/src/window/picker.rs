@@ -1,6 +1,6 @@
 //! A search field with a list of matches below it: typing, the arrow keys, Enter and the pointer act alike wherever there is one.
 
-use egui::{Align, Key, Modifiers, Response, TextEdit, Ui, WidgetInfo};
+use egui::{Align, Align2, Key, Modifiers, Response, TextEdit, Ui, WidgetInfo};
 
 use super::key_press;
 
@@ -64,7 +64,7 @@ impl Picker {
         }
         let field = TextEdit::singleline(&mut self.typed).id(id).hint_text(name).char_limit(80);
         // Menus have no padding above the text.
-        let response = ui.add(field.desired_width(width).vertical_align(Align::Center));
+        let response = ui.add(field.desired_width(width).align(Align2::LEFT_CENTER));
         let typed = self.typed.clone();
         response.widget_info(|| WidgetInfo {
             label: Some(name.to_owned()),

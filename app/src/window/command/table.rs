@@ -324,15 +324,13 @@ pub(crate) const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         CommandInfo {
+            command: C::Palette,
+            id: "palette",
+            label: "Command palette",
+            tooltip: "Finds a command, a setting or a layer by its name or by what it does.",
+            shortcuts: &["Ctrl+K"],
+            group: G::View,
             in_palette: false,
-            ..entry(
-                C::Palette,
-                "palette",
-                "Command palette",
-                "Finds a command, a setting or a layer by its name or by what it does.",
-                &["Ctrl+K"],
-                G::View,
-            )
         },
         entry(
             C::Show(Page::Compare),

@@ -59,7 +59,7 @@ pub(crate) struct Compare {
     /// Height of the panes' title bars, points.
     bar: f32,
     /// The pane that the panels edit.
-    selected: usize,
+    pub(super) selected: usize,
     /// Whether the line of the wipe is being dragged.
     splitting: bool,
     /// Whether a menu was open when the pointer was pressed: the click then only closes it.

@@ -41,7 +41,7 @@ impl Panel for BodyPanel {
 
 /// The controls of the project's body and motion.
 fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Command> {
-    let mut request = None;
+    let mut picked = None;
     ui.horizontal_wrapped(|ui| {
         let body = &mut project.body;
         if ui
@@ -60,7 +60,7 @@ fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<C
             if body.file.is_some() && !on {
                 body.switch(body.file.clone());
             } else {
-                request = Some(Command::PickFile(Purpose::Body));
+                picked = Some(Command::PickFile(Purpose::Body));
             }
         }
     });
@@ -76,11 +76,12 @@ fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<C
         );
     }
     head_joint(ui, &mut project.body.head_joint, loaded);
-    section(ui, "Motion", true, |ui| request = motion(ui, project, loaded).or(request));
+    let mut of_motion = None;
+    section(ui, "Motion", true, |ui| of_motion = motion(ui, project, loaded));
     for text in &loaded.notes {
         note(ui, text.as_str());
     }
-    request
+    of_motion.or(picked)
 }
 
 /// The choice of the joint that carries the hair. The name of a joint is the end of its path, which the tooltip shows.

@@ -49,7 +49,7 @@ impl Panel for TiesPanel {
 
 /// The controls of the ties of `hair`. `selected` is the one that is edited and whose handle is shown in the image; a new one is
 /// placed on `scalp`.
-fn list(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
+pub(super) fn list(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
     let shipped = hair.shipped_ties();
     let ties = &mut hair.ties;
     *selected = (*selected).min(ties.len().saturating_sub(1));

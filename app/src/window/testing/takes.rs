@@ -31,7 +31,7 @@ fn a_take_is_recorded_played_backwards_and_left() {
     let window = harness.state_mut().state.as_mut().expect("a window");
     window.session.set_playing(false);
     window.run(Command::PlayTake, &ctx);
-    assert!(!window.session.playing && window.openings.running().is_some());
+    assert!(!window.session.playing && window.files.openings.running().is_some());
     wait(&mut harness, "the take", |window| window.session.playing);
     let duration = |window: &Window| window.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
     wait(&mut harness, "the take to play", |window| duration(window) < clip_secs);
@@ -46,11 +46,11 @@ fn a_take_is_recorded_played_backwards_and_left() {
     // Until the dance is loaded the take is still seen, but it leaves no pictures on the timeline of the dance.
     wait(&mut harness, "the simulation", |window| {
         let is_left = duration(window) == clip_secs;
-        assert!(is_left || window.thumbnails.shown().is_empty(), "no picture of the take");
+        assert!(is_left || window.media.thumbnails.shown().is_empty(), "no picture of the take");
         is_left
     });
     assert_eq!(project(&harness).take.file, None);
-    wait(&mut harness, "a picture of the dance", |window| !window.thumbnails.shown().is_empty());
+    wait(&mut harness, "a picture of the dance", |window| !window.media.thumbnails.shown().is_empty());
     key(&mut harness, CTRL, Key::Z);
     assert!(project(&harness).take.file.is_some(), "leaving a take is undone like any change");
 
@@ -82,7 +82,7 @@ fn a_take_is_recorded_played_backwards_and_left() {
     };
     for (before, after) in [(0, 2), (4, 5), (CompareSection::MAX_PANES, CompareSection::MAX_PANES)] {
         beside(harness.state_mut().state.as_mut().expect("a window"), before);
-        wait(&mut harness, "the pane", |window| window.openings.running().is_none());
+        wait(&mut harness, "the pane", |window| window.files.openings.running().is_none());
         let panes = &project(&harness).compare.panes;
         let of_takes = panes.iter().filter(|pane| pane.take.is_some()).count();
         assert_eq!((panes.len(), of_takes), (after, usize::from(before < CompareSection::MAX_PANES)));

@@ -58,7 +58,7 @@ fn a_tie_that_was_added_has_its_place_as_its_default() {
     let scalp = PlainHead.scalp(12);
     let state = (HairSection::default(), 0);
     let mut harness = screen(state, move |ui, (hair, selected): &mut (HairSection, usize)| {
-        panels::ties::ui(ui, hair, selected, Some(&scalp));
+        panels::ties::list(ui, hair, selected, Some(&scalp));
     });
     control(&harness, Role::Button, "+ Ponytail").click();
     harness.run();
