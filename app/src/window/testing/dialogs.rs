@@ -53,12 +53,12 @@ fn keys_and_clicks_choose_in_the_palette() {
     harness.key_press(Key::ArrowUp);
     harness.key_press(Key::Enter);
     harness.run();
-    assert_eq!(harness.state().state.1, [listed[2].command]);
+    assert_eq!(harness.state().state.1, [listed[2].command.clone()]);
     let mut harness = palette();
     harness.run();
     harness.get_by_label(listed[1].label).click();
     harness.run();
-    assert_eq!(harness.state().state.1, [listed[1].command]);
+    assert_eq!(harness.state().state.1, [listed[1].command.clone()]);
 }
 
 #[test]
