@@ -51,7 +51,7 @@ fn every_shortcut_runs_only_its_command() {
             harness.state_mut().state.1.clear();
             harness.key_press_modifiers(modifiers, key);
             harness.run();
-            assert_eq!(harness.state().state.1, [info.command.clone()], "{text}");
+            assert_eq!(harness.state().state.1, std::slice::from_ref(&info.command), "{text}");
         }
     }
 }

@@ -106,7 +106,7 @@ pub(super) fn press_button(harness: &mut Harness<'_, Shown<Option<Window>>>, nam
 }
 
 /// Chooses a command from its menu.
-fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: Command) {
+fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: &Command) {
     let info = command.info().expect("in the table");
     press_button(harness, info.group.label());
     entry(harness, info).click();
@@ -142,10 +142,10 @@ fn changes_by_menu_and_key_can_be_undone() {
     let mut harness = window();
     harness.check_accessibility();
     let before = project(&harness);
-    menu(&mut harness, Command::Load(Preset::Curly));
+    menu(&mut harness, &Command::Load(Preset::Curly));
     assert_eq!(project(&harness).hair.preset, Preset::Curly, "the menu's change stays");
     assert_eq!(of(&harness).document.history().undo_len(), 1);
-    menu(&mut harness, Command::Undo);
+    menu(&mut harness, &Command::Undo);
     assert_eq!(project(&harness), before);
     assert_eq!(of(&harness).document.history().redo_len(), 1, "what was undone can be done again");
     key(&mut harness, CTRL | Modifiers::SHIFT, Key::Z);
