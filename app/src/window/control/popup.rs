@@ -218,7 +218,8 @@ mod tests {
         harness.run();
         harness.key_press(Key::Escape);
         harness.run();
-        assert!(is_open(&harness) && harness.state().state.number == 0.0);
+        assert!(is_open(&harness));
+        assert_eq!(harness.state().state.number, 0.0, "the text is dropped");
         harness.key_press(Key::Escape);
         harness.run();
         assert!(!is_open(&harness), "the next one closes the popup");

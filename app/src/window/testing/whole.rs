@@ -191,9 +191,9 @@ fn keys_pause_playback_and_hide_the_panels() {
         window.session.frame.as_ref().map(|frame| frame.position_secs) > step
     });
     key(&mut harness, Modifiers::SHIFT, Key::Questionmark);
-    assert!(harness.query_by_label_contains("Restore, key or copy a control").is_some());
+    assert!(harness.query_by_label_contains("Open the menu of a control").is_some());
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(harness.query_by_label_contains("Restore, key or copy a control").is_none());
+    assert!(harness.query_by_label_contains("Open the menu of a control").is_none());
     let looping = project(&harness).motion.looping;
     press_button(&mut harness, Command::PlayPause.info().expect("in the table").label);
     assert!(of(&harness).session.playing);

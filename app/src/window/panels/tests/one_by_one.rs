@@ -161,9 +161,16 @@ fn the_stiffness_curve_is_edited_by_pointer_and_keys() {
     assert_eq!(settings(&harness).stiffness_bias, before.stiffness_bias);
 }
 
+/// A project whose camera looks along -Z.
+fn from_the_front() -> Project {
+    let mut project = Project::default();
+    (project.camera.azimuth, project.camera.elevation) = (0.0, 0.0);
+    project
+}
+
 #[test]
 fn the_sphere_sets_the_wind_direction() {
-    let mut harness = panel("Simulation", Project::default());
+    let mut harness = panel("Simulation", from_the_front());
     let sphere = control(&harness, Role::Slider, "Wind direction").rect();
     drag(&mut harness, sphere.center(), sphere.center() + egui::vec2(0.0, -30.0));
     let [x, y, z] = harness.state().state.project.simulation.wind.direction;
@@ -286,7 +293,7 @@ fn the_selected_light_is_the_one_removed() {
 
 #[test]
 fn the_sphere_sets_the_light_direction() {
-    let mut harness = panel("Light", Project::default());
+    let mut harness = panel("Light", from_the_front());
     let rect = control(&harness, Role::Slider, "Light direction").rect();
     // The camera looks along -Z: the middle of the sphere is a light from the front, the right rim a light from +X.
     drag(&mut harness, rect.center() + egui::vec2(3.0, 0.0), rect.center());
