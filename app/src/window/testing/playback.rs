@@ -108,7 +108,7 @@ fn every_button_requests_its_command() {
             let rect = control(&harness, Role::Button, command.info().expect("in the table").label).rect();
             harness.state_mut().state.asked.clear();
             click(&mut harness, rect.center());
-            assert_eq!(harness.state().state.asked, std::slice::from_ref(command));
+            assert_eq!(harness.state().state.asked, std::slice::from_ref(&command));
             let said = tooltip_at(&mut harness, rect.center()).expect("a tooltip");
             assert!(said.contains(command.info().expect("in the table").shortcuts[0]), "{command:?}: {said}");
         }
