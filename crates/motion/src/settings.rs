@@ -246,7 +246,7 @@ impl Settings for BodySettings {
         ),
         Setting::switch(
             field!(Self, include_hidden),
-            "Include hidden and guides",
+            "Include hidden",
             "Draws meshes that the file hides, and guides or proxies that stand for other meshes.",
         ),
     ];

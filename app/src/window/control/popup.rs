@@ -218,8 +218,7 @@ mod tests {
         harness.run();
         harness.key_press(Key::Escape);
         harness.run();
-        assert!(is_open(&harness));
-        assert_eq!(harness.state().state.number, 0.0, "the text is dropped");
+        assert!(is_open(&harness), "the first one ends typing");
         harness.key_press(Key::Escape);
         harness.run();
         assert!(!is_open(&harness), "the next one closes the popup");

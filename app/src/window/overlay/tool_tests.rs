@@ -71,7 +71,9 @@ fn at<S>(harness: &Harness<'_, Shown<(S, Rect)>>, place: Vec3) -> Pos2 {
 fn hairy<S>(harness: &Harness<'_, Shown<(S, Rect)>>) -> Pos2 {
     let (scalp, eye) = (head().scalp, head().eye(view(harness)));
     let turned = |i: &usize| (eye - scalp.positions[*i]).normalize_or_zero().dot(scalp.normals[*i]);
-    let hairy = (0..scalp.positions.len()).filter(|i| scalp.mask[*i] > 0.9);
+    let inside = view(harness).place.shrink(80.0);
+    let hairy = (0..scalp.positions.len())
+        .filter(|i| scalp.mask[*i] > 0.9 && inside.contains(at(harness, scalp.positions[*i])));
     let place = hairy.max_by(|a, b| turned(a).total_cmp(&turned(b))).expect("hair");
     at(harness, scalp.positions[place])
 }

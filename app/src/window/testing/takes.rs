@@ -53,6 +53,8 @@ fn a_take_is_recorded_played_backwards_and_left() {
     wait(&mut harness, "a picture of the dance", |window| !window.media.thumbnails.shown().is_empty());
     key(&mut harness, CTRL, Key::Z);
     assert!(project(&harness).take.file.is_some(), "leaving a take is undone like any change");
+    key(&mut harness, CTRL | Modifiers::SHIFT, Key::Z);
+    assert_eq!(project(&harness).take.file, None);
 
     // A take that is opened has no file to save to; undo returns to the project in its file, and redo to the take.
     let window = harness.state_mut().state.as_mut().expect("a window");

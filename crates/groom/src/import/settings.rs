@@ -137,7 +137,7 @@ impl Settings for ImportSettings {
         ),
         Setting::switch(
             field!(Self, include_hidden),
-            "Include hidden and guides",
+            "Include hidden",
             "Imports strands that the file hides, and guides or proxies that stand for other strands.",
         ),
         Setting::switch(

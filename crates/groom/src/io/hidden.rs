@@ -6,7 +6,7 @@ use super::HairFileError;
 use super::file::{Hidden, RawHair};
 
 /// The label of the setting that imports hidden strands.
-const SETTING: &str = "the setting *Include hidden and guides*";
+const SETTING: &str = "the setting *Include hidden*";
 
 impl RawHair {
     /// Marks the strands from number `first` on, which were read last, as hidden for a reason, if there is one.

@@ -54,7 +54,7 @@ impl HiddenMeshes {
             notes.push(if self.include {
                 format!("includes {counts} of the file")
             } else {
-                format!("left out {counts}; the setting *Include hidden and guides* includes them")
+                format!("left out {counts}; the setting *Include hidden* includes them")
             });
         }
     }
@@ -62,7 +62,7 @@ impl HiddenMeshes {
     /// What an error about a file without a body adds.
     pub(crate) fn in_error(&self) -> String {
         let counts = self.counts().filter(|_| !self.include);
-        let hint = "which the setting *Include hidden and guides* includes";
+        let hint = "which the setting *Include hidden* includes";
         counts.map_or_else(String::new, |counts| format!(" besides {counts}, {hint}"))
     }
 }

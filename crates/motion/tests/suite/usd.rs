@@ -295,7 +295,7 @@ fn hidden_meshes_are_left_out_counted_and_selectable() {
     let hidden = two_meshes("", "").replace("def Mesh \"a\"\n{", &format!("def Mesh \"a\"\n{{\n{invisible}"));
     let hidden = hidden.replace("def Xform \"g\"\n{", &format!("def Xform \"g\"\n{{\n{invisible}"));
     let error = load_character_bytes("a.usda", hidden.as_bytes(), None).expect_err("nothing").to_string();
-    assert!(error.contains("2 hidden meshes") && error.contains("*Include hidden and guides*"), "{error}");
+    assert!(error.contains("2 hidden meshes") && error.contains("*Include hidden*"), "{error}");
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn guides_alone_are_hair_and_invisible_curves_alone_are_not() {
     assert_eq!(guides.strands(), 3);
     assert_eq!(guides.notes.len(), 2, "{:?}", guides.notes);
     let error = load(&stage(&[curves("c", 2, INVISIBLE)])).expect_err("nothing visible").to_string();
-    assert!(error.contains("2 hidden strands") && error.contains("*Include hidden and guides*"), "{error}");
+    assert!(error.contains("2 hidden strands") && error.contains("*Include hidden*"), "{error}");
 }
 
 #[test]
