@@ -270,7 +270,7 @@ mod tests {
     fn every_wrong_arrow_is_named() {
         for (wrong, word) in [
             ("lovelock → lovelock-gpu", "app may use jobs, study"),
-            ("lovelock-project → lovelock-session", "project may use render"),
+            ("lovelock-project → lovelock-session", "project may use picture"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
             ("lovelock-groom → lovelock-motion", "groom may use appearance, alembic, gltf, usd, base"),
             ("lovelock-record → lovelock-session", "record may use groom, alembic, gltf, base"),

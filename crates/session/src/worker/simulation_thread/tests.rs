@@ -12,10 +12,11 @@ use super::super::mailbox::{Mailbox, Requests};
 use super::super::{Outbox, Shared};
 use super::{Scene, SimulationThread};
 use crate::clock::STEP_SECS;
+use crate::engine::Engine;
 use crate::latest::Latest;
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
-use crate::testing::{load, settled, small_project};
+use crate::testing::{load, small_project};
 
 /// The thread's state and its published frames.
 struct Driven {
@@ -145,7 +146,7 @@ fn head_error(frame: &FrameSnapshot) -> f32 {
 fn slow_motion_is_even_and_does_not_change_the_simulation() {
     let project = small_project();
     let scene = load(&project).0;
-    let mut twin = settled(Arc::clone(&scene), &project);
+    let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
     twin.advance_to_step(100);
     let mut driven = Driven::new(&project, &scene);
     driven.after(100.0 * STEP_SECS);
@@ -220,7 +221,7 @@ fn a_pause_shows_a_whole_step_and_playback_continues_from_it() {
     driven.frames.newer_than(&mut driven.seen);
     driven.turn(Requests { playing: Some(false), ..Requests::default() }, 0.0);
     let paused = driven.frames.newer_than(&mut driven.seen).expect("a picture");
-    let mut twin = settled(Arc::clone(&scene), &project);
+    let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
     twin.advance_to_step(2);
     assert_eq!((paused.guides.clone(), driven.hash()), (twin.snapshot().guides.clone(), twin.state_hash()));
     assert!(driven.after(1.0).is_none(), "time stands");
@@ -244,7 +245,7 @@ fn frames_are_not_interpolated_across_a_seek() {
         }
         driven.turn(Requests { seek_secs: Some(seek_secs), ..Requests::default() }, STEP_SECS);
         driven.arrive();
-        let mut twin = settled(Arc::clone(&scene), &project);
+        let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
         twin.seek(seek_secs);
         twin.settle();
         let there = driven.frames.latest().expect("a picture");
@@ -300,7 +301,7 @@ fn the_nearer_step_is_shown_across_a_jump() {
     let cut = 151.0 * STEP_SECS;
     let cut_clip = lovelock_motion::Clip { duration_secs: cut, loops: false, ..(**clip).clone() };
     let scene = Arc::new(Scene { clip: Some(Arc::new(cut_clip)), ..(*whole).clone() });
-    let mut twin = settled(Arc::clone(&scene), &project);
+    let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
     twin.advance_to_step(150);
     let last = twin.snapshot();
     twin.step();
