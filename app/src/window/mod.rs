@@ -250,6 +250,7 @@ impl Window {
         let ctx = &creation.egui_ctx;
         egui_material_icons::initialize(ctx);
         theme::apply(ctx);
+        ctx.add_plugin(control::MenuKey::default());
         let layout =
             creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
         let mut window = Self::start(ctx, layout, opened)?;

@@ -81,7 +81,6 @@ pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
 
 /// Applies the theme to `ctx`.
 pub(crate) fn apply(ctx: &egui::Context) {
-    ctx.add_plugin(super::control::MenuKey::default());
     ctx.set_theme(Theme::Dark);
     let families = [FontFamily::Proportional, FontFamily::Monospace]
         .map(|family| InsertFontFamily { family, priority: FontPriority::Lowest });

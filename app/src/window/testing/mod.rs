@@ -72,6 +72,7 @@ pub(crate) fn screen_of<'a, S: 'a>(
 pub(crate) fn dress(ctx: &egui::Context) {
     egui_material_icons::initialize(ctx);
     theme::apply(ctx);
+    ctx.add_plugin(super::control::MenuKey::default());
     ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
         style.interaction.show_tooltips_only_when_still = false;

@@ -10,7 +10,7 @@ use glam::{Affine3A, Quat, Vec3};
 
 use super::{
     MotionFile, MotionJoint,
-    parse::{Channel, RawJoint, RawMotion},
+    raw::{Channel, RawJoint, RawMotion},
 };
 use crate::{
     LengthUnit, MotionSettings, RootPosition, UpAxis,

@@ -5,6 +5,7 @@
 
 mod interpret;
 mod parse;
+mod raw;
 mod rows;
 
 use std::collections::BTreeMap;

@@ -2,42 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::raw::{Channel, RawJoint, RawMotion, quote};
 use crate::MotionError;
 
 /// Largest number of joints of a file.
 const JOINT_LIMIT: usize = 10_000;
 /// Deepest nesting of joints.
 const DEPTH_LIMIT: usize = 1_000;
-
-/// One number of a row: a position along an axis or a rotation about it (0 for X, 1 for Y, 2 for Z).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Channel {
-    Position(usize),
-    Rotation(usize),
-}
-
-#[derive(Clone, Debug, Default)]
-pub(super) struct RawJoint {
-    pub(super) name: String,
-    pub(super) parent: Option<usize>,
-    pub(super) offset: [f32; 3],
-    pub(super) channels: Vec<Channel>,
-    pub(super) end: Option<[f32; 3]>,
-}
-
-/// The content of a file, in its own unit and axes.
-#[derive(Clone, Debug, Default)]
-pub(super) struct RawMotion {
-    pub(super) joints: Vec<RawJoint>,
-    /// Numbers per row.
-    pub(super) channels: usize,
-    /// Rows, one after the other; all numbers are finite.
-    pub(super) rows: Vec<f32>,
-    pub(super) frames: usize,
-    pub(super) frame_secs: f64,
-    pub(super) dropped: BTreeMap<String, u64>,
-    pub(super) notes: Vec<String>,
-}
 
 /// A position in the text, with its line number.
 struct Cursor<'a> {
@@ -86,13 +57,6 @@ impl<'a> Cursor<'a> {
             found => Err(self.error(format!("{}; must be `{wanted}`", quote(found)))),
         }
     }
-}
-
-pub(super) fn quote(word: Option<&str>) -> String {
-    word.map_or_else(
-        || "the file ends here".into(),
-        |w| format!("found `{}`", w.chars().take(40).collect::<String>()),
-    )
 }
 
 /// Parses a file.

@@ -3,7 +3,7 @@
 //! A row is a line. Some programs write a row over several lines, and some write all numbers in lines of any length. What cannot be
 //! divided into rows without doubt is refused by its line, because a number that is missing shifts all after it.
 
-use super::parse::{RawMotion, quote};
+use super::raw::{RawMotion, quote};
 use crate::MotionError;
 
 /// What the lines of a table have in common.
