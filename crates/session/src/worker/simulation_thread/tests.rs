@@ -16,7 +16,14 @@ use crate::engine::Engine;
 use crate::latest::Latest;
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
-use crate::testing::{load, small_project};
+use crate::testing::load;
+
+/// As [`crate::testing::small_project`], with the pre-roll of an engine that follows no project.
+fn small_project() -> Project {
+    let mut project = crate::testing::small_project();
+    project.timeline = Project::default().timeline;
+    project
+}
 
 /// The thread's state and its published frames.
 struct Driven {
