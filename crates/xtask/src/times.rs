@@ -10,18 +10,26 @@ const MAX_SHARE: f64 = 0.01;
 
 /// Why some tests of the short suite may take longer, and the ends of their names. Their crates are built and drawn with every day, and
 /// nothing shorter shows the same.
-const MAY_BE_SLOW: [(&str, &[&str]); 3] = [
+const MAY_BE_SLOW: [(&str, &[&str]); 4] = [
     (
         "a software adapter draws what the processor draws",
         &[
             "transmittance_is_that_of_the_definition_with_every_filter",
+            "images_stay_on_the_device_and_nothing_waits_or_is_created",
             "every_shadow_method_looks_the_same_on_both",
             "the_same_by_both_backends",
+            "a_list_that_was_too_short_grows_to_what_is_needed",
             "frames_reuse_their_memory",
+            "maps_of_several_lights_keep_apart_and_answers_lie_in_their_bytes",
+            "strands_appear_gradually_as_their_number_grows",
+            "nothing_pops_while_eye_or_light_turn",
             "the_cpu_gives_the_same_bytes_for_any_threads_and_vectors",
-            "nothing_appears_at_once_while_the_camera_comes_closer",
             "an_image_whose_list_was_too_short_shows_the_one_before",
             "broken_hair_and_broken_points_are_as_in_the_definition",
+            "a_moved_light_a_dropped_slab_and_a_swapped_method_are_found_out",
+            "nothing_appears_at_once_while_the_camera_comes_closer",
+            "quick_and_plain_agree_on_hair_and_everywhere",
+            "every_answer_is_a_transmittance",
         ],
     ),
     (
@@ -29,9 +37,13 @@ const MAY_BE_SLOW: [(&str, &[&str]); 3] = [
         &[
             "lengths_hold_and_nothing_enters_the_body_over_the_dance",
             "hair_dragged_while_paused_settles_after_release",
+            "one_two_and_eight_threads_give_the_same_bytes",
+            "hair_settles_within_two_seconds_after_a_turn",
             "shipped_styles_are_good_over_the_dance_and_hair_in_a_storm_with_one_substep_is_not",
             "a_seek_gives_the_frame_of_playing_from_its_station",
             "locks_of_long_hair_stay_as_narrow_as_at_rest",
+            "a_tie_holds_the_hair_in_its_ring_and_the_tail_swings",
+            "the_shipped_dance_keeps_its_lengths_at_60_hertz",
             "frames_are_not_interpolated_across_a_seek",
             "every_shipped_style_grows_and_takes_all_of_its_layers",
         ],
@@ -49,6 +61,7 @@ const MAY_BE_SLOW: [(&str, &[&str]); 3] = [
             "a_report_has_the_documented_keys_and_files",
             "a_second_recording_to_the_same_output_is_rejected",
             "a_full_disk_ends_a_recording_with_an_error_and_leaves_no_output",
+            "every_stage_of_a_scene_is_measured",
             "a_recorded_film_can_be_read_back",
             "a_film_has_the_sound_of_its_frames",
             "frames_outside_a_take_are_rejected_with_its_range",
@@ -60,6 +73,14 @@ const MAY_BE_SLOW: [(&str, &[&str]); 3] = [
             "what_is_finished_stays_when_it_is_stopped",
             "the_truth_of_every_light_counts",
             "sweeps_run_a_method_over_its_settings",
+        ],
+    ),
+    (
+        "every byte of a file is damaged",
+        &[
+            "broken_files_are_refused_or_read_without_a_panic",
+            "a_changed_bit_is_found_and_affects_only_its_chunk",
+            "ten_minutes_of_a_dragged_slider_stay_small",
         ],
     ),
 ];
