@@ -83,6 +83,11 @@ impl Light {
         let light = self.clamped();
         Self { direction: light.direction.normalize_or(Vec3::NEG_Y), ..light }
     }
+
+    /// The lights that are drawn: those that are enabled, at most [`MAX_LIGHTS`], normalized.
+    pub fn enabled(lights: &[Self]) -> impl Iterator<Item = Self> {
+        lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Self::normalized)
+    }
 }
 
 impl Settings for Light {

@@ -6,7 +6,7 @@ use glam::{Vec3, Vec3A};
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_satf::{ClusterHair, ClusterSettings, nominal_width};
 
-use crate::{FrameInput, HairDrawing, HairPose, Light, MAX_LIGHTS, PictureSettings, StrandCount};
+use crate::{FrameInput, HairDrawing, HairPose, Light, PictureSettings, StrandCount};
 
 /// The height of a head, metres: what sizes on the screen are measured by.
 const HEAD: f32 = 0.25;
@@ -43,9 +43,8 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
 
 /// The direction toward the strongest light; upward without any.
 pub(crate) fn to_strongest_light(lights: &[Light]) -> Vec3 {
-    let lights = lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized);
     // The first of equally strong ones.
-    let strongest = lights.reduce(|a, b| if b.intensity > a.intensity { b } else { a });
+    let strongest = Light::enabled(lights).reduce(|a, b| if b.intensity > a.intensity { b } else { a });
     strongest.map_or(Vec3::Y, |light| -light.direction)
 }
 

@@ -119,7 +119,6 @@ impl SnapshotPool {
     pub(crate) fn make(
         &mut self,
         scene: &Arc<Scene>,
-        new: impl FnOnce() -> FrameSnapshot,
         fill: impl FnOnce(&mut FrameSnapshot),
     ) -> Arc<FrameSnapshot> {
         // Of another scene, which it would keep until it is used again.
@@ -127,10 +126,15 @@ impl SnapshotPool {
         let free = self.given_out.iter_mut().position(|held| Arc::get_mut(held).is_some());
         let mut snapshot = match free {
             Some(i) => self.given_out.swap_remove(i),
-            None => Arc::new(new()),
+            None => Arc::new(FrameSnapshot::empty(scene)),
         };
         match Arc::get_mut(&mut snapshot) {
-            Some(inner) => fill(inner),
+            Some(inner) => {
+                if !Arc::ptr_eq(&inner.scene, scene) {
+                    inner.scene = Arc::clone(scene);
+                }
+                fill(inner);
+            }
             None => unreachable!("the snapshot is new or not shared"),
         }
         if self.given_out.len() < Self::MAX {

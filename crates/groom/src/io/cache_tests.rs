@@ -8,6 +8,25 @@ use crate::{METRES_Y_UP, load_hair};
 const POINT: DataType = DataType::new(Pod::F32, 3);
 const INT: DataType = DataType::new(Pod::I32, 1);
 
+/// Completes an archive of one object of curves.
+fn finish(mut writer: ArchiveWriter<std::fs::File>, metadata: &str, [points, counts]: [Samples; 2]) {
+    let mut basis = Samples::scalar(DataType::new(Pod::U8, 4), 0);
+    basis.push(writer.store(basis.ty, &[1, 0, 0, 0]).expect("a sample"));
+    let (mut schema, mut properties) = (CompoundTree::default(), CompoundTree::default());
+    schema.samples("P", "geoScope=vtx", points);
+    schema.samples("nVertices", "", counts);
+    schema.samples("curveBasisAndType", "", basis);
+    properties.compound(".geom", "", schema);
+    let metadata_of_object = "schema=AbcGeom_Curve_v2".to_owned();
+    let object = ObjectTree {
+        name: "hair".to_owned(),
+        metadata: metadata_of_object,
+        properties,
+        children: Vec::new(),
+    };
+    writer.finish(metadata, vec![object]).expect("an archive");
+}
+
 /// An archive of one curve, whose number of points at each time is given.
 fn write_abc(path: &Path, counts: &[i32], metadata: &str) {
     let mut writer = ArchiveWriter::create(std::fs::File::create(path).expect("a file")).expect("a file");
@@ -19,21 +38,7 @@ fn write_abc(path: &Path, counts: &[i32], metadata: &str) {
         points.push(writer.store(POINT, &bytes).expect("a sample"));
         of_curves.push(writer.store(INT, &count.to_le_bytes()).expect("a sample"));
     }
-    let mut basis = Samples::scalar(DataType::new(Pod::U8, 4), 0);
-    basis.push(writer.store(basis.ty, &[1, 0, 0, 0]).expect("a sample"));
-    let (mut schema, mut properties) = (CompoundTree::default(), CompoundTree::default());
-    schema.samples("P", "geoScope=vtx", points);
-    schema.samples("nVertices", "", of_curves);
-    schema.samples("curveBasisAndType", "", basis);
-    properties.compound(".geom", "", schema);
-    let metadata_of_object = "schema=AbcGeom_Curve_v2".to_owned();
-    let object = ObjectTree {
-        name: "hair".to_owned(),
-        metadata: metadata_of_object,
-        properties,
-        children: Vec::new(),
-    };
-    writer.finish(metadata, vec![object]).expect("an archive");
+    finish(writer, metadata, [points, of_curves]);
 }
 
 /// A stage of two prims. The points of the first have samples at 0 and 10, those of the second at 0, 5 and 10.
@@ -242,21 +247,7 @@ fn write_hanging(path: &Path, up: usize, metadata: &str) {
         let each: Vec<u8> = std::iter::repeat_n(4_i32, 100).flat_map(i32::to_le_bytes).collect();
         counts.push(writer.store(INT, &each).expect("a sample"));
     }
-    let mut basis = Samples::scalar(DataType::new(Pod::U8, 4), 0);
-    basis.push(writer.store(basis.ty, &[1, 0, 0, 0]).expect("a sample"));
-    let (mut schema, mut properties) = (CompoundTree::default(), CompoundTree::default());
-    schema.samples("P", "geoScope=vtx", points);
-    schema.samples("nVertices", "", counts);
-    schema.samples("curveBasisAndType", "", basis);
-    properties.compound(".geom", "", schema);
-    let metadata_of_object = "schema=AbcGeom_Curve_v2".to_owned();
-    let object = ObjectTree {
-        name: "hair".to_owned(),
-        metadata: metadata_of_object,
-        properties,
-        children: Vec::new(),
-    };
-    writer.finish(metadata, vec![object]).expect("an archive");
+    finish(writer, metadata, [points, counts]);
 }
 
 #[test]

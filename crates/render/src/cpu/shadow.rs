@@ -117,13 +117,7 @@ impl ShadowStage {
         drawn: (&Strands, Option<usize>),
     ) -> Result<(), RenderError> {
         self.is_whole = false;
-        let lights: Vec<Light> = input
-            .lights
-            .iter()
-            .filter(|light| light.enabled)
-            .take(MAX_LIGHTS)
-            .map(Light::normalized)
-            .collect();
+        let lights: Vec<Light> = Light::enabled(input.lights).collect();
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
         if self.method != Some(method) {
             self.lights.clear();

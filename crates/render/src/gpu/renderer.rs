@@ -305,12 +305,11 @@ impl GpuRenderer {
     /// The placement of the maps of each light that is on.
     fn light_maps(&self, input: &FrameInput) -> Vec<LightMaps> {
         let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
-        let lights = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS);
-        let map = |(slot, light): (usize, &Light)| LightMaps {
+        let map = |(slot, light): (usize, Light)| LightMaps {
             columns_from_world: self.shadow.columns_from_world(slot),
-            ..light_view(light.normalized().direction, center, radius, self.surface.texels)
+            ..light_view(light.direction, center, radius, self.surface.texels)
         };
-        lights.enumerate().map(map).collect()
+        Light::enabled(input.lights).enumerate().map(map).collect()
     }
 
     /// Encodes where the finished image goes. Returns the buffer of what the frame reports, as [`GpuRenderer::draw`].

@@ -74,13 +74,7 @@ impl GpuShadowStage {
         hair: &mut HairBuffers,
         vertices: Option<Vertices>,
     ) -> Result<(), RenderError> {
-        let lights: Vec<Light> = input
-            .lights
-            .iter()
-            .filter(|light| light.enabled)
-            .take(MAX_LIGHTS)
-            .map(Light::normalized)
-            .collect();
+        let lights: Vec<Light> = Light::enabled(input.lights).collect();
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
         if let Some(known) = input.known {
             let vertices = vertices.map_or(0, |vertices| vertices.count as usize);

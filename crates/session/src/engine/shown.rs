@@ -68,30 +68,23 @@ impl Engine {
         let rest_inside = self.rest_inside;
         let own_secs = self.at_step as f64 * self.step_secs;
         let (step, time_secs) = (self.taken, between.map_or(own_secs, |(frame, _)| frame.guides.time_secs));
-        self.pool.make(
-            scene,
-            || FrameSnapshot::empty(scene),
-            |frame| {
-                if !Arc::ptr_eq(&frame.scene, scene) {
-                    frame.scene = Arc::clone(scene);
-                }
-                (frame.step, frame.time_secs, frame.position_secs) =
-                    (step, time_secs, scene.position_secs(time_secs));
-                frame.duration_secs = scene.duration_secs();
-                if let Some((mixed, _)) = between {
-                    pose_at(&scene.body, scene.clip.as_deref(), mixed.clip_secs, &mut frame.pose);
-                    frame.guides.clone_from(&mixed.guides);
-                } else {
-                    frame.pose.clone_from(own_pose);
-                    simulation.frame(&mut frame.guides);
-                }
-                skin(&scene.body, &frame.pose, &mut frame.skin);
-                // The simulator's clock contains jumps; frames use the time of the scene.
-                frame.guides.time_secs = time_secs;
-                (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
-                times.motion += watch.ms();
-                frame.times = std::mem::take(times);
-            },
-        )
+        self.pool.make(scene, |frame| {
+            (frame.step, frame.time_secs, frame.position_secs) =
+                (step, time_secs, scene.position_secs(time_secs));
+            frame.duration_secs = scene.duration_secs();
+            if let Some((mixed, _)) = between {
+                pose_at(&scene.body, scene.clip.as_deref(), mixed.clip_secs, &mut frame.pose);
+                frame.guides.clone_from(&mixed.guides);
+            } else {
+                frame.pose.clone_from(own_pose);
+                simulation.frame(&mut frame.guides);
+            }
+            skin(&scene.body, &frame.pose, &mut frame.skin);
+            // The simulator's clock contains jumps; frames use the time of the scene.
+            frame.guides.time_secs = time_secs;
+            (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
+            times.motion += watch.ms();
+            frame.times = std::mem::take(times);
+        })
     }
 }

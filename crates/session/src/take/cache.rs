@@ -254,24 +254,17 @@ impl CachePlayer {
         self.shown += 1;
         let (guides, pose, shown) = (&self.guides, &self.pose, self.shown);
         let position_secs = secs + self.origin_secs;
-        Ok(self.pool.make(
-            scene,
-            || FrameSnapshot::empty(scene),
-            |snapshot| {
-                if !Arc::ptr_eq(&snapshot.scene, scene) {
-                    snapshot.scene = Arc::clone(scene);
-                }
-                snapshot.step = shown;
-                (snapshot.time_secs, snapshot.position_secs) = (time_secs, position_secs);
-                snapshot.duration_secs = duration_secs;
-                snapshot.pose.clone_from(pose);
-                skin(&scene.body, pose, &mut snapshot.skin);
-                snapshot.guides.clone_from(guides);
-                let strands = snapshot.strands.get_or_insert_with(Strands::default);
-                fill(strands, &self.first_point, &self.imported.strands, &file.first_point, &self.points);
-                snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
-            },
-        ))
+        Ok(self.pool.make(scene, |snapshot| {
+            snapshot.step = shown;
+            (snapshot.time_secs, snapshot.position_secs) = (time_secs, position_secs);
+            snapshot.duration_secs = duration_secs;
+            snapshot.pose.clone_from(pose);
+            skin(&scene.body, pose, &mut snapshot.skin);
+            snapshot.guides.clone_from(guides);
+            let strands = snapshot.strands.get_or_insert_with(Strands::default);
+            fill(strands, &self.first_point, &self.imported.strands, &file.first_point, &self.points);
+            snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
+        }))
     }
 }
 

@@ -208,24 +208,17 @@ impl RecordedPlayer {
         let duration_secs = self.duration_secs();
         let (scene, frame, pose, shown) = (&styled, &self.frame, &self.pose, self.shown);
         let report = StepReport { substeps: frame.substeps, jumped: frame.jumped, ..StepReport::default() };
-        Ok(self.pool.make(
-            scene,
-            || FrameSnapshot::empty(scene),
-            |snapshot| {
-                if !Arc::ptr_eq(&snapshot.scene, scene) {
-                    snapshot.scene = Arc::clone(scene);
-                }
-                snapshot.step = shown;
-                // The camera uses the time of the scene; the timeline uses the time of the take.
-                (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
-                snapshot.duration_secs = duration_secs;
-                snapshot.pose.clone_from(pose);
-                skin(&scene.body, pose, &mut snapshot.skin);
-                snapshot.guides.clone_from(&frame.guides);
-                snapshot.report = report;
-                snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
-            },
-        ))
+        Ok(self.pool.make(scene, |snapshot| {
+            snapshot.step = shown;
+            // The camera uses the time of the scene; the timeline uses the time of the take.
+            (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
+            snapshot.duration_secs = duration_secs;
+            snapshot.pose.clone_from(pose);
+            skin(&scene.body, pose, &mut snapshot.skin);
+            snapshot.guides.clone_from(&frame.guides);
+            snapshot.report = report;
+            snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
+        }))
     }
 
     /// Returns the nearest readable frame in place of a lost one, and reports each run of lost frames once.

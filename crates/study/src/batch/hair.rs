@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_groom::Strands;
 use lovelock_project::Project;
-use lovelock_render::{Camera, FrameInput, HairPose, Light, MAX_LIGHTS};
+use lovelock_render::{Camera, FrameInput, HairPose, Light};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::{LightFrame, ShadowInput};
 
@@ -70,5 +70,5 @@ impl Hair {
 
 /// The enabled lights, as in rendering.
 pub(super) fn lights(project: &Project) -> Vec<Light> {
-    project.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::normalized).collect()
+    Light::enabled(&project.lights).collect()
 }
