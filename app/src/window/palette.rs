@@ -126,6 +126,8 @@ impl Palette {
                     let row = ui.horizontal(|ui| {
                         let label = ui.selectable_label(self.picker.is_chosen(i), found.name());
                         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
+                            // The scroll bar floats above the content.
+                            ui.add_space(ui.spacing().scroll.bar_width);
                             let aside = RichText::new(found.aside()).monospace().small().color(theme::QUIET);
                             ui.add(egui::Label::new(aside).truncate());
                         });
