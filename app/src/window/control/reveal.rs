@@ -25,6 +25,8 @@ struct Reveal {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Stage {
+    /// It was asked for in this pass, whose panels may have been shown already.
+    Asked,
     /// A pass through all sections, folded or not. `found` has those around the control.
     Looking { found: Option<Vec<String>> },
     /// Those sections are unfolded.
@@ -50,9 +52,9 @@ fn is_same(a: &Info, b: &Info) -> bool {
     (a.name, a.label, a.text) == (b.name, b.label, b.text)
 }
 
-/// Starts to look for the control of a setting. The panels must be shown in the next pass.
+/// Looks for the control of a setting in the next pass, in which the panels must be shown.
 pub(crate) fn reveal(ctx: &Context, info: &'static Info) {
-    put(ctx, Reveal { info, around: Vec::new(), stage: Stage::Looking { found: None } });
+    put(ctx, Reveal { info, around: Vec::new(), stage: Stage::Asked });
     ctx.request_repaint();
 }
 
@@ -73,7 +75,7 @@ pub(super) fn enter(ctx: &Context, title: &str) -> Section {
     let how = match &reveal.stage {
         Stage::Unfolding { sections, .. } if sections.starts_with(&reveal.around) => Section::Unfolded,
         Stage::Looking { .. } => Section::Through,
-        Stage::Unfolding { .. } | Stage::Shown { .. } => Section::Usual,
+        Stage::Asked | Stage::Unfolding { .. } | Stage::Shown { .. } => Section::Usual,
     };
     put(ctx, reveal);
     how
@@ -93,6 +95,7 @@ pub(crate) fn shown(ui: &Ui, info: &Info, response: &Response) {
     let Some(mut reveal) = get(ctx).filter(|reveal| is_same(reveal.info, info)) else { return };
     let now = ui.input(|input| input.time);
     match &mut reveal.stage {
+        Stage::Asked => {}
         Stage::Looking { found } => {
             found.get_or_insert_with(|| reveal.around.clone());
         }
@@ -132,6 +135,7 @@ pub(crate) fn end_pass(ctx: &Context) -> Option<&'static Info> {
     let now = ctx.input(|input| input.time);
     reveal.around.clear();
     match &mut reveal.stage {
+        Stage::Asked => reveal.stage = Stage::Looking { found: None },
         Stage::Looking { found } => {
             // What this pass shows is not laid out as the user knows it.
             ctx.request_discard("looked for a control");

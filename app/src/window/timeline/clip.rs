@@ -1,6 +1,7 @@
 //! The menu of the clip's lane: clip, trim, tempo and loop.
 
 use egui::{Rect, RichText, Ui, UiBuilder};
+use egui_material_icons::icons::ICON_EXPAND_MORE;
 use lovelock_project::project::{MotionSection, MotionSource};
 
 use super::{Edited, View};
@@ -13,7 +14,8 @@ use crate::window::theme;
 /// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
 pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Command> {
     let mut request = None;
-    let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
+    let text = |text: &str| RichText::new(text).size(10.5).color(theme::QUIET);
+    let button = egui::Button::new((text("Clip"), text(ICON_EXPAND_MORE.codepoint))).frame(false);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
     // A child of its own leaves the cursor of the panel below the lanes, where the tracks begin.
     let ui = &mut ui.new_child(UiBuilder::new().id_salt("clip").max_rect(place).layout(middle));
