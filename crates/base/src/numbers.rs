@@ -1,4 +1,4 @@
-//! Numbers brought into ranges.
+//! Numbers brought into ranges, and words that are no numbers.
 
 /// `value` clamped to `low..=high`; `fallback` replaces NaN.
 pub fn within(value: f32, low: f32, high: f32, fallback: f32) -> f32 {
@@ -19,9 +19,28 @@ pub fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
+/// Whether a word is what libraries of C write for a value that is no number or has no bound: `1.#QNAN` and `-1.#IND` of Microsoft's
+/// older ones, `-nan(ind)` of its newer ones, `-nan` and `nan(0x8000)` of the others.
+pub fn is_not_a_number(word: &str) -> bool {
+    let name = word.trim_start_matches(['-', '+']);
+    let is_nan = name.get(..3).is_some_and(|start| start.eq_ignore_ascii_case("nan"));
+    word.contains(".#") || is_nan && (name.len() == 3 || name[3..].starts_with('(') && name.ends_with(')'))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{smoothstep, within};
+    use super::{is_not_a_number, smoothstep, within};
+
+    #[test]
+    fn what_libraries_write_for_no_number_is_told_from_words() {
+        for word in ["1.#QNAN", "-1.#IND", "1.#INF", "-nan(ind)", "nan", "-NaN", "+nan(0x8000)", "nan(snan)"]
+        {
+            assert!(is_not_a_number(word), "{word}");
+        }
+        for word in ["", "-", "1.0", "nano", "nan(", "na", "inch", "é"] {
+            assert!(!is_not_a_number(word), "{word}");
+        }
+    }
 
     #[test]
     fn values_are_clamped_and_nan_is_replaced() {

@@ -7,6 +7,9 @@ use glam::{Quat, Vec3};
 
 use crate::LoopBlend;
 
+/// The longest motion, seconds: a wrong time of a key would otherwise give hours of frames.
+pub(crate) const LONGEST_SECS: f64 = 7200.0;
+
 /// How values between keys are interpolated (glTF 2.0, section 3.11 and appendix C).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {

@@ -4,6 +4,7 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::bvh::height_of;
 use crate::character::Character;
+use crate::clip::LONGEST_SECS;
 use crate::pose::rotation_of;
 use crate::{Clip, MotionError, MotionFile, MotionJoint, Pose, UpAxis, pose_at};
 
@@ -15,9 +16,6 @@ const MAX_RATE: f64 = 480.0;
 
 /// Most rotations of a motion: about a gigabyte.
 const LIMIT: usize = 32 << 20;
-
-/// The longest motion, seconds: a wrong time of a key would otherwise give hours of frames.
-const LONGEST_SECS: f64 = 7200.0;
 
 /// The motion of one clip of a figure. Its zero pose is the figure's rest pose.
 ///

@@ -2,7 +2,7 @@
 //!
 //! `#` begins a comment wherever a word may begin, and a backslash at the end of a line continues it. Lines end as in Unix, Windows or old Macs.
 
-use lovelock_base::words::counted;
+use lovelock_base::{numbers::is_not_a_number, words::counted};
 use std::fmt::Write as _;
 use std::io::BufRead;
 
@@ -127,10 +127,10 @@ fn comment_in(line: &[u8]) -> Option<usize> {
     (0..line.len()).find(|&at| line[at] == b'#' && (at == 0 || line[at - 1] != b'.'))
 }
 
-/// The number of a word. `1.#QNAN` and `-1.#IND` are no numbers, as is `1.#INF`.
+/// The number of a word; not a number for what libraries write in its place.
 fn number(word: &[u8]) -> Option<f32> {
     let word = std::str::from_utf8(word).ok()?;
-    word.parse().ok().or_else(|| word.contains(".#").then_some(f32::NAN))
+    word.parse().ok().or_else(|| is_not_a_number(word).then_some(f32::NAN))
 }
 
 fn malformed(name: &str, offset: u64, found: String, wanted: &str) -> HairFileError {
@@ -372,9 +372,11 @@ mod tests {
         // Negative control: without the backslash the second record of three numbers is not one.
         assert!(load_hair_bytes("a.obj", b"v 0 \n 2 0\nl 1 1\n").is_err());
         // A vertex that is no number takes its strand with it.
-        let text = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 -1.#IND 0\nl 1 2\nl 3 4\n";
-        let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
-        assert_eq!((file.strands(), file.dropped["non_finite_strands"]), (1, 1));
+        for word in ["-1.#IND", "-nan(ind)"] {
+            let text = format!("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 {word} 0\nl 1 2\nl 3 4\n");
+            let file = load_hair_bytes("a.obj", text.as_bytes()).expect("hair");
+            assert_eq!((file.strands(), file.dropped["non_finite_strands"]), (1, 1));
+        }
     }
 
     #[test]

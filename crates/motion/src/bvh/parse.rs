@@ -1,9 +1,14 @@
 //! Tolerant parsing of the text of a BVH file: names with spaces, any line ends, wrong counts.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use lovelock_base::words::counted;
+
 use super::raw::{Channel, RawJoint, RawMotion, quote};
+use super::rows::{numbers_of, parsed, words_of};
 use crate::MotionError;
+use crate::clip::LONGEST_SECS;
 
 /// Largest number of joints of a file.
 const JOINT_LIMIT: usize = 10_000;
@@ -63,6 +68,13 @@ impl<'a> Cursor<'a> {
 pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawMotion, MotionError> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    // A return alone ends a line, as in files of old Macintoshes.
+    let text = if text.contains('\r') {
+        Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
+    } else {
+        Cow::Borrowed(text)
+    };
+    let text: &str = &text;
     let mut cursor = Cursor { file, rest: text, line: 1 };
     cursor.expect("HIERARCHY")?;
     let mut raw = RawMotion::default();
@@ -149,12 +161,22 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
 
 fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Result<[f32; 3], MotionError> {
     let (mut offset, mut known) = ([0.0_f32; 3], 0);
+    // The whole line tells decimal commas from commas between numbers.
+    let end = cursor.rest.find('\n').unwrap_or(cursor.rest.len());
+    let (line, rest) = cursor.rest.split_at(end);
+    let words: Vec<Option<f32>> = words_of(line, offset.len()).map(parsed).collect();
+    if let Ok(numbers) = <[Option<f32>; 3]>::try_from(words)
+        && let [Some(x), Some(y), Some(z)] = numbers
+    {
+        (offset, known) = ([x, y, z], 3);
+        cursor.rest = rest;
+    }
     while known < offset.len() {
         let word = cursor.word();
         let refuse = || cursor.error(format!("{}; must be a number", quote(word)));
-        for part in super::rows::numbers_of(word.ok_or_else(refuse)?) {
+        for part in numbers_of(word.ok_or_else(refuse)?) {
             let value = offset.get_mut(known).ok_or_else(refuse)?;
-            *value = part.parse().map_err(|_| refuse())?;
+            *value = parsed(part).ok_or_else(refuse)?;
             known += 1;
         }
     }
@@ -196,7 +218,8 @@ fn channel(word: &str) -> Option<Channel> {
 
 fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionError> {
     let mut promised_frames = None;
-    let mut frame_secs = None;
+    let mut frame_secs: Option<f64> = None;
+    let (mut time_line, mut stated) = (cursor.line, String::new());
     // `Frames: 12`, `Frames:12` and `Frame Time: 0.01`, in any order and case.
     while let Some((line, rest)) = {
         cursor.skip_space();
@@ -207,7 +230,10 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
         let (key, value) = (line.0.trim().to_ascii_lowercase(), line.1.trim());
         match key.as_str() {
             "frames" => promised_frames = value.parse::<u64>().ok(),
-            "frame time" => frame_secs = value.parse::<f64>().ok(),
+            "frame time" => {
+                frame_secs = parsed(value);
+                (time_line, stated) = (cursor.line, value.chars().take(40).collect());
+            }
             _ => {
                 return Err(
                     cursor.error(format!("{}; must be `Frames:` or `Frame Time:`", quote(Some(&key))))
@@ -219,13 +245,23 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
     raw.frame_secs = match frame_secs {
         Some(secs) if secs.is_finite() && secs > 1e-6 && secs < 1e4 => secs,
         _ => {
-            raw.notes.push("no usable frame time; 30 frames per second are used".into());
+            let found = if stated.is_empty() { "none".to_owned() } else { format!("`{stated}`") };
+            raw.notes.push(format!("the frame time is {found}; 30 frames per second are used"));
             1.0 / 30.0
         }
     };
     if raw.channels > 0 {
         cursor.skip_space();
         super::rows::read(cursor.file, cursor.rest, cursor.line, promised_frames, raw)?;
+    }
+    let lasts = raw.frames.saturating_sub(1) as f64 * raw.frame_secs;
+    if lasts > LONGEST_SECS {
+        let problem = format!(
+            "a frame time of {} s makes {} last {lasts:.0} s; must be at most {LONGEST_SECS} s",
+            raw.frame_secs,
+            counted(raw.frames, "frame", "frames")
+        );
+        return Err(MotionError::malformed(cursor.file, format!("line {time_line}"), problem));
     }
     Ok(())
 }

@@ -54,10 +54,58 @@ fn tolerant_of_what_people_write() {
     // A full turn between two frames is no rotation.
     assert!(motion.rotations[2 * 2].dot(motion.rotations[0]) > 0.999_999);
     // Rows split over lines.
-    assert_eq!(load(&arm("3 Zrotation Yrotation Xrotation", "0\n0 0\n\n0 0\n0")).frames, 2);
+    let split = arm("3 Zrotation Yrotation Xrotation", "0\n0 0\n\n0 0\n0").replace("Frames: 1", "Frames: 2");
+    assert_eq!(load(&split).frames, 2);
     // No frame time.
-    let timeless = arm("3 Zrotation Yrotation Xrotation", "0 0 0").replace("0.1", "-1");
-    assert!((load(&timeless).frame_secs - 1.0 / 30.0).abs() < 1e-9);
+    let timeless = load(&arm("3 Zrotation Yrotation Xrotation", "0 0 0").replace("0.1", "-1"));
+    assert!((timeless.frame_secs - 1.0 / 30.0).abs() < 1e-9);
+    assert!(timeless.notes.iter().any(|note| note.contains("`-1`")), "{:?}", timeless.notes);
+}
+
+#[test]
+fn decimal_commas_are_read_in_the_head_too() {
+    let text = arm("3 Zrotation Yrotation Xrotation", "90 0 0").replace("OFFSET 1 0 0", "OFFSET 0,5 0 -0,25");
+    // In a line with other words and in one of its own.
+    for text in [text.clone(), text.replace("-0,25", "-0,25\n")] {
+        let motion = load(&text.replace("Frame Time: 0.1", "Frame Time: 0,05"));
+        assert_eq!(motion.frame_secs, 0.05);
+        assert_eq!(motion.joints[1].offset, Vec3::new(0.5, 0.0, -0.25));
+        assert!(motion.notes.iter().all(|note| !note.contains("frame time")), "{:?}", motion.notes);
+    }
+    // Commas between numbers are none.
+    for between in ["OFFSET 0.5,0,-0.25\n", "OFFSET 0.5, 0, -0.25\n"] {
+        let motion = load(&text.replace("OFFSET 0,5 0 -0,25", between));
+        assert_eq!(motion.joints[1].offset, Vec3::new(0.5, 0.0, -0.25));
+    }
+    let error =
+        load_motion_bytes("x.bvh", text.replace("0,5", "0,5,5").as_bytes(), plain()).expect_err("no number");
+    assert!(error.to_string().contains("line 6: found `0,5,5`"), "{error}");
+}
+
+#[test]
+fn returns_alone_end_lines() {
+    let text =
+        arm("3 Zrotation Yrotation Xrotation", "90 0 0\n0 -nan(ind) 0").replace("Frames: 1", "Frames: 2");
+    for end in ["\n", "\r\n", "\r"] {
+        let motion = load(&text.replace('\n', end));
+        assert_eq!((motion.frames, motion.dropped["numbers"]), (2, 1));
+        assert!(place(&motion, 0, 1).distance(Vec3::Y) < 1e-6);
+    }
+}
+
+#[test]
+fn a_motion_of_days_is_refused() {
+    let text = |secs: &str| {
+        let rows = ["0 0 0"; 3].join("\n");
+        arm("3 Zrotation Yrotation Xrotation", &rows)
+            .replace("Frame Time: 0.1", &format!("Frame Time: {secs}"))
+    };
+    let error = load_motion_bytes("x.bvh", text("3601").as_bytes(), plain()).expect_err("two hours");
+    assert!(
+        error.to_string().contains("line 10: a frame time of 3601 s makes 3 frames last 7202 s"),
+        "{error}"
+    );
+    assert_eq!(load(&text("3600")).frame_secs, 3600.0);
 }
 
 #[test]

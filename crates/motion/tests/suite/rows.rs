@@ -113,3 +113,54 @@ fn rows_may_be_wrapped_and_the_header_may_be_wrong() {
     let cut = load(&text).expect("a motion");
     assert_eq!((cut.frames, cut.dropped["rows"]), (19, 1));
 }
+
+#[test]
+fn a_line_that_is_missing_in_a_wrapped_table_is_refused() {
+    // Rows of 66 numbers in lines of the given length.
+    let wrapped = |per_line: usize| {
+        let (text, first) = with_rows(|_, line| {
+            let words: Vec<&str> = line.split(' ').collect();
+            words.chunks(per_line).map(|part| part.join(" ")).collect::<Vec<_>>().join("\n")
+        });
+        (text.lines().map(String::from).collect::<Vec<_>>(), first)
+    };
+    let without = |lines: &[String], gone: &[usize]| {
+        let kept = lines.iter().enumerate().filter(|(i, _)| !gone.contains(i));
+        kept.map(|(_, line)| line.as_str()).collect::<Vec<_>>().join("\n") + "\n"
+    };
+    // Lines of equal length: each could stand for another. The last line may be the one that is missing.
+    let (lines, first) = wrapped(22);
+    for gone in [
+        &[first - 1 + 7][..],
+        &[first - 1 + 3, first - 1 + 20],
+        &[lines.len() - 1],
+        &[first - 1, first, first + 3],
+    ] {
+        let error = load(&without(&lines, gone)).expect_err("a missing line");
+        assert!(error.contains(&format!("lines {first} to")) && error.contains("20 frames"), "{error}");
+    }
+    // Lines whose lengths tell their places: only the last row may be incomplete.
+    let (lines, first) = wrapped(30);
+    for at in [first - 1, first + 1, first - 1 + 10, lines.len() - 4] {
+        let error = load(&without(&lines, &[at])).expect_err("a missing line");
+        assert!(error.contains("line"), "{error}");
+    }
+    for (gone, frames) in [(&[lines.len() - 1][..], 19), (&[lines.len() - 2, lines.len() - 1], 19), (&[], 20)]
+    {
+        let motion = load(&without(&lines, gone)).expect("a motion");
+        assert_eq!(motion.frames, frames);
+    }
+    // A joint per line, without the position of the root in the first row; then cut off within the last row.
+    let (text, first) = with_rows(|_, line| {
+        let words: Vec<&str> = line.split(' ').collect();
+        let joints: Vec<String> = words[6..].chunks(3).map(|part| part.join(" ")).collect();
+        format!("{}\n{}", words[..6].join(" "), joints.join("\n"))
+    });
+    let by_joint: Vec<String> = text.lines().map(String::from).collect();
+    load(&without(&by_joint, &[first - 1])).expect_err("a missing line");
+    let cut = load(&without(&by_joint, &[by_joint.len() - 1])).expect("a motion");
+    assert_eq!((cut.frames, cut.dropped["rows"]), (19, 1));
+    // The control: a row that is missing as a whole moves no number.
+    let motion = load(&without(&lines, &[first + 2, first + 3, first + 4])).expect("a motion");
+    assert!(motion.frames == 19 && motion.notes.iter().any(|note| note.contains("promises 20")));
+}
