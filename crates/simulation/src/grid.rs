@@ -3,6 +3,9 @@
 //! Bertails, Ménier and Cani (2005, section 4.1) read over-dense cells from the shadow map. This grid is
 //! separate and turns with the head, so that lights do not change the motion and hair at rest does not move
 //! through its cells. Sums are integers, so the order of the guides does not matter.
+//!
+//! The published force counts hair as published, in the one cell that contains it; the pressure needs a
+//! density that changes smoothly ([`Counting`]).
 
 mod cell;
 mod direction;
@@ -21,7 +24,7 @@ pub(crate) use sample::GridStep;
 
 use crate::block::Block;
 use crate::lanes::{Map, at};
-use crate::settings::Repulsion;
+use crate::settings::{Repulsion, RepulsionMode};
 
 /// Cells along each axis: the grid is higher than wide, because hair hangs.
 const SIDES: IVec3 = IVec3::new(44, 60, 42);
@@ -67,6 +70,34 @@ struct Lattice {
     units: f32,
 }
 
+/// How a piece of hair is counted in the cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Counting {
+    /// Shared among the eight cells around it, trilinearly.
+    Shared,
+    /// As published: in the cell that contains it.
+    Nearest,
+}
+
+impl Counting {
+    /// The counting that the force needs.
+    fn of(mode: RepulsionMode) -> Self {
+        match mode {
+            RepulsionMode::Pressure => Self::Shared,
+            RepulsionMode::Centre => Self::Nearest,
+        }
+    }
+}
+
+/// The hair at rest by one way of counting.
+#[derive(Clone, Copy, Debug)]
+struct RestHair {
+    /// The volume that it fills, cubic metres.
+    volume: f32,
+    /// Mass of a cell as dense as a piece of hair at rest typically finds its surroundings.
+    full: f32,
+}
+
 /// Hair density and momentum on a lattice in head space.
 #[derive(Clone, Debug)]
 pub(crate) struct DensityGrid {
@@ -74,9 +105,10 @@ pub(crate) struct DensityGrid {
     /// The contents of the cells, one set per task; the first set receives the sum. Directions are left out
     /// if nothing uses them.
     parts: Vec<Cells>,
-    rest_volume: f32,
-    /// Mass of a cell as dense as a piece of hair at rest typically finds its surroundings.
-    full: f32,
+    /// The hair at rest, by each [`Counting`].
+    rest: [RestHair; 2],
+    /// How the last deposit was counted.
+    counting: Counting,
     /// Counts after the last deposit.
     counts: Counts,
     repulsion: Repulsion,
@@ -130,20 +162,23 @@ impl DensityGrid {
         let mut grid = Self {
             lattice,
             parts: vec![Cells::new()],
-            rest_volume: 0.0,
-            full: FULL,
+            rest: [RestHair { volume: 0.0, full: FULL }; 2],
+            counting: Counting::Shared,
             counts: Counts::default(),
             repulsion: Repulsion::default(),
         };
-        grid.fill(blocks, &Source::Rest);
-        grid.set_rest_density();
-        // Counted again, because `full` is known now.
-        grid.fill(blocks, &Source::Rest);
-        grid.rest_volume = grid.volume();
+        for counting in [Counting::Nearest, Counting::Shared] {
+            grid.counting = counting;
+            grid.fill(blocks, &Source::Rest);
+            grid.set_rest_density();
+            // Counted again, because `full` is known now.
+            grid.fill(blocks, &Source::Rest);
+            grid.rest[counting as usize].volume = grid.volume();
+        }
         grid
     }
 
-    /// Takes the current density as the rest density.
+    /// Takes the current density as the rest density by the current counting.
     fn set_rest_density(&mut self) {
         // Cells that are empty at rest use the density that a piece of hair typically finds around itself.
         let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
@@ -153,9 +188,9 @@ impl DensityGrid {
             squares += mass * mass;
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
-        self.full = typical;
+        self.rest[self.counting as usize].full = typical;
         for c in &mut self.parts[0].each {
-            c.set_inv_rest(1.0 / (c.mass() as f32).max(typical));
+            c.set_inv_rest(self.counting, 1.0 / (c.mass() as f32).max(typical));
         }
     }
 
@@ -163,6 +198,7 @@ impl DensityGrid {
     /// Returns the number of over-dense cells.
     pub(crate) fn update(&mut self, blocks: &[Block], head_from_last: &Map, repulsion: Repulsion) -> u32 {
         self.repulsion = repulsion;
+        self.counting = Counting::of(repulsion.mode);
         self.fill(blocks, &Source::Now { head_from_last, directed: repulsion.anisotropy > 0.0 });
         self.counts.over_dense
     }
@@ -180,12 +216,17 @@ impl DensityGrid {
 
     /// The volume that the hair fills at rest, cubic metres.
     pub(crate) fn volume_at_rest(&self) -> f32 {
-        self.rest_volume
+        self.rest[self.counting as usize].volume
+    }
+
+    /// Mass of a cell as dense as a piece of hair at rest typically finds its surroundings.
+    fn full(&self) -> f32 {
+        self.rest[self.counting as usize].full
     }
 
     /// The mass at which a cell is full.
     fn full_mass(&self) -> i32 {
-        self.full.clamp(1.0, 2e9) as i32
+        self.full().clamp(1.0, 2e9) as i32
     }
 
     /// Whether there is hair to affect.
@@ -202,17 +243,18 @@ impl DensityGrid {
     fn fill(&mut self, blocks: &[Block], source: &Source) {
         let tasks = rayon::current_num_threads().min(TASKS).min(blocks.len()).max(1);
         self.parts.resize_with(tasks, Cells::new);
-        let (lattice, width, next) = (self.lattice, Width::widest(), AtomicUsize::new(0));
+        let (lattice, counting) = (self.lattice, self.counting);
+        let (width, next) = (Width::widest(), AtomicUsize::new(0));
         self.parts.par_iter_mut().for_each(|cells| {
             cells.begin();
             // It does not matter which task adds a block.
             while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                add_block(width, &lattice, source, block, cells);
+                add_block(width, &lattice, counting, source, block, cells);
             }
         });
         let (most, inv_threshold) = (self.full_mass(), 1.0 / self.repulsion.threshold);
         let Some((all, others)) = self.parts.split_first_mut() else { return };
-        self.counts = all.gather(others, most, inv_threshold);
+        self.counts = all.gather(others, counting, most, inv_threshold);
     }
 }
 

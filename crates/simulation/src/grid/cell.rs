@@ -5,21 +5,21 @@
 
 use rayon::prelude::*;
 
-use super::SIDES;
+use super::{Counting, SIDES};
 use crate::lanes::greater;
 
-/// Numbers per cell: mass, momentum along each axis, sums of directions, padding to a cache line, and two
+/// Numbers per cell: mass, momentum along each axis, sums of directions, padding to a cache line, and three
 /// that are not sums over hair.
 pub(super) const NUMBERS: usize = 16;
 
 /// The number of sums.
 pub(super) const PARTS: usize = 10;
 
-/// Index of the bits of the inverse rest density.
-const INV_REST: usize = NUMBERS - 1;
+/// Index of the bits of the inverse rest density by the first [`Counting`]; that by the second follows.
+const INV_REST: usize = NUMBERS - 2;
 
 /// Index of the bits of the excess, valid after counting.
-const EXCESS: usize = NUMBERS - 2;
+const EXCESS: usize = NUMBERS - 3;
 
 /// The contents of a cell, in fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,19 +36,19 @@ impl Cell {
 
     /// Inverse of the rest density, or of a typical one where there is no hair at rest.
     #[inline(always)]
-    pub(super) fn inv_rest(&self) -> f32 {
-        f32::from_bits(self.0[INV_REST] as u32)
+    pub(super) fn inv_rest(&self, counting: Counting) -> f32 {
+        f32::from_bits(self.0[INV_REST + counting as usize] as u32)
     }
 
-    pub(super) fn set_inv_rest(&mut self, inv: f32) {
-        self.0[INV_REST] = inv.to_bits() as i32;
+    pub(super) fn set_inv_rest(&mut self, counting: Counting, inv: f32) {
+        self.0[INV_REST + counting as usize] = inv.to_bits() as i32;
     }
 
     /// Computes and stores the excess: how much denser the cell is than its threshold, relative to the
     /// threshold; 0 below it.
     #[inline(always)]
-    fn update_excess(&mut self, inv_threshold: f32) -> f32 {
-        let excess = greater(0.0, self.mass() as f32 * self.inv_rest() * inv_threshold - 1.0);
+    fn update_excess(&mut self, counting: Counting, inv_threshold: f32) -> f32 {
+        let excess = greater(0.0, self.mass() as f32 * self.inv_rest(counting) * inv_threshold - 1.0);
         self.0[EXCESS] = excess.to_bits() as i32;
         excess
     }
@@ -172,8 +172,14 @@ impl Cells {
 
     /// Adds the contents of `others`, clears cells that have become empty, counts, and stores the excess in
     /// each cell. `most` is the mass of a full cell; a cell is over-dense above `1 / inv_threshold` times its
-    /// rest density.
-    pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Counts {
+    /// rest density by `counting`.
+    pub(super) fn gather(
+        &mut self,
+        others: &[Self],
+        counting: Counting,
+        most: i32,
+        inv_threshold: f32,
+    ) -> Counts {
         let before = &self.before;
         let chunks = self.each.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
         let counts = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
@@ -192,7 +198,7 @@ impl Cells {
                 out.held += mask.count_ones();
                 for x in bits(*mask) {
                     let cell = &mut cells[x];
-                    out.over_dense += u32::from(cell.update_excess(inv_threshold) > 0.0);
+                    out.over_dense += u32::from(cell.update_excess(counting, inv_threshold) > 0.0);
                     out.fullness += i64::from(cell.mass().min(most));
                 }
             }
@@ -241,8 +247,8 @@ mod tests {
                 unsafe { parts[part].each[at(cell)].add(held[0], mass, &numbers) };
             }
             let (all, others) = parts.split_first_mut().expect("three");
-            all.each.iter_mut().for_each(|cell| cell.set_inv_rest(0.1));
-            let counts = all.gather(others, i32::MAX, 1.0);
+            all.each.iter_mut().for_each(|cell| cell.set_inv_rest(Counting::Nearest, 0.1));
+            let counts = all.gather(others, Counting::Nearest, i32::MAX, 1.0);
             let sum = |cell: usize| puts.iter().filter(|put| put.1 == cell).map(|put| put.2).sum::<f32>();
             for cell in 0..6 {
                 let (found, mass) = (&all.each[at(cell)], sum(cell));
@@ -256,9 +262,12 @@ mod tests {
     #[test]
     fn a_cleared_cell_keeps_its_rest_density() {
         let mut cell = Cell([7; NUMBERS]);
-        cell.set_inv_rest(0.25);
-        assert_eq!((cell.update_excess(1.0), cell.excess()), (0.75, 0.75));
+        cell.set_inv_rest(Counting::Shared, 0.25);
+        cell.set_inv_rest(Counting::Nearest, 0.5);
+        assert_eq!((cell.update_excess(Counting::Nearest, 1.0), cell.excess()), (2.5, 2.5));
+        assert_eq!((cell.update_excess(Counting::Shared, 1.0), cell.excess()), (0.75, 0.75));
         cell.clear();
-        assert_eq!((cell.mass(), cell.inv_rest(), cell.excess()), (0, 0.25, 0.0));
+        let rest = [Counting::Shared, Counting::Nearest].map(|counting| cell.inv_rest(counting));
+        assert_eq!((cell.mass(), rest, cell.excess()), (0, [0.25, 0.5], 0.0));
     }
 }

@@ -11,7 +11,7 @@ use lovelock_base::simd_versions;
 
 use super::cell::{Cells, NUMBERS};
 use super::direction::outer;
-use super::{FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDES};
+use super::{Counting, FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDES};
 use crate::block::Block;
 use crate::lanes::{
     LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put, row_barrier,
@@ -73,6 +73,19 @@ pub(super) struct Corners {
 }
 
 impl Corners {
+    /// The fractions by which a deposit is shared: whole numbers put it into the cell that contains the point.
+    #[inline(always)]
+    fn counted(mut self, counting: Counting) -> Self {
+        if counting == Counting::Nearest {
+            for axis in &mut self.fraction {
+                for k in 0..LANES {
+                    axis[k] = if axis[k] < 0.5 { 0.0 } else { 1.0 };
+                }
+            }
+        }
+        self
+    }
+
     /// Weights of the eight cells for each point.
     #[inline(always)]
     pub(super) fn weights(&self) -> [Lane; 8] {
@@ -114,7 +127,7 @@ impl Lattice {
 /// shifted by half a stride, so that neighbouring guides leave no gaps. Per unit of mass a cell receives 1,
 /// the velocity in units of the grid, and `t t^T`.
 #[inline(always)]
-fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
+fn add(lattice: &Lattice, counting: Counting, source: &Source, block: &Block, cells: &mut Cells) {
     let Lattice { stride, units, .. } = *lattice;
     let (points, on) = (block.points(), stride / 2);
     let first = 1 + (stride - 1) / 2;
@@ -140,7 +153,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
                 put(&mut t, k, head_from_last.rotate(tangent));
             }
         }
-        let corners = lattice.corners(&p);
+        let corners = lattice.corners(&p).counted(counting);
         let (mut parts, mut masses) = ([ZERO; NUMBERS], ZERO);
         for k in 0..LANES {
             let (t, u) = (at(&t, k), at(&v, k));
@@ -181,7 +194,9 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
 
 simd_versions! {
     /// [`add`].
-    pub(super) fn add_block(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) -> () {
-        add(lattice, source, block, cells)
+    pub(super) fn add_block(
+        lattice: &Lattice, counting: Counting, source: &Source, block: &Block, cells: &mut Cells
+    ) -> () {
+        add(lattice, counting, source, block, cells)
     }
 }

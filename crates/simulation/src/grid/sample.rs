@@ -16,6 +16,9 @@ use crate::rates::{RowRates, rubbed};
 use crate::settings::RepulsionMode;
 use crate::trilinear::gradient;
 
+/// Distance from the centre of a cell within which the published force is faded, as a fraction of a cell.
+const NEAR_CENTRE: f32 = 0.1;
+
 /// The head and the time step for which [`DensityGrid::act`] computes forces.
 pub(crate) struct GridStep<'a> {
     /// Substep length, seconds.
@@ -77,7 +80,7 @@ impl DensityGrid {
             crossing: ZERO,
             inside: ZERO,
         };
-        let (mut crowded, inv_full) = ([false; LANES], 1.0 / self.full);
+        let (mut crowded, inv_full) = ([false; LANES], 1.0 / self.full());
         for k in 0..LANES {
             let excess: [f32; 8] = std::array::from_fn(|n| excesses[n][k]);
             crowded[k] = excess.iter().any(|&e| e > 0.0);
@@ -100,15 +103,15 @@ impl DensityGrid {
     }
 
     /// The published force: away from the centre of the cell that contains `p`, if that cell is over-dense.
-    /// It is faded at the centre, where it would be singular, and at the faces, where it would jump.
+    /// It has full strength up to the faces, because hair must leave the cell: a force that fades toward the
+    /// faces only moves hair within its cell, and the hair keeps no more volume than without. It is faded near
+    /// the centre, where it has no direction.
     #[cold]
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
         let cell = ((p - self.lattice.min) / self.lattice.cell).as_ivec3().clamp(IVec3::ZERO, SIDES - 1);
-        let i = index(cell);
         let out = p - (self.lattice.min + (cell.as_vec3() + 0.5) * self.lattice.cell);
-        let fade = (1.0 - 2.0 * out.abs().max_element() / self.lattice.cell).max(0.0);
-        out * (self.cells()[i].excess() * fade
-            / (out.length().max(0.1 * self.lattice.cell) * self.lattice.cell))
+        let excess = self.cells()[index(cell)].excess();
+        out * (excess / (out.length().max(NEAR_CENTRE * self.lattice.cell) * self.lattice.cell))
     }
 
     /// Adds the forces of the grid to a block whose positions are still those of the last step, and finds how

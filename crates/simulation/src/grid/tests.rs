@@ -88,6 +88,44 @@ fn over_dense_hair_is_pushed_apart() {
 }
 
 #[test]
+fn the_published_force_counts_whole_cells_and_is_strongest_at_their_faces() {
+    let blocks = lattice(5, 0.02);
+    let mut grid = DensityGrid::new(&blocks);
+    let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
+    let counted = |grid: &DensityGrid| {
+        let masses: Vec<i32> = grid.cells().iter().map(Cell::mass).filter(|mass| *mass > 0).collect();
+        (masses.len(), masses.iter().map(|mass| f64::from(*mass)).sum::<f64>())
+    };
+    grid.update(&blocks, &squeeze, Repulsion::default());
+    let shared = counted(&grid);
+    grid.update(&blocks, &squeeze, Repulsion { mode: RepulsionMode::Centre, ..Repulsion::default() });
+    let nearest = counted(&grid);
+    // A column of cells, not the eight around each piece; the same hair in all, up to rounding.
+    assert!(3 * nearest.0 < 2 * shared.0, "{nearest:?} of {shared:?} cells");
+    assert!((nearest.1 / shared.1 - 1.0).abs() < 1e-5, "{nearest:?} {shared:?}");
+
+    let (densest, cell) =
+        grid.cells().iter().enumerate().max_by_key(|(_, cell)| cell.mass()).expect("a grid of cells");
+    let excess = cell.excess();
+    assert!(excess > 1.0, "{excess}");
+    let (x, rest) = (densest as i32 % SIDES.x, densest as i32 / SIDES.x);
+    let corner = IVec3::new(x, rest % SIDES.y, rest / SIDES.y).as_vec3();
+    let side = grid.lattice.cell;
+    let push = |from_centre: Vec3| {
+        let p = grid.lattice.min + (corner + 0.5 + from_centre) * side;
+        grid.sample(p, Vec3::Y).expect("hair").0
+    };
+    for out in [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::new(0.6, 0.0, -0.8)] {
+        for distance in [0.15, 0.3, 0.45] {
+            let found = push(distance * out);
+            // Its strength is `e / d` at every distance from the centre, up to the rounding of places in the grid.
+            assert!((found - out * (excess / side)).length() < 1e-3 * excess / side, "{found} along {out}");
+        }
+    }
+    assert!(push(Vec3::ZERO).length() < 0.01 * excess / side, "no direction at the centre");
+}
+
+#[test]
 fn the_mean_velocity_is_that_of_the_surrounding_hair() {
     let mut blocks = lattice(4, 0.01);
     let mut grid = DensityGrid::new(&blocks);

@@ -9,6 +9,7 @@ mod drive;
 
 mod body;
 mod chains;
+mod crowded;
 mod dance;
 mod drives;
 mod factors;
