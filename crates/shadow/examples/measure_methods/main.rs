@@ -1,7 +1,7 @@
 //! Writes the measured part of `docs/shadow_methods.md`: the registry, and error, time and memory of every method on five hairstyles, on
 //! the CPU and on the GPU.
 //!
-//! `cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md` replaces the text
+//! `LOVELOCK_SUITE=long cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md` replaces the text
 //! between the markers in the file; without an argument it prints it.
 
 #[path = "../../tests/common/mod.rs"]

@@ -25,7 +25,7 @@ pub(crate) fn how_measured() -> String {
     format!(
         "\n\
          Measured on: {machine}. This part is written by\n\n\
-         \x20   cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md\n\n\
+         \x20   LOVELOCK_SUITE=long cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md\n\n\
          Every method with its default settings, at every point of the strands. Errors are differences of transmittance:\n\n\
          - *edge*: texels or cells along the edge of the map. Texels are at least as wide as strands, so few strands mean few texels.\n\
          - *exact*: RMSE against `exact` with the same number of texels along the edge.\n\
