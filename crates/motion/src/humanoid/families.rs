@@ -65,6 +65,75 @@ fn mixamo() {
 }
 
 #[test]
+fn mixamo_in_letters_of_one_size() {
+    let sides = ["Left", "Right"];
+    let arms = "      {}Shoulder\n        {}Arm\n          {}ForeArm\n            {}Hand\n";
+    let legs = "  {}UpLeg\n    {}Leg\n      {}Foot\n        {}ToeBase\n          {}Toe_End\n";
+    let text = "Hips\n  Spine\n    Spine1\n      Neck\n        Head\n          HeadTop_End\n".to_owned()
+        + &both(arms, sides)
+        + &both(legs, sides);
+    let limbs = ["{}Shoulder", "{}Arm", "{}ForeArm", "{}Hand", "{}UpLeg", "{}Leg", "{}Foot", "{}ToeBase"];
+    for write in [str::to_uppercase, str::to_lowercase] {
+        let trunk = ["Hips", "Neck", "Head"].map(write);
+        let sides = sides.map(write);
+        let limbs = limbs.map(write);
+        let text = write(&text);
+        let side = sides.each_ref().map(String::as_str);
+        check(&text, trunk.each_ref().map(String::as_str), limbs.each_ref().map(String::as_str), side);
+    }
+}
+
+#[test]
+fn joints_at_the_end_of_a_limb_are_not_the_limb() {
+    let sides = ["l", "r"];
+    let arms = "        clavicle_{}\n          upperarm_{}\n            shoulder_{}\n            lowerarm_{}\n              elbow_{}\n              hand_{}\n                \
+        wrist_{}\n";
+    let legs = "    thigh_{}\n      hip_{}\n      calf_{}\n        knee_{}\n        foot_{}\n          heel_{}\n          ball_{}\n";
+    let text = "root\n  pelvis\n    spine_01\n      spine_02\n        neck_01\n          head\n".to_owned()
+        + &both(arms, sides)
+        + &both(legs, sides);
+    let limbs =
+        ["clavicle_{}", "upperarm_{}", "lowerarm_{}", "hand_{}", "thigh_{}", "calf_{}", "foot_{}", "ball_{}"];
+    check(&text, ["pelvis", "neck_01", "head"], limbs, sides);
+    // Numbers do not make the end of a limb its start.
+    check(
+        &text.replace("lowerarm_", "lowerarm01_"),
+        ["pelvis", "neck_01", "head"],
+        limbs.map(|limb| if limb == "lowerarm_{}" { "lowerarm01_{}" } else { limb }),
+        sides,
+    );
+    // The control: where the elbow carries the hand, it is the forearm.
+    let carries =
+        text.replace("lowerarm_", "no_").replace(" hand_", "   hand_").replace(" wrist_", "   wrist_");
+    check(
+        &carries,
+        ["pelvis", "neck_01", "head"],
+        limbs.map(|limb| if limb == "lowerarm_{}" { "elbow_{}" } else { limb }),
+        sides,
+    );
+}
+
+#[test]
+fn a_heel_that_carries_the_foot_is_the_ankle() {
+    let sides = ["L", "R"];
+    let arms = "      {}_Collar\n        {}_Shoulder\n          {}_Elbow\n            {}_Wrist\n";
+    let legs = |foot: &str| format!("  {{}}_Hip\n    {{}}_Knee\n{foot}");
+    let trunk = "Pelvis\n  Spine1\n    Spine2\n      Neck\n        Head\n";
+    let of = |foot: &str| trunk.to_owned() + &both(arms, sides) + &both(&legs(foot), sides);
+    let limbs =
+        |foot, toe| ["{}_Collar", "{}_Shoulder", "{}_Elbow", "{}_Wrist", "{}_Hip", "{}_Knee", foot, toe];
+    for (foot, limbs) in [
+        ("      {}_Heel\n        {}_Foot\n", limbs("{}_Heel", "{}_Foot")),
+        ("      {}_Heel\n        {}_Toe\n", limbs("{}_Heel", "{}_Toe")),
+        // The controls: a heel at the end of the foot.
+        ("      {}_Foot\n        {}_Heel\n        {}_Toe\n", limbs("{}_Foot", "{}_Toe")),
+        ("      {}_Ankle\n        {}_Heel\n        {}_Foot\n", limbs("{}_Ankle", "{}_Foot")),
+    ] {
+        check(&of(foot), ["Pelvis", "Neck", "Head"], limbs, sides);
+    }
+}
+
+#[test]
 fn human_ik() {
     let sides = ["Left", "Right"];
     let arms = "          Character1_{}Shoulder\n            Character1_{}Arm\n              Character1_{}ArmRoll\n              Character1_{}ForeArm\n                \

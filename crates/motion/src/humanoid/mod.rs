@@ -144,8 +144,10 @@ impl Humanoid {
             }
         }
         let depth = depths(parents);
-        // The best joint for a part: not a helper, the lowest number, then the deepest (`LHipJoint` above
-        // `LeftHip`).
+        // A joint of a limb that carries a further one is no helper, such as `elbow_l` at the end of `lowerarm_l`.
+        let carries = carrying(&labels, parents);
+        // The best joint for a part: not a helper, one that carries the rest of the limb, the lowest number, then the deepest
+        // (`LHipJoint` above `LeftHip`).
         let best = |parts: &[Part], side: Option<Side>| {
             parts.iter().find_map(|&part| {
                 (0..names.len())
@@ -153,7 +155,8 @@ impl Humanoid {
                     .min_by(|&a, &b| {
                         let key = |j: usize| {
                             let l = labels[j].as_ref();
-                            (l.map(|l| (l.helper, l.numbers.clone())), std::cmp::Reverse(depth[j]), j)
+                            let order = l.map(|l| (l.helper, !carries[j], l.numbers.clone()));
+                            (order, std::cmp::Reverse(depth[j]), j)
                         };
                         key(a).cmp(&key(b))
                     })
@@ -199,6 +202,9 @@ impl Humanoid {
             put(Role::Shin(side), best(if has_thigh { &[Part::Shin, Part::Leg] } else { &[Part::Shin] }, s));
             // In some families the foot is what carries the toes, below the ankle; in others it is the ankle.
             let (ankle, foot, toe) = (best(&[Part::Ankle], s), best(&[Part::Foot], s), best(&[Part::Toe], s));
+            let heel = best(&[Part::Heel], s)
+                .filter(|&heel| is_below(foot, Some(heel)) || foot.is_none() && is_below(toe, Some(heel)));
+            let ankle = ankle.or(heel);
             put(Role::Foot(side), end_of_limb(ankle, foot));
             put(Role::Toe(side), if is_below(foot, ankle) { foot } else { toe });
         }
@@ -267,6 +273,20 @@ impl Humanoid {
             self.joints.insert(Role::Neck, neck);
         }
     }
+}
+
+/// Whether each joint has one below it that names another part of the same limb.
+fn carrying(labels: &[Option<Label>], parents: &[Option<usize>]) -> Vec<bool> {
+    let mut carries = vec![false; labels.len()];
+    for label in labels.iter().enumerate().filter_map(|(j, label)| Some((j, label.as_ref()?))) {
+        let (joint, part, side) = (label.0, label.1.part, label.1.side);
+        let mut at = parents[joint].filter(|_| side.is_some());
+        while let Some(j) = at {
+            carries[j] |= labels[j].as_ref().is_some_and(|above| above.side == side && above.part != part);
+            at = parents[j];
+        }
+    }
+    carries
 }
 
 /// The last joint of a spine whose joints are numbered from the hips to the head, if it goes on by two above the arms.

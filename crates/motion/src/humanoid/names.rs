@@ -42,6 +42,8 @@ pub(crate) enum Part {
     /// What is below the ankle, or the ankle.
     Foot,
     Ankle,
+    /// The ankle if it carries the foot or the toes, otherwise a helper.
+    Heel,
     Toe,
     /// A joint of the trunk; rigs that number it from the hips to the head name no head.
     Spine,
@@ -240,7 +242,8 @@ fn part(word: &str, sided: bool) -> Option<Part> {
         }
         ("foot", true) => Part::Foot,
         ("ankle", true) => Part::Ankle,
-        ("toe" | "toes" | "ball", true) => Part::Toe,
+        ("heel", true) => Part::Heel,
+        ("toe" | "toes" | "toebase" | "ball", true) => Part::Toe,
         _ => return None,
     })
 }
@@ -296,6 +299,9 @@ mod tests {
             ("lowerarm01.L", Forearm, l),
             ("wrist.R", Wrist, r),
             ("LeftToeBase", Toe, l),
+            ("MIXAMORIG:LEFTTOEBASE", Toe, l),
+            ("mixamorig:rightforearm", Forearm, r),
+            ("L_Heel", Heel, l),
             ("b_Head_05", Head, None),
             ("Head", Head, None),
             ("lowerneck", Neck, None),
