@@ -12,6 +12,7 @@ use crate::crate_bytes::{CrateBytes, u64_of};
 use crate::crate_samples::CrateSamples;
 use crate::crate_tokens::Tokens;
 use crate::crate_value::CrateValues;
+use crate::layer::{BASES, arcs_of};
 use crate::transform::DEEPEST;
 use crate::value::Value;
 use crate::{Around, Layer, UsdError};
@@ -306,7 +307,24 @@ impl Layer for CrateLayer<'_> {
     }
 
     fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError> {
-        Ok(self.of_types(types)?.iter().filter(|(.., is_on)| !is_on).count())
+        let found = self.of_types(types)?;
+        // Prims of variants, whose names are in braces, are on the stage if their variant is selected.
+        let is_plain = |prim: usize| !self.names(prim).iter().any(|name| name.starts_with('{'));
+        Ok(found.iter().filter(|&&(prim, _, is_on)| !is_on && is_plain(prim)).count())
+    }
+
+    fn kind(&mut self, prim: usize) -> Result<Option<String>, UsdError> {
+        self.token_of(prim as u32, "typeName")
+    }
+
+    fn bases(&mut self, prim: usize) -> Result<Vec<usize>, UsdError> {
+        let mut bases = Vec::new();
+        for field in BASES {
+            let Some(list) = self.field_of(prim as u32, field) else { continue };
+            bases.extend(self.values.paths(list)?);
+        }
+        let is_prim = |&base: &u32| self.nodes.get(base as usize).is_some_and(|node| node.spec_type == PRIM);
+        Ok(bases.into_iter().filter(is_prim).map(|base| base as usize).collect())
     }
 
     fn prim_at(&mut self, path: &str) -> Option<usize> {
@@ -390,11 +408,8 @@ impl Layer for CrateLayer<'_> {
         }
     }
 
-    fn composes(&self) -> bool {
-        let refers = ["references", "payload", "subLayers", "variantSetNames"];
-        self.fields
-            .iter()
-            .any(|(token, _)| self.values.tokens.get(*token).is_some_and(|token| refers.contains(&token)))
+    fn arcs(&self) -> Vec<&'static str> {
+        arcs_of(|field| self.fields.iter().any(|(token, _)| self.values.tokens.get(*token) == Some(field)))
     }
 
     fn malformed(&self, found: String, wanted: &str) -> UsdError {

@@ -10,6 +10,8 @@ pub enum Undrawn {
     Invisible,
     /// Its purpose, or that of the nearest prim above it that states one, is `guide` or `proxy`: it stands for other prims.
     StandIn,
+    /// It is below a `PointInstancer`, which draws copies of it in other places.
+    Prototype,
 }
 
 /// Why a prim is not drawn; `None` for a prim that is. Animated visibility is that at the time that is set, otherwise at the start of
@@ -24,19 +26,20 @@ pub fn undrawn(layer: &mut dyn Layer, prim: usize, start: Option<f64>) -> Result
         time = stated.and_then(|value| value.numbers().first().copied()).or(start);
     }
     let (mut purpose, mut purpose_is_visible) = (None, None);
-    let mut invisible = false;
+    let (mut invisible, mut is_prototype) = (false, false);
     let mut at = Some(prim);
     for _ in 0..DEEPEST {
         let Some(prim) = at else { break };
-        invisible |= token_at(layer, prim, "visibility", time)?.as_deref() == Some("invisible");
+        is_prototype |= layer.kind(prim)?.as_deref() == Some("PointInstancer");
+        invisible |= own_or_inherited(layer, prim, "visibility", time)?.as_deref() == Some("invisible");
         if purpose.is_none() {
-            purpose = token_at(layer, prim, "purpose", time)?;
+            purpose = own_or_inherited(layer, prim, "purpose", time)?;
         }
         // `UsdGeomVisibilityAPI`: the visibility of one purpose below a prim.
         if let Some(purpose @ ("render" | "proxy" | "guide")) = purpose.as_deref()
             && purpose_is_visible.is_none()
         {
-            let own = token_at(layer, prim, &format!("{purpose}Visibility"), time)?;
+            let own = own_or_inherited(layer, prim, &format!("{purpose}Visibility"), time)?;
             purpose_is_visible = own.filter(|word| word != "inherited").map(|word| word != "invisible");
         }
         at = layer.parent(prim);
@@ -45,6 +48,7 @@ pub fn undrawn(layer: &mut dyn Layer, prim: usize, start: Option<f64>) -> Result
         _ if invisible => Some(Undrawn::Invisible),
         Some("guide" | "proxy") => Some(Undrawn::StandIn),
         Some("render") if purpose_is_visible == Some(false) => Some(Undrawn::Invisible),
+        _ if is_prototype => Some(Undrawn::Prototype),
         _ => None,
     })
 }
@@ -66,6 +70,27 @@ pub fn visibility_changes(layer: &mut dyn Layer, prim: usize) -> Result<bool, Us
         at = layer.parent(prim);
     }
     Ok(false)
+}
+
+/// The most prims that are asked for one attribute.
+const MAX_BASES: usize = 64;
+
+/// A token of a prim, otherwise of what it inherits or specializes within the file, at a time code.
+fn own_or_inherited(
+    layer: &mut dyn Layer,
+    prim: usize,
+    name: &str,
+    time: Option<f64>,
+) -> Result<Option<String>, UsdError> {
+    let mut open = vec![prim];
+    for _ in 0..MAX_BASES {
+        let Some(prim) = open.pop() else { break };
+        if let Some(token) = token_at(layer, prim, name, time)? {
+            return Ok(Some(token));
+        }
+        open.extend(layer.bases(prim)?.into_iter().take(MAX_BASES).rev());
+    }
+    Ok(None)
 }
 
 /// A token at a time code, without interpolation.
@@ -163,6 +188,45 @@ def Xform "no_render"
     {
     }
 }
+class Xform "_guide"
+{
+    uniform token purpose = "guide"
+}
+class Xform "_unseen" (
+    specializes = </_guide>
+)
+{
+    token visibility = "invisible"
+}
+def Mesh "stand_in_e" (
+    inherits = </_guide>
+)
+{
+}
+def Xform "carries" (
+    inherits = </_unseen>
+)
+{
+    def Mesh "invisible_f"
+    {
+    }
+}
+def Mesh "drawn_f" (
+    prepend specializes = </_guide>
+)
+{
+    uniform token purpose = "default"
+}
+def PointInstancer "many"
+{
+    rel prototypes = </many/one/prototype_a>
+    def Xform "one"
+    {
+        def Mesh "prototype_a"
+        {
+        }
+    }
+}
 class Xform "template"
 {
     def Mesh "gone_a"
@@ -191,7 +255,8 @@ over "else"
         for (is_crate, bytes) in [(false, STAGE.as_bytes()), (true, &bytes[..])] {
             let mut layer = crate::open("a.usd", Source::Memory(bytes), is_crate).expect("a stage");
             let prims = layer.prims(&["Mesh"]).expect("prims");
-            assert_eq!((prims.len(), layer.undefined(&["Mesh"]).expect("a number")), (12, 3));
+            assert_eq!((prims.len(), layer.undefined(&["Mesh"]).expect("a number")), (16, 3));
+            assert_eq!(layer.arcs(), ["inherited classes", "specialized prims"]);
             for (prim, _) in prims {
                 let path = layer.path(prim);
                 // The writer of the test stores tokens of time samples as strings, which no reader needs.
@@ -202,6 +267,7 @@ over "else"
                     None => "/drawn",
                     Some(Undrawn::Invisible) => "/invisible",
                     Some(Undrawn::StandIn) => "/stand_in",
+                    Some(Undrawn::Prototype) => "/prototype",
                 };
                 assert!(path.contains(found), "{path}: {found}");
                 let changes = visibility_changes(&mut *layer, prim).expect("known");

@@ -11,11 +11,23 @@ pub trait Layer {
     fn prims(&mut self, types: &[&str]) -> Result<Vec<(usize, String)>, UsdError>;
 
     /// Number of prims of some types that are not on the stage: inactive ones, classes, and those that are only an `over`, with what is
-    /// below them.
+    /// below them. Prims of variants do not count.
     ///
     /// # Errors
     /// See [`Layer::prims`].
     fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError>;
+
+    /// The type of a prim.
+    ///
+    /// # Errors
+    /// See [`Layer::prims`].
+    fn kind(&mut self, prim: usize) -> Result<Option<String>, UsdError>;
+
+    /// The prims of this file that a prim inherits or specializes, strongest first.
+    ///
+    /// # Errors
+    /// See [`Layer::prims`].
+    fn bases(&mut self, prim: usize) -> Result<Vec<usize>, UsdError>;
 
     /// The prim at a path, active or not.
     fn prim_at(&mut self, path: &str) -> Option<usize>;
@@ -111,11 +123,39 @@ pub trait Layer {
     /// See [`Layer::prims`].
     fn metadata(&mut self, name: &str) -> Result<Option<Value>, UsdError>;
 
-    /// Whether the file refers to other files or to variants.
-    fn composes(&self) -> bool;
+    /// What the file composes its prims of besides what it states in place, in words; empty if nothing.
+    fn arcs(&self) -> Vec<&'static str>;
 
     /// An error about this file.
     fn malformed(&self, found: String, wanted: &str) -> UsdError;
+}
+
+/// The fields with the prims that a prim inherits or specializes.
+pub(crate) const BASES: [&str; 2] = ["inheritPaths", "specializes"];
+
+/// What a file composes of, by the fields that it has.
+pub(crate) fn arcs_of(has: impl Fn(&str) -> bool) -> Vec<&'static str> {
+    let arcs = [
+        ("references", "references"),
+        ("payload", "payloads"),
+        ("subLayers", "sublayers"),
+        ("variantSetNames", "variants"),
+        (BASES[0], "inherited classes"),
+        (BASES[1], "specialized prims"),
+    ];
+    arcs.into_iter().filter(|(field, _)| has(field)).map(|(_, word)| word).collect()
+}
+
+/// What of a file is not read because it composes its prims of it, as a remark; `None` if it does not.
+pub fn left_out_arcs(layer: &dyn Layer) -> Option<String> {
+    let arcs = layer.arcs();
+    let (last, others) = arcs.split_last()?;
+    let list =
+        if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    let inherits = arcs.iter().any(|arc| arc.starts_with("inherited") || arc.starts_with("specialized"));
+    let but =
+        if inherits { ", except the visibility and purpose that prims inherit within the file" } else { "" };
+    Some(format!("{list} of the file were left out{but}"))
 }
 
 /// Nearer to a sample than this, in time codes, a time is that of the sample: times are divided by a rate and multiplied again.

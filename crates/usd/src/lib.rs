@@ -1,7 +1,7 @@
 //! Stages of USD in one file: text (`.usda`) and binary crates (`.usdc`).
 //!
 //! Only what a reader asks for is decoded: prims by type, attributes at a time sample, targets of relationships, and the transforms of
-//! prims. References, payloads, sublayers and variants are not composed; [`Layer::composes`] says whether there are any.
+//! prims. References, payloads, sublayers and variants are not composed; [`Layer::arcs`] says which there are. Of inherited and specialized prims only [`undrawn`] asks.
 
 mod crate_bytes;
 mod crate_file;
@@ -14,12 +14,13 @@ mod layer;
 mod primvar;
 mod source;
 mod text;
+mod text_check;
 mod transform;
 mod value;
 
 pub use error::UsdError;
 pub use imageable::{Undrawn, undrawn, visibility_changes};
-pub use layer::{Around, Layer};
+pub use layer::{Around, Layer, left_out_arcs};
 pub use primvar::{Primvar, primvar};
 pub use source::Source;
 pub use transform::{StageSpace, own_transform, stage_space, to_stage, transform_times};

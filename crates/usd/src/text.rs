@@ -3,19 +3,17 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::Vec3;
-use logos::Logos;
-use openusd::sdf::{AbstractData, Data, Path, SpecType, Specifier, Value as Sdf};
+use openusd::sdf::{AbstractData, Data, ListOp, Path, SpecType, Specifier, Value as Sdf};
 use openusd::usda::parser::Parser;
-use openusd::usda::token::Token;
 
+use crate::layer::{BASES, arcs_of};
+use crate::text_check::check;
 use crate::transform::DEEPEST;
 use crate::value::{Value, half};
 use crate::{Around, Layer, UsdError};
 
 /// The longest text; parsing needs several times as much memory.
 const LONGEST: usize = 512 << 20;
-/// The most statements. The library searches all names of a prim for each one that it adds.
-const MAX_STATEMENTS: usize = 100_000;
 
 pub(crate) struct TextLayer {
     name: String,
@@ -42,7 +40,7 @@ impl TextLayer {
         }
         let text = std::str::from_utf8(bytes)
             .map_err(|error| malformed(error.valid_up_to(), "bytes that are not text".to_owned(), "UTF-8"))?;
-        check(text).map_err(|(offset, found, wanted)| malformed(offset, found, wanted))?;
+        check(text).map_err(|(offset, found, wanted)| malformed(offset, found, &wanted))?;
         let mut parser = Parser::new(text);
         // Input that could abort the program was rejected above. Any remaining panic of the library becomes an error
         // here.
@@ -91,31 +89,6 @@ impl TextLayer {
     }
 }
 
-/// Checks what the library's parser does not limit: nesting, which it follows recursively, and the number of
-/// statements.
-fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
-    let (mut depth, mut statements) = (0_usize, 0_usize);
-    for (token, span) in Token::lexer(text).spanned() {
-        match token {
-            Ok(Token::Punctuation('{' | '(' | '[')) => depth += 1,
-            Ok(Token::Punctuation('}' | ')' | ']')) => depth = depth.saturating_sub(1),
-            Ok(Token::Punctuation('=') | Token::Def | Token::Over | Token::Class) => statements += 1,
-            _ => {}
-        }
-        if depth > DEEPEST {
-            return Err((span.start, format!("more than {DEEPEST} nested brackets"), "less nesting"));
-        }
-        if statements > MAX_STATEMENTS {
-            return Err((
-                span.start,
-                format!("more than {MAX_STATEMENTS} statements"),
-                "fewer, or a .usdc file",
-            ));
-        }
-    }
-    Ok(())
-}
-
 impl TextLayer {
     /// The prims of some types with their types, and whether they are on the stage.
     fn of_types<'a>(&'a self, types: &'a [&str]) -> impl Iterator<Item = (usize, &'a str, bool)> {
@@ -146,7 +119,26 @@ impl Layer for TextLayer {
     }
 
     fn undefined(&mut self, types: &[&str]) -> Result<usize, UsdError> {
-        Ok(self.of_types(types).filter(|(.., is_on)| !is_on).count())
+        // Prims of variants are on the stage if their variant is selected.
+        let plain = |prim: usize| !self.prims[prim].as_str().contains('{');
+        Ok(self.of_types(types).filter(|&(prim, _, is_on)| !is_on && plain(prim)).count())
+    }
+
+    fn kind(&mut self, prim: usize) -> Result<Option<String>, UsdError> {
+        Ok(match self.field_of(&self.prims[prim], "typeName") {
+            Some(Sdf::Token(name)) => Some(name.as_str().to_owned()),
+            _ => None,
+        })
+    }
+
+    fn bases(&mut self, prim: usize) -> Result<Vec<usize>, UsdError> {
+        let path = &self.prims[prim];
+        let lists = BASES.iter().filter_map(|field| match self.field_of(path, field) {
+            Some(Sdf::PathListOp(list)) => Some(items(list)),
+            _ => None,
+        });
+        let known = |base: &Path| self.prims.binary_search_by(|known| known.as_str().cmp(base.as_str())).ok();
+        Ok(lists.flatten().filter_map(|base| known(&path.make_absolute(base))).collect())
     }
 
     fn prim_at(&mut self, path: &str) -> Option<usize> {
@@ -202,22 +194,26 @@ impl Layer for TextLayer {
             return Ok(Vec::new());
         };
         let Some(Sdf::PathListOp(list)) = self.field_of(&path, "targetPaths") else { return Ok(Vec::new()) };
-        let lists = [&list.explicit_items, &list.added_items, &list.prepended_items, &list.appended_items];
-        Ok(lists.into_iter().flatten().map(|path| path.as_str().to_owned()).collect())
+        Ok(items(list).map(|path| path.as_str().to_owned()).collect())
     }
 
     fn metadata(&mut self, name: &str) -> Result<Option<Value>, UsdError> {
         Ok(self.field_of(&Path::abs_root(), name).and_then(value_of))
     }
 
-    fn composes(&self) -> bool {
-        let refers = ["references", "payload", "subLayers", "variantSetNames"];
-        self.data.iter().any(|(path, _)| refers.iter().any(|field| self.data.has_field(path, field)))
+    fn arcs(&self) -> Vec<&'static str> {
+        arcs_of(|field| self.data.iter().any(|(path, _)| self.data.has_field(path, field)))
     }
 
     fn malformed(&self, found: String, wanted: &str) -> UsdError {
         UsdError::Malformed { name: self.name.clone(), offset: 0, found, wanted: wanted.to_owned() }
     }
+}
+
+/// The paths of a list.
+fn items(list: &ListOp<Path>) -> impl Iterator<Item = &Path> {
+    let lists = [&list.explicit_items, &list.added_items, &list.prepended_items, &list.appended_items];
+    lists.into_iter().flatten()
 }
 
 fn value_of(value: &Sdf) -> Option<Value> {

@@ -48,6 +48,8 @@ pub(super) enum Hidden {
     Invisible,
     /// It is a guide or a proxy, which stands for other strands.
     StandIn,
+    /// It is a prototype, of which copies are drawn in other places.
+    Prototype,
 }
 
 /// The content of a file before cleaning. The lengths of arrays over points equal the sum of `point_counts`, which fits

@@ -1,4 +1,4 @@
-//! Strands that a file hides: invisible ones, and guides or proxies that stand for others.
+//! Strands that a file hides: invisible ones, guides or proxies that stand for others, and prototypes of copies.
 
 use lovelock_base::words::counted;
 
@@ -33,30 +33,41 @@ impl RawHair {
         hidden.resize(self.point_counts.len(), None);
         let count = |why: Option<Hidden>| hidden.iter().filter(|&&mark| mark == why).count();
         let (drawn, invisible) = (count(None), count(Some(Hidden::Invisible)));
-        let stand_ins = count(Some(Hidden::StandIn));
+        let (stand_ins, prototypes) = (count(Some(Hidden::StandIn)), count(Some(Hidden::Prototype)));
         let mut parts = Vec::new();
         if stand_ins > 0 {
             parts.push(counted(stand_ins, "guide or proxy", "guides and proxies"));
+        }
+        if prototypes > 0 {
+            parts.push(counted(prototypes, "strand of a prototype", "strands of prototypes"));
         }
         if invisible > 0 {
             parts.push(counted(invisible, "hidden strand", "hidden strands"));
         }
         let parts = parts.join(" and ");
-        let kept: Vec<bool> = if invisible + stand_ins == 0 {
+        let left_out = |what: &str, count: usize| {
+            format!("Left out {what}; {SETTING} imports {}.", if count == 1 { "it" } else { "them" })
+        };
+        let all = invisible + stand_ins + prototypes;
+        let kept: Vec<bool> = if all == 0 {
             return Ok(());
         } else if include {
             self.notes.push(format!("Includes {parts} of the file."));
             return Ok(());
         } else if drawn > 0 {
-            self.notes.push(format!("Left out {parts}; {SETTING} imports them."));
+            self.notes.push(left_out(&parts, all));
             hidden.iter().map(Option::is_none).collect()
-        } else if stand_ins > 0 {
-            self.notes.push("All visible strands are guides or proxies, so they are used.".to_owned());
+        } else if all > invisible {
+            let what = match (stand_ins, prototypes) {
+                (_, 0) => "guides or proxies",
+                (0, _) => "prototypes",
+                _ => "guides, proxies or prototypes",
+            };
+            self.notes.push(format!("All visible strands are {what}, so they are used."));
             if invisible > 0 {
-                let invisible = counted(invisible, "hidden strand", "hidden strands");
-                self.notes.push(format!("Left out {invisible}; {SETTING} imports them."));
+                self.notes.push(left_out(&counted(invisible, "hidden strand", "hidden strands"), invisible));
             }
-            hidden.iter().map(|&why| why == Some(Hidden::StandIn)).collect()
+            hidden.iter().map(|&why| why != Some(Hidden::Invisible)).collect()
         } else {
             return Err(HairFileError::Malformed {
                 name: name.to_owned(),

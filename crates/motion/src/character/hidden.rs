@@ -10,6 +10,7 @@ pub(crate) struct HiddenMeshes {
     include: bool,
     invisible: usize,
     stand_ins: usize,
+    prototypes: usize,
 }
 
 /// Why a mesh is not drawn.
@@ -19,6 +20,8 @@ pub(crate) enum Hidden {
     Invisible,
     /// It is a guide, a proxy or a coarser level, which stands for another mesh.
     StandIn,
+    /// It is a prototype, of which copies are drawn in other places.
+    Prototype,
 }
 
 impl HiddenMeshes {
@@ -32,6 +35,7 @@ impl HiddenMeshes {
             None => return true,
             Some(Hidden::Invisible) => self.invisible += 1,
             Some(Hidden::StandIn) => self.stand_ins += 1,
+            Some(Hidden::Prototype) => self.prototypes += 1,
         }
         self.include
     }
@@ -41,6 +45,9 @@ impl HiddenMeshes {
         let mut parts = Vec::new();
         if self.stand_ins > 0 {
             parts.push(counted(self.stand_ins, "guide or proxy mesh", "guide and proxy meshes"));
+        }
+        if self.prototypes > 0 {
+            parts.push(counted(self.prototypes, "mesh of a prototype", "meshes of prototypes"));
         }
         if self.invisible > 0 {
             parts.push(counted(self.invisible, "hidden mesh", "hidden meshes"));
@@ -54,7 +61,9 @@ impl HiddenMeshes {
             notes.push(if self.include {
                 format!("includes {counts} of the file")
             } else {
-                format!("left out {counts}; the setting *Include hidden* includes them")
+                let all = self.invisible + self.stand_ins + self.prototypes;
+                let them = if all == 1 { "it" } else { "them" };
+                format!("left out {counts}; the setting *Include hidden* includes {them}")
             });
         }
     }

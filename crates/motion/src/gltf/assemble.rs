@@ -114,6 +114,15 @@ pub(super) fn assemble(
         }
     }
     hidden.note(&mut notes);
+    if needs_mesh {
+        let of_node = |&n: &usize| document.nodes[n].mesh.map(|mesh| &document.meshes[mesh]);
+        let primitives = tree.order.iter().filter_map(of_node).flat_map(|mesh| &mesh.primitives);
+        let lines = primitives.filter(|primitive| matches!(primitive.mode, Some(1..=3))).count();
+        if lines > 0 {
+            let what = counted(lines, "primitive of lines", "primitives of lines");
+            notes.push(format!("left out {what}, no part of a body"));
+        }
+    }
     let (mesh, skin_data) = surface.finish(palette);
     if needs_mesh && mesh.triangles.is_empty() {
         let found = describe_contents(document, &dropped)

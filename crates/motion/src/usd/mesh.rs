@@ -21,6 +21,7 @@ pub(super) fn hidden(layer: &mut dyn Layer, prim: usize) -> Result<Option<Hidden
     Ok(undrawn(layer, prim, start)?.map(|why| match why {
         Undrawn::Invisible => Hidden::Invisible,
         Undrawn::StandIn => Hidden::StandIn,
+        Undrawn::Prototype => Hidden::Prototype,
     }))
 }
 

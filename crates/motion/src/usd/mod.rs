@@ -91,9 +91,7 @@ pub(crate) fn read(
     let layer = &mut *stage;
     let mut notes = Vec::new();
     let mut dropped = BTreeMap::new();
-    if layer.composes() {
-        notes.push("references to other files and variants were ignored".to_owned());
-    }
+    notes.extend(lovelock_usd::left_out_arcs(layer));
     let space = stage_space(layer)?;
     if !space.is_stated {
         notes.push("the file states no metersPerUnit; centimetres, the default of USD, are used".to_owned());
@@ -132,6 +130,7 @@ pub(crate) fn read(
             reader.mesh(layer, prim, metres_from_stage)?;
         }
         hidden.note(&mut notes);
+        note_curves(layer, &mut notes)?;
         match layer.undefined(&["Mesh"])? {
             0 => {}
             some => notes.push(format!(
@@ -146,7 +145,8 @@ pub(crate) fn read(
         return Err(MotionError::Empty {
             file: file.to_owned(),
             found: format!(
-                "{meshes} meshes without a usable triangle{}{}",
+                "{} without a usable triangle{}{}",
+                counted(meshes, "mesh", "meshes"),
                 hidden.in_error(),
                 only_motion(animations.len())
             ),
@@ -165,6 +165,27 @@ pub(crate) fn read(
     };
     character.format = format!("USD ({form})");
     Ok(character)
+}
+
+/// Adds a note about the curves of a file that is read as a body.
+fn note_curves(layer: &mut dyn Layer, notes: &mut Vec<String>) -> Result<(), MotionError> {
+    let curves = layer.prims(&["BasisCurves"])?;
+    let mut hidden = 0;
+    for &(prim, _) in curves.iter().take(MAX_LOOKED_AT) {
+        hidden += usize::from(mesh::hidden(layer, prim)?.is_some());
+    }
+    let drawn = curves.len() - hidden;
+    if hidden > 0 {
+        let what = "which the file hides or marks as guides";
+        notes.push(format!("left out {}, {what}", counted(hidden, "prim of curves", "prims of curves")));
+    }
+    if drawn > 0 {
+        notes.push(format!(
+            "left out {}, which are hair",
+            counted(drawn, "prim of curves", "prims of curves")
+        ));
+    }
+    Ok(())
 }
 
 /// The matrix of USD, for row vectors, as a transform; `None` if it is not finite.

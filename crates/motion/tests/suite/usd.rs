@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use lovelock_motion::{
-    BodySettings, FigureContent, MotionSettings, figure_content, load_character_bytes,
+    BodySettings, FigureContent, MotionSettings, figure_content, load_character, load_character_bytes,
     load_character_bytes_with, load_motion_bytes,
 };
 use lovelock_testkit::fuzz::damaged;
@@ -291,6 +291,10 @@ fn hidden_meshes_are_left_out_counted_and_selectable() {
     {
         std::fs::write(&path, two_meshes("", "") + &curves).expect("a file");
         assert_eq!(figure_content(&path).expect("USD"), Some(wanted));
+        let body = load_character(&path).expect("a body");
+        let what = if wanted == FigureContent::Body { "which the file hides" } else { "which are hair" };
+        let note = format!("left out 1 prim of curves, {what}");
+        assert!(body.notes.iter().any(|text| text.starts_with(&note)), "{:?}", body.notes);
     }
     let hidden = two_meshes("", "").replace("def Mesh \"a\"\n{", &format!("def Mesh \"a\"\n{{\n{invisible}"));
     let hidden = hidden.replace("def Xform \"g\"\n{", &format!("def Xform \"g\"\n{{\n{invisible}"));

@@ -103,7 +103,7 @@ fn read_all(bytes: &[u8], is_crate: bool) -> Result<usize, UsdError> {
     for name in ["metersPerUnit", "upAxis", "defaultPrim"] {
         count(layer.metadata(name)?);
     }
-    layer.composes();
+    layer.arcs();
     Ok(values)
 }
 

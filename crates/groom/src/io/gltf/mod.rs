@@ -1,8 +1,8 @@
 //! Lines of glTF 2.0: primitives of the modes LINES, `LINE_LOOP` and `LINE_STRIP`, in the space of the scene.
 //!
 //! glTF states metres and Y up. Half of the width of hair is the attribute `_RADIUS`, a convention of several programs;
-//! colours are `COLOR_0` times the base colour of the material. Skins, animations and morph targets do not apply to lines. Nodes of scale 0 and those below them are
-//! left out; `KHR_node_visibility` hides.
+//! colours are `COLOR_0` times the base colour of the material. Skins, animations and morph targets do not apply to lines. Nodes of scale 0 hide what is below
+//! them, as does `KHR_node_visibility`.
 
 mod shared;
 mod write;
@@ -13,7 +13,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use glam::{Mat4, Vec3};
-use lovelock_gltf::document::{Document, Primitive};
+use lovelock_gltf::document::{Document, Mesh, Node, Primitive, Scene};
 use lovelock_gltf::{Accessors, Asset, GltfError, MAGIC, without_mark};
 use serde::Deserialize;
 
@@ -72,7 +72,7 @@ fn is_line(mode: Option<u32>) -> bool {
 /// What a glTF file contains, by its document alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GltfContent {
-    /// Whether there are lines, which are hair.
+    /// Whether there are lines, which are hair; hidden ones count only without a surface that is drawn.
     pub lines: bool,
     /// Whether there are triangles, which are a body.
     pub triangles: bool,
@@ -82,20 +82,15 @@ pub struct GltfContent {
 
 /// What a glTF file, binary or text, contains; `None` for a file that cannot be read.
 pub fn gltf_content(path: &Path) -> Option<GltfContent> {
+    // Without the buffers, which may be long texts.
     #[derive(Default, Deserialize)]
     #[serde(default)]
     struct Parts {
-        meshes: Vec<Primitives>,
+        scene: Option<usize>,
+        scenes: Vec<Scene>,
+        nodes: Vec<Node>,
+        meshes: Vec<Mesh>,
         animations: Vec<serde::de::IgnoredAny>,
-    }
-    #[derive(Deserialize)]
-    struct Primitives {
-        #[serde(default)]
-        primitives: Vec<Mode>,
-    }
-    #[derive(Deserialize)]
-    struct Mode {
-        mode: Option<u32>,
     }
     let mut file = DiskFile::open(path).ok()?;
     let mut head = [0; 20];
@@ -108,11 +103,16 @@ pub fn gltf_content(path: &Path) -> Option<GltfContent> {
         u64::MAX
     };
     let parts: Parts = serde_json::from_reader(BufReader::with_capacity(1 << 16, file).take(length)).ok()?;
-    let modes = || parts.meshes.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| primitive.mode);
+    let Parts { scene, scenes, nodes, meshes, animations } = parts;
+    let document = Document { scene, scenes, nodes, meshes, ..Document::default() };
+    let is_surface = |mode: Option<u32>| (TRIANGLES..=TRIANGLE_FAN).contains(&mode.unwrap_or(TRIANGLES));
+    let modes = || document.meshes.iter().flat_map(|mesh| &mesh.primitives).map(|primitive| primitive.mode);
+    let shown = shown(&document);
+    let drawn = || shown.iter().filter(|(.., is_visible)| *is_visible).map(|(primitive, ..)| primitive.mode);
     Some(GltfContent {
-        lines: modes().any(is_line),
-        triangles: modes().any(|mode| (TRIANGLES..=TRIANGLE_FAN).contains(&mode.unwrap_or(TRIANGLES))),
-        clips: parts.animations.len(),
+        lines: drawn().any(is_line) || modes().any(is_line) && !drawn().any(is_surface),
+        triangles: modes().any(is_surface),
+        clips: animations.len(),
     })
 }
 
@@ -151,11 +151,8 @@ fn shown(document: &Document) -> Vec<(&Primitive, Mat4, bool)> {
     let mut shown = Vec::new();
     for (node, transform, is_visible) in nodes(document) {
         let mesh = document.nodes[node].mesh.and_then(|mesh| document.meshes.get(mesh));
-        // A node of scale 0 hides what it carries, as in an animation of one mesh per frame.
-        if transform.determinant().abs() > 1e-18 {
-            let primitives = mesh.iter().flat_map(|mesh| &mesh.primitives);
-            shown.extend(primitives.map(|primitive| (primitive, transform, is_visible)));
-        }
+        let primitives = mesh.iter().flat_map(|mesh| &mesh.primitives);
+        shown.extend(primitives.map(|primitive| (primitive, transform, is_visible)));
     }
     shown
 }
@@ -205,12 +202,24 @@ fn nodes(document: &Document) -> Vec<(usize, Mat4, bool)> {
         if std::mem::replace(seen, true) {
             continue;
         }
-        let transform = parent * content.transform();
-        let is_visible = above_is_visible && content.is_visible();
+        let mut own = content.transform();
+        // A node of scale 0 hides what it carries, as in an animation of one mesh per frame. Its size is not known.
+        let is_collapsed = size_of(&own) < 1e-9;
+        if is_collapsed {
+            own = Mat4::from_translation(own.w_axis.truncate());
+        }
+        let transform = parent * own;
+        let is_visible = above_is_visible && content.is_visible() && !is_collapsed;
         found.push((node, transform, is_visible));
         open.extend(content.children.iter().rev().map(|&child| (child, transform, is_visible)));
     }
     found
+}
+
+/// The largest factor by which a transform multiplies an axis.
+fn size_of(transform: &Mat4) -> f32 {
+    let axes = [transform.x_axis, transform.y_axis, transform.z_axis];
+    axes.into_iter().map(|axis| axis.truncate().length()).fold(0.0, f32::max)
 }
 
 /// The strands read so far.
@@ -245,7 +254,9 @@ impl Lines<'_> {
             let found = "a scene that shows the same points again and again".to_owned();
             return Err(self.malformed(found, &format!("{} points at most", self.most_points)));
         }
-        let scale = transform.determinant().abs().cbrt();
+        // Lines that are flattened keep their width.
+        let (volume, size) = (transform.determinant().abs(), size_of(&transform));
+        let scale = if volume > 1e-9 * size.powi(3) { volume.cbrt() } else { size };
         let count = positions.len();
         let same_length = |lines: &Self, what: &str, length: usize| {
             if length == count {

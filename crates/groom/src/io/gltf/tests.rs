@@ -3,11 +3,12 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::Vec3;
+use lovelock_base::watch::Watch;
 use lovelock_testkit::clock::thread_time;
 use serde_json::{Value, json};
 
 use super::{GltfContent, gltf_content};
-use crate::{HairFile, load_hair, load_hair_bytes};
+use crate::{HairFile, load_hair, load_hair_bytes, load_hair_watched};
 
 /// Nine points on the X axis as floats, radii, and a few lists of indices: 9 x 12 bytes, 9 x 4, then 8 x u16.
 fn buffer() -> Vec<u8> {
@@ -215,6 +216,51 @@ fn nodes_that_are_not_visible_hide_what_is_below_them() {
         assert_eq!(hair.strands(), strands, "{node} {visible}");
         assert_eq!(hair.notes.iter().any(|note| note.contains("1 hidden strand")), strands == 1);
     }
+}
+
+#[test]
+fn a_node_of_scale_zero_hides_and_a_flat_one_does_not() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a.gltf");
+    let strip = json!({ "mode": 3, "attributes": { "POSITION": 0, "_RADIUS": 1 } });
+    let load = |scale: Value, include| {
+        let mut text = document(&strip, &data_uri());
+        text["nodes"] = json!([{ "mesh": 0 }, { "scale": scale, "children": [2] }, { "mesh": 0 }]);
+        text["scenes"] = json!([{ "nodes": [0, 1] }]);
+        std::fs::write(&path, text.to_string()).expect("a file");
+        load_hair_watched(&path, include, &Watch::default()).expect("hair")
+    };
+    let shown = load(json!([0, 0, 0]), false);
+    assert_eq!(shown.strands(), 1);
+    assert!(shown.notes.iter().any(|note| note.starts_with("Left out 1 hidden strand")), "{:?}", shown.notes);
+    let all = load(json!([0, 0, 0]), true);
+    assert_eq!((all.strands(), all.strand(1)), (2, all.strand(0)));
+    // Flattened and small ones are drawn.
+    for (scale, width) in [(json!([1, 1, 0]), 0.002), (json!([0.01, 0.01, 0.01]), 2e-5)] {
+        let hair = load(scale, false);
+        assert_eq!(hair.strands(), 2);
+        let found = hair.thickness.expect("widths")[10];
+        assert!((found / width - 1.0).abs() < 1e-3, "{found}");
+    }
+}
+
+#[test]
+fn hidden_lines_beside_a_surface_make_no_hair() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a.gltf");
+    let content = |hides: [bool; 2], scale: f32| {
+        let mut text = document(&json!({ "mode": 3, "attributes": { "POSITION": 0 } }), &data_uri());
+        let lines = text["meshes"][0].clone();
+        text["meshes"] = json!([lines, { "primitives": [{ "attributes": { "POSITION": 0 } }] }]);
+        let node = |mesh: usize| json!({ "mesh": mesh, "extensions": { "KHR_node_visibility": { "visible": !hides[mesh] } } });
+        text["nodes"] = json!([node(0), node(1), { "scale": [scale, scale, scale], "children": [0] }]);
+        text["scenes"] = json!([{ "nodes": [1, 2] }]);
+        std::fs::write(&path, text.to_string()).expect("a file");
+        gltf_content(&path).expect("a document").lines
+    };
+    assert!(!content([true, false], 1.0) && !content([false, false], 0.0));
+    // The controls: lines that are drawn, and lines without a surface that is drawn.
+    assert!(content([false, false], 1.0) && content([true, true], 1.0));
 }
 
 #[test]

@@ -64,6 +64,59 @@ fn curves_that_are_not_on_the_stage_are_mentioned() {
 }
 
 #[test]
+fn classes_hide_what_inherits_from_them() {
+    let inherits = |name: &str, count, arc: &str| {
+        curves(name, count, "").replacen("\"\n{", &format!("\" (\n {arc} = </_kind>\n)\n{{"), 1)
+    };
+    let class = |lines: &str| format!("class \"_kind\"\n{{\n{lines}\n}}\n");
+    for arc in ["inherits", "prepend specializes"] {
+        for (lines, note) in
+            [(GUIDE, "Left out 2 guides and proxies"), (INVISIBLE, "Left out 2 hidden strands")]
+        {
+            let text = stage(&[class(lines), curves("a", 4, ""), inherits("b", 2, arc)]);
+            let hair = load(&text).expect("hair");
+            assert_eq!(hair.strands(), 4, "{arc}");
+            assert!(hair.notes.iter().any(|text| text.starts_with(note)), "{:?}", hair.notes);
+            assert!(
+                hair.notes
+                    .iter()
+                    .any(|note| note.contains("of the file were left out, except the visibility"))
+            );
+        }
+        // The control: a class that says nothing about it.
+        let hair = load(&stage(&[class(""), curves("a", 4, ""), inherits("b", 2, arc)])).expect("hair");
+        assert_eq!(hair.strands(), 6, "{arc}");
+    }
+}
+
+#[test]
+fn prototypes_of_an_instancer_are_left_out_and_variants_are_mentioned() {
+    let instancer = |inner: &str| {
+        format!(
+            "def PointInstancer \"i\"\n{{\nrel prototypes = </i/p/b>\ndef Scope \"p\"\n{{\n{inner}}}\n}}\n"
+        )
+    };
+    let hair = load(&stage(&[curves("a", 4, ""), instancer(&curves("b", 2, ""))])).expect("hair");
+    assert_eq!(hair.strands(), 4);
+    let note = "Left out 2 strands of prototypes; the setting *Include hidden* imports them.";
+    assert!(hair.notes.iter().any(|text| text == note), "{:?}", hair.notes);
+    let alone = load(&stage(&[instancer(&curves("b", 1, ""))])).expect("hair");
+    assert!(alone.strands() == 1 && alone.notes.iter().any(|text| text.contains("are prototypes")));
+    let one = load(&stage(&[curves("a", 4, ""), curves("b", 1, INVISIBLE)])).expect("hair");
+    assert!(one.notes.iter().any(|text| text.ends_with("imports it.")), "{:?}", one.notes);
+    let variant = format!(
+        "def Xform \"w\" (\nvariants = {{ string v = \"x\" }}\nprepend variantSets = \"v\"\n)\n{{\nvariantSet \"v\" = {{\n\"x\" {{\n{}}}\n}}\n}}\n",
+        curves("b", 2, "")
+    );
+    let hair = load(&stage(&[curves("a", 4, ""), variant.clone()])).expect("hair");
+    assert_eq!(hair.strands(), 4);
+    assert!(hair.notes.iter().any(|text| text == "Variants of the file were left out."), "{:?}", hair.notes);
+    assert!(!hair.notes.iter().any(|text| text.contains("not on the stage")), "{:?}", hair.notes);
+    let error = load(&stage(&[variant])).expect_err("no curves").to_string();
+    assert!(error.contains("variants of the file were left out"), "{error}");
+}
+
+#[test]
 fn hidden_curves_stay_hidden_while_the_others_play() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("a.usda");

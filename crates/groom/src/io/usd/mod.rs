@@ -70,11 +70,10 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     }
     let prims = layer.curves()?;
     if prims.is_empty() {
-        return Err(layer.malformed("no curves".to_owned(), "one prim of type BasisCurves or more"));
+        let found = layer.left_out_arcs().map_or_else(String::new, |arcs| format!(" ({arcs})"));
+        return Err(layer.malformed(format!("no curves{found}"), "one prim of type BasisCurves or more"));
     }
-    if layer.composes() {
-        raw.notes.push("References to other files and variants were ignored.".to_owned());
-    }
+    raw.notes.extend(layer.left_out_arcs().map(|arcs| sentence(&arcs)));
     match layer.undefined_curves()? {
         0 => {}
         some => raw.notes.push(format!(
@@ -115,6 +114,12 @@ fn read_layer(layer: &mut Stage<'_>) -> Result<RawHair, HairFileError> {
     Ok(raw)
 }
 
+/// A remark as a sentence.
+fn sentence(remark: &str) -> String {
+    let first = remark.chars().next().map_or(0, char::len_utf8);
+    format!("{}{}.", remark[..first].to_uppercase(), &remark[first..])
+}
+
 /// The polylines of one prim, in its own space.
 struct Curves {
     counts: Vec<u32>,
@@ -136,7 +141,8 @@ impl Curves {
         let sum =
             counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(usize::try_from(count).ok()?));
         if sum != Some(points.len()) {
-            let found = format!("{path}: {} points in {} curves", points.len(), counts.len());
+            let points = counted(points.len(), "point", "points");
+            let found = format!("{path}: {points} in {}", counted(counts.len(), "curve", "curves"));
             return Err(layer.malformed(found, "as many points as curveVertexCounts add up to"));
         }
         let counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();

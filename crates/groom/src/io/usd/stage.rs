@@ -44,6 +44,7 @@ impl<'a> Stage<'a> {
         let why = why.map(|why| match why {
             Undrawn::Invisible => Hidden::Invisible,
             Undrawn::StandIn => Hidden::StandIn,
+            Undrawn::Prototype => Hidden::Prototype,
         });
         Ok((why, lovelock_usd::visibility_changes(&mut *self.0, prim).map_err(refused)?))
     }
@@ -117,9 +118,9 @@ impl<'a> Stage<'a> {
         lovelock_usd::to_stage(&mut *self.0, prim).map_err(refused)
     }
 
-    /// Whether the file refers to other files or to variants.
-    pub(super) fn composes(&self) -> bool {
-        self.0.composes()
+    /// What the file composes of that is not read, as a remark.
+    pub(super) fn left_out_arcs(&self) -> Option<String> {
+        lovelock_usd::left_out_arcs(&*self.0)
     }
 
     /// An error about this file.
