@@ -59,6 +59,46 @@ pub struct MorphTrack {
     pub track: Track<f32>,
 }
 
+/// The keys of a clip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Keys {
+    /// Number of times at which there are keys.
+    pub times: usize,
+    /// The time of which all are multiples, counted from the first, seconds: the smallest between two. `None` for keys that are spaced
+    /// unevenly.
+    pub step_secs: Option<f64>,
+}
+
+impl Keys {
+    /// Those at some times, in any order, seconds.
+    pub(crate) fn at(mut times: Vec<f32>) -> Self {
+        times.sort_by(f32::total_cmp);
+        // Keys that close are one key that was rounded differently.
+        times.dedup_by(|b, a| f64::from(*b) - f64::from(*a) <= SAME_KEY_SECS);
+        Self { times: times.len(), step_secs: step_secs(&times) }
+    }
+}
+
+/// Keys closer to each other than this are one, seconds.
+const SAME_KEY_SECS: f64 = 1e-4;
+
+/// The time of which all of some ascending times are multiples, seconds.
+fn step_secs(times: &[f32]) -> Option<f64> {
+    let gaps = times.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0]));
+    let least = gaps.reduce(f64::min)?;
+    let first = f64::from(*times.first()?);
+    // The smallest gap is rounded; the later a key, the more exact is its share.
+    let step = times.iter().fold(least, |step, &time| {
+        let count = ((f64::from(time) - first) / step).round();
+        if count >= 1.0 { (f64::from(time) - first) / count } else { step }
+    });
+    let is_multiple = |&time: &f32| {
+        let steps = (f64::from(time) - first) / step;
+        (steps - steps.round()).abs() < 0.02
+    };
+    times.iter().all(is_multiple).then_some(step)
+}
+
 /// A motion of one body; immutable.
 #[derive(Clone, Debug, Default)]
 pub struct Clip {
@@ -70,6 +110,8 @@ pub struct Clip {
     pub start_secs: f64,
     /// Seconds that the file's own clock, or the start that the file states, is ahead of the first key; negative if keys lie before it.
     pub lead_secs: f64,
+    /// The keys as the file has them, where tracks have others.
+    pub file_keys: Option<Keys>,
     /// Length of the step from the last key of the file back to the first pose, which was added to the end of a cycle, seconds.
     pub added_secs: f64,
     /// Whether it repeats without a jump.
@@ -104,34 +146,25 @@ impl Clip {
         joints.flatten().chain(self.morphs.iter().map(|m| &m.track.times))
     }
 
-    /// The time of which all keys are multiples, seconds: the smallest between two keys. `None` for keys that are spaced unevenly.
-    pub(crate) fn step_secs(&self) -> Option<f64> {
+    /// The keys of the file.
+    pub(crate) fn keys(&self) -> Keys {
+        if let Some(keys) = self.file_keys {
+            return keys;
+        }
         let mut all: Vec<f32> = Vec::new();
         let mut seen: Vec<*const f32> = Vec::new();
-        for times in self.times().filter(|times| times.len() > 1) {
-            // Most tracks share their times, or have the same ones.
-            if !seen.contains(&times.as_ptr()) && !all.ends_with(times) {
+        let mut single = None;
+        for times in self.times() {
+            // A track with one key holds at all times.
+            if times.len() < 2 {
+                single = single.or(times.first().copied());
+            } else if !seen.contains(&times.as_ptr()) && !all.ends_with(times) {
+                // Most tracks share their times, or have the same ones.
                 seen.push(times.as_ptr());
                 all.extend(times.iter());
             }
         }
-        all.sort_by(f32::total_cmp);
-        all.dedup();
-        // Keys that close are one key that was rounded differently.
-        let gaps =
-            all.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).filter(|gap| *gap > 1e-4);
-        let least = gaps.reduce(f64::min)?;
-        let first = f64::from(*all.first()?);
-        // The smallest gap is rounded; the later a key, the more exact is its share.
-        let step = all.iter().fold(least, |step, &time| {
-            let count = ((f64::from(time) - first) / step).round();
-            if count >= 1.0 { (f64::from(time) - first) / count } else { step }
-        });
-        let is_multiple = |&time: &f32| {
-            let steps = (f64::from(time) - first) / step;
-            (steps - steps.round()).abs() < 0.02
-        };
-        all.iter().all(is_multiple).then_some(step)
+        Keys::at(if all.is_empty() { single.into_iter().collect() } else { all })
     }
 
     /// Times of the first and the last key, seconds. A track with one key holds at all times, so it does not count beside others.

@@ -89,10 +89,15 @@ pub struct MotionInfo {
     pub notes: Vec<String>,
     /// Number of joints, without end sites.
     pub joints: usize,
-    /// Number of rows.
+    /// Number of frames that are played: the rows, or samples of the keys.
     pub frames: usize,
-    /// Time between rows, seconds.
+    /// Time between these frames, seconds.
     pub frame_secs: f64,
+    /// Number of times at which the file has keys: its rows, where it has these.
+    pub keys: usize,
+    /// The time of which all keys are multiples, counted from the first, seconds: that between two of them if none is left out. `None` for
+    /// keys that are spaced unevenly.
+    pub key_secs: Option<f64>,
     /// Time of the first row on the clock of the file, seconds.
     pub start_secs: f64,
     /// Time of the last row on that clock, seconds.
@@ -115,6 +120,8 @@ impl MotionFile {
             joints: self.joints.len(),
             frames: self.frames,
             frame_secs: self.frame_secs,
+            keys: self.keys.times,
+            key_secs: self.keys.step_secs,
             start_secs: self.start_secs,
             end_secs: self.start_secs + self.frames.saturating_sub(1) as f64 * self.frame_secs,
             loops: self.loops(),

@@ -36,7 +36,7 @@ pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
 pub use bvh::{MotionFile, MotionJoint};
 pub use character::Character;
-pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Track};
+pub use clip::{Clip, Interpolation, JointTracks, Keys, MorphTrack, Track};
 pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };

@@ -2,9 +2,12 @@
 
 use glam::{Affine3A, Quat, Vec3};
 
+use lovelock_base::words::counted;
+
 use crate::bvh::height_of;
 use crate::character::Character;
-use crate::clip::LONGEST_SECS;
+use crate::clip::{Keys, LONGEST_SECS};
+use crate::gltf::UNTIMED;
 use crate::pose::rotation_of;
 use crate::{Clip, MotionError, MotionFile, MotionJoint, Pose, UpAxis, pose_at};
 
@@ -25,7 +28,11 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     let Some(clip) = named.or(figure.clips.first()) else {
         return Err(MotionError::Empty {
             file: file.to_owned(),
-            found: format!("{} joints and no clip", figure.body.skeleton.joints.len()),
+            found: format!(
+                "{} and no clip{}",
+                counted(figure.body.skeleton.joints.len(), "joint", "joints"),
+                untimed(&figure)
+            ),
             wanted: "at least one clip of animation",
         });
     };
@@ -51,7 +58,8 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         })
         .collect();
     let duration = playable_secs(clip);
-    let rate = rate_of(clip);
+    let keys = clip.keys();
+    let rate = rate_of(keys);
     let frames = ((duration * rate).round() as usize).saturating_add(1);
     let longest = (LIMIT as f64 / joints.len() as f64 / rate).min(LONGEST_SECS);
     if duration > LONGEST_SECS || frames.saturating_mul(joints.len()) > LIMIT {
@@ -64,6 +72,7 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         name: clip.name.clone(),
         frames,
         frame_secs,
+        keys,
         start_secs: clip.start_secs,
         lead_secs: clip.lead_secs,
         dropped: figure.dropped,
@@ -105,9 +114,19 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     Ok(motion)
 }
 
+/// What an error about a file without a clip says about channels that were dropped for the times of their keys.
+fn untimed(figure: &Character) -> String {
+    let count = figure.dropped.get(UNTIMED).copied().unwrap_or(0);
+    if count == 0 {
+        return String::new();
+    }
+    let channels = counted(count, "channel", "channels");
+    format!(" besides {channels} with keys at times that do not ascend, or are more than 1000000 s from 0")
+}
+
 /// Frames per second of samples that meet the keys of a clip, if these are evenly spaced: a multiple of their rate.
-fn rate_of(clip: &Clip) -> f64 {
-    let step = clip.step_secs().filter(|step| *step >= 1.0 / MAX_RATE);
+fn rate_of(keys: Keys) -> f64 {
+    let step = keys.step_secs.filter(|step| *step >= 1.0 / MAX_RATE);
     step.map_or(RATE, |step| {
         let rate = 1.0 / step;
         rate * (RATE / rate - 1e-3).ceil().max(1.0)

@@ -24,8 +24,8 @@ const LOOP_DEGREES: f32 = 10.0;
 /// one before.
 const CYCLE_STEPS: f32 = 1.5;
 
-/// Fewest frames of such a cycle.
-pub(crate) const MIN_CYCLE: usize = 8;
+/// Fewest keys of such a cycle.
+const MIN_CYCLE: usize = 8;
 
 impl Seam {
     fn between(first: &[Affine3A], last: &[Affine3A]) -> Self {
@@ -75,15 +75,27 @@ impl Clip {
     }
 }
 
+/// The longest step of a cycle, seconds. Keys further apart were set by hand, and the way from the last to the first is no step.
+const LONGEST_STEP_SECS: f64 = 0.11;
+
 impl MotionFile {
+    /// Frames of the step that a cycle without its repeated frame leaves out, if the motion may be one.
+    pub(crate) fn cycle_step(&self) -> Option<usize> {
+        let step = self.frames_per_key();
+        let steps = self.frames.saturating_sub(1) / step;
+        (steps + 1 >= MIN_CYCLE && step as f64 * self.frame_secs <= LONGEST_STEP_SECS).then_some(step)
+    }
+
     /// Whether the motion repeats without a jump, with or without a last frame that repeats the first.
     pub(crate) fn loops(&self) -> bool {
         let [mut first, mut before, mut last] = [Vec::new(), Vec::new(), Vec::new()];
         self.world(0, &mut first);
-        self.world(self.frames.saturating_sub(2), &mut before);
         self.world(self.frames.saturating_sub(1), &mut last);
         let seam = Seam::between(&first, &last);
         self.frames > 1 && seam.is_closed(self.height_metres)
-            || self.frames >= MIN_CYCLE && seam.is_step_like(Seam::between(&before, &last))
+            || self.cycle_step().is_some_and(|step| {
+                self.world(self.frames.saturating_sub(1 + step), &mut before);
+                seam.is_step_like(Seam::between(&before, &last))
+            })
     }
 }

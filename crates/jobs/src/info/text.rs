@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use lovelock_motion::MotionInfo;
+
 use super::{Content, Info};
 use crate::satf::DatabaseInfo;
 
@@ -58,7 +60,7 @@ impl fmt::Display for Info {
             Content::Motion(motion) => {
                 line(f, "kind", format_args!("motion, {}", motion.format))?;
                 line(f, "joints", motion.joints)?;
-                line(f, "frames", format_args!("{}, one every {:.5} s", motion.frames, motion.frame_secs))?;
+                line(f, "keys", keys_of(motion))?;
                 let (start, end) = (motion.start_secs, motion.end_secs);
                 line(f, "time", format_args!("{:.2} s, from {start:.2} s to {end:.2} s", end - start))?;
                 if motion.frames > 1 {
@@ -167,6 +169,18 @@ impl fmt::Display for Info {
                 remarks(f, &take.dropped, &[])
             }
         }
+    }
+}
+
+/// The keys of a motion file and their distance.
+fn keys_of(motion: &MotionInfo) -> String {
+    let keys = motion.keys;
+    let lasts = motion.end_secs - motion.start_secs;
+    match motion.key_secs {
+        _ if keys < 2 => keys.to_string(),
+        Some(secs) if (lasts / secs).round() as usize + 1 == keys => format!("{keys}, one every {secs:.5} s"),
+        Some(secs) => format!("{keys}, at multiples of {secs:.5} s"),
+        None => format!("{keys}, at uneven times"),
     }
 }
 

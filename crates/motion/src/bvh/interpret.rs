@@ -13,7 +13,7 @@ use super::{
     raw::{Channel, RawJoint, RawMotion},
 };
 use crate::{
-    LengthUnit, MotionSettings, RootPosition, UpAxis,
+    Keys, LengthUnit, MotionSettings, RootPosition, UpAxis,
     humanoid::{Humanoid, Role, Side},
 };
 
@@ -33,6 +33,7 @@ pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -
         joints: raw.joints.iter().map(joint).collect(),
         frames: raw.frames,
         frame_secs: raw.frame_secs,
+        keys: Keys { times: raw.frames, step_secs: (raw.frames > 1).then_some(raw.frame_secs) },
         dropped: raw.dropped.clone(),
         notes: raw.notes.clone(),
         unit_metres: 1.0,

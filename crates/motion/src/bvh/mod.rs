@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
+use crate::{Keys, MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
 
 pub(crate) use interpret::height_of;
 
@@ -40,6 +40,8 @@ pub struct MotionFile {
     pub frames: usize,
     /// Time between frames, seconds.
     pub frame_secs: f64,
+    /// The keys of the file: its rows, or the keys between which frames were taken.
+    pub keys: Keys,
     /// Time of the first frame on the clock of the file, seconds.
     pub start_secs: f64,
     /// As [`crate::Clip::lead_secs`].
@@ -76,6 +78,12 @@ impl MotionFile {
             let parent = joint.parent.map(|p| world[p]);
             world.push(parent.map_or(local, |p| p * local));
         }
+    }
+
+    /// Frames from one key of the file to the next.
+    pub(crate) fn frames_per_key(&self) -> usize {
+        let frames = self.keys.step_secs.map_or(1.0, |step| (step / self.frame_secs).round());
+        if (1.0..=1e6).contains(&frames) { frames as usize } else { 1 }
     }
 
     /// The roles of the joints.

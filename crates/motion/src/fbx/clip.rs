@@ -9,7 +9,7 @@ use ufbx::{AllocatorOpts, AnimStack, BakeOpts, BakedAnim, ElementType, Scene};
 use super::mesh::{MorphsOfChannels, weights_of_shapes};
 use super::nodes::Nodes;
 use super::{quat, vec3};
-use crate::{Clip, Interpolation, JointTracks, MorphTrack, Track};
+use crate::{Clip, Interpolation, JointTracks, Keys, MorphTrack, Track};
 
 /// Samples per second of curves that are not linear.
 const RATE: f64 = 60.0;
@@ -42,8 +42,13 @@ pub(super) fn read_clips(
             }
         };
         let mut clip = Clip { name: stack.element.name.to_string(), ..Clip::default() };
-        let keyed = keyed_range(stack, nodes, morphs)
+        let keys = key_times(stack, nodes, morphs);
+        let ends = keys.iter().copied().map(|time| [time, time]);
+        let keyed = ends
+            .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
             .unwrap_or([baked.playback_time_begin, baked.playback_time_end].map(|secs| secs as f32));
+        // Curves of angles are sampled, so that tracks have more keys than the file.
+        clip.file_keys = (!keys.is_empty()).then(|| Keys::at(keys));
         clip.joints = joints(&baked, nodes, keyed);
         clip.morphs = morph_tracks(&baked, morphs);
         if clip.joints.is_empty() && clip.morphs.is_empty() {
@@ -56,18 +61,28 @@ pub(super) fn read_clips(
     clips
 }
 
-/// Times of the first and the last key of the curves that move joints or morph targets, seconds. What does not change is sampled at
-/// the ends of the stack's timeline, where no key needs to be.
-fn keyed_range(stack: &AnimStack, nodes: &Nodes, morphs: &MorphsOfChannels) -> Option<[f32; 2]> {
+/// Times of the keys of the curves that move joints or morph targets, seconds, in no order. What does not change is sampled at the ends
+/// of the stack's timeline, where no key needs to be.
+fn key_times(stack: &AnimStack, nodes: &Nodes, morphs: &MorphsOfChannels) -> Vec<f32> {
     let props = stack.layers.iter().flat_map(|layer| &layer.anim_props);
     let moving = props.filter(|prop| {
         nodes.joint(prop.element.typed_id).is_some() && prop.element.type_ == ElementType::Node
             || morphs.contains_key(&prop.element.element_id)
     });
-    let curves = moving.flat_map(|prop| prop.anim_value.curves.iter().flatten());
-    let ends = curves.filter_map(|curve| Some([curve.keyframes.first()?.time, curve.keyframes.last()?.time]));
-    let ends = ends.filter(|ends| ends.iter().all(|time| time.abs() < LATEST_SECS));
-    ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).map(|ends| ends.map(|secs| secs as f32))
+    let mut times: Vec<f32> = Vec::new();
+    for curve in moving.flat_map(|prop| prop.anim_value.curves.iter().flatten()) {
+        let is_late = |key: Option<&ufbx::Keyframe>| key.is_some_and(|key| key.time.abs() >= LATEST_SECS);
+        if is_late(curve.keyframes.first()) || is_late(curve.keyframes.last()) {
+            continue;
+        }
+        let keys = || curve.keyframes.iter().map(|key| key.time as f32);
+        // Most curves have the same times.
+        let before = times.len().checked_sub(keys().count());
+        if before.is_none_or(|before| !times[before..].iter().copied().eq(keys())) {
+            times.extend(keys());
+        }
+    }
+    times
 }
 
 fn joints(baked: &BakedAnim, nodes: &Nodes, keyed: [f32; 2]) -> Vec<JointTracks> {

@@ -12,6 +12,12 @@ use lovelock_gltf::document::Animation;
 
 use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
 
+/// The count of channels whose keys are at times that do not ascend, are not finite, or are too far from 0.
+pub(crate) const UNTIMED: &str = "channels_with_wrong_times";
+
+/// Times further from 0 are errors, seconds.
+const LATEST_SECS: f32 = 1e6;
+
 /// What the nodes of a file have become.
 pub(super) struct Targets<'a> {
     pub(super) joint_of_node: &'a [Option<usize>],
@@ -67,7 +73,10 @@ pub(super) fn read_clip(
             _ => false,
         };
         if !followed {
-            *dropped.entry("channels".into()).or_default() += 1;
+            let input = animation.samplers.get(channel.sampler).map(|sampler| sampler.input);
+            let is_untimed = input.is_some_and(|input| matches!(times.get(&input), Some(None)));
+            let what = if is_untimed { UNTIMED } else { "channels" };
+            *dropped.entry(what.into()).or_default() += 1;
         }
     }
     clip.joints = joints
@@ -105,7 +114,7 @@ impl<'a> Source<'a> {
             Entry::Vacant(new) => {
                 let keys: Vec<f32> = accessors.read::<1>(sampler.input)?.into_iter().map(|[t]| t).collect();
                 let usable = !keys.is_empty()
-                    && keys.iter().all(|t| t.is_finite() && t.abs() < 1e6)
+                    && keys.iter().all(|t| t.is_finite() && t.abs() < LATEST_SECS)
                     && keys.is_sorted();
                 new.insert(usable.then(|| keys.into())).clone()
             }

@@ -7,6 +7,8 @@ mod nodes;
 mod skin;
 mod vrm;
 
+pub(crate) use clip::UNTIMED;
+
 use std::path::Path;
 
 use lovelock_gltf::Asset;

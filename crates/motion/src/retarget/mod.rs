@@ -14,7 +14,6 @@ use std::sync::Arc;
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::humanoid::{Humanoid, Role, Side};
-use crate::seam::MIN_CYCLE;
 use crate::{Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Skeleton, Track};
 use align::Alignment;
 
@@ -61,7 +60,7 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
     let mut clip = plan.clip(&driven, &turns, &hips);
     (clip.start_secs, clip.lead_secs) = (motion.start_secs, motion.lead_secs);
     ground::set_on_ground(body, &plan.target, &mut clip);
-    close_loop(body, &mut clip, motion.frame_secs);
+    close_loop(body, &mut clip, motion);
     Ok(clip)
 }
 
@@ -300,16 +299,18 @@ fn leg_length(figure: &Humanoid, rest: impl Fn(usize) -> Vec3) -> f32 {
 
 /// Makes a clip repeat: unchanged if its ends meet; with one more key, equal to the first, if the step from
 /// the last key to the first is like any other (cycles are often stored without the repeated frame).
-fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
+fn close_loop(body: &Body, clip: &mut Clip, motion: &MotionFile) {
     clip.detect_loop(body);
-    let frames = clip.joints.first().and_then(|j| j.rotation.as_ref()).map_or(0, |r| r.values.len());
-    if clip.loops || frames < MIN_CYCLE || !clip.seam(body).is_step_like(clip.last_step(body, frame_secs)) {
+    let Some(step) = motion.cycle_step().filter(|_| !clip.loops) else { return };
+    let step_secs = step as f64 * motion.frame_secs;
+    if !clip.seam(body).is_step_like(clip.last_step(body, step_secs)) {
         return;
     }
     let Some(times) = clip.joints.first().and_then(|j| j.rotation.as_ref()).map(|r| r.times.clone()) else {
         return;
     };
-    let times: Arc<[f32]> = times.iter().copied().chain([(frames as f64 * frame_secs) as f32]).collect();
+    let last = motion.frames.saturating_sub(1) as f64 * motion.frame_secs;
+    let times: Arc<[f32]> = times.iter().copied().chain([(last + step_secs) as f32]).collect();
     for joint in &mut clip.joints {
         if let Some(track) = &mut joint.rotation {
             track.values.push(track.values[0]);
@@ -321,6 +322,6 @@ fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
         }
     }
     clip.duration_secs = clip.keys_end_secs();
-    clip.added_secs = frame_secs;
+    clip.added_secs = step_secs;
     clip.loops = true;
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{MotionError, MotionFile, MotionJoint, UpAxis};
+use crate::{Keys, MotionError, MotionFile, MotionJoint, UpAxis};
 use parse::{Key, RawVmd};
 use skeleton::{BONES, CROWN, LEGS, TARGETS, UNIT_METRES, offset, place};
 use track::{Value, value};
@@ -60,6 +60,8 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
         joints,
         frames,
         frame_secs: 1.0 / 30.0,
+        // A step back to the first pose takes a frame, however far apart keys are.
+        keys: Keys { times: key_times(&raw), step_secs: Some(1.0 / 30.0) },
         start_secs: f64::from(first) / 30.0,
         lead_secs: f64::from(first) / 30.0,
         rotations: Vec::with_capacity(BONES.len() * frames),
@@ -91,6 +93,12 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     motion.notes.push(format!("performed by the standard skeleton of MikuMikuDance; the legs {how}"));
     motion.dropped = raw.dropped;
     Ok(motion)
+}
+
+/// Number of frames with keys.
+fn key_times(raw: &RawVmd) -> usize {
+    let frames = raw.bones.values().flatten().map(|key| key.frame);
+    frames.collect::<std::collections::BTreeSet<_>>().len()
 }
 
 fn joint(bone: usize) -> MotionJoint {

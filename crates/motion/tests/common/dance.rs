@@ -68,24 +68,33 @@ pub struct Dance {
     pub first: i64,
     /// Whether joints of an FBX file have axes of their own, so that their zero rotations are no pose of a figure.
     pub own_axes: bool,
+    /// Number of frames after which it repeats; otherwise it goes on.
+    pub cycle: Option<usize>,
 }
 
 impl Dance {
     pub fn new(names: &Names) -> Self {
-        Self { names: *names, frames: 20, first: 0, own_axes: false }
+        Self { names: *names, frames: 20, first: 0, own_axes: false, cycle: None }
     }
 
     fn offset(joint: usize) -> Vec3 {
         Vec3::from(JOINTS[joint].1)
     }
 
-    fn hips(frame: usize) -> Vec3 {
-        Self::offset(0) + Vec3::new(0.02 * frame as f32, 0.0, 0.01 * frame as f32)
+    /// The frame of the dance that is played in a frame: a cycle goes there and back.
+    fn phase(&self, frame: usize) -> f32 {
+        let turn = |frames: usize| std::f32::consts::TAU * frame as f32 / frames as f32;
+        self.cycle.map_or(frame as f32, |frames| 10.0 * turn(frames).sin())
+    }
+
+    fn hips(&self, frame: usize) -> Vec3 {
+        let frame = self.phase(frame);
+        Self::offset(0) + Vec3::new(0.02 * frame, 0.0, 0.01 * frame)
     }
 
     /// Rotation of a joint relative to its parent: the arms come down, the knees bend, the trunk turns. The last pose is not the first.
-    fn turn(joint: usize, frame: usize) -> Quat {
-        let t = frame as f32 * 0.1;
+    fn turn(&self, joint: usize, frame: usize) -> Quat {
+        let t = self.phase(frame) * 0.1;
         match joint {
             1 => Quat::from_rotation_y(0.2 * t),
             4 => Quat::from_rotation_x(0.15 * t),
@@ -114,10 +123,10 @@ impl Dance {
         self.bvh_joint(0, &mut order, &mut text);
         write!(text, "MOTION\nFrames: {}\nFrame Time: 0.033333\n", self.frames).expect("memory");
         for frame in 0..self.frames {
-            let hips = Self::hips(frame) * 100.0;
+            let hips = self.hips(frame) * 100.0;
             write!(text, "{:.5} {:.5} {:.5}", hips.x, hips.y, hips.z).expect("memory");
             for &joint in &order {
-                let (z, x, y) = Self::turn(joint, frame).to_euler(EulerRot::ZXY);
+                let (z, x, y) = self.turn(joint, frame).to_euler(EulerRot::ZXY);
                 let [z, x, y] = [z, x, y].map(f32::to_degrees);
                 write!(text, " {z:.5} {x:.5} {y:.5}").expect("memory");
             }
@@ -199,11 +208,11 @@ impl Dance {
         let times: Vec<f32> = frames().map(|frame| self.secs(frame) as f32).collect();
         let input = put("SCALAR", &times, 1);
         let mut outputs = vec![(0, "translation", {
-            let values: Vec<f32> = frames().flat_map(|frame| Self::hips(frame).to_array()).collect();
+            let values: Vec<f32> = frames().flat_map(|frame| self.hips(frame).to_array()).collect();
             put("VEC3", &values, 3)
         })];
         for joint in 0..JOINTS.len() {
-            let values: Vec<f32> = frames().flat_map(|frame| Self::turn(joint, frame).to_array()).collect();
+            let values: Vec<f32> = frames().flat_map(|frame| self.turn(joint, frame).to_array()).collect();
             outputs.push((joint, "rotation", put("VEC4", &values, 4)));
         }
         let samplers: Vec<String> =
@@ -273,11 +282,11 @@ impl Dance {
             all.join(",\n")
         };
         let translations = samples(&|joint, frame| {
-            let p = if joint == 0 { Self::hips(frame) } else { Self::offset(joint) };
+            let p = if joint == 0 { self.hips(frame) } else { Self::offset(joint) };
             format!("({}, {}, {})", p.x, p.y, p.z)
         });
         let rotations = samples(&|joint, frame| {
-            let q = Self::turn(joint, frame);
+            let q = self.turn(joint, frame);
             format!("({}, {}, {}, {})", q.w, q.x, q.y, q.z)
         });
         format!(
@@ -301,12 +310,12 @@ impl Dance {
         };
         let above = |joint: usize| axes(JOINTS[joint].0).inverse();
         let degrees = |joint: usize, frame: usize| {
-            let local = above(joint) * Self::turn(joint, frame) * axes(joint);
+            let local = above(joint) * self.turn(joint, frame) * axes(joint);
             let (z, y, x) = local.to_euler(EulerRot::ZYX);
             [x, y, z].map(|angle| f64::from(angle.to_degrees()))
         };
         let place = |joint: usize, frame: usize| {
-            let p = if joint == 0 { Self::hips(frame) } else { above(joint) * Self::offset(joint) };
+            let p = if joint == 0 { self.hips(frame) } else { above(joint) * Self::offset(joint) };
             p.to_array().map(|v| f64::from(v) * 100.0)
         };
         let lcl = |name: &'static str, values: [f64; 3]| p(name, name, values.map(Value::Number).into());

@@ -85,6 +85,12 @@ fn every_format_plays_all_keys_from_the_first_on() {
                 info.end_secs
             );
             assert!(!info.loops && info.frames == 39, "{name}: {} frames", info.frames);
+            let step = info.key_secs.expect("even keys");
+            assert!(
+                info.keys == 20 && (step - 1.0 / 30.0).abs() < 1e-5,
+                "{name}: {} keys, {step} s",
+                info.keys
+            );
             assert_same(&body, &motion, &reference, &format!("{name} from frame {first}"));
         }
     }
@@ -92,6 +98,42 @@ fn every_format_plays_all_keys_from_the_first_on() {
     let late = reference.clone().trimmed(0.2, None);
     let (angle, _) = difference(&body, &late, &reference, 10);
     assert!(angle > 0.1, "{angle}");
+}
+
+#[test]
+fn keys_of_gltf_at_wrong_times_are_named() {
+    let whole = Dance::new(&MIXAMO).glb();
+    let at = |secs: f32| {
+        let bytes = secs.to_le_bytes();
+        whole.windows(4).position(|window| window == bytes).expect("a key")
+    };
+    // The fifth key before the fourth, and a first key decades ago.
+    for (key, secs) in [(5.0 / 30.0, 0.05_f32), (1.0 / 30.0, -2e9), (2.0 / 30.0, f32::NAN)] {
+        let mut bytes = whole.clone();
+        let at = at(key as f32);
+        bytes[at..at + 4].copy_from_slice(&secs.to_le_bytes());
+        let error = load_motion_bytes("a.glb", &bytes, MotionSettings::default()).expect_err("wrong times");
+        let text = error.to_string();
+        assert!(text.contains("21 joints and no clip besides 22 channels with keys at times"), "{text}");
+    }
+}
+
+#[test]
+fn a_cycle_without_its_repeated_frame_loops_in_every_format() {
+    let Some(body) = dancer() else { return };
+    let dance = Dance { frames: 60, cycle: Some(60), ..Dance::new(&MIXAMO) };
+    let bvh = ("a.bvh", dance.bvh().into_bytes());
+    for (name, bytes) in written(&dance).into_iter().chain([bvh]) {
+        let motion = load(name, &bytes);
+        let (info, clip) = (motion.info(), retarget(&motion, &body).expect(name));
+        assert_eq!((info.keys, info.loops, clip.loops), (60, true, true), "{name}");
+        assert!((clip.added_secs - 1.0 / 30.0).abs() < 1e-4, "{name}: {} s", clip.added_secs);
+        assert!((clip.duration_secs - 2.0).abs() < 1e-3, "{name}: {} s", clip.duration_secs);
+    }
+    // The control: three quarters of the cycle are none.
+    let dance = Dance { frames: 45, ..dance };
+    let clip = retarget(&load("a.glb", &dance.glb()), &body).expect("a clip");
+    assert!(!clip.loops && clip.added_secs == 0.0);
 }
 
 #[test]
