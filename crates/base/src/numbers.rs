@@ -27,9 +27,45 @@ pub fn is_not_a_number(word: &str) -> bool {
     word.contains(".#") || is_nan && (name.len() == 3 || name[3..].starts_with('(') && name.ends_with(')'))
 }
 
+/// Divides a word before each sign that begins another number, which is one that follows a digit or a decimal point: a column that is too
+/// narrow leaves no blank.
+pub fn numbers_of(word: &str) -> impl Iterator<Item = &str> {
+    let bytes = word.as_bytes();
+    let begins = |at: usize| {
+        matches!(bytes[at], b'-' | b'+') && (bytes[at - 1].is_ascii_digit() || bytes[at - 1] == b'.')
+    };
+    let mut from = 0;
+    let cuts = (1..=bytes.len()).filter(move |&at| at == bytes.len() || begins(at));
+    cuts.map(move |at| {
+        let part = &word[from..at];
+        from = at;
+        part
+    })
+}
+
+/// The number of a word, which is NaN where it is what libraries write for none ([`is_not_a_number`]); `None` for other words.
+pub fn number(word: &str) -> Option<f64> {
+    word.parse().ok().or_else(|| is_not_a_number(word).then_some(f64::NAN))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{is_not_a_number, smoothstep, within};
+    use super::{is_not_a_number, number, numbers_of, smoothstep, within};
+
+    #[test]
+    fn words_are_divided_before_signs_but_not_in_exponents() {
+        let divided = |word| numbers_of(word).collect::<Vec<_>>();
+        assert_eq!(divided("0.07-0.02+3.-1"), ["0.07", "-0.02", "+3.", "-1"]);
+        assert_eq!(divided("-1.5e-3"), ["-1.5e-3"]);
+        // Negative control: without a sign nothing says where a number begins.
+        assert_eq!(divided("0.070.02"), ["0.070.02"]);
+        assert_eq!((number("-1.5e-3"), number("1,5")), (Some(-0.0015), None));
+        assert!(
+            number("-nan(ind)").is_some_and(f64::is_nan)
+                && number("0.070.02").is_none()
+                && divided("").is_empty()
+        );
+    }
 
     #[test]
     fn what_libraries_write_for_no_number_is_told_from_words() {

@@ -25,6 +25,18 @@ pub enum HairFileError {
         /// What would be valid.
         wanted: String,
     },
+    /// A line of a text contradicts the format or the other lines.
+    #[error("{name}: line {line}: found {}; must be {wanted}", in_one_line(found))]
+    MalformedLine {
+        /// The file.
+        name: String,
+        /// The line, from 1.
+        line: u64,
+        /// What was found there.
+        found: String,
+        /// What would be valid.
+        wanted: String,
+    },
     /// The file is valid, but none of its strands can be drawn.
     #[error("{name}: no strand left to draw ({reason}); must have a strand of two points or more")]
     NothingToDraw {

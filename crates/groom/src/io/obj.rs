@@ -2,7 +2,8 @@
 //!
 //! `#` begins a comment wherever a word may begin, and a backslash at the end of a line continues it. Lines end as in Unix, Windows or old Macs.
 
-use lovelock_base::{numbers::is_not_a_number, words::counted};
+use lovelock_base::numbers::{number, numbers_of};
+use lovelock_base::words::counted;
 use std::fmt::Write as _;
 use std::io::BufRead;
 
@@ -14,7 +15,7 @@ use super::file::{HairFile, RawHair};
 use super::format::HairFormat;
 use super::source::Source;
 use super::units::UpAxis;
-use super::words::begins_with_word;
+use super::words::{begins_with_word, start_of};
 
 pub(super) static FORMAT: HairFormat = HairFormat {
     label: "OBJ polylines",
@@ -33,6 +34,10 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 const RECORDS: [&str; 12] = ["v", "vn", "vt", "vp", "o", "g", "s", "l", "f", "p", "mtllib", "usemtl"];
 /// The longest line: a polyline of several thousand points.
 const LONGEST_LINE: u64 = 1 << 20;
+/// The most numbers of a vertex that are looked at.
+const MOST_NUMBERS: usize = 7;
+/// What a record of a vertex must be.
+const VERTEX: &str = "a vertex: 3 numbers, 4 with a weight, or 6 or 7 with a colour";
 
 /// What the lines of a file add up to.
 #[derive(Default)]
@@ -56,14 +61,16 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let mut reader = source.into_reader();
     let io = |source| HairFileError::Io { name: name.to_owned(), source };
     let (mut content, mut line, mut offset) = (Content::default(), Vec::new(), 0_u64);
+    let mut lines = 0_u64;
     loop {
         line.clear();
-        let start = offset;
+        let (start, first_line) = (offset, lines + 1);
         // A backslash continues a record on the next line, but no comment: paths of Windows end in one.
         loop {
             let begin = line.len();
             let read = read_line(&mut *reader, &mut line).map_err(io)?;
             offset += read;
+            lines += 1;
             if let Some(comment) = comment_in(&line[begin..]) {
                 line.truncate(begin + comment);
                 break;
@@ -79,7 +86,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         if line.len() as u64 >= LONGEST_LINE {
             return Err(malformed(
                 name,
-                start,
+                first_line,
                 "a line of 1048576 bytes or more".to_owned(),
                 "shorter lines",
             ));
@@ -90,7 +97,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         if start == 0 && line.starts_with(b"\xef\xbb\xbf") {
             line.drain(..3);
         }
-        content.record(name, start, &line)?;
+        content.record(name, first_line, &line)?;
     }
     content.finish(name)
 }
@@ -127,37 +134,31 @@ fn comment_in(line: &[u8]) -> Option<usize> {
     (0..line.len()).find(|&at| line[at] == b'#' && (at == 0 || line[at - 1] != b'.'))
 }
 
-/// The number of a word; not a number for what libraries write in its place.
-fn number(word: &[u8]) -> Option<f32> {
-    let word = std::str::from_utf8(word).ok()?;
-    word.parse().ok().or_else(|| is_not_a_number(word).then_some(f32::NAN))
+fn malformed(name: &str, line: u64, found: String, wanted: &str) -> HairFileError {
+    HairFileError::MalformedLine { name: name.to_owned(), line, found, wanted: wanted.to_owned() }
 }
 
-fn malformed(name: &str, offset: u64, found: String, wanted: &str) -> HairFileError {
-    HairFileError::Malformed { name: name.to_owned(), offset, found, wanted: wanted.to_owned() }
+/// The numbers of a vertex and how many there are; `None` if a word is none, or a vertex has another number of them.
+fn vertex<'a>(words: impl Iterator<Item = &'a [u8]>) -> Option<([f32; MOST_NUMBERS], usize)> {
+    let (mut numbers, mut count) = ([0.0; MOST_NUMBERS], 0);
+    for word in words {
+        for part in numbers_of(std::str::from_utf8(word).ok()?) {
+            if let Some(place) = numbers.get_mut(count) {
+                *place = number(part)? as f32;
+                count += 1;
+            }
+        }
+    }
+    (count >= 3 && count != 5).then_some((numbers, count))
 }
 
 impl Content {
-    fn record(&mut self, name: &str, offset: u64, line: &[u8]) -> Result<(), HairFileError> {
+    fn record(&mut self, name: &str, at: u64, line: &[u8]) -> Result<(), HairFileError> {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         match words.next() {
             Some(b"v") => {
-                let mut numbers = [0.0_f32; 7];
-                let mut count = 0;
-                for (place, word) in numbers.iter_mut().zip(&mut words) {
-                    *place = number(word).ok_or_else(|| {
-                        malformed(name, offset, format!("`{}`", start_of(line)), "the numbers of a vertex")
-                    })?;
-                    count += 1;
-                }
-                if count < 3 {
-                    return Err(malformed(
-                        name,
-                        offset,
-                        format!("`{}`", start_of(line)),
-                        "three numbers of a vertex",
-                    ));
-                }
+                let (numbers, count) = vertex(words)
+                    .ok_or_else(|| malformed(name, at, format!("`{}`", start_of(line)), VERTEX))?;
                 // Red, green and blue may follow, as in MeshLab and Blender; a single fourth number is a weight.
                 if count >= 6 {
                     self.colours.resize(self.positions.len(), [f32::NAN; 3]);
@@ -168,7 +169,7 @@ impl Content {
             Some(b"l") => {
                 let begin = self.long.len();
                 for word in words {
-                    let vertex = self.vertex(name, offset, line, word)?;
+                    let vertex = self.vertex(name, at, line, word)?;
                     self.long.push(vertex);
                 }
                 match self.long[begin..] {
@@ -190,7 +191,7 @@ impl Content {
     }
 
     /// The vertex of `3`, `3/7` or `-1`, the last one so far.
-    fn vertex(&mut self, name: &str, offset: u64, line: &[u8], word: &[u8]) -> Result<u32, HairFileError> {
+    fn vertex(&mut self, name: &str, at: u64, line: &[u8], word: &[u8]) -> Result<u32, HairFileError> {
         let index = word.split(|&byte| byte == b'/').next().unwrap_or_default();
         let index = std::str::from_utf8(index).ok().and_then(|index| index.parse::<i64>().ok());
         let known = self.positions.len() as i64;
@@ -199,28 +200,30 @@ impl Content {
             Some(index) if index < 0 => index.checked_add(known).and_then(|place| u32::try_from(place).ok()),
             _ => None,
         };
-        let place = place.ok_or_else(|| self.no_vertex(name, offset, &start_of(line)))?;
+        let place = place.ok_or_else(|| self.no_vertex(name, at, &start_of(line)))?;
         // Some programs write the lines before their vertices.
         if i64::from(place) >= known && self.largest.as_ref().is_none_or(|(largest, ..)| place > *largest) {
-            self.largest = Some((place, offset, start_of(line)));
+            self.largest = Some((place, at, start_of(line)));
         }
         Ok(place)
     }
 
-    fn no_vertex(&self, name: &str, offset: u64, line: &str) -> HairFileError {
+    fn no_vertex(&self, name: &str, at: u64, line: &str) -> HairFileError {
         let wanted = format!("vertices from 1 to {}, of the records `v`", self.positions.len());
-        malformed(name, offset, format!("`{line}`"), &wanted)
+        malformed(name, at, format!("`{line}`"), &wanted)
     }
 
     fn finish(self, name: &str) -> Result<RawHair, HairFileError> {
         if self.long_counts.is_empty() && self.pairs.is_empty() {
-            let found = format!("{} vertices, {} faces and no line", self.positions.len(), self.faces);
-            return Err(malformed(name, 0, found, "records `l` of two vertices or more"));
+            let vertices = counted(self.positions.len(), "vertex", "vertices");
+            let found = format!("{vertices}, {} and no line", counted(self.faces, "face", "faces"));
+            let (name, wanted) = (name.to_owned(), "records `l` of two vertices or more".to_owned());
+            return Err(HairFileError::Malformed { name, offset: 0, found, wanted });
         }
-        if let Some((largest, offset, line)) = &self.largest
+        if let Some((largest, at, line)) = &self.largest
             && *largest as usize >= self.positions.len()
         {
-            return Err(self.no_vertex(name, *offset, line));
+            return Err(self.no_vertex(name, *at, line));
         }
         let mut notes = Vec::new();
         if self.faces > 0 {
@@ -288,11 +291,6 @@ impl Strands<'_> {
         vertices.extend(own);
         (self.counts, self.vertices) = (rest, after);
     }
-}
-
-/// The first characters of a line, for messages.
-fn start_of(line: &[u8]) -> String {
-    String::from_utf8_lossy(line).trim().chars().take(40).collect::<String>().escape_debug().to_string()
 }
 
 /// Writes metres, Y up; colours follow the positions. The numbers are the shortest that give the same single-precision
@@ -380,6 +378,24 @@ mod tests {
     }
 
     #[test]
+    fn rows_of_vertices_are_divided_or_refused_by_line() {
+        let head = "v 0 0 0\n# a comment\n";
+        let read =
+            |row: &str| load_hair_bytes("a.obj", format!("{head}{row}\nv 1 1 1\nl 1 2 3\n").as_bytes());
+        for row in ["v 0.5-0.25 -1", "v 0.5-0.25-1", "v 5e-1 -.25-1.0"] {
+            let file = read(row).expect(row);
+            assert_eq!(file.points[1], Vec3::new(0.5, -0.25, -1.0), "{row}");
+            assert_eq!(file.points[2], Vec3::ONE, "the row after {row}");
+        }
+        for row in ["v 0.50.25 1", "v 0.5 0.25", "v 0.5 0.25 1 0.1 0.2", "v 0,5 0,25 1,0", "v 0.5 0.25-"] {
+            let error = read(row).expect_err(row).to_string();
+            assert!(error.starts_with(&format!("a.obj: line 3: found `{row}`")), "{error}");
+        }
+        // Negative control: the same rows with blanks.
+        assert_eq!(read("v 0.5 0.25 1").expect("hair").points[1], Vec3::new(0.5, 0.25, 1.0));
+    }
+
+    #[test]
     fn one_vertex_without_colour_does_not_drop_those_of_the_others() {
         let head = "v 9 9 9\nv 9 8 9\nv 8 8 9\nf 1 2 3\n";
         let hair = "v 0 0 0 0.4 0.2 0.1\nv 0 1 0 0.4 0.2 0.1\nv 0 2 0 0.4 0.2 0.1\n";
@@ -417,12 +433,12 @@ mod tests {
     #[test]
     fn what_is_no_hair_is_refused() {
         for (text, found) in [
-            ("v 0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", "3 vertices, 1 faces and no line"),
-            ("v 0 0 0\nl 1 2\n", "byte 8: found `l 1 2`; must be vertices from 1 to 1"),
+            ("v 0 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", "3 vertices, 1 face and no line"),
+            ("v 0 0 0\nl 1 2\n", "line 2: found `l 1 2`; must be vertices from 1 to 1"),
             ("v 0 0 0\nl 1 0\n", "`l 1 0`"),
             ("v 0 0 0\nl 1 -2\n", "`l 1 -2`"),
-            ("v 0 zero 0\n", "byte 0: found `v 0 zero 0`"),
-            ("v 0 0\n", "three numbers"),
+            ("v 0 zero 0\n", "line 1: found `v 0 zero 0`"),
+            ("v 0 0\n", "line 1: found `v 0 0`; must be a vertex: 3 numbers"),
             ("# nothing\n", "0 vertices"),
         ] {
             let error = load_hair_bytes("a.obj", text.as_bytes()).expect_err(text).to_string();

@@ -1,4 +1,4 @@
-//! Recognises text formats by their first word.
+//! The words and lines of text formats.
 
 /// The first word of a text, after a byte order mark, blanks and lines that begin with `#`. `None` if there is none.
 pub(super) fn first_word(start: &[u8]) -> Option<&[u8]> {
@@ -17,6 +17,11 @@ pub(super) fn begins_with_word(start: &[u8], words: &[&str]) -> bool {
         Some(word) => words.iter().any(|known| known.as_bytes() == word),
         None => start.contains(&b'#'),
     }
+}
+
+/// The first characters of a line, for messages.
+pub(super) fn start_of(line: &[u8]) -> String {
+    String::from_utf8_lossy(line).trim().chars().take(40).collect::<String>().escape_debug().to_string()
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use lovelock_base::words::counted;
+use lovelock_base::{numbers::numbers_of, words::counted};
 
 use super::raw::{Channel, RawJoint, RawMotion, quote};
-use super::rows::{numbers_of, parsed, words_of};
+use super::rows::{parsed, words_of};
 use crate::MotionError;
 use crate::clip::LONGEST_SECS;
 

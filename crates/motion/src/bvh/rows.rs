@@ -3,7 +3,10 @@
 //! A row is a line. Some programs write a row over several lines, and some write all numbers in lines of any length. What cannot be
 //! divided into rows without doubt is refused by its line, because a number that is missing shifts all after it.
 
-use lovelock_base::{numbers::is_not_a_number, words::counted};
+use lovelock_base::{
+    numbers::{is_not_a_number, numbers_of},
+    words::counted,
+};
 
 use super::raw::{RawMotion, quote};
 use crate::MotionError;
@@ -169,21 +172,6 @@ pub(super) fn words_of(line: &str, channels: usize) -> impl Iterator<Item = &str
         && line.split(is_blank).filter(|word| !word.is_empty()).flat_map(numbers_of).count() == channels;
     let words = line.split(move |c| is_blank(c) || c == ',' && !is_decimal);
     words.filter(|word| !word.is_empty()).flat_map(numbers_of)
-}
-
-/// Divides a word before each sign that begins another number, which is one that follows a digit or a decimal point.
-pub(super) fn numbers_of(word: &str) -> impl Iterator<Item = &str> {
-    let bytes = word.as_bytes();
-    let begins = |at: usize| {
-        matches!(bytes[at], b'-' | b'+') && (bytes[at - 1].is_ascii_digit() || bytes[at - 1] == b'.')
-    };
-    let mut from = 0;
-    let cuts = (1..=bytes.len()).filter(move |&at| at == bytes.len() || begins(at));
-    cuts.map(move |at| {
-        let part = &word[from..at];
-        from = at;
-        part
-    })
 }
 
 /// A number with a decimal point or a decimal comma.

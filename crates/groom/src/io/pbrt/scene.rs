@@ -1,5 +1,6 @@
 //! The state of a scene while its directives are read.
 
+use lovelock_base::numbers::{number, numbers_of};
 use lovelock_base::words::counted;
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader};
@@ -117,7 +118,10 @@ impl<'a> Scene<'a> {
         if self.strands.counts.is_empty() {
             let found = match self.unfit {
                 0 => "no curve".to_owned(),
-                unfit => format!("{unfit} curves, none of which has a fitting number of points"),
+                unfit => {
+                    let curves = counted(unfit, "curve", "curves");
+                    format!("{curves}, none of which has a fitting number of points")
+                }
             };
             let wanted = "a directive `Shape \"curve\"` with points".to_owned();
             return Err(HairFileError::Malformed { name: self.name.to_owned(), offset: 0, found, wanted });
@@ -381,18 +385,22 @@ impl<'a> Scene<'a> {
     }
 
     fn value(&self, what: What, token: Token, into: &mut Parameters) {
-        let number = || self.number().filter(|_| token == Token::Word);
+        let value = || self.number().filter(|_| token == Token::Word);
         match what {
-            What::Points => match number() {
-                Some(value) => into.points.push(value),
-                None => into.is_broken = true,
-            },
-            What::Alpha => into.alpha = number(),
-            What::Width => into.width = number(),
-            What::Width0 => into.width0 = number(),
-            What::Width1 => into.width1 = number(),
+            What::Points => {
+                let word = std::str::from_utf8(self.text()).unwrap_or_default();
+                let before = into.points.len();
+                let values = numbers_of(word).map(number).take_while(Option::is_some);
+                into.points.extend(values.flatten().map(|value| value as f32));
+                let parts = numbers_of(word).count();
+                into.is_broken |= token != Token::Word || parts == 0 || into.points.len() - before != parts;
+            }
+            What::Alpha => into.alpha = value(),
+            What::Width => into.width = value(),
+            What::Width0 => into.width0 = value(),
+            What::Width1 => into.width1 = value(),
             What::Degree => {
-                into.degree = number();
+                into.degree = value();
                 into.is_broken |= into.degree.is_none();
             }
             What::Basis => match self.text() {

@@ -99,7 +99,7 @@ fn other_files_are_included_once_each_way() {
 fn broken_scenes_are_refused_in_one_line() {
     for (text, found) in [
         ("Shape \"sphere\"", "found no curve; must be a directive `Shape \"curve\"`"),
-        ("Shape \"curve\" \"point3 P\" [ 0 0 0 ]", "found 1 curves, none"),
+        ("Shape \"curve\" \"point3 P\" [ 0 0 0 ]", "found 1 curve, none"),
         ("Translate 1 two 3", "byte 12: found `two`; must be three numbers after Translate"),
         ("Transform [ 1 0 0 0 ]", "must be sixteen numbers"),
         ("Shape curve", "the kind of a shape in quotes"),
@@ -136,6 +136,24 @@ fn are_near(found: &[[f32; 2]], wanted: &[[f32; 2]]) {
     assert_eq!(found.len(), wanted.len(), "{found:?}");
     for (found, wanted) in found.as_flattened().iter().zip(wanted.as_flattened()) {
         assert!((found - wanted).abs() <= 1e-5 * wanted, "{found} for {wanted}");
+    }
+}
+
+#[test]
+fn numbers_without_a_blank_are_divided_and_curves_that_lack_one_are_left_out() {
+    let curve = |points: &str| format!("Shape \"curve\" \"point3 P\" [ {points} ]\n");
+    let usual = "1 -1 0  1 0 -0.5  1 1 -0.5  1 2 -0.25";
+    let glued = "1-1 0  1 0-0.5  1+1-0.5 1 2-0.25";
+    assert_eq!(load(&curve(glued)).points, load(&curve(usual)).points);
+    // One number less, one that is two, and one more: the curves around it stay what they are.
+    for wrong in [
+        "1-1 0  1 0-0.5  1+1-0.5 1 2",
+        "1-1 0  1 0-0.5  1+1-0.5 1 20.25",
+        "1-1 0  1 0-0.5  1+1-0.5 1 2-0.25 9",
+    ] {
+        let file = load(&[curve(usual), curve(wrong), curve(usual)].concat());
+        assert_eq!((file.strands(), file.dropped["unfit_curves"]), (2, 1), "{wrong}");
+        assert_eq!(file.strand(0), file.strand(1), "{wrong}");
     }
 }
 

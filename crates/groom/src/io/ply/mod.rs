@@ -7,6 +7,7 @@
 
 mod header;
 mod rows;
+mod text;
 mod write;
 
 use std::collections::HashMap;
@@ -21,7 +22,7 @@ use super::file::RawHair;
 use super::format::HairFormat;
 use super::source::Source;
 use super::units::UpAxis;
-use header::{Element, Header, header};
+use header::{Element, Form, Header, header};
 use rows::Rows;
 
 pub(super) static FORMAT: HairFormat = HairFormat {
@@ -80,6 +81,8 @@ struct Content {
     counts: Vec<f64>,
     lists: Vec<Vec<u32>>,
     edges: Vec<[f64; 2]>,
+    /// The first number in a list that is no vertex.
+    no_index: Option<f64>,
     faces: u64,
 }
 
@@ -92,9 +95,15 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         content.read(element, &mut rows)?;
     }
     let says_metres = head.comments.iter().any(|comment| comment == METRES_Y_UP);
-    let trailing_bytes = rows.left();
-    let raw = content.finish(name, &head)?;
-    Ok(RawHair { trailing_bytes, says_metres, ..raw })
+    let left = rows.left();
+    let mut raw = content.finish(name, &head)?;
+    if head.form == Form::Ascii && left > 0 {
+        let lines = counted(left, "line", "lines");
+        raw.notes.push(format!("Left out {lines} after the rows that the header states."));
+    } else {
+        raw.trailing_bytes = left;
+    }
+    Ok(RawHair { says_metres, ..raw })
 }
 
 impl Content {
@@ -137,7 +146,11 @@ impl Content {
                             last = Some(row);
                         }
                         if let Some(strand) = self.lists.last_mut() {
-                            strand.push(index(value));
+                            let vertex = index(value);
+                            if vertex == u32::MAX {
+                                self.no_index.get_or_insert(value);
+                            }
+                            strand.push(vertex);
                         }
                     }
                 })
@@ -202,15 +215,15 @@ impl Content {
         let (counts, order): (Vec<u32>, Vec<u32>) = if !self.counts.is_empty() {
             let sum: f64 = self.counts.iter().sum();
             if sum != total as f64 || self.counts.iter().any(|count| *count < 0.0) {
-                let found = format!("{total} vertices and strands of {sum} points");
+                let vertices = counted(total, "vertex", "vertices");
+                let found = format!("{vertices} and strands of {}", counted(sum, "point", "points"));
                 return Err(malformed(found, "as many vertices as the strands have points"));
             }
             (self.counts.iter().map(|&count| count as u32).collect(), in_order())
         } else if !self.lists.is_empty() {
             let order: Vec<u32> = self.lists.concat();
             if let Some(&wrong) = order.iter().find(|&&vertex| vertex as usize >= total) {
-                let wrong =
-                    if wrong == u32::MAX { "one that is no vertex".to_owned() } else { wrong.to_string() };
+                let wrong = self.no_index.filter(|_| wrong == u32::MAX).unwrap_or(f64::from(wrong));
                 return Err(malformed(
                     format!("vertex {wrong} of a strand"),
                     &format!("0 to {}", total.saturating_sub(1)),
@@ -221,19 +234,21 @@ impl Content {
             grouped(&self.strand_of, &self.place_of)
         } else if !self.edges.is_empty() {
             let edges: Vec<[u32; 2]> = self.edges.iter().map(|edge| edge.map(index)).collect();
-            if edges.as_flattened().iter().any(|&vertex| vertex as usize >= total) {
+            if let Some(at) = edges.as_flattened().iter().position(|&vertex| vertex as usize >= total) {
+                let vertex = self.edges.as_flattened()[at];
                 return Err(malformed(
-                    "an edge to a vertex that is not there".to_owned(),
-                    &format!("vertices below {total}"),
+                    format!("an edge to vertex {vertex}"),
+                    &format!("0 to {}", total.saturating_sub(1)),
                 ));
             }
             let chains = chain(&edges, total);
             (chains.counts, chains.vertices)
         } else {
             let Some(count) = regular_count(&self.points).filter(|_| self.faces == 0) else {
+                let vertices = counted(total, "vertex", "vertices");
                 let found = format!(
-                    "{total} vertices and {} faces without strands: no element `strand` or `edge`, and no `strand_id`",
-                    self.faces
+                    "{vertices} and {} without strands: no element `strand` or `edge`, and no `strand_id`",
+                    counted(self.faces, "face", "faces")
                 );
                 return Err(malformed(found, "points that belong to strands"));
             };

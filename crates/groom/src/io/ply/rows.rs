@@ -1,7 +1,9 @@
 //! The rows of a PLY file, as text or binary.
 
 use super::header::{Element, Form, Number};
+use super::text::Lines;
 use crate::io::HairFileError;
+use lovelock_base::words::counted;
 
 /// The rows that are not read yet.
 pub(super) struct Rows<'a> {
@@ -9,11 +11,12 @@ pub(super) struct Rows<'a> {
     data: &'a [u8],
     at: usize,
     form: Form,
+    lines: Lines<'a>,
 }
 
 impl<'a> Rows<'a> {
     pub(super) fn new(name: &'a str, data: &'a [u8], at: usize, form: Form) -> Self {
-        Self { name, data, at, form }
+        Self { name, data, at, form, lines: Lines::new(name, data, at) }
     }
 
     /// Reads the rows of an element. `take` gets each number with its row and column, and the numbers of lists one after the other.
@@ -24,6 +27,9 @@ impl<'a> Rows<'a> {
     ) -> Result<(), HairFileError> {
         if element.properties.is_empty() {
             return Ok(());
+        }
+        if self.form == Form::Ascii {
+            return self.lines.read(element, take);
         }
         for row in 0..element.rows {
             for (column, property) in element.properties.iter().enumerate() {
@@ -49,29 +55,18 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Bytes after the last row; 0 for text.
+    /// What follows the last row: bytes, or lines of a text.
     pub(super) fn left(&self) -> u64 {
-        if self.form == Form::Ascii { 0 } else { (self.data.len() - self.at) as u64 }
+        match self.form {
+            Form::Ascii => self.lines.clone().count() as u64,
+            _ => (self.data.len() - self.at) as u64,
+        }
     }
 
     fn number(&mut self, ty: Number, element: &Element) -> Result<f64, HairFileError> {
         let start = self.at;
         let early = || format!("the end of the file within `{}`", element.name);
-        let wanted = || format!("{} rows", element.rows);
-        if self.form == Form::Ascii {
-            let rest = &self.data[self.at..];
-            let blanks = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-            let word = rest[blanks..].split(u8::is_ascii_whitespace).next().unwrap_or_default();
-            self.at += blanks + word.len();
-            if word.is_empty() {
-                return Err(self.malformed(start, early(), &wanted()));
-            }
-            let parsed = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-            return parsed.ok_or_else(|| {
-                let found = format!("`{}`", String::from_utf8_lossy(&word[..word.len().min(40)]));
-                self.malformed(start + blanks, found, "a number")
-            });
-        }
+        let wanted = || counted(element.rows, "row", "rows");
         let Some(bytes) = self.data.get(self.at..self.at + ty.size()) else {
             return Err(self.malformed(start, early(), &wanted()));
         };

@@ -142,7 +142,97 @@ fn points_strand_after_strand_are_divided_where_they_jump() {
     let face = format!("element vertex 3\n{PLACE}element face 1\nproperty list uchar int vertex_indices\n");
     let bytes = text(&face, &["0 0 0".into(), "0 1 0".into(), "1 1 0".into(), "3 0 1 2".into()]);
     let error = load_hair_bytes("a.ply", &bytes).expect_err("a mesh").to_string();
-    assert!(error.contains("3 vertices and 1 faces"), "{error}");
+    assert!(error.contains("3 vertices and 1 face without"), "{error}");
+}
+
+/// Four strands of three points, of which a row is changed.
+fn with_row(row: usize, changed: &str) -> Vec<u8> {
+    let head = format!("comment by hand\nelement vertex 12\n{PLACE}property int strand_id\n");
+    let place = |i: usize| format!("0.{i} -0.5 {} {}", i % 3, i / 3);
+    let mut rows: Vec<String> = (0..12).map(place).collect();
+    if !changed.is_empty() {
+        changed.clone_into(&mut rows[row]);
+    }
+    text(&head, &rows)
+}
+
+#[test]
+fn rows_of_a_text_are_divided_or_refused_by_line() {
+    let usual = read("usual", &with_row(0, "")).points;
+    // The header has nine lines, so row 5 is line 15.
+    for row in ["0.5-0.5 2 1", "0.5-0.5+2+1", "0.5 -.5  2 1"] {
+        assert_eq!(read(row, &with_row(5, row)).points, usual, "{row}");
+    }
+    for row in ["0.5 -0.5 2 1 7", "0.5 -0.5 2", "0.5-0.52 1", "0.5 -0.5 2 one", "0,5 -0,5 2 1"] {
+        let error = load_hair_bytes("a.ply", &with_row(5, row)).expect_err(row).to_string();
+        assert!(error.starts_with("a.ply: line 15: found"), "{row}: {error}");
+    }
+    // One number too many, and one too few in the next row: together as many as there must be.
+    let shifted =
+        String::from_utf8(with_row(5, "0.5 -0.5 2 1 7")).expect("text").replace("0.6 -0.5 0 2", "0.6 -0.5 0");
+    let error = load_hair_bytes("a.ply", shifted.as_bytes()).expect_err("shifted").to_string();
+    assert!(error.contains("line 15: found 5 numbers in `0.5 -0.5 2 1 7`; must be 4"), "{error}");
+    // Lines too few are an error, and lines too many a note.
+    let all = String::from_utf8(with_row(0, "")).expect("text");
+    let short = all.replace("0.9 -0.5 0 3\n", "");
+    let error = load_hair_bytes("a.ply", short.as_bytes()).expect_err("short").to_string();
+    assert!(
+        error.contains("line 20: found the end of the file after 11 rows of `vertex`; must be 12"),
+        "{error}"
+    );
+    let long = read("long", format!("{all}1 2 3 4\n").as_bytes());
+    assert!(long.notes.iter().any(|note| note.contains("Left out 1 line after")), "{:?}", long.notes);
+}
+
+#[test]
+fn rows_over_several_lines_are_read_and_refused_where_one_is_missing() {
+    let usual = with_row(0, "");
+    let all = String::from_utf8(usual.clone()).expect("text");
+    let (head, rows) = all.split_once("end_header\n").expect("a header");
+    let words: Vec<&str> = rows.split_ascii_whitespace().collect();
+    let lines = |lengths: &[usize]| {
+        let (mut left, mut lines) = (&words[..], Vec::new());
+        for &length in lengths.iter().cycle() {
+            let (line, rest) = left.split_at(length.min(left.len()));
+            lines.push(line.join(" "));
+            left = rest;
+            if left.is_empty() {
+                break;
+            }
+        }
+        lines
+    };
+    let file = |lines: &[String]| format!("{head}end_header\n{}\n", lines.join("\n"));
+    // Halves of rows, uneven parts of rows, and lines of one length.
+    for lengths in [&[2][..], &[3, 1], &[1], &[9], &[48]] {
+        let lines = lines(lengths);
+        assert_eq!(
+            read("wrapped", file(&lines).as_bytes()).points,
+            read("usual", &usual).points,
+            "{lengths:?}"
+        );
+        // A number that is lost in one line and added in the next is refused.
+        if lines.len() > 4 && lengths != [1] {
+            let mut shifted = lines.clone();
+            let end = shifted[1].rfind(' ').unwrap_or(0);
+            shifted[1].truncate(end);
+            shifted[2].push_str(" 7");
+            let error = load_hair_bytes("a.ply", file(&shifted).as_bytes()).expect_err("shifted").to_string();
+            assert!(error.starts_with("a.ply: line "), "{lengths:?}: {error}");
+        }
+    }
+    // Lists end where lines do.
+    let lists = |rows: [&str; 2]| {
+        let head = format!("element vertex 4\n{PLACE}element line 2\nproperty list int int points\n");
+        let points = ["0 0 0", "0 1 0", "1 0 0", "1 1 0"];
+        text(&head, &points.iter().chain(&rows).map(|row| (*row).to_owned()).collect::<Vec<_>>())
+    };
+    assert_eq!(read("lists", &lists(["2 0 1", "2 2 3"])).strands(), 2);
+    assert_eq!(read("wrapped lists", &lists(["2\n0 1", "2\n2 3"])).strands(), 2);
+    for rows in [["2 0", "1 2 2 3"], ["2 0 1 2", "2 3"], ["3 0 1", "2 2 3"]] {
+        let error = load_hair_bytes("a.ply", &lists(rows)).expect_err("shifted lists").to_string();
+        assert!(error.starts_with("a.ply: line 1"), "{rows:?}: {error}");
+    }
 }
 
 #[test]
@@ -181,14 +271,14 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
                 &head("element edge 1\nproperty int vertex1\nproperty int vertex2\n"),
                 &[&points[..], &["0 3".into()]].concat(),
             ),
-            "not there",
+            "an edge to vertex 3; must be 0 to 2",
         ),
         (
             text(
                 &head("element line 1\nproperty list int int points\n"),
                 &[&points[..], &["2 0 -1".into()]].concat(),
             ),
-            "no vertex",
+            "vertex -1 of a strand; must be 0 to 2",
         ),
         (
             text(
@@ -202,6 +292,9 @@ fn what_does_not_fit_is_refused_in_a_sentence() {
         (b"ply\nend_header\n".to_vec(), "format"),
     ] {
         let error = load_hair_bytes("a.ply", &bytes).expect_err(words).to_string();
-        assert!(error.contains(words) && error.starts_with("a.ply: byte"), "{words}: {error}");
+        assert!(
+            error.contains(words) && (error.starts_with("a.ply: byte") || error.starts_with("a.ply: line")),
+            "{words}: {error}"
+        );
     }
 }
