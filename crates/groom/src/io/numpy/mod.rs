@@ -1,10 +1,14 @@
 //! Strands as arrays of `NumPy`, `.npy` and `.npz`: strands × points × 3 (`DiffLocks`, Perm, hairutil), or points × 3 with the numbers of points of
 //! the strands in a second array.
 //!
-//! Shorter strands may end with points that are not numbers. A `.npz` file is a ZIP archive of arrays; which one holds the strands is told by
+//! Shorter strands may end with points that are not numbers, or with copies of one point, such as zeros ([`filling`]). The three numbers of a
+//! point may also run along the first or the second side. A `.npz` file is a ZIP archive of arrays; which one holds the strands is told by
 //! shape and name.
 
 mod array;
+mod filling;
+mod relative;
+mod sides;
 
 use std::io::{Cursor, Read, Seek, Write as _};
 
@@ -18,6 +22,7 @@ use super::format::HairFormat;
 use super::source::Source;
 use super::units::UpAxis;
 use array::{Layout, MAGIC, layout};
+use sides::Sides;
 
 pub(super) static ARRAY: HairFormat = HairFormat {
     label: "NumPy array",
@@ -67,8 +72,6 @@ const MOST_ARRAYS: usize = 1024;
 const UNPACKED: (u64, u64) = (64, 1 << 26);
 /// Bytes of an entry that contain the description of its array.
 const DESCRIPTION: u64 = 1 << 12;
-/// The most numbers of a point: its place, and what may stand beside it.
-const MOST_COLUMNS: usize = 16;
 const WANTED: &str = "an array of floats with strands × points × 3 numbers";
 
 fn malformed(name: &str, found: String, wanted: &str) -> HairFileError {
@@ -78,47 +81,26 @@ fn malformed(name: &str, found: String, wanted: &str) -> HairFileError {
 fn read_array(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let data = source.into_bytes(name)?;
     let layout = layout(&data).map_err(|found| malformed(name, found, WANTED))?;
-    let Some(sides) = sides(&layout) else {
+    if !Sides::fit(&layout) {
         return Err(malformed(name, layout.words(), WANTED));
-    };
+    }
     let numbers = layout
         .numbers(&data, single)
         .map_err(|found| malformed(name, found, "as many numbers as its shape"))?;
-    let mut raw = strands(sides, &numbers);
+    let mut raw = strands(&layout, &numbers);
+    if relative::begin_in_one_place(&raw) {
+        raw.notes.push(relative::NOTE.to_owned());
+    }
     raw.trailing_bytes = layout.bytes().map_or(0, |bytes| (data.len() - layout.start - bytes) as u64);
     Ok(raw)
 }
 
-/// Strands, points of each and numbers of a point, of an array of strands.
-fn sides(layout: &Layout) -> Option<[usize; 3]> {
-    // A batch of one.
-    let mut shape = &layout.shape[..];
-    while let [1, rest @ ..] = shape
-        && rest.len() >= 3
-    {
-        shape = rest;
-    }
-    let &[strands, points, columns] = shape else { return None };
-    let fits = layout.has_floats() && strands > 0 && points > 1 && (3..=MOST_COLUMNS).contains(&columns);
-    let few = u32::try_from(layout.count()?).is_ok();
-    (fits && few).then_some([strands, points, columns])
-}
-
 /// The points of an array of strands.
-fn strands([count, points, columns]: [usize; 3], numbers: &[f32]) -> RawHair {
-    let mut raw = RawHair::new(Vec::with_capacity(count), Vec::with_capacity(count * points));
-    for strand in numbers.chunks_exact(points * columns) {
-        let start = raw.points.len();
-        raw.points.extend(strand.chunks_exact(columns).map(point));
-        // Strands of fewer points are filled with what is no number.
-        let end =
-            raw.points[start..].iter().rposition(|point| point.is_finite()).map_or(points, |last| last + 1);
-        raw.points.truncate(start + end);
-        raw.point_counts.push(end as u32);
-    }
-    if columns > 3 {
-        raw.notes.push(format!("Each point has {columns} numbers; the first three are its place."));
-    }
+fn strands(layout: &Layout, numbers: &[f32]) -> RawHair {
+    let Some(sides) = Sides::of(layout, numbers) else { return RawHair::new(Vec::new(), Vec::new()) };
+    let mut raw = RawHair::new(vec![sides.points as u32; sides.strands], sides.all(numbers).collect());
+    filling::end_strands(&mut raw);
+    raw.notes.extend(sides.note());
     raw
 }
 
@@ -207,9 +189,10 @@ fn read_archive(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError
     let size = |at: usize| arrays.all[at].1.count().unwrap_or_default();
     let best = |fits: &dyn Fn(&Layout) -> bool| {
         let fitting = places.clone().filter(|&at| fits(&arrays.all[at].1));
-        fitting.min_by_key(|&at| (rank(&arrays.all[at].0), std::cmp::Reverse(size(at))))
+        let known = |at: usize| (rank(&arrays.all[at].0), !Sides::are_usual(&arrays.all[at].1));
+        fitting.min_by_key(|&at| (known(at), std::cmp::Reverse(size(at))))
     };
-    let whole = best(&|layout| sides(layout).is_some());
+    let whole = best(&Sides::fit);
     let flat = best(&|layout| layout.has_floats() && matches!(layout.shape[..], [_, 3]));
     let is_count = |layout: &Layout| layout.has_integers() && layout.shape.len() == 1;
     let counts: Vec<usize> = places.clone().filter(|&at| is_count(&arrays.all[at].1)).collect();
@@ -219,8 +202,20 @@ fn read_archive(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError
             .collect::<Vec<_>>()
     };
     let (mut raw, used) = if let Some(at) = whole {
-        let sides = sides(&arrays.all[at].1).unwrap_or_default();
-        (strands(sides, &arrays.numbers(name, at, single)?), vec![at])
+        let layout = arrays.all[at].1.clone();
+        let mut raw = strands(&layout, &arrays.numbers(name, at, single)?);
+        let roots = roots_of(name, &mut arrays, raw.point_counts.len())?;
+        let mut used = vec![at];
+        if let Some((of, places)) = roots
+            && relative::move_to(&mut raw, &places)
+        {
+            let array = arrays.all[of].0.trim_end_matches(".npy");
+            raw.notes.push(format!("The strands are relative to their roots, which the array {array} has."));
+            used.push(of);
+        } else if relative::begin_in_one_place(&raw) {
+            raw.notes.push(relative::NOTE.to_owned());
+        }
+        (raw, used)
     } else if let Some(at) = flat
         && let Some((of, counts)) = counts_of(name, &mut arrays, &counts, at)?
     {
@@ -239,6 +234,22 @@ fn read_archive(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError
         raw.notes.push(format!("Read the array {read}; left out: {}.", left.join(", ")));
     }
     Ok(raw)
+}
+
+/// The array with a place for the root of each of `strands` strands, by its name, and these places.
+fn roots_of<R: Read + Seek>(
+    name: &str,
+    arrays: &mut Arrays<R>,
+    strands: usize,
+) -> Result<Option<(usize, Vec<Vec3>)>, HairFileError> {
+    let is_root = |(file, layout): &(String, Layout)| {
+        file.to_ascii_lowercase().contains("root")
+            && layout.has_floats()
+            && matches!(layout.shape[..], [count, 3] | [1, count, 3] | [count, 1, 3] if count == strands)
+    };
+    let Some(at) = arrays.all.iter().position(is_root) else { return Ok(None) };
+    let numbers = arrays.numbers(name, at, single)?;
+    Ok(Some((at, numbers.chunks_exact(3).map(point).collect())))
 }
 
 /// The array that says how many points each strand has, where the points of all are in one array: numbers that add up to that of the points,

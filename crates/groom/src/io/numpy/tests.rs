@@ -81,6 +81,105 @@ fn shorter_strands_end_where_no_numbers_follow() {
     assert_eq!(hair.first_point, [0, 3, 5]);
 }
 
+/// Twelve strands of eight points on a patch of roots, 1 m above zero. Strand `s` has `points(s)` points before the filling.
+fn filled(points: impl Fn(usize) -> usize, filling: [f32; 3]) -> Vec<[f32; 3]> {
+    let place = |s: usize, k: usize| [0.05 * (s % 4) as f32, 1.0 - 0.02 * k as f32, 0.05 * (s / 4) as f32];
+    let strand = |s: usize| (0..8).map(move |k| (s, k));
+    (0..12).flat_map(strand).map(|(s, k)| if k < points(s) { place(s, k) } else { filling }).collect()
+}
+
+fn floats(numbers: impl IntoIterator<Item = [f32; 3]>) -> Vec<u8> {
+    numbers.into_iter().flatten().flat_map(f32::to_le_bytes).collect()
+}
+
+#[test]
+fn shorter_strands_end_before_copies_of_one_point() {
+    let read = |numbers| {
+        load_hair_bytes("a.npy", &array(1, "'<f4'", false, "(12, 8, 3)", &floats(numbers))).expect("hair")
+    };
+    for filling in
+        [[0.0, 0.0, 0.0], [-0.0, 0.0, -0.0], [-1.0, -1.0, -1.0], [1e6, 1e6, 1e6], [f32::NAN, 0.0, 0.0]]
+    {
+        for (what, points) in [("one point", [8, 7]), ("two points", [8, 6]), ("most points", [2, 5])] {
+            let hair = read(filled(|s| points[s % 2], filling));
+            let counts: Vec<usize> = (0..12).map(|s| hair.strand(s).len()).collect();
+            assert_eq!(counts, (0..12).map(|s| points[s % 2]).collect::<Vec<_>>(), "{what} of {filling:?}");
+            assert!(hair.points.iter().all(|p| p.y > 0.8), "{what} of {filling:?}");
+            let is_said = hair.notes.iter().any(|note| note.contains("copies of one point"));
+            assert_eq!(is_said, !filling[0].is_nan(), "{what} of {filling:?}: {:?}", hair.notes);
+        }
+    }
+    let none = read(filled(|s| if s == 3 { 0 } else { 8 }, [0.0; 3]));
+    assert_eq!((none.strands(), none.dropped["one_point_strands"]), (11, 1));
+    // Negative controls: strands that lead to zero, and to a tie that they share, are whole.
+    for tie in [Vec3::ZERO, Vec3::new(0.3, 2.0, 0.1)] {
+        let lead = (0..12).flat_map(|s| (0..8).map(move |k| (s, k))).map(|(s, k)| {
+            let root = tie + Vec3::new(0.1, 0.03 * s as f32, 0.02);
+            (if k == 7 { tie } else { root.lerp(tie, k as f32 / 7.0) }).to_array()
+        });
+        let hair = read(lead.collect());
+        assert_eq!((hair.strands(), hair.points.len()), (12, 96), "{tie}");
+    }
+}
+
+#[test]
+fn coordinates_may_run_along_any_side() {
+    let points = filled(|_| 8, [0.0; 3]);
+    let coordinate = |axis: usize, i: usize| points[i][axis];
+    let first: Vec<f32> =
+        (0..3).flat_map(|axis| (0..96).map(move |i| (axis, i))).map(|(a, i)| coordinate(a, i)).collect();
+    let middle: Vec<f32> = (0..12)
+        .flat_map(|s| (0..3).flat_map(move |axis| (0..8).map(move |k| (axis, 8 * s + k))))
+        .map(|(a, i)| coordinate(a, i))
+        .collect();
+    let bytes = |numbers: &[f32]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
+    for (shape, data) in [
+        ("(12, 8, 3)", floats(points.clone())),
+        ("(3, 12, 8)", bytes(&first)),
+        ("(12, 3, 8)", bytes(&middle)),
+    ] {
+        let hair = load_hair_bytes("a.npy", &array(1, "'<f4'", false, shape, &data)).expect(shape);
+        assert_eq!((hair.strands(), hair.points.len()), (12, 96), "{shape}");
+        assert_eq!(hair.points, points.iter().copied().map(Vec3::from).collect::<Vec<_>>(), "{shape}");
+        let is_said = hair.notes.iter().any(|note| note.contains("another side"));
+        assert_eq!(is_said, shape != "(12, 8, 3)", "{shape}");
+    }
+}
+
+#[test]
+fn strands_relative_to_their_roots_are_moved_there() {
+    let points = filled(|_| 8, [0.0; 3]);
+    let roots: Vec<[f32; 3]> = points.iter().copied().step_by(8).collect();
+    let relative = |from: usize| {
+        let own = points.iter().enumerate().filter(move |(i, _)| i % 8 >= from);
+        floats(own.map(|(i, &point)| (Vec3::from(point) - Vec3::from(roots[i / 8])).to_array()))
+    };
+    let whole = array(1, "'<f4'", false, "(12, 8, 3)", &relative(0));
+    let behind = array(1, "'<f4'", false, "(12, 7, 3)", &relative(1));
+    let absolute = array(1, "'<f4'", false, "(12, 8, 3)", &floats(points.clone()));
+    let roots = array(1, "'<f4'", false, "(12, 3)", &floats(roots.clone()));
+    for (what, strands, is_said) in [
+        ("with their roots", &whole, true),
+        ("behind their roots", &behind, true),
+        // Negative control: places stay places.
+        ("places", &absolute, false),
+    ] {
+        let bytes = zip(&[("strands.npy", strands), ("roots.npy", &roots)], CompressionMethod::Stored);
+        let hair = load_hair_bytes("a.npz", &bytes).expect(what);
+        assert_eq!((hair.strands(), hair.points.len()), (12, 96), "{what}");
+        let off = hair.points.iter().zip(&points).map(|(a, &b)| a.distance(b.into())).fold(0.0, f32::max);
+        assert!(off < 1e-6, "{what}: {off}");
+        let moved =
+            hair.notes.iter().any(|note| note.contains("relative to their roots, which the array roots"));
+        assert_eq!(moved, is_said, "{what}: {:?}", hair.notes);
+    }
+    // Without their roots, a note says what is missing.
+    let hair = load_hair_bytes("a.npy", &whole).expect("hair");
+    assert!(hair.notes.iter().any(|note| note.contains("begin in one place")), "{:?}", hair.notes);
+    let hair = load_hair_bytes("a.npy", &absolute).expect("hair");
+    assert!(!hair.notes.iter().any(|note| note.contains("begin in one place")), "{:?}", hair.notes);
+}
+
 #[test]
 fn an_archive_has_its_strands_where_shape_and_name_say() {
     let strands = array(1, "'<f4'", false, "(2, 3, 3)", &singles());
