@@ -180,7 +180,7 @@ fn broken_files_are_repaired_or_rejected() {
         ("hair/broken/badmagic.hair", Err("HAIR")),
         ("hair/broken/countlie.hair", Err("1000 points")),
         ("hair/broken/dseg0.hair", Err("56 points")),
-        ("hair/broken/hugecount.hair", Err("814 bytes")),
+        ("hair/broken/hugecount.hair", Ok(json!({}))),
         ("hair/broken/nopoints.hair", Err("points")),
         ("hair/broken/tfx_badoffset.tfx", Err("640 bytes")),
         ("hair/broken/truncated.hair", Err("300 bytes")),

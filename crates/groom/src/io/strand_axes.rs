@@ -9,6 +9,8 @@
 //!   axis of the mirror is therefore neither up nor forward.
 //! - **Custom.** Most files of a format, or of the program that wrote them, have the same axis up.
 //!
+//! Where the dome and the fall contradict each other, the guess is in doubt.
+//!
 //! The weights were chosen by the shipped hairstyles and real files, each rotated in all 24 ways: `docs/file_formats.md` lists the
 //! outcome.
 
@@ -33,6 +35,10 @@ const FEW: f32 = 8.0;
 const CLEARLY_ALIKE: f32 = 0.6;
 /// Score of the axis of the mirror, which is neither up nor forward.
 const ACROSS: f32 = -0.35;
+/// A guess is contradicted by a dome or a fall that points away from it by this much.
+const CONTRADICTED: f32 = 0.1;
+/// The most that a guess is probable then.
+const DOUBTFUL: f32 = 0.6;
 /// Most roots that are compared with their mirror image.
 const MIRRORED: usize = 384;
 
@@ -114,7 +120,17 @@ impl StrandAxes {
                     + custom,
             )
         });
-        likeliest(&scores)
+        let mut likely = likeliest(&scores);
+        if self.contradicts(likely.is.direction()) {
+            likely.confidence = likely.confidence.min(DOUBTFUL);
+        }
+        likely
+    }
+
+    /// Whether the dome or the fall contradicts this direction as up: hair that stands up or is blown, or a head that hangs. One of the two
+    /// misleads then, and nothing says which.
+    fn contradicts(&self, up: Vec3) -> bool {
+        self.dome.dot(up) < -CONTRADICTED || self.fall.dot(up) > CONTRADICTED
     }
 
     /// The axis that the face looks along, where `up` points up: hair grows lower at the back and leans back.

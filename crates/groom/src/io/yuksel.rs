@@ -3,6 +3,8 @@
 //! A header of 128 bytes, then the arrays whose flags are set, in the order of the bits. A strand of `s` segments has
 //! `s + 1` points.
 
+use lovelock_base::words::counted;
+
 use super::HairFileError;
 use super::bytes::{Bytes, floats, triple_bytes, triples};
 use super::file::{HairFile, RawHair};
@@ -41,7 +43,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let data = source.into_bytes(name)?;
     let file = Bytes::new(name, &data);
     file.header(HEADER)?;
-    let (strands, mut points) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
+    let (mut strands, mut points) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
     let (flags, default_segments) = (file.u32(12), file.u32(16));
     if flags & POINTS == 0 {
         return Err(file.malformed(12, format!("flags {flags:#x}"), "bit 1 set: an array of points"));
@@ -49,6 +51,16 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     let mut notes = Vec::new();
     if flags & !KNOWN != 0 {
         notes.push(format!("Unknown flags {:#x} at byte 12 were ignored.", flags & !KNOWN));
+    }
+    // Writers that are cut off leave no true numbers.
+    if is_unknown(strands)
+        && let Some(found) = strands_by_length(&data[HEADER as usize..], flags, default_segments)
+    {
+        notes.push(format!(
+            "The header states {}; by the length of the file there are {found}.",
+            counted(strands, "strand", "strands")
+        ));
+        strands = found;
     }
 
     let mut offset = HEADER;
@@ -59,21 +71,22 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         offset += array.len() as u64;
         Some(array)
     };
-    let counted = match segments {
+    let expected = match segments {
         Some(array) => segment_counts(array).map(|segments| u64::from(segments) + 1).sum(),
         None => strands * (u64::from(default_segments) + 1),
     };
-    // Writers that are cut off leave no true number; the strands say how many points there are.
-    if segments.is_some() && counted > 0 && [0, u64::from(u32::MAX)].contains(&points) {
-        notes.push(format!("The header states {points} points; the {counted} of the strands were read."));
-        points = counted;
+    if expected > 0 && is_unknown(points) {
+        let stated = counted(points, "point", "points");
+        notes.push(format!("The header states {stated}; the {expected} of the strands were read."));
+        points = expected;
     }
-    if counted != points {
+    if expected != points {
         let by = if segments.is_some() { "the segments array" } else { "the default number of segments" };
+        let strands = counted(strands, "strand", "strands");
         return Err(file.malformed(
             8,
-            format!("{points} points"),
-            format!("{counted}, from {strands} strands and {by}"),
+            counted(points, "point", "points"),
+            format!("{expected}, from {strands} and {by}"),
         ));
     }
 
@@ -110,6 +123,31 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         notes,
         ..RawHair::new(point_counts, triples(positions, 12).map(Into::into).collect())
     })
+}
+
+/// Whether a count is what writers put there that do not know it yet.
+fn is_unknown(count: u64) -> bool {
+    [0, u64::from(u32::MAX)].contains(&count)
+}
+
+/// The number of strands whose arrays end where the file does.
+fn strands_by_length(arrays: &[u8], flags: u32, default_segments: u32) -> Option<u64> {
+    let sizes = [(POINTS, 12), (THICKNESS, 4), (TRANSPARENCY, 4), (COLOURS, 12), (UVS, 8)];
+    let per_point: u64 = sizes.iter().filter(|(bit, _)| flags & bit != 0).map(|(_, size)| size).sum();
+    let length = arrays.len() as u64;
+    if flags & SEGMENTS == 0 {
+        let per_strand = per_point * (u64::from(default_segments) + 1);
+        return Some(length / per_strand).filter(|strands| *strands > 0 && length.is_multiple_of(per_strand));
+    }
+    let mut bytes = 0;
+    let ends = segment_counts(arrays).map(|segments| {
+        bytes += 2 + per_point * (u64::from(segments) + 1);
+        bytes
+    });
+    (1..)
+        .zip(ends.take_while(|end| *end <= length))
+        .find(|(_, end)| *end == length)
+        .map(|(strands, _)| strands)
 }
 
 fn segment_counts(array: &[u8]) -> impl Iterator<Item = u16> + '_ {

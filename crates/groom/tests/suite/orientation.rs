@@ -1,9 +1,11 @@
 //! The guessed axes of hair files: grooms in all rotations, in several formats, and what leaves them in doubt.
 
 use std::f32::consts::PI;
+use std::io::Cursor;
 
 use crate::common::{YukselFile, data_dir};
 use glam::{Mat3, Vec3};
+use lovelock_alembic::{ArchiveWriter, CompoundTree, DataType, ObjectTree, Pod, Samples};
 use lovelock_groom::{
     Facing, GroomSettings, HAIR_FORMATS, HairFile, ImportSettings, NoObstacle, PlainHead, Preset, UnitGuess,
     UpAxis, grow, guess_units, hair_info, load_hair, load_hair_bytes,
@@ -44,6 +46,32 @@ fn dot_data(strands: &Strands) -> HairFile {
         bytes.extend(strand.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes));
     }
     load_hair_bytes("a.data", &bytes).expect("hair")
+}
+
+/// An Alembic archive of these strands as they are.
+fn alembic(strands: &Strands) -> HairFile {
+    let (point, int) = (DataType::new(Pod::F32, 3), DataType::new(Pod::I32, 1));
+    let mut writer = ArchiveWriter::create(Cursor::new(Vec::new())).expect("memory");
+    let mut store = |ty, bytes: Vec<u8>| {
+        let mut samples = Samples::array(ty, 0);
+        samples.push(writer.store(ty, &bytes).expect("memory"));
+        samples
+    };
+    let counts = strands.iter().flat_map(|strand| (strand.len() as i32).to_le_bytes()).collect();
+    let points = strands.iter().flatten().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes).collect();
+    let (counts, points) = (store(int, counts), store(point, points));
+    // Linear curves.
+    let mut basis = Samples::scalar(DataType::new(Pod::U8, 4), 0);
+    basis.push(writer.store(basis.ty, &[1, 0, 0, 0]).expect("memory"));
+    let (mut schema, mut properties) = (CompoundTree::default(), CompoundTree::default());
+    schema.samples("P", "geoScope=vtx", points);
+    schema.samples("nVertices", "", counts);
+    schema.samples("curveBasisAndType", "", basis);
+    properties.compound(".geom", "", schema);
+    let (name, metadata) = ("hair".to_owned(), "schema=AbcGeom_Curve_v2".to_owned());
+    let object = ObjectTree { name, metadata, properties, children: Vec::new() };
+    let archive = writer.finish("", vec![object]).expect("memory").0.into_inner();
+    load_hair_bytes("a.abc", &archive).expect("hair")
 }
 
 /// The points of `hair` in a text format that is written as they are.
@@ -148,9 +176,14 @@ fn one_real_groom_has_one_orientation_in_every_format() {
     let Some(data) = data_dir() else { return };
     let strands = strands_of(&load_hair(&data.join("hair/yuksel/straight.hair")).expect("hair"), 300);
     let (hair, data) = (dot_hair(&strands), dot_data(&strands));
-    for (name, file) in
-        [("hair", &hair), ("data", &data), ("obj", &written(&data, "obj")), ("pbrt", &written(&data, "pbrt"))]
-    {
+    let archive = alembic(&strands);
+    for (name, file) in [
+        ("hair", &hair),
+        ("data", &data),
+        ("obj", &written(&data, "obj")),
+        ("pbrt", &written(&data, "pbrt")),
+        ("abc", &archive),
+    ] {
         let guess = guess_units(file);
         assert_eq!((guess.up, guess.facing), (UpAxis::Z, Facing::PlusY), "{name}: {guess:?}");
         assert!(!guess.is_up_in_doubt() && guess.facing_confidence > 0.8, "{name}: {guess:?}");
@@ -196,6 +229,53 @@ fn symmetric_balls_and_combed_coats_are_doubted() {
     println!("combed {combed:?}, cap {cap:?}, hanging {hanging:?}");
     assert_eq!(hanging.wrong, 0, "{hanging:?}");
     assert!(hanging.right > 0, "{hanging:?}");
+}
+
+/// Strands of this length on the top and the back of a head, Y up, the face toward +Z, which bend as `pull` says.
+fn bent(length: f32, pull: Vec3) -> Strands {
+    let size = Vec3::new(0.075, 0.095, 0.09);
+    let normal = |i: usize| {
+        let height = 1.0 - 2.0 * (i as f32 + 0.5) / 900.0;
+        let (angle, across) = (i as f32 * PI * (3.0 - 5.0_f32.sqrt()), (1.0 - height * height).sqrt());
+        Vec3::new(across * angle.cos(), height, across * angle.sin())
+    };
+    let is_scalp = |n: &Vec3| (n.y > 0.05 && !(n.z > 0.55 && n.y < 0.6)) || (n.y > -0.5 && n.z < -0.3);
+    let strand = |n: Vec3| {
+        let (mut at, mut along) = (size * n, n);
+        let step = length / 15.0;
+        let points = (0..15).map(move |_| {
+            along = (along + pull * (4.0 / 15.0)).normalize_or(n);
+            at += step * along;
+            // Outside of the head.
+            let out = (at / size).length();
+            if out < 1.02 {
+                at *= 1.02 / out;
+            }
+            at
+        });
+        std::iter::once(size * n).chain(points).collect()
+    };
+    (0..900).map(normal).filter(is_scalp).map(strand).collect()
+}
+
+#[test]
+fn hair_that_contradicts_the_dome_of_its_roots_is_doubted() {
+    for (what, length, pull) in [
+        ("stands up", 0.2, Vec3::new(0.0, 0.5, 0.0)),
+        ("bends up", 0.2, Vec3::new(0.0, 1.0, 0.0)),
+        ("a head that hangs", 0.4, Vec3::new(0.0, 2.0, 0.0)),
+        ("blown back", 0.4, Vec3::new(0.0, -0.1, -1.0)),
+        ("blown to a side", 0.4, Vec3::new(1.0, -0.2, 0.0)),
+    ] {
+        let tally = tally(&bent(length, pull), 2);
+        println!("{what}: {tally:?}");
+        assert_eq!((tally.doubted, tally.wrong), (48, 0), "{what}: {tally:?}");
+    }
+    // Negative control: the same head with hair that hangs.
+    for length in [0.2, 0.4] {
+        let hanging = tally(&bent(length, Vec3::NEG_Y), 2);
+        assert_eq!((hanging.right, hanging.wrong), (48, 0), "{length} m: {hanging:?}");
+    }
 }
 
 #[test]
