@@ -61,6 +61,7 @@ pub fn convert(
         notes.push(format!("{} `--unit` sets another unit.", guess.reason));
     }
     let bytes = if let Some(write) = write {
+        notes.extend(marks_left_out(&hair, out));
         let bytes =
             write(&hair).map_err(|why| ProjectError::input(input, format!("{}: {why}", input.display())))?;
         write_whole(out, &bytes)?;
@@ -82,6 +83,21 @@ pub fn convert(
         bytes,
         notes,
     })
+}
+
+/// What `out`, which is neither USD nor Alembic, has no place for, as a sentence.
+fn marks_left_out(hair: &HairFile, out: &Path) -> Option<String> {
+    let mut parts = Vec::new();
+    if !hair.marks.groups.is_empty() {
+        parts.push("the groups of strands");
+    }
+    if !hair.marks.root_uvs.is_empty() {
+        parts.push("the coordinates of roots");
+    }
+    let extension = out.extension().unwrap_or_default().to_string_lossy();
+    let what = parts.join(" and ");
+    (!parts.is_empty())
+        .then(|| format!("Left out {what}: .{extension} has no place for them; USD and Alembic have."))
 }
 
 /// Extensions of the hair files that can be written, without the dot.
@@ -167,13 +183,18 @@ mod tests {
         );
         let mut from = at("a.usda");
         for name in ["b.abc", "c.usdc", "d.abc", "e.usda", "f.usd"] {
-            convert(&from, &at(name), Unit::Auto, UpAxis::Auto, false).expect(name);
+            let report = convert(&from, &at(name), Unit::Auto, UpAxis::Auto, false).expect(name);
+            assert!(!report.notes.iter().any(|note| note.contains("Left out")), "{name}: {:?}", report.notes);
             from = at(name);
             assert_eq!(load_hair(&from).expect(name).marks, first.marks, "{name}");
         }
-        // Negative control: a format without groups.
-        convert(&from, &at("g.obj"), Unit::Auto, UpAxis::Auto, false).expect("g.obj");
-        assert!(load_hair(&at("g.obj")).expect("hair").marks.groups.is_empty());
+        // Negative control: formats without groups, which a note says.
+        for name in ["g.obj", "h.glb", "i.ply", "j.npz", "k.hair"] {
+            let notes = convert(&from, &at(name), Unit::Auto, UpAxis::Auto, false).expect(name).notes;
+            let expected = "Left out the groups of strands and the coordinates of roots: .";
+            assert!(notes.iter().any(|note| note.starts_with(expected)), "{name}: {notes:?}");
+            assert!(load_hair(&at(name)).expect(name).marks.groups.is_empty());
+        }
     }
 
     #[test]

@@ -73,6 +73,9 @@ impl HairFormat {
     }
 }
 
+/// The first bytes of a file compressed by gzip.
+const GZIP: &[u8] = b"\x1f\x8b";
+
 /// Reads a hair file. The format is recognised by the content, not by the name.
 ///
 /// # Errors
@@ -107,6 +110,16 @@ pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileErro
 
 fn load(name: &str, source: Source<'_>, include_hidden: bool) -> Result<HairFile, HairFileError> {
     let start = source.start();
+    if start.starts_with(GZIP)
+        && let Some(extension) = packed_extension(name)
+    {
+        return Err(HairFileError::Malformed {
+            name: name.to_owned(),
+            offset: 0,
+            found: "a file compressed by gzip".to_owned(),
+            wanted: format!("unpacked to a .{extension} file; only .pbrt files are read compressed"),
+        });
+    }
     let Some(format) = HairFormat::of_start(name, start) else {
         return Err(unknown(name, start));
     };
@@ -121,6 +134,15 @@ fn load(name: &str, source: Source<'_>, include_hidden: bool) -> Result<HairFile
         };
     }
     clean(name, format, (format.read)(name, source)?.settled(name, include_hidden)?)
+}
+
+/// The extension of a hair format other than pbrt, before that of a compression, such as in `a.obj.gz`.
+fn packed_extension(name: &str) -> Option<String> {
+    let path = Path::new(name);
+    let is_packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    let inner = if is_packed { Path::new(path.file_stem()?) } else { path };
+    HairFormat::of_path(inner).filter(|format| **format != pbrt::FORMAT)?;
+    inner.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase())
 }
 
 /// The error for a file whose start fits no format, or not one of its name.
@@ -208,6 +230,33 @@ mod tests {
         }
         assert_eq!(HairFormat::of_path(Path::new("a.hair")).map(|format| format.label), Some("Yuksel .hair"));
         assert_eq!(HairFormat::of_path(Path::new("a.stl")), None);
+    }
+
+    #[test]
+    fn a_compressed_file_is_refused_in_words_about_its_compression() {
+        use std::io::Write;
+        let pack = |text: &str| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            encoder.write_all(text.as_bytes()).expect("memory");
+            encoder.finish().expect("memory")
+        };
+        for (name, extension) in [
+            ("a.obj.gz", "obj"),
+            ("a.OBJ.GZ", "obj"),
+            ("a.obj", "obj"),
+            ("b/a.ply.gz", "ply"),
+            ("a.usd.gz", "usd"),
+        ] {
+            let error =
+                load_hair_bytes(name, &pack("v 0 0 0\nv 0 1 0\nl 1 2\n")).expect_err(name).to_string();
+            let words = format!("found a file compressed by gzip; must be unpacked to a .{extension} file");
+            assert!(error.contains(&words) && !error.contains("Shape"), "{error}");
+        }
+        // Negative control: scenes of pbrt are read compressed.
+        let curve = "WorldBegin Shape \"curve\" \"point3 P\" [ 0 0 0 0 1 0 0 2 0 0 3 0 ]\n";
+        for name in ["a.pbrt.gz", "a.gz", "a.pbrt"] {
+            assert_eq!(load_hair_bytes(name, &pack(curve)).expect(name).strands(), 1, "{name}");
+        }
     }
 
     #[test]

@@ -59,7 +59,7 @@ fn read(name: &str, source: Source<'_>, strides: [u64; 4]) -> Result<RawHair, Ha
     let Some(stride) = strides.into_iter().zip(&ends).find(|(_, end)| **end == Ok(file.len())) else {
         let place = |(stride, end): (&u64, &Result<u64, u64>)| match end {
             Ok(end) => format!("with {stride} bytes per point the strands end at byte {end}"),
-            Err(at) => format!("with {stride} the strand at byte {at} does not fit"),
+            Err(at) => format!("with {stride} bytes per point the strand at byte {at} does not fit"),
         };
         let places: Vec<String> = strides.iter().zip(&ends).take(3).map(place).collect();
         return Err(file.malformed(
@@ -141,7 +141,8 @@ mod tests {
             bytes.resize((bytes.len() as isize + change) as usize, 0);
             let error = load_hair_bytes("a.data", &bytes).expect_err("another length").to_string();
             assert!(
-                error.starts_with("a.data: byte 0: found a file of") && error.contains("with 16"),
+                error.starts_with("a.data: byte 0: found a file of")
+                    && error.contains("with 16 bytes per point the strand at"),
                 "{error}"
             );
         }

@@ -3,14 +3,17 @@
 mod counted;
 mod end;
 mod mix;
+mod other;
 mod resample;
 mod wav;
 
 use std::fs::File;
+use std::io::{Read, Seek};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use lovelock_base::words;
 use symphonia::core::codecs::audio::{AudioDecoder, AudioDecoderOptions};
 use symphonia::core::common::Limit;
 use symphonia::core::errors::Error;
@@ -111,6 +114,12 @@ fn read(
     if data.len() == 0 {
         return Err(refused("found an empty file", WANTED));
     }
+    let mut start = Vec::new();
+    Read::take(&mut file, other::START as u64).read_to_end(&mut start).map_err(io)?;
+    file.rewind().map_err(io)?;
+    if let Some(name) = other::name(&start) {
+        return Err(refused(&format!("found a sound of the format {name}"), WANTED));
+    }
     let (head, part, notes) = match wav::parts(&mut file, data.len()).map_err(io)? {
         Some(Ok(parts)) => (parts.head, parts.samples, parts.notes),
         Some(Err([found, wanted])) => return Err(refused(found, wanted)),
@@ -122,7 +131,10 @@ fn read(
     let meta = MetadataOptions::default().limit_visual_bytes(Limit::Maximum(0));
     let mut reader = symphonia::default::get_probe()
         .probe(&Hint::new(), stream, FormatOptions::default(), meta)
-        .map_err(|error| refused(&format!("found no sound ({error})"), WANTED))?;
+        .map_err(|error| match error {
+            Error::Unsupported(_) => refused("found no sound of a known format", WANTED),
+            error => refused(&format!("found no sound ({error})"), WANTED),
+        })?;
     let (track, mut decoder) = open(reader.as_ref()).map_err(|found| refused(&found, WANTED))?;
 
     let mut source =
@@ -203,7 +215,11 @@ fn read(
         source.notes.push(format!("its {} channels are mixed to one", source.channels));
     }
     if damaged > 0 {
-        source.notes.push(format!("{damaged} damaged packets were left out"));
+        source.notes.push(words::counted(
+            damaged,
+            "damaged packet was left out",
+            "damaged packets were left out",
+        ));
     }
     if end.is_wrong() {
         source

@@ -127,10 +127,16 @@ fn each_format_is_read_by_its_contents() {
 fn what_is_no_sound_is_refused_in_a_sentence() {
     let data = [0; 64];
     let long = wav(1, 1, 4_000, 8, &vec![128; 4_000 * 1801]);
-    let cases: [(&str, Vec<u8>, &str); 9] = [
+    let cases: [(&str, Vec<u8>, &str); 11] = [
         ("empty", Vec::new(), "empty file"),
         ("text", b"This is a letter and no sound at all. ".repeat(20), "no sound"),
-        ("zeros", vec![0; 5000], "no sound"),
+        ("zeros", vec![0; 5000], "no sound of a known format; must be a sound: WAV"),
+        (
+            "AIFF",
+            [&b"FORM\0\0\x10\0AIFFCOMM"[..], &[0; 5000]].concat(),
+            "the format AIFF; must be a sound: WAV",
+        ),
+        ("Opus", [&b"OggS"[..], &[0; 24], b"OpusHead", &[0; 99]].concat(), "the format Opus"),
         ("no samples", wav(1, 2, 44_100, 16, &[]), "no samples"),
         ("no channels", wav(1, 0, 44_100, 16, &data), "channel count"),
         ("rate 0", wav(1, 1, 0, 16, &data), "0"),
