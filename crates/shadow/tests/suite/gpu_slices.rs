@@ -3,14 +3,16 @@
 use crate::common;
 
 use crate::gpu::{Built, device};
-use crate::grooms::Groom;
+use crate::grooms::{Groom, LIGHT};
 use glam::Vec3;
 use lovelock_shadow::methods::deep_opacity_maps::Layers;
 use lovelock_shadow::methods::density_clustering::{Bin, Clustering};
+use lovelock_shadow::methods::occupancy_maps::OccupancyMaps;
 use lovelock_shadow::methods::opacity_maps::Slices;
 use lovelock_shadow::methods::texels::{TexelMap, TexelMethod};
 use lovelock_shadow::{
-    ClusterDeviation, ClusterSeeds, CpuShadow, LayerGrowth, ShadowError, ShadowMethod, ShadowSettings,
+    ClusterDeviation, ClusterSeeds, CpuShadow, LayerGrowth, LightFrame, ShadowError, ShadowMethod,
+    ShadowSettings, TexelFilter,
 };
 use lovelock_testkit::suite::is_long;
 
@@ -255,12 +257,17 @@ fn many_fragments_of_one_texel_do_not_wrap() {
         |i: usize| vec![Vec3::new(-0.01, 0.1 - 1e-7 * (i % 1000) as f32, 0.0), Vec3::new(0.01, 0.1, 0.0)];
     let made: Vec<_> = (0..COUNT).map(ends).collect();
     let groom = Groom { name: "many", strands: common::strands(&made), width: 5e-8, extinction_scale: 1.0 };
-    for method in [ShadowMethod::OpacityMaps, ShadowMethod::DeepOpacityMaps, ShadowMethod::DensityClustering]
-    {
+    for method in [
+        ShadowMethod::OpacityMaps,
+        ShadowMethod::DeepOpacityMaps,
+        ShadowMethod::DensityClustering,
+        ShadowMethod::OccupancyMaps,
+    ] {
         let mut settings = ShadowSettings::default();
         settings.opacity_maps.resolution = 64;
         settings.deep_opacity_maps.resolution = 64;
         settings.density_clustering.resolution = 64;
+        settings.occupancy_maps.resolution = 64;
         let mut cpu = lovelock_shadow::cpu_shadow(method);
         cpu.build(&groom.input(), &settings).expect("it fits");
         let mut built = Built::new(gpu, method, &groom.input(), &settings);
@@ -271,6 +278,42 @@ fn many_fragments_of_one_texel_do_not_wrap() {
         for (found, expected) in built.look_up(&at).iter().zip(&expected) {
             assert!((found - expected).abs() < 0.004, "{method}: {found}, not {expected}");
         }
+    }
+}
+
+#[test]
+fn occupancy_maps_keep_the_whole_of_a_slab_with_more_fragments_than_it_counts() {
+    const COUNT: usize = 200_000;
+    /// The most that a slab counts.
+    const COUNTED: f32 = 65_535.0;
+    let Some(gpu) = device() else { return };
+    let light = LightFrame::new(LIGHT);
+    // Through four texels of one row in the first slab, and one strand behind them through all texels of the row.
+    let strand = |i: usize| {
+        let (depth, half) = if i == COUNT { (0.1, 0.005) } else { (1e-8 * i as f32, 0.0003) };
+        [-half, half].map(|across| light.world_from_light(Vec3::new(depth, across, 0.0))).to_vec()
+    };
+    let made: Vec<_> = (0..=COUNT).map(strand).collect();
+    let mut groom =
+        Groom { name: "crowd", strands: common::strands(&made), width: 1e-9, extinction_scale: 1.0 };
+    let mut settings = ShadowSettings::default();
+    settings.occupancy_maps.resolution = 64;
+    settings.occupancy_maps.filter = TexelFilter::Nearest;
+    let mut map = OccupancyMaps::default();
+    map.build(&groom.input(), &settings).expect("it fits");
+    // An optical depth of 1 behind all strands: a fragment has s w / t.
+    groom.width = map.frame().expect("it was built").texel_size / (COUNT + 1) as f32;
+    map.build(&groom.input(), &settings).expect("it fits");
+    let mut built = Built::new(gpu, ShadowMethod::OccupancyMaps, &groom.input(), &settings);
+    let at: Vec<_> = (-3..=3).map(|i| light.world_from_light(Vec3::new(0.2, 3e-5 * i as f32, 0.0))).collect();
+    let expected = (-1.0_f32).exp();
+    // What a mean of at most twice the least weight would leave.
+    let clamped = (-2.0 * COUNTED / COUNT as f32).exp();
+    for (found, p) in built.look_up(&at).iter().zip(&at) {
+        let defined = map.transmittance(*p);
+        println!("{found}, defined {defined}, by hand {expected}, clamped {clamped}");
+        assert!((found - expected).abs() < 0.0025 && (defined - expected).abs() < 1e-3, "{found}, {defined}");
+        assert!((found - clamped).abs() > 0.1, "control: {found} is that of a clamped mean");
     }
 }
 

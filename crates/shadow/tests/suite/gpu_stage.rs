@@ -22,18 +22,17 @@ fn aside<'a>(input: &ShadowInput<'a>, texel_size: f32) -> ShadowInput<'a> {
 /// The words of occupancy maps of `slices` and `slabs` that differ from those of the definition.
 fn wrong_occupancy(cpu: &OccupancyMaps, words: &[u32], (slices, slabs): (u32, u32)) -> usize {
     let resolution = cpu.frame().expect("it was built").resolution;
-    let len = (2 + slices / 32 + slabs / 2) as usize;
+    let len = (3 + slices / 32 + slabs / 2) as usize;
     assert_eq!(words.len(), (resolution * resolution) as usize * len);
-    let depth = |word: u32| f32::from_bits((word >> 5) << 3);
     let wrong = |(texel, record): (usize, &[u32])| {
         let (column, row) = (texel as u32 % resolution, texel as u32 / resolution);
         let Some(defined) = cpu.record(column, row) else {
             return record.iter().filter(|word| **word != 0).count();
         };
         let [near, far] = [0, 1].map(|at| f32::from_bits(defined[at]));
-        let ends = usize::from((depth(record[0]) - near).abs() > DEPTH_STEP)
-            + usize::from((depth(record[1]) - far).abs() > DEPTH_STEP);
-        ends + defined[3..].iter().zip(&record[2..]).filter(|(a, b)| a != b).count()
+        let ends = usize::from((f32::from_bits(record[0]) - near).abs() > DEPTH_STEP)
+            + usize::from((f32::from_bits(record[1]) - far).abs() > DEPTH_STEP);
+        ends + defined[3..].iter().zip(&record[3..]).filter(|(a, b)| a != b).count()
     };
     words.chunks_exact(len).enumerate().map(wrong).sum()
 }

@@ -3,7 +3,7 @@
 fn put(texel: u32, depth: f32, weight: u32) {
     let slice = u32(slice_of(near_of(texel), far_of(texel), depth).x);
     let record = record_of(texel);
-    let word = record + 2u + (slice >> 5u);
+    let word = record + HEADER + (slice >> 5u);
     let bit = 1u << (slice & 31u);
     if ((atomicLoad(&map[word]) & bit) == 0u) {
         atomicOr(&map[word], bit);

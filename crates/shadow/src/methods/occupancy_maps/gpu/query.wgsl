@@ -25,10 +25,11 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     let record = record_of(texel);
     let near_word = map[record];
     let far_word = map[record + 1u];
-    let near = bitcast<f32>((near_word >> SPARE) << 3u);
-    let far = bitcast<f32>((far_word >> SPARE) << 3u);
-    let mean = f32(1023u + ((near_word & 31u) | ((far_word & 31u) << 5u)));
-    let bits = record + 2u;
+    let near = bitcast<f32>(near_word);
+    let far = bitcast<f32>(far_word);
+    // 0 without hair.
+    let mean = bitcast<f32>(map[record + 2u]);
+    let bits = record + HEADER;
     let counts = counts_of(record);
     let place = slice_of(near, far, depth);
     let slice = u32(place.x);
@@ -62,10 +63,8 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     let own_bit = f32((slice_bits >> (slice & 31u)) & 1u);
     let share = (f32(occupied.y) + place.y * own_bit) / f32(max(occupied.x, 1u));
     // Fragments of one depth lie between two neighbouring numbers here. A point at this depth counts as before them.
-    let one_depth = (far_word >> SPARE) - (near_word >> SPARE) <= 1u;
+    let one_depth = far_word - near_word <= 8u;
     let within = select(f32(sums.x) + share * f32(sums.y), 0.0, one_depth);
     let fragments = select(within, f32(sums.x), depth >= far);
-    // The mean of a texel with hair is not 0.
-    let before_all = depth <= near || (near_word | far_word) == 0u;
-    return select(depth_of_weight(fragments * mean), 0.0, before_all);
+    return select(depth_of_weight(fragments * mean), 0.0, depth <= near);
 }

@@ -1,22 +1,21 @@
-// A record consists of words: the nearest and the farthest depth, whose lowest bits hold the mean weight of a fragment; one bit
-// per slice; one 16-bit count per slab, two per word.
+// A record consists of words: the nearest and the farthest depth and the mean weight of a fragment (floats); one bit per slice; one
+// 16-bit count per slab, two per word. The three lowest bits of both depths are 0: the range is rounded outward.
 
 override SLICES: u32 = 128u;
 override SLABS: u32 = 8u;
 // Base-2 logarithm of the slices per slab.
 override SLAB_SHIFT: u32 = 4u;
 
-// The mean weight minus 1023, in 1..425, has nine bits. A depth between 0 and 1 leaves its two highest bits free and can do
-// without its three lowest, 2^-20 of it.
-const SPARE: u32 = 5u;
+// Words before the bits.
+const HEADER: u32 = 3u;
 
 fn record_of(texel: u32) -> u32 {
-    return texel * (2u + SLICES / 32u + SLABS / 2u);
+    return texel * (HEADER + SLICES / 32u + SLABS / 2u);
 }
 
 // The first word of the counts of a record.
 fn counts_of(record: u32) -> u32 {
-    return record + 2u + SLICES / 32u;
+    return record + HEADER + SLICES / 32u;
 }
 
 // The slice of a depth within a texel's range: integer part and fraction.

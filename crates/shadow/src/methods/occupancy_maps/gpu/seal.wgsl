@@ -2,7 +2,7 @@
 
 fn texel_pass(texel: u32) {
     let weight = weight_of(texel);
-    if (weight == 0u) {
+    if (weight == 0.0) {
         return;
     }
     let record = record_of(texel);
@@ -12,10 +12,8 @@ fn texel_pass(texel: u32) {
         let two = atomicLoad(&map[first + k]);
         count += (two & 0xffffu) + (two >> 16u);
     }
-    // Where counts have saturated, the mean compensates.
-    let mean = u32(clamp(round(f32(weight) / f32(max(count, 1u))) - 1023.0, 1.0, 1023.0));
-    let near = bitcast<u32>(near_of(texel)) >> 3u;
-    let far = (bitcast<u32>(far_of(texel)) + 7u) >> 3u;
-    atomicStore(&map[record], (near << SPARE) | (mean & 31u));
-    atomicStore(&map[record + 1u], (far << SPARE) | (mean >> 5u));
+    atomicStore(&map[record], bitcast<u32>(near_of(texel)) & ~7u);
+    atomicStore(&map[record + 1u], (bitcast<u32>(far_of(texel)) + 7u) & ~7u);
+    // The total stays exact where counts have saturated.
+    atomicStore(&map[record + 2u], bitcast<u32>(weight / f32(max(count, 1u))));
 }

@@ -38,7 +38,7 @@ pub(crate) const RANGE: ShaderPart = wgsl!("methods/texels/gpu/", "range.wgsl");
 /// Reads the result of [`RANGE`].
 pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_read.wgsl");
 /// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
-pub(crate) const RANGE_WORDS: u64 = 3;
+pub(crate) const RANGE_WORDS: u64 = 4;
 
 /// The most layers of deep opacity maps.
 const MAX_LAYERS: usize = 16;
