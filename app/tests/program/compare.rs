@@ -87,7 +87,7 @@ fn wrong_requests_are_rejected_in_one_line_without_output() {
         (&["--frame", "1", "--frames", "1..2"], "--frame", 2),
         (&["--size", "9x"], "9x", 2),
         (&["--sweep", "resolution"], "resolution", 2),
-        (&["--sweep", "resolution=1"], "64 to 2048", 2),
+        (&["--sweep", "resolution=1"], "64 to 4096", 2),
         (&["--sweep", "resolution=64,65"], "64 and 80", 2),
         (&["--sweep", "sparkle=1"], "slabs", 2),
         (&["--probe", "5"], "5", 2),

@@ -16,17 +16,23 @@ pub enum HairShading {
     /// Scattering by a fibre and by the many fibres around it: see [`lovelock_appearance::fibre`].
     #[default]
     Fibre,
-    /// Two highlights and a matt part (Kajiya, Kay 1989), as the papers on shadows of hair use it.
-    KajiyaKay,
+    /// Two shifted highlights, a matt part and light through the fibre, after Kajiya, Kay 1989 and Marschner and others 2003.
+    // The name in files before there was the published model.
+    #[serde(alias = "kajiya-kay")]
+    TwoHighlights,
+    /// One highlight and a matt part (Kajiya, Kay 1989), with ambient light that hair does not shadow, as the papers on shadows of
+    /// hair use it.
+    KajiyaKayPublished,
 }
 
 impl Choices for HairShading {
-    const ALL: &'static [Self] = &[Self::Fibre, Self::KajiyaKay];
+    const ALL: &'static [Self] = &[Self::Fibre, Self::TwoHighlights, Self::KajiyaKayPublished];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Fibre => ("fibre", "Fibre scattering"),
-            Self::KajiyaKay => ("kajiya-kay", "Kajiya-Kay"),
+            Self::TwoHighlights => ("two-highlights", "Two highlights"),
+            Self::KajiyaKayPublished => ("kajiya-kay-published", "Kajiya-Kay, as published"),
         }
     }
 }
@@ -191,8 +197,8 @@ impl Settings for HairLook {
         Setting::choice::<HairShading>(
             field!(Self, shading),
             "Shading",
-            "How light on hair is computed: by scattering in the fibres, or by the two highlights of \
-             Kajiya and Kay.",
+            "How light on hair is computed: by scattering in the fibres, by two shifted highlights and a matt part, or by one \
+             highlight and a matt part as Kajiya and Kay published.",
         ),
         Setting::number(
             field!(Self, primary_strength),
@@ -328,7 +334,7 @@ impl HairLook {
     ///
     /// Paths through hair are of many lengths, and the mean of `exp(-sigma * length)` over them falls more slowly
     /// than any one of them: a stretched exponential, `exp(-(path * sigma^0.7))`. A small grey part only ever met
-    /// surfaces. With one path length brown hair would be red. The drawing does the same in `kajiya_kay.wgsl`.
+    /// surfaces. With one path length brown hair would be red. The drawing does the same in `two_highlights.wgsl`.
     pub fn body_color(absorption: Vec3) -> Vec3 {
         absorption.map(|sigma| (-Self::BODY_PATH * sigma.powf(Self::STRETCH)).exp() + Self::SURFACE_SHARE)
     }
@@ -346,5 +352,27 @@ impl HairLook {
     /// number of real hairs that it stands for.
     pub fn shadow_width(&self, strands: usize) -> f32 {
         self.diameter * (self.real_hairs / strands.max(1) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::de::IntoDeserializer;
+    use serde::de::value::{Error, StrDeserializer};
+
+    use super::*;
+
+    #[test]
+    fn files_have_the_ids_of_shadings_and_the_old_name_of_two_highlights() {
+        let read = |id: &str| {
+            let text: StrDeserializer<'_, Error> = id.into_deserializer();
+            HairShading::deserialize(text)
+        };
+        for &shading in HairShading::ALL {
+            let id = shading.names().0;
+            assert_eq!((read(id), id.parse()), (Ok(shading), Ok(shading)));
+        }
+        assert_eq!(read("kajiya-kay"), Ok(HairShading::TwoHighlights));
+        assert!(read("kajiya").is_err() && "kajiya-kay".parse::<HairShading>().is_err());
     }
 }

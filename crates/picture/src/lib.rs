@@ -5,6 +5,7 @@
 mod backend;
 mod hair_drawing;
 mod light;
+mod map_view;
 mod settings;
 mod size;
 mod strand_count;
@@ -13,6 +14,7 @@ mod transparency;
 pub use backend::{Backend, UnknownBackend};
 pub use hair_drawing::HairDrawing;
 pub use light::{Light, MAX_LIGHTS};
+pub use map_view::{MapForm, MapValue, MapView};
 pub use settings::PictureSettings;
 pub use size::{MAX_PIXELS, MAX_SIDE, SizeError, check_size, check_size_for};
 pub use strand_count::StrandCount;

@@ -6,7 +6,7 @@ use lovelock_base::settings::{Part, PartMut, Setting, Settings, Unit};
 use lovelock_satf::ClusterSettings;
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, HairDrawing, StrandCount, Transparency};
+use crate::{Backend, HairDrawing, MapView, StrandCount, Transparency};
 
 /// Settings of the picture as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +42,8 @@ pub struct PictureSettings {
     pub strand_number: f32,
     /// What draws.
     pub backend: Backend,
+    /// The shadow map over the image.
+    pub map_view: MapView,
 }
 
 impl Default for PictureSettings {
@@ -62,6 +64,7 @@ impl Default for PictureSettings {
             strand_detail: 1.0,
             strand_number: 25_000.0,
             backend: Backend::default(),
+            map_view: MapView::default(),
         }
     }
 }
@@ -148,10 +151,10 @@ impl Settings for PictureSettings {
     ];
 
     fn parts(&self) -> Vec<Part<'_>> {
-        vec![("clusters".into(), &self.clusters)]
+        vec![("clusters".into(), &self.clusters), ("map_view".into(), &self.map_view)]
     }
 
     fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
-        vec![("clusters".into(), &mut self.clusters)]
+        vec![("clusters".into(), &mut self.clusters), ("map_view".into(), &mut self.map_view)]
     }
 }

@@ -6,7 +6,7 @@ use glam::{Vec3, Vec3A};
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_satf::{ClusterHair, ClusterSettings, nominal_width};
 
-use crate::{FrameInput, HairDrawing, HairPose, Light, PictureSettings, StrandCount};
+use crate::{FrameInput, HairDrawing, HairPose, Light, MAX_LIGHTS, PictureSettings, StrandCount};
 
 /// The height of a head, metres: what sizes on the screen are measured by.
 const HEAD: f32 = 0.25;
@@ -41,11 +41,9 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
     }
 }
 
-/// The direction toward the strongest light; upward without any.
-pub(crate) fn to_strongest_light(lights: &[Light]) -> Vec3 {
-    // The first of equally strong ones.
-    let strongest = Light::enabled(lights).reduce(|a, b| if b.intensity > a.intensity { b } else { a });
-    strongest.map_or(Vec3::Y, |light| -light.direction)
+/// The directions toward the lights that are on.
+pub(crate) fn to_lights(lights: &[Light]) -> Vec<Vec3> {
+    Light::enabled(lights).take(MAX_LIGHTS).map(|light| -light.direction).collect()
 }
 
 /// The picture's settings where only clusters are drawn: strands, which cast shadows only, are as they are stored.

@@ -17,6 +17,7 @@ mod image;
 mod known;
 mod layers;
 mod light_view;
+mod map_view;
 mod picture;
 mod renderer;
 mod scene_light;
@@ -38,8 +39,8 @@ pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
 pub use lovelock_picture::{
-    Backend, HairDrawing, Light, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, PictureSettings, SizeError, StrandCount,
-    Transparency, UnknownBackend, check_size,
+    Backend, HairDrawing, Light, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, MapForm, MapValue, MapView,
+    PictureSettings, SizeError, StrandCount, Transparency, UnknownBackend, check_size,
 };
 pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};

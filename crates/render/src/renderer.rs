@@ -6,9 +6,10 @@ use std::time::Duration;
 use glam::Vec3;
 use lovelock_gpu::{Gpu, GpuError};
 
+use crate::map_view::MapStage;
 use crate::{
     Backend, ColorScale, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image,
-    Layers, MAX_IN_FLIGHT, PendingPicture, Picture, RayStructure, RenderError,
+    Layers, MAX_IN_FLIGHT, MapValue, PendingPicture, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -23,6 +24,8 @@ pub struct Renderer {
     spare: Picture,
     /// Textures for false colours, if the device is not the window's.
     images: Option<DeviceImages>,
+    /// The shadow map that is drawn over images.
+    map: MapStage,
 }
 
 impl Renderer {
@@ -93,6 +96,7 @@ impl Renderer {
             adapter,
             spare: Picture::default(),
             images: None,
+            map: MapStage::default(),
         })
     }
 
@@ -104,6 +108,7 @@ impl Renderer {
             adapter: CpuRenderer::adapter(),
             spare: Picture::default(),
             images: None,
+            map: MapStage::default(),
         }
     }
 
@@ -145,7 +150,7 @@ impl Renderer {
         }
     }
 
-    /// Renders `input` at `width` by `height` pixels.
+    /// Renders `input` at `width` by `height` pixels, with the shadow map over it if [`MapView`](crate::MapView) asks for it.
     ///
     /// # Errors
     /// The size is out of range, the shadow needs too much memory, or the device is lost.
@@ -156,10 +161,12 @@ impl Renderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
-        match &mut self.gpu {
+        let stats = match &mut self.gpu {
             Some(gpu) => gpu.picture(input, width, height, picture),
             None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
-        }
+        }?;
+        self.map.draw(input, picture)?;
+        Ok(stats)
     }
 
     /// Starts to render a picture on the GPU without waiting for it; `None` on the CPU, which has nothing to wait for.
@@ -175,19 +182,23 @@ impl Renderer {
         self.gpu.as_mut().map(|gpu| gpu.begin_picture(input, width, height)).transpose()
     }
 
-    /// Finishes a picture of [`Renderer::begin_picture`]; `None` if it must be rendered again because lists were too short.
+    /// Finishes a picture of [`Renderer::begin_picture`] of the same `input`; `None` if it must be rendered again because lists were too
+    /// short.
     ///
     /// # Errors
     /// As [`Renderer::picture`].
     pub fn finish_picture(
         &mut self,
         pending: PendingPicture,
+        input: &FrameInput,
         picture: &mut Picture,
     ) -> Result<Option<FrameStats>, RenderError> {
-        match &mut self.gpu {
-            Some(gpu) => gpu.finish_picture(pending, picture),
-            None => Ok(None),
+        let Some(gpu) = &mut self.gpu else { return Ok(None) };
+        let finished = gpu.finish_picture(pending, picture)?;
+        if finished.is_some() {
+            self.map.draw(input, picture)?;
         }
+        Ok(finished)
     }
 
     /// Renders `input` for a window, whose textures are `window`; into memory without them. On the window's own device nothing is waited
@@ -203,7 +214,10 @@ impl Renderer {
         measured: bool,
         window: Option<&mut DeviceImages>,
     ) -> Result<(Image, FrameStats), RenderError> {
-        if let Some(gpu) = self.on_device_of(window.as_deref())
+        // A map is drawn over pixels in memory.
+        let shows_map = input.picture.map_view.value != MapValue::None;
+        if !shows_map
+            && let Some(gpu) = self.on_device_of(window.as_deref())
             && let Some(images) = window
         {
             let (image, stats) = gpu.image(input, [width, height], measured, images)?;

@@ -132,6 +132,12 @@ impl Database {
         (self.opacity_at(SectorRef { tau_ratio: 1.0, ..of }, &place), self.reflectance_at(of, &place))
     }
 
+    /// The reflectance alone of [`Database::sample_stored`]: for a further light, because the opacity does not depend on light.
+    #[inline]
+    pub fn reflectance_stored(&self, of: SectorRef, angles: [f32; 2], u: f32, mip: f32) -> f32 {
+        self.reflectance_at(of, &Place::new(of, angles, u, mip, false))
+    }
+
     /// [`Database::sample`] of the nearest record and texel, as in the paper.
     pub fn sample_nearest(&self, of: SectorRef, angles: [f32; 2], u: f32, mip: f32) -> (f32, f32) {
         let place = Place::new(of, angles, u, mip, true);

@@ -186,7 +186,8 @@ impl Settings for ClusterSettings {
         Setting::choice::<LocalShadow>(
             field!(Self, local_shadow),
             "Own shadow",
-            "How a lock shadows itself: by the shadow map like strands, or by its layers.",
+            "How a lock shadows itself: by the shadow map like strands, or by its layers: the product of what they let through, \
+             the published exponential of their sum, or its linear approximation.",
         ),
         Setting::number(
             field!(Self, shadow_strength),

@@ -16,33 +16,39 @@ pub enum LocalShadow {
     /// The layers outside a point dim it as layers do that light passes through: the product of `1 − α`. The map is looked up where light
     /// enters the cluster.
     Layers,
-    /// As printed: 1 minus the sum of the opacities, never below 0.
+    /// The approximation at the end of equation 12, `1 − k Σ α`, never below 0.
     Linear,
-    /// Exponential, by the layers that the light meets on its way to the point: at the angle around the cluster where it
-    /// meets them, and those beyond the core for the side away from the light.
+    /// The product as in [`LocalShadow::Layers`], of the layers that the light meets on its way to the point: at the angle around the
+    /// cluster where it meets them, and those beyond the core for the side away from the light.
     Directional,
+    /// Equation 12 as published: `e^(−k Σ α)` over the layers outside.
+    Exponential,
 }
 
 impl Choices for LocalShadow {
-    const ALL: &'static [Self] = &[Self::Map, Self::Layers, Self::Linear, Self::Directional];
+    // A track stores the place in this list.
+    const ALL: &'static [Self] =
+        &[Self::Map, Self::Layers, Self::Linear, Self::Directional, Self::Exponential];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Map => ("map", "Shadow map"),
-            Self::Layers => ("layers", "Outer layers"),
+            Self::Layers => ("layers", "Outer layers, product"),
             Self::Linear => ("linear", "Outer layers, linear"),
             Self::Directional => ("directional", "Layers toward the light"),
+            Self::Exponential => ("exponential", "Outer layers, as published"),
         }
     }
 }
 
 /// Transmittance through the `outside` layers, given by their opacities at the same place of the layers. Symbol: `τ_k`.
 ///
-/// With `strength` 1 the exponential form is exact; symbol: `k_sh`.
+/// With a `strength` of 1 the product of `1 − α` is exact; symbol: `k_sh`.
 pub fn transmittance(mode: LocalShadow, strength: f32, outside: impl IntoIterator<Item = f32>) -> f32 {
     let outside = outside.into_iter();
     match mode {
         LocalShadow::Linear => (1.0 - strength * outside.sum::<f32>()).max(0.0),
+        LocalShadow::Exponential => (-strength * outside.sum::<f32>()).exp(),
         LocalShadow::Map | LocalShadow::Layers | LocalShadow::Directional => {
             let depth: f32 = outside.map(optical_depth).sum();
             (-strength * depth).exp()

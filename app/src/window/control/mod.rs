@@ -9,6 +9,7 @@ mod popup;
 mod reveal;
 pub(crate) mod rows;
 mod setting;
+mod stops;
 mod tooltip;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
@@ -22,7 +23,7 @@ pub(crate) use number::{Limits, Number, is_escaped, typed};
 pub(crate) use plot_axis::{axis_number, axis_of_short_numbers};
 pub(crate) use popup::{close_all as close_popups, context_popup, is_any_open, popup};
 pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
-pub(crate) use setting::{all_settings, entry, setting, settings};
+pub(crate) use setting::{all_settings, any_setting, entry, setting, settings};
 pub(crate) use tooltip::{HoverTooltip, keep_free_area};
 
 use super::theme;

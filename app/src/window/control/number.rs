@@ -8,7 +8,7 @@ use lovelock_base::settings::{Counts, Info, Range, Unit};
 use super::row;
 
 /// Width that a slider leaves for its number, points.
-const NUMBER_WIDTH: f32 = 78.0;
+pub(super) const NUMBER_WIDTH: f32 = 78.0;
 
 /// A number that a slider changes.
 #[derive(Clone, Debug)]
@@ -172,7 +172,7 @@ pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
 }
 
 /// Whether the right button, which opens the menu of a control, is or was just held. egui's sliders follow every button.
-fn is_secondary(ui: &Ui) -> bool {
+pub(super) fn is_secondary(ui: &Ui) -> bool {
     ui.input(|input| {
         input.pointer.secondary_down() || input.pointer.button_released(egui::PointerButton::Secondary)
     })

@@ -5,6 +5,7 @@ use lovelock_base::settings::{AnySettings, Counts, Info, Kind, Setting, Settings
 
 use super::number::{Number, count};
 use super::rows::note_row;
+use super::stops::stops;
 use super::{choice, color, of_setting, reveal, toggle};
 
 /// The rows of several settings of one struct, in this order.
@@ -53,15 +54,25 @@ fn reconcile<S: Settings>(ui: &Ui, settings: &mut S) {
 /// The rows of every setting in the struct's own table.
 pub(crate) fn all_settings(ui: &mut Ui, settings: &mut dyn AnySettings, default: &dyn AnySettings) {
     for info in settings.infos() {
-        let (Some((_, before)), Some((_, default))) = (settings.value(info.name), default.value(info.name))
-        else {
-            continue;
-        };
-        let mut value = before;
-        of_setting(ui, &*settings, info, before, |ui| show(ui, info, &mut value, default));
-        if value != before {
-            settings.assign(info.name, info.clamp(value, before));
-        }
+        any_setting(ui, info, settings, default);
+    }
+}
+
+/// The row of one setting of the struct's own table.
+pub(crate) fn any_setting(
+    ui: &mut Ui,
+    info: &'static Info,
+    settings: &mut dyn AnySettings,
+    default: &dyn AnySettings,
+) {
+    let (Some((_, before)), Some((_, default))) = (settings.value(info.name), default.value(info.name))
+    else {
+        return;
+    };
+    let mut value = before;
+    of_setting(ui, &*settings, info, before, |ui| show(ui, info, &mut value, default));
+    if value != before {
+        settings.assign(info.name, info.clamp(value, before));
     }
 }
 
@@ -84,6 +95,9 @@ fn control_of(ui: &mut Ui, info: &'static Info, value: &mut Value, default: Valu
     match (&info.kind, value, default) {
         (Kind::Number(range), Value::Number(value), Value::Number(default)) => {
             Number::of(info, range, info.label).show_wide(ui, value, default)
+        }
+        (Kind::Count(counts), Value::Count(value), Value::Count(default)) if counts.slides => {
+            stops(ui, info, counts, value, default)
         }
         (Kind::Count(counts), Value::Count(value), Value::Count(default)) if counts.offered.is_empty() => {
             count(ui, info, counts, value, default)

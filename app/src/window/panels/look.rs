@@ -21,7 +21,7 @@ const DYE: [&str; 2] = ["dye_amount", "dye"];
 /// What only scattering in fibres uses.
 const SCATTERING: [&str; 4] = ["roughness_around", "scale_tilt", "refraction", "many_scattering"];
 
-/// What only the two highlights of Kajiya and Kay use.
+/// What only the two highlights use; the published model of Kajiya and Kay uses the first.
 const HIGHLIGHTS: [&str; 2] = ["primary_strength", "secondary_strength"];
 
 const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
@@ -116,7 +116,8 @@ fn fibre(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
     settings(ui, &["shading", "roughness"], look, default);
     match look.shading {
         HairShading::Fibre => settings(ui, &SCATTERING, look, default),
-        HairShading::KajiyaKay => settings(ui, &HIGHLIGHTS, look, default),
+        HairShading::TwoHighlights => settings(ui, &HIGHLIGHTS, look, default),
+        HairShading::KajiyaKayPublished => settings(ui, &HIGHLIGHTS[..1], look, default),
     }
 }
 

@@ -1,11 +1,14 @@
 //! How hair shadows itself.
 
 use egui::{RichText, Ui, WidgetInfo};
+use lovelock_base::settings::AnySettings;
 use lovelock_project::Project;
-use lovelock_render::{MapExtent, ShadowMethod, ShadowSettings, VoxelDeposit, VoxelMapSettings};
+use lovelock_render::{
+    MapExtent, MapForm, MapValue, MapView, ShadowMethod, ShadowSettings, VoxelDeposit, VoxelMapSettings,
+};
 
 use crate::window::command::Command;
-use crate::window::control::{HoverTooltip, all_settings, note, section, setting, settings};
+use crate::window::control::{HoverTooltip, any_setting, note, section, setting, settings};
 use crate::window::panel::Panel;
 use crate::window::readings::{PaneReading, Readings};
 use crate::window::theme;
@@ -27,7 +30,7 @@ impl Panel for ShadowPanel {
         let pane = readings.pane.as_ref();
         let chosen = pane.and_then(|pane| choose_pane(ui, pane));
         let default = ShadowSettings::default();
-        let Project { shadow, look, hair, .. } = project;
+        let Project { shadow, look, hair, picture, .. } = project;
         setting(ui, "method", shadow, &default);
         note(ui, shadow.method.description());
         if pane.is_none() {
@@ -42,7 +45,26 @@ impl Panel for ShadowPanel {
             shared(ui);
             setting(ui, "extinction_scale", look, &hair.groom.look);
         }
+        section(ui, "Map over the hair", false, |ui| map_view(ui, &mut picture.map_view));
         chosen.map(Command::EditPane)
+    }
+}
+
+/// The shadow map that is drawn over the hair.
+fn map_view(ui: &mut Ui, view: &mut MapView) {
+    let default = MapView::default();
+    setting(ui, "value", view, &default);
+    let legend = match view.value {
+        MapValue::None => return,
+        MapValue::Transmittance => "Dark: no light arrives. Bright: all light arrives.".to_owned(),
+        MapValue::Density => format!("Dark: no hair. Bright: {:.0} /m and more.", view.density_range),
+    };
+    note(ui, legend);
+    settings(ui, &["form", "light"], view, &default);
+    let place = if view.form == MapForm::Points { "points" } else { "slice" };
+    settings(ui, &[place, "opacity"], view, &default);
+    if view.value == MapValue::Density {
+        setting(ui, "density_range", view, &default);
     }
 }
 
@@ -77,18 +99,37 @@ pub(crate) fn of_method(ui: &mut Ui, shadow: &mut ShadowSettings) {
     let default = ShadowSettings::default();
     let method = shadow.method;
     if method == ShadowMethod::VoxelMap {
+        setting(ui, "resolution", &mut shadow.voxel_map, &default.voxel_map);
+        memory_of_map(ui, shadow);
         voxel_map(ui, &mut shadow.voxel_map, &default.voxel_map);
-    } else if let (Some(settings), Some(default)) = (shadow.of_method_mut(method), default.of_method(method))
-    {
-        all_settings(ui, settings, default);
+        return;
+    }
+    let infos = shadow.of_method(method).map(AnySettings::infos).unwrap_or_default();
+    for info in infos {
+        if let (Some(settings), Some(default)) = (shadow.of_method_mut(method), default.of_method(method)) {
+            any_setting(ui, info, settings, default);
+        }
+        if info.name == "resolution" {
+            memory_of_map(ui, shadow);
+        }
     }
 }
 
-/// The voxel map, whose choices of the published version are folded away.
+/// The memory of a map of the chosen resolution, also while its slider is held.
+fn memory_of_map(ui: &mut Ui, shadow: &ShadowSettings) {
+    let mib = shadow.map_bytes() as f64 / (1024.0 * 1024.0);
+    let text = match shadow.method {
+        ShadowMethod::Exact => format!("{mib:.1} MiB per light, and 8 bytes per strand and texel"),
+        _ => format!("At most {mib:.1} MiB per light"),
+    };
+    note(ui, text);
+}
+
+/// The rest of the voxel map, whose choices of the published version are folded away.
 fn voxel_map(ui: &mut Ui, map: &mut VoxelMapSettings, default: &VoxelMapSettings) {
-    setting(ui, "resolution", map, default);
+    setting(ui, "filter", map, default);
     section(ui, "As published", false, |ui| {
-        settings(ui, &["filter", "deposit", "extent"], map, default);
+        settings(ui, &["deposit", "extent"], map, default);
         if map.extent == MapExtent::Paper {
             setting(ui, "head_size", map, default);
         }

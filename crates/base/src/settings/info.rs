@@ -100,8 +100,10 @@ pub struct Counts {
     pub step: u64,
     /// The only values; none where the range counts.
     pub choices: &'static [u64],
-    /// What a menu offers; a slider is shown where it is empty.
+    /// What a menu offers, or at what a slider stops; where it is empty, a slider stops everywhere.
     pub offered: &'static [u64],
+    /// Whether a slider steps through what is offered, so that other numbers can be typed. Otherwise a menu offers it.
+    pub slides: bool,
     /// Labels of what is offered, in its order; the numbers themselves where it is empty.
     pub names: &'static [&'static str],
     /// Whether even steps of the slider are even factors.
@@ -118,6 +120,7 @@ impl Counts {
             step: 1,
             choices: &[],
             offered: &[],
+            slides: false,
             names: &[],
             logarithmic: false,
             zero: false,

@@ -209,6 +209,15 @@ impl<S> Setting<S> {
         self
     }
 
+    /// The whole numbers `stops`, which rise, through which a slider steps. Others can be typed.
+    #[must_use]
+    pub const fn stops(mut self, stops: &'static [u64]) -> Self {
+        if let Kind::Count(count) = self.info.kind {
+            self.info.kind = Kind::Count(Counts { offered: stops, slides: true, ..count });
+        }
+        self
+    }
+
     /// Labels of the whole numbers that are offered.
     #[must_use]
     pub const fn named(mut self, names: &'static [&'static str]) -> Self {

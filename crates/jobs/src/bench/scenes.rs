@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use lovelock_base::settings::Settings;
-use lovelock_groom::{GroomSettings, Preset};
+use lovelock_groom::{GroomSettings, HairShading, Preset};
 use lovelock_project::Project;
 use lovelock_render::{HairDrawing, ShadowMethod, StrandCount, Transparency};
 
@@ -152,6 +152,7 @@ impl BenchScene {
             return project;
         }
         // As the papers: the stored strands, shaded by Kajiya-Kay.
+        project.compare.shading = HairShading::KajiyaKayPublished;
         project = project.compared();
         let groom = &mut project.hair.groom;
         match self {

@@ -94,10 +94,12 @@ impl Drawer {
         size: [u32; 2],
         picture: &mut Picture,
     ) -> Result<FrameStats, ProjectError> {
-        if let Self::One(renderer) = self
-            && let Some(stats) = renderer.finish_picture(pending, picture)?
-        {
-            return Ok(stats);
+        if let Self::One(renderer) = self {
+            let camera = snapshot.camera(&project.camera);
+            let input = snapshot.frame_input(project, &camera);
+            if let Some(stats) = renderer.finish_picture(pending, &input, picture)? {
+                return Ok(stats);
+            }
         }
         self.picture(project, snapshot, size, picture)
     }

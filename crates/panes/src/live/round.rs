@@ -9,8 +9,8 @@ use lovelock_groom::Strands;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, RayStructure, RenderError,
-    ValueRenderer,
+    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, MapValue, RayStructure,
+    RenderError, ValueRenderer,
 };
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -167,7 +167,11 @@ impl Rounds {
         let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
-        let project = contender.applied_to(&request.project).compared();
+        let mut project = contender.applied_to(&request.project).compared();
+        if request.view.shows.colors().is_some() {
+            // Errors are those of the hair.
+            project.picture.map_view.value = MapValue::None;
+        }
         let shared = (&request.snapshot, &self.strands);
         let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
         let input = input_of(snapshot, &project, strands, &pane.camera);

@@ -481,6 +481,6 @@ impl Default for CompareSection {
             ShadowMethod::OccupancyMaps,
             ShadowMethod::Exact,
         ];
-        Self { panes: methods.map(pane).to_vec(), shading: HairShading::KajiyaKay }
+        Self { panes: methods.map(pane).to_vec(), shading: HairShading::TwoHighlights }
     }
 }

@@ -446,8 +446,8 @@ impl Settings for CompareSection {
     const TABLE: &'static [Setting<Self>] = &[Setting::choice::<HairShading>(
         field!(Self, shading),
         "Shading of panes",
-        "How hair in panes is shaded: by Kajiya-Kay, as the papers on shadows do it, or by scattering in the \
-         fibres. Panes draw the strands that the hairstyle stores.",
+        "How hair in panes is shaded: by two highlights, by Kajiya-Kay as the papers on shadows do it, or by scattering in \
+         the fibres. Panes draw the strands that the hairstyle stores.",
     )];
 
     fn parts(&self) -> Vec<Part<'_>> {

@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use glam::Vec3;
+use lovelock_groom::HairShading;
 use proptest::prelude::*;
 
 use super::*;
@@ -69,6 +70,19 @@ fn a_newer_version_is_refused_even_if_unreadable() {
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("version 7"), "{error}");
     assert_eq!(error.file(), Some(Path::new("p.lovelock")));
+}
+
+#[test]
+fn shading_by_two_highlights_is_read_by_its_old_name_and_written_by_its_new_one() {
+    let text = "(version: 3, look: (shading: r#kajiya-kay), compare: (shading: r#kajiya-kay))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!(problems, []);
+    assert_eq!([project.look.shading, project.compare.shading], [HairShading::TwoHighlights; 2]);
+    let text = text_of_project(Path::new("p"), &project).expect("text");
+    assert!(text.contains("shading: r#two-highlights") && !text.contains("kajiya-kay"), "{text}");
+    let text = text.replace("two-highlights", "kajiya-kay-published");
+    let (project, _) = parse_project(Path::new("p"), &text).expect("reads");
+    assert_eq!([project.look.shading, project.compare.shading], [HairShading::KajiyaKayPublished; 2]);
 }
 
 #[test]
@@ -212,7 +226,7 @@ fn the_values_of_every_shadow_method_are_clamped_and_reported() {
                 occupancy_maps: (slices: 4000000000, slabs: 0), exact: (memory_limit_bytes: 1)))";
     let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
     let s = project.shadow;
-    assert_eq!(s.voxel_map.resolution, 32);
+    assert_eq!(s.voxel_map.resolution, 16);
     assert_eq!((s.opacity_maps.resolution, s.opacity_maps.slices), (64, 256));
     assert_eq!((s.deep_opacity_maps.layers, s.deep_opacity_maps.depth_share), (3, 0.5));
     assert_eq!((s.density_clustering.clusters, s.density_clustering.steps), (8, 1));

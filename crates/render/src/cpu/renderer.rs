@@ -21,7 +21,7 @@ use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of}
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes, TILE};
-use super::view::{FibreView, View};
+use super::view::{FibreView, ShadingView, View};
 use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
@@ -304,12 +304,15 @@ impl CpuRenderer {
         let drawn = hair.drawn.portion();
         let uniform = FrameUniform::new(input, drawn, light, (width, height), &self.maps, DEPTH_TEXELS);
         let tables = &light.tables;
-        let fibre_view = || {
-            (input.look.shading == HairShading::Fibre)
-                .then(|| FibreView { tables, lights: fibre::lights(tables, input.lights) })
+        let shading = || match input.look.shading {
+            HairShading::Fibre => {
+                ShadingView::Fibre(FibreView { tables, lights: fibre::lights(tables, input.lights) })
+            }
+            HairShading::TwoHighlights => ShadingView::TwoHighlights,
+            HairShading::KajiyaKayPublished => ShadingView::KajiyaKay,
         };
         let view =
-            View::new(&uniform, (&light.grid, fibre_view()), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+            View::new(&uniform, (&light.grid, shading()), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
         if unchanged.body {
             kept.push(PassTime { name: "draw/body-depth".to_owned(), ms: self.depth_ms });
         } else {
@@ -331,7 +334,7 @@ impl CpuRenderer {
             let part = Stopwatch::start();
             let of_ribs = FrameInput { style: &ribs, ..*input };
             let uniform = FrameUniform::new(&of_ribs, None, light, (width, height), &self.maps, DEPTH_TEXELS);
-            let lit = (&light.grid, fibre_view());
+            let lit = (&light.grid, shading());
             let view = View::new(&uniform, lit, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
             self.placed.clusters.place(self.placed.width, input, &view, &self.shadow, &grid);
             passed("draw/clusters", &part);

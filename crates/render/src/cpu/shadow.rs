@@ -179,19 +179,21 @@ impl ShadowStage {
         Ok(())
     }
 
-    /// Packed transmittances of further points in the maps of the last run. `answers` is scratch memory, a list per light.
-    pub fn look_up_more(
+    /// Packed transmittances of further points in the maps of the last run, as many for each light, whose places for a light are those of
+    /// `asked`. `answers` is scratch memory, a list per light.
+    pub fn look_up_more<'a>(
         &self,
-        strands: &Strands,
+        asked: impl Fn(usize) -> &'a Strands + Sync,
         answers: &mut [Vec<f32>; MAX_LIGHTS],
         packed: &mut Vec<u32>,
     ) {
-        self.lights.par_iter().zip(&mut answers[..]).for_each(|(light, answers)| {
-            answers.resize(strands.points(), 1.0);
-            light.shadow.transmittance_at(&strands.x, &strands.y, &strands.z, answers);
+        self.lights.par_iter().zip(&mut answers[..]).enumerate().for_each(|(k, (light, answers))| {
+            let Strands { x, y, z, .. } = asked(k);
+            answers.resize(x.len(), 1.0);
+            light.shadow.transmittance_at(x, y, z, answers);
         });
         let lights = self.lights.len().min(MAX_LIGHTS);
-        pack(&answers.each_ref().map(Vec::as_slice)[..lights], strands.points(), packed);
+        pack(&answers.each_ref().map(Vec::as_slice)[..lights], asked(0).points(), packed);
     }
 
     fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {

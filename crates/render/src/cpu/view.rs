@@ -27,8 +27,15 @@ pub(super) struct View<'a> {
     pub strand_disc: [Vec2; STRAND_TAPS],
     /// Light from all directions among the hair.
     pub grid: &'a AmbientGrid,
-    /// What scattering by fibres needs; without it hair is shaded by Kajiya-Kay.
-    pub fibre: Option<FibreView<'a>>,
+    /// How strands are shaded.
+    pub shading: ShadingView<'a>,
+}
+
+/// How strands are shaded, with what that needs: see [`lovelock_groom::HairShading`].
+pub(super) enum ShadingView<'a> {
+    Fibre(FibreView<'a>),
+    TwoHighlights,
+    KajiyaKay,
 }
 
 /// Scattering by fibres.
@@ -59,7 +66,7 @@ impl<'a> View<'a> {
     /// Combines the uniform with the maps of its lights.
     pub fn new(
         uniform: &'a FrameUniform,
-        (grid, fibre): (&'a AmbientGrid, Option<FibreView<'a>>),
+        (grid, shading): (&'a AmbientGrid, ShadingView<'a>),
         depth: &'a [DepthMap],
         columns: &'a [Option<ColumnMap>],
         texels: u32,
@@ -84,7 +91,7 @@ impl<'a> View<'a> {
                 columns: columns.get(k).and_then(Option::as_ref),
             })
             .collect();
-        Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, fibre }
+        Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, shading }
     }
 
     /// Points of each fine strand; 1 if stored strands are drawn.
@@ -104,6 +111,11 @@ impl<'a> View<'a> {
             }
         }
         three(|c| max(sum[c], 0.0))
+    }
+
+    /// The mean light from all directions: irradiance over pi, averaged over the directions of surfaces.
+    pub fn ambient_mean(&self) -> [f32; 3] {
+        three(|c| max(self.uniform.surround[0][c], 0.0))
     }
 }
 

@@ -263,22 +263,39 @@ impl HairBuffers {
         commands: &mut Commands,
         frame: &FrameResources,
     ) -> Result<(), GpuError> {
-        let is_colored = self.drawn.colours().is_some();
-        let kernel = shading.kernels.shade_points(gpu, shading.model == HairShading::Fibre, is_colored)?;
-        let more = [(8, shading.tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
-        self.run_over_points(gpu, kernel, name, commands, frame, more);
+        let kernel = shading.kernels.shade_points(gpu, shading.model, self.is_colored())?;
+        self.light(gpu, kernel, name, shading, commands, (frame, []));
         Ok(())
     }
 
+    /// Whether strands have colours of their own.
+    pub fn is_colored(&self) -> bool {
+        self.drawn.colours().is_some()
+    }
+
+    /// Runs a kernel that lights every point, with `more` bindings.
+    pub fn light<'a, const N: usize>(
+        &'a self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        name: &'static str,
+        shading: PointShading<'a>,
+        commands: &mut Commands,
+        (frame, more): (&FrameResources<'a>, [(u32, wgpu::BindingResource<'a>); N]),
+    ) {
+        let own = [(8, shading.tables.as_entire_binding()), (23, self.colors.raw().as_entire_binding())];
+        self.run_over_points(gpu, kernel, name, commands, frame, own.into_iter().chain(more));
+    }
+
     /// Runs a kernel of strand points over every point, with `more` bindings.
-    pub fn run_over_points<const N: usize>(
-        &self,
+    pub fn run_over_points<'a>(
+        &'a self,
         gpu: &Gpu,
         kernel: &Kernel,
         name: &'static str,
         commands: &mut Commands,
-        frame: &FrameResources,
-        more: [(u32, wgpu::BindingResource); N],
+        frame: &FrameResources<'a>,
+        more: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
     ) {
         let drawn = self.drawn();
         let points = u64::from(drawn.point_count);

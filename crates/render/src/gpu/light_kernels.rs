@@ -3,21 +3,23 @@
 use std::sync::{Arc, OnceLock};
 
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
+use lovelock_groom::HairShading;
 
 use crate::MAX_LIGHTS;
 
 /// The lists of pixels that are drawn one by one; twin of `BODY` and the constants below it in picture.wgsl.
 pub(super) const LISTS: usize = 4;
 
+/// The values of [`HairShading`].
+const SHADINGS: usize = 3;
+
 /// The kernels for one number of lights.
 #[derive(Debug)]
 pub(super) struct LightKernels {
     shaders: Arc<LightShaders>,
     lights: usize,
-    /// By whether hair scatters as fibres do.
-    shade_points: [Kernel; 2],
-    /// The same for hair whose strands have colours of their own, compiled for the first such hair.
-    shade_colored: [OnceLock<Kernel>; 2],
+    /// By shading and by whether strands have colours of their own. Rare ones are compiled for the first such hair.
+    shade_points: [[OnceLock<Kernel>; 2]; SHADINGS],
     pub ground: Kernel,
     /// The kernels that draw the pixels of each list.
     pub picture_lit: [Kernel; LISTS],
@@ -43,10 +45,14 @@ impl LightShaders {
         &self,
         gpu: &Gpu,
         lights: usize,
-        [fibre, colored]: [bool; 2],
+        shading: HairShading,
+        colored: bool,
     ) -> Result<Kernel, GpuError> {
-        let flag = |of: bool| f64::from(u8::from(of));
-        let constants = [("LIGHTS", lights as f64), ("FIBRE", flag(fibre)), ("COLORED", flag(colored))];
+        let constants = [
+            ("LIGHTS", lights as f64),
+            ("SHADING", f64::from(shading as u8)),
+            ("COLORED", f64::from(u8::from(colored))),
+        ];
         Kernel::specialised(gpu, "strand points", &self.points, "shade_points", &constants)
     }
 
@@ -56,12 +62,18 @@ impl LightShaders {
             Kernel::specialised(gpu, label, source, entry, constants)
         };
         let lit = |list: f64| kernel("picture lit", &self.picture, "picture_lit", &[count, ("LIST", list)]);
-        let shade_points = |fibre: bool| self.shade_points(gpu, lights, [fibre, false]);
+        let usual = |shading: HairShading| {
+            let kernel = self.shade_points(gpu, lights, shading, false)?;
+            Ok::<_, GpuError>([OnceLock::from(kernel), OnceLock::new()])
+        };
         Ok(LightKernels {
             shaders: Arc::clone(self),
             lights,
-            shade_points: [shade_points(false)?, shade_points(true)?],
-            shade_colored: [const { OnceLock::new() }; 2],
+            shade_points: [
+                usual(HairShading::Fibre)?,
+                usual(HairShading::TwoHighlights)?,
+                [const { OnceLock::new() }; 2],
+            ],
             ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
             picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
         })
@@ -69,19 +81,16 @@ impl LightShaders {
 }
 
 impl LightKernels {
-    /// The kernel that shades strand points, by whether hair scatters as fibres do and whether strands have colours of their own.
+    /// The kernel that shades strand points. `colored` says that strands have colours of their own.
     ///
     /// # Errors
     /// The driver cannot compile it.
-    pub fn shade_points(&self, gpu: &Gpu, fibre: bool, colored: bool) -> Result<&Kernel, GpuError> {
-        if !colored {
-            return Ok(&self.shade_points[usize::from(fibre)]);
-        }
-        let made = &self.shade_colored[usize::from(fibre)];
+    pub fn shade_points(&self, gpu: &Gpu, shading: HairShading, colored: bool) -> Result<&Kernel, GpuError> {
+        let made = &self.shade_points[shading as usize][usize::from(colored)];
         if let Some(kernel) = made.get() {
             return Ok(kernel);
         }
-        let kernel = self.shaders.shade_points(gpu, self.lights, [fibre, true])?;
+        let kernel = self.shaders.shade_points(gpu, self.lights, shading, colored)?;
         Ok(made.get_or_init(|| kernel))
     }
 }

@@ -20,6 +20,7 @@ macro_rules! part {
 }
 
 const FRAME: ShaderPart = part!("frame.wgsl");
+const TWO_HIGHLIGHTS: ShaderPart = part!("two_highlights.wgsl");
 const KAJIYA_KAY: ShaderPart = part!("kajiya_kay.wgsl");
 const FIBRE: ShaderPart = part!("fibre.wgsl");
 const STRAND_POINTS: ShaderPart = part!("strand_points.wgsl");
@@ -40,9 +41,9 @@ const SKIN_SHADOW: ShaderPart = part!("skin_shadow.wgsl");
 
 /// The shaders of these kernels and pipelines.
 fn own_shaders() -> [(&'static str, ShaderSource); 10] {
-    let [clusters, surface, published] = clusters::PUBLISHED_PARTS;
+    let [clusters, surface, rib_light, published] = clusters::RIB_PARTS;
     [
-        ("strand points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
+        ("strand points", &[FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
         ("picture", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
         ("surface", &[FRAME, SURFACE]),
@@ -52,9 +53,22 @@ fn own_shaders() -> [(&'static str, ShaderSource); 10] {
             "false colours",
             &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS, FALSE_COLORS],
         ),
-        ("values of points", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
+        ("values of points", &[FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
         ("present", &[PRESENT]),
-        ("published light", &[FRAME, KAJIYA_KAY, FIBRE, STRAND_POINTS, clusters, surface, published]),
+        (
+            "light on ribs",
+            &[
+                FRAME,
+                TWO_HIGHLIGHTS,
+                KAJIYA_KAY,
+                FIBRE,
+                STRAND_POINTS,
+                clusters,
+                surface,
+                rib_light,
+                published,
+            ],
+        ),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
 }
@@ -88,8 +102,8 @@ pub(super) struct Pipelines {
     pub layers: LayerShaders,
     /// Those for false colours, likewise.
     pub false_colors: FalseColorShaders,
-    /// The shader of the published light on clusters, likewise.
-    pub published: ShaderSource,
+    /// The shader of the light on clusters, likewise.
+    pub rib_light: ShaderSource,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body seen from the camera: all faces, and front faces only if it is closed.
@@ -109,7 +123,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, colors, values, present, published] =
+        let [points, ground, picture, surface, depth, layers, colors, values, present, rib_light] =
             own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
@@ -136,7 +150,7 @@ impl Pipelines {
             layers: LayerShaders { layers: layers.1, values: values.1.clone() },
             false_colors: FalseColorShaders { colors: colors.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
-            published: published.1,
+            rib_light: rib_light.1,
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
             uniform_layout,

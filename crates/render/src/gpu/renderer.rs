@@ -255,7 +255,7 @@ impl GpuRenderer {
         }
         let lighting = RibLighting {
             shading,
-            published: &self.pipelines.published,
+            rib_light: &self.pipelines.rib_light,
             lights: maps.len(),
             area: seen.area.edges(),
             scale: uniform.pixels_per_metre,

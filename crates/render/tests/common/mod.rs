@@ -175,7 +175,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
         look: HairLook {
             real_hairs: lines.len() as f32,
             variation: 0.0,
-            shading: HairShading::KajiyaKay,
+            shading: HairShading::TwoHighlights,
             roughness: 0.3,
             ..HairLook::default()
         },
@@ -294,7 +294,7 @@ pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     let mut s = scene(lines);
     s.body = Some(grid(-0.08, 0.3, 48, Vec3::new(0.35, 0.25, 0.2)));
     s.look = HairLook {
-        shading: HairShading::KajiyaKay,
+        shading: HairShading::TwoHighlights,
         roughness: 0.3,
         real_hairs: 8000.0,
         ..HairLook::default()

@@ -18,7 +18,7 @@ use crate::common::{Scene, scene};
 const POINTS: usize = 13;
 
 /// A lock of hair that hangs and bends: 18 cm long, of `count` strands in a disk of 12 mm.
-fn lock(count: usize) -> Scene {
+pub(super) fn lock(count: usize) -> Scene {
     let mut guides = Guides { points_per_guide: POINTS, ..Guides::default() };
     let reference = |g: usize| Vec2::from_angle(TAU / 4.0 + TAU / 3.0 * g as f32);
     for g in 0..3 {
@@ -75,7 +75,7 @@ fn seen_from(scene: &mut Scene, view: f32, light: f32) {
     scene.lights = vec![Light { direction: -around(light, 0.7), ..Light::default() }];
 }
 
-fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> Layers {
+pub(super) fn drawn(renderer: &mut CpuRenderer, scene: &Scene, side: u32) -> Layers {
     let guides = GuideFrame::at_rest(&scene.style.guides, Affine3A::IDENTITY, 0.0);
     let input = FrameInput { guides: Some(&guides), ..scene.input() };
     let mut layers = Layers::default();
@@ -177,6 +177,7 @@ fn every_way_to_read_records_and_to_shade_is_measured_against_strands() {
         ("default", default),
         ("nearest", ClusterSettings { lookup: RecordLookup::Nearest, ..default }),
         ("layers", ClusterSettings { local_shadow: LocalShadow::Layers, ..default }),
+        ("exponential", ClusterSettings { local_shadow: LocalShadow::Exponential, ..default }),
         ("linear", ClusterSettings { local_shadow: LocalShadow::Linear, ..default }),
         ("directional", ClusterSettings { local_shadow: LocalShadow::Directional, ..default }),
         ("paper", ClusterSettings { shading: ClusterShading::Paper, ..default }),
@@ -230,6 +231,8 @@ fn largest_jump(renderer: &mut CpuRenderer, scene: &mut Scene, turned: impl Fn(&
 fn nothing_pops_while_eye_or_light_turn() {
     let mut renderer = CpuRenderer::default();
     let mut scene = lock(200);
+    // Records are those of the light alone.
+    scene.picture.ambient = 0.0;
     scene.shadow.method = ShadowMethod::VoxelMap;
     scene.shadow.voxel_map.resolution = if is_long() { 128 } else { 64 };
     let mut jumps = Vec::new();

@@ -5,13 +5,16 @@ mod common;
 
 mod agreement;
 mod cluster_agreement;
+mod cluster_lights;
 mod clusters;
 mod colours;
 mod false_colors;
 mod fibre;
 mod fine;
 mod inspect;
+mod kajiya_kay;
 mod layers;
+mod map_view;
 mod picture_cpu;
 mod picture_gpu;
 mod receding;

@@ -78,6 +78,11 @@ fn layers_let_light_through_one_after_the_other() {
     assert!((through(LocalShadow::Layers, 2.0) - exact * exact).abs() < 1e-6);
     // The opacities in place of their optical depths let more through.
     assert!(((-1.0_f32).exp() - exact).abs() > 0.05, "the control");
+    // Equation 12: e^(−k Σ α), and its approximation 1 − k Σ α.
+    assert!((through(LocalShadow::Exponential, 1.0) - (-1.0_f32).exp()).abs() < 1e-6);
+    assert!((through(LocalShadow::Exponential, 0.1) - (-0.1_f32).exp()).abs() < 1e-6);
+    assert!((through(LocalShadow::Linear, 0.1) - 0.9).abs() < 1e-6);
+    assert_eq!(transmittance(LocalShadow::Exponential, 1.0, []), 1.0);
     assert_eq!(through(LocalShadow::Linear, 1.0), 0.0);
     assert!((through(LocalShadow::Linear, 0.5) - 0.5).abs() < 1e-6);
     assert_eq!(through(LocalShadow::Linear, 3.0), 0.0, "never negative");

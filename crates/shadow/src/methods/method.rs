@@ -28,6 +28,8 @@ pub(crate) struct Method {
     pub map: MapKind,
     /// The size of the map with these settings; `None` where there is no map.
     pub size: fn(&ShadowSettings) -> Option<MapSize>,
+    /// Words of 32 bits of each texel or cell of the map; lists of fragments come in addition.
+    pub words: fn(&ShadowSettings) -> u64,
     /// What a map holds along a ray of its light.
     pub marks: &'static [RayMarkKind],
     /// Its section of the settings.
@@ -122,6 +124,15 @@ impl ShadowSettings {
         let Some(MapSize { edge, per_texel }) = self.map_size() else { return String::new() };
         let power = if self.method.map_kind() == MapKind::Cells { '³' } else { '²' };
         per_texel.map_or_else(|| format!("{edge}{power}"), |count| format!("{edge}{power} × {count}"))
+    }
+
+    /// Memory of one map whose texels or cells all hold hair, bytes: an upper limit, because texels are never narrower than strands.
+    /// Lists of fragments, which only [`ShadowMethod::Exact`] stores, come in addition. 0 where there is no map.
+    pub fn map_bytes(&self) -> u64 {
+        let settings = self.clamped();
+        let Some(MapSize { edge, .. }) = settings.map_size() else { return 0 };
+        let power = if settings.method.map_kind() == MapKind::Cells { 3 } else { 2 };
+        4 * (settings.method.method().words)(&settings) * u64::from(edge).pow(power)
     }
 
     /// The texels over which [`converged`](crate::converged) transmittance is comparable with that of the method in use.
@@ -270,6 +281,25 @@ mod tests {
         });
         let expected = ["", "128³", "512² × 128", "512² × 4", "512² × 4", "512² × 128", "512²"];
         assert_eq!(labels.collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn the_memory_of_a_map_is_that_on_paper() {
+        let bytes = |method| ShadowSettings { method, ..ShadowSettings::default() }.map_bytes();
+        assert_eq!(bytes(ShadowMethod::None), 0);
+        // One word for each of 128³ cells.
+        assert_eq!(bytes(ShadowMethod::VoxelMap), 8 << 20);
+        // 512² texels: 128 slices; 4 layers and the first depth; 3 numbers for each of 4 clusters.
+        assert_eq!(bytes(ShadowMethod::OpacityMaps), 128 << 20);
+        assert_eq!(bytes(ShadowMethod::DeepOpacityMaps), 5 << 20);
+        assert_eq!(bytes(ShadowMethod::DensityClustering), 12 << 20);
+        // Sintorn and Assarsson 2009 print 10 MB for 512² texels.
+        assert!((10 << 20..=12 << 20).contains(&bytes(ShadowMethod::OccupancyMaps)));
+        let mut settings = ShadowSettings::default();
+        settings.voxel_map.resolution = u32::MAX;
+        assert_eq!(settings.map_bytes(), 4 * 512_u64.pow(3), "not more than the finest map");
+        settings.voxel_map.resolution = 0;
+        assert_eq!(settings.map_bytes(), 4 * 16_u64.pow(3));
     }
 
     #[test]

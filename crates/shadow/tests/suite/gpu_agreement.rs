@@ -91,7 +91,7 @@ fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
         ShadowMethod::None => vec![ShadowSettings::default()],
         ShadowMethod::VoxelMap => {
             let mut all = Vec::new();
-            for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
+            for filter in [VoxelFilter::Closest, VoxelFilter::Centred, VoxelFilter::Paper] {
                 for (deposit, extent) in
                     [(VoxelDeposit::Length, MapExtent::Fit), (VoxelDeposit::PointCount, MapExtent::Paper)]
                 {

@@ -187,8 +187,8 @@ fn settings_that_no_slider_gives_are_safe() {
     for resolution in [0, 1, 33, 100, 127, 128] {
         let map = built(&input(&hair, DOWN), &settings(resolution));
         let used = map.lattice().expect("built").resolution;
-        assert!(used.is_multiple_of(8) && (32..=512).contains(&used));
-        assert!(used.abs_diff(resolution.max(32)) <= 4);
+        assert!(used.is_multiple_of(8) && (16..=512).contains(&used));
+        assert!(used.abs_diff(resolution.max(16)) <= 4);
     }
     assert_eq!(settings(u32::MAX).voxel_map.clamped().resolution, 512);
     for width in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e30] {

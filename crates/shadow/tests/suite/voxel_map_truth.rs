@@ -215,6 +215,42 @@ fn a_single_lit_column_casts_a_symmetric_shadow() {
 }
 
 #[test]
+fn without_a_filter_a_cell_has_one_value_that_of_its_back_face() {
+    let corners = [HEAD - 0.1 * Vec3::ONE, HEAD + 0.1 * Vec3::ONE];
+    let probe = built(&input(&strands(&[corners.to_vec()]), Vec3::X), &settings(64));
+    let ds = probe.lattice().expect("built").cell_size;
+    let middle = HEAD + 0.5 * ds * Vec3::ONE;
+    let hair = strands(&[
+        vec![middle - 0.2 * ds * Vec3::Y, middle + 0.2 * ds * Vec3::Y],
+        vec![corners[0]],
+        vec![corners[1]],
+    ]);
+    let input = ShadowInput { strand_width: 0.05, ..input(&hair, Vec3::X) };
+    // τ = s w ℓ / ds², with ℓ = 0.4 ds.
+    let depth = EXTINCTION * input.strand_width * 0.4 / ds;
+    let mut settings = settings(64);
+    let mut at = |filter: VoxelFilter, x: f32, y: f32, z: f32| {
+        settings.voxel_map.filter = filter;
+        let map = built(&input, &settings);
+        assert_eq!(map.lattice().expect("built").cell_size, ds);
+        map.transmittance(middle + Vec3::new(x, y, z) * ds)
+    };
+    for [x, y, z] in [[0.0; 3], [-0.49, 0.0, 0.0], [0.49, 0.49, -0.49], [2.0, -0.49, 0.49], [30.0, 0.0, 0.0]]
+    {
+        let found = at(VoxelFilter::Closest, x, y, z);
+        // Faces are rounded to 1/4096.
+        assert!((found - (-depth).exp()).abs() < 3e-4, "{x}, {y}, {z}: {found}, {}", (-depth).exp());
+    }
+    for [x, y, z] in [[-0.51, 0.0, 0.0], [2.0, 0.51, 0.0], [2.0, 0.0, -0.51]] {
+        assert_eq!(at(VoxelFilter::Closest, x, y, z), 1.0, "{x}, {y}, {z}");
+    }
+    // The control: filtered, the middle of the cell has half of its depth, and its neighbours have some of it.
+    let half = at(VoxelFilter::Centred, 0.0, 0.0, 0.0);
+    assert!((half - (-0.5 * depth).exp()).abs() < 3e-4, "{half}");
+    assert!(at(VoxelFilter::Centred, 2.0, 0.51, 0.0) < 1.0);
+}
+
+#[test]
 fn points_before_or_beside_the_hair_are_lit() {
     let hair = small(SMOOTH);
     for direction in [LIGHT, Vec3::X, Vec3::NEG_X, Vec3::NEG_Y, Vec3::Z] {

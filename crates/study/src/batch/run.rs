@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Backend, Renderer};
+use lovelock_render::{Backend, MapValue, Renderer};
 use lovelock_session::dance::Dance;
 use lovelock_session::machine::machine;
 use lovelock_session::prepare::open_renderer;
@@ -34,7 +34,9 @@ pub fn compare(
     request: &CompareRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<CompareReport, ProjectError> {
-    let project = project.sanitised().0.compared();
+    let mut project = project.sanitised().0.compared();
+    // Errors are those of the hair.
+    project.picture.map_view.value = MapValue::None;
     let fps = request.fps.unwrap_or(project.recording.fps);
     let size = request.size.unwrap_or((project.recording.width, project.recording.height));
     check(&project, request, fps, size)?;

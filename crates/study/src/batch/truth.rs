@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 use lovelock_metrics::errors;
-use lovelock_render::{ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
+use lovelock_render::{ShadowMethod, ShadowSettings, TexelFilter};
 use lovelock_shadow::{
     CONVERGED_CHANGE, CpuShadow, ExactMap, MapKind, ShadowError, ShadowInput, converged, cpu_shadow,
 };
@@ -134,6 +134,9 @@ pub(super) fn converge_at(
     }
 }
 
+/// Texels along each edge of the ground truth at points, at most. Its difference from a map of half as many is reported.
+const FINEST: u32 = 2048;
+
 /// The ground truth at points.
 #[derive(Debug)]
 pub(super) struct Points {
@@ -148,7 +151,7 @@ impl Points {
     /// # Errors
     /// If the exact method needs more memory than it may use, with the numbers.
     pub(super) fn new(lit: LitHair) -> Result<Self, ShadowError> {
-        let (map, transmittance, edge) = exact(lit, *TEXEL_RESOLUTIONS.end())?;
+        let (map, transmittance, edge) = exact(lit, FINEST)?;
         // With few strands on a small head there is no coarser map.
         let (_, coarser, _) = exact(lit, edge / 2)?;
         let change = errors(&coarser, &transmittance).rmse as f32;

@@ -5,6 +5,7 @@ mod reasons;
 mod recording;
 mod reveal;
 mod scalp;
+mod shadow;
 mod sound;
 mod surroundings;
 mod ties;
@@ -21,7 +22,9 @@ use lovelock_groom::{HairShading, HairTie, Preset, TieKind, TieReach};
 use lovelock_motion::{ColliderEdit, ColliderEdits};
 use lovelock_project::Project;
 use lovelock_project::project::HairSource;
-use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PassTime, StrandCount, VoxelDeposit};
+use lovelock_render::{
+    ClusterShading, HairDrawing, LocalShadow, MapValue, PassTime, StrandCount, VoxelDeposit,
+};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 use lovelock_sound::Sound;
 use lovelock_style::operations::{Curl, Lift, Wave};
@@ -196,12 +199,13 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_motion_file("/a/b c/ü.bvh");
     files.set_surroundings_file("/a/b c/a panorama of a rather long name that says much.exr");
     files.set_sound_file("/a/b c/a song of a rather long name that says much.flac");
-    files.look.shading = HairShading::KajiyaKay;
+    files.look.shading = HairShading::TwoHighlights;
     files.picture.strands = StrandCount::Fixed;
     files.picture.draw = HairDrawing::Auto;
     files.picture.clusters.shading = ClusterShading::Paper;
     files.picture.clusters.local_shadow = LocalShadow::Layers;
     files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
+    files.picture.map_view.value = MapValue::Density;
     let patch = HairTie { reach: TieReach::InSphere, sphere_at_ring: false, ..HairTie::default() };
     files.hair.ties.push(HairTie { kind: TieKind::Bun, ..patch });
     files

@@ -241,8 +241,6 @@ fn ties_are_added_chosen_and_removed() {
 #[test]
 fn shadow_shows_the_settings_of_its_method() {
     let mut harness = panel("Shadow", Project::default());
-    choose(&mut harness, "Map resolution", "64³");
-    assert_eq!(harness.state().state.project.shadow.voxel_map.resolution, 64);
     assert!(harness.query_by_label("Point extinction").is_none());
     choose(&mut harness, "Density", "By points, as printed");
     assert_eq!(harness.state().state.project.shadow.voxel_map.deposit, VoxelDeposit::PointCount);
@@ -350,13 +348,16 @@ fn controls_of_the_other_shading_and_of_other_counts_of_strands_are_hidden() {
         assert!(harness.query_by_role_and_label(Role::SpinButton, shown).is_some(), "{shown}");
         assert!(harness.query_by_role_and_label(Role::SpinButton, hidden).is_none(), "{hidden}");
     }
-    choose(&mut harness, "Shading", "Kajiya-Kay");
+    choose(&mut harness, "Shading", "Two highlights");
     choose(&mut harness, "Strands", "Fixed number");
     for (hidden, shown) in [("Refraction", "Primary highlight"), ("Strand detail", "Strand number")] {
         assert!(harness.query_by_role_and_label(Role::SpinButton, shown).is_some(), "{shown}");
         assert!(harness.query_by_role_and_label(Role::SpinButton, hidden).is_none(), "{hidden}");
     }
-    assert!(harness.query_by_role_and_label(Role::SpinButton, "Roughness").is_some(), "both have it");
+    choose(&mut harness, "Shading", "Kajiya-Kay, as published");
+    let has = |name| harness.query_by_role_and_label(Role::SpinButton, name).is_some();
+    assert!(has("Primary highlight") && !has("Secondary highlight"), "one highlight");
+    assert!(has("Roughness"), "all have it");
 }
 
 #[test]
@@ -440,7 +441,7 @@ fn controls_of_clusters_appear_with_what_they_change() {
         control(&harness, Role::SpinButton, name);
     }
     assert!(!has(&harness, "Own shadow strength"), "the shadow map has none");
-    choose(&mut harness, "Own shadow", "Outer layers");
+    choose(&mut harness, "Own shadow", "Outer layers, as published");
     control(&harness, Role::SpinButton, "Own shadow strength");
     choose(&mut harness, "Show", "Records");
     choose(&mut harness, "Draw hair as", "Strands near, clusters far");

@@ -16,8 +16,10 @@ use super::pixels::{Covered, LANES, Triangle, cover_simd};
 use super::records::{Angles, Layer, Map, bilinear};
 use super::sink::Sink;
 use super::vertices::{Vertex, corners};
+use crate::MAX_LIGHTS;
 use crate::cpu::hair::list::{Fragment, covered_samples};
 use crate::cpu::math::{log2, max, mix, three};
+use crate::cpu::strand_points::PARTS;
 use crate::cpu::surface::raster::SurfaceSamples;
 use crate::cpu::tile::STRIDE;
 
@@ -31,6 +33,8 @@ pub(super) struct Columns<'a> {
     pub database: &'a Database,
     pub vertices: &'a [Vertex],
     pub settings: &'a ClusterSettings,
+    /// Lights that are on.
+    pub lights: usize,
     /// Optical depth of a strand times the length of the arc that it lies in, metres.
     pub depth: f32,
     pub origin: [f32; 2],
@@ -70,38 +74,41 @@ impl Columns<'_> {
             return;
         }
         let angles = angles_of(corners);
-        let map = |layer: &Layer, angles: &Angles| {
+        let map = |layer: &Layer, angles: &Angles, lights: usize| {
             let [a, b, c, d] = layer.corners;
             let width = 0.5 * (distance(a, b) + distance(c, d));
             // As many texels as pixels.
             let mip = log2(max(32.0 / max(width, 1e-3), 1.0));
-            Map::new(self.database, self.settings, layer, angles, mip)
+            Map::new(self.database, self.settings, layer, (angles, lights), mip)
         };
-        let between = self.toward_light(column, index, &angles);
-        let outer: Vec<_> = between
-            .into_iter()
-            .map(|(column, index, u)| {
-                let corners = self::corners(grid, column).map(|v| &self.vertices[v]);
-                let layer = self.layer(column, index, corners);
-                let angles = angles_of(corners);
-                let angles = if u.is_some() { angles.of_light() } else { angles };
-                let map = map(&layer, &angles);
-                (layer, map, angles, u)
-            })
-            .collect();
-        let map = map(&layer, &angles);
+        let shadowing = |(column, index, passed): (usize, usize, Option<Passed>)| {
+            let corners = self::corners(grid, column).map(|v| &self.vertices[v]);
+            let layer = self.layer(column, index, corners);
+            let angles = angles_of(corners);
+            let angles = passed.map_or(angles, |passed| angles.of_light(passed.light));
+            // Only what they let through counts.
+            let map = map(&layer, &angles, 0);
+            OuterLayer { layer, map, angles, passed }
+        };
+        let outer = self.toward_lights(column, index, &angles).into_iter().map(shadowing).collect();
+        let map = map(&layer, &angles, self.lights);
         let own = OwnLayer { layer, map, angles, outer, quad: column * grid.layers + index };
         shade_simd(self.width, self, &own, covered, sink);
     }
 
-    /// The layers that shadow a layer: their columns, their numbers, and where across them light passes if that is not where the eye sees
-    /// the shadowed place.
-    fn toward_light(&self, column: usize, index: usize, angles: &Angles) -> Vec<(usize, usize, Option<f32>)> {
+    /// The layers that shadow a layer: their columns, their numbers, and the passing light if it is not there where the eye sees the
+    /// shadowed place.
+    fn toward_lights(
+        &self,
+        column: usize,
+        index: usize,
+        angles: &Angles,
+    ) -> Vec<(usize, usize, Option<Passed>)> {
         let grid = self.hair.grid;
         let outer = (index + 1..grid.layers).map(|outer| (column, outer, None));
         match self.settings.local_shadow {
             LocalShadow::Map => Vec::new(),
-            LocalShadow::Layers | LocalShadow::Linear => outer.collect(),
+            LocalShadow::Layers | LocalShadow::Linear | LocalShadow::Exponential => outer.collect(),
             LocalShadow::Directional => {
                 let (rib, section) = (column / grid.along, column % grid.along);
                 let first = rib / grid.around * grid.around;
@@ -109,26 +116,45 @@ impl Columns<'_> {
                 let here = (rib - first) as f32 * sector + 0.5 * sector;
                 let radii: Vec<f32> =
                     (0..grid.layers).map(|layer| grid.radius(layer, self.hair.core)).collect();
-                let toward = Vec2::from_angle(here + angles.light_in_middle());
                 let mut met = Vec::new();
-                shadow::crossings(&radii, index, here, toward, |crossing| {
-                    let at = crossing.u / sector;
-                    let rib = first + at as usize % grid.around;
-                    met.push((rib * grid.along + section, crossing.layer, Some(at.fract())));
-                });
+                for light in 0..self.lights {
+                    let toward = Vec2::from_angle(here + angles.light_in_middle(light));
+                    shadow::crossings(&radii, index, here, toward, |crossing| {
+                        let at = crossing.u / sector;
+                        let rib = first + at as usize % grid.around;
+                        let passed = Passed { light, u: at.fract() };
+                        met.push((rib * grid.along + section, crossing.layer, Some(passed)));
+                    });
+                }
                 met
             }
         }
     }
 
-    /// The light that other layers let through to a place on a layer (Xu et al., equation 12).
-    fn own_shadow(&self, between: &[OuterLayer], [u, t]: [f32; 2]) -> f32 {
-        let opacities = between.iter().map(|(layer, map, angles, passed)| {
-            let u = passed.unwrap_or(u);
+    /// The fraction of a light that other layers let through to a place on a layer (Xu et al., equation 12). If light passes elsewhere
+    /// than where the eye sees that place, it is that of light `light`.
+    fn own_shadow(&self, between: &[OuterLayer], light: usize, [u, t]: [f32; 2]) -> f32 {
+        let of_light = |outer: &&OuterLayer| outer.passed.is_none_or(|passed| passed.light == light);
+        let opacities = between.iter().filter(of_light).map(|outer| {
+            let OuterLayer { layer, map, angles, passed } = outer;
+            let u = passed.map_or(u, |passed| passed.u);
             let ([opacity], _) = map.at(layer, [&[u], &[t]], &[bilinear(angles.cos_view, u, t)]);
             opacity
         });
         shadow::transmittance(self.settings.local_shadow, self.settings.shadow_strength, opacities)
+    }
+
+    /// The fractions of all lights that other layers let through to a place on a layer.
+    fn own_shadows(&self, between: &[OuterLayer], place: [f32; 2]) -> [f32; MAX_LIGHTS] {
+        let mut through = [1.0; MAX_LIGHTS];
+        if self.settings.local_shadow == LocalShadow::Directional {
+            for (light, through) in through.iter_mut().enumerate().take(self.lights) {
+                *through = self.own_shadow(between, light, place);
+            }
+        } else if !between.is_empty() {
+            through = [self.own_shadow(between, 0, place); MAX_LIGHTS];
+        }
+        through
     }
 
     /// The layer `index` of a column.
@@ -149,7 +175,10 @@ impl Columns<'_> {
                 let [x, y, z] = three(|k| mix(v.at[0][k], v.at[1][k], outward));
                 [x - self.origin[0], y - self.origin[1], z]
             }),
-            colors: [a, b, c, d].map(|v| three(|k| mix(v.color[0][k], v.color[1][k], outward))),
+            lit: [a, b, c, d].map(|v| {
+                let [inner, outer] = &v.lit;
+                std::array::from_fn(|part| three(|k| mix(inner[part][k], outer[part][k], outward)))
+            }),
             cells: [0, 1, 2].map(|side| [cell(side, 0), cell(side, 1)]),
             depths: arc,
             thickness: (1.0 - self.hair.core) / (grid.layers as f32 * radius),
@@ -157,8 +186,21 @@ impl Columns<'_> {
     }
 }
 
-/// A layer that shadows another one, and where across it light passes if that is not where the eye sees the shadowed place.
-type OuterLayer = (Layer, Map, Angles, Option<f32>);
+/// Where a light passes across a layer.
+#[derive(Clone, Copy)]
+struct Passed {
+    light: usize,
+    u: f32,
+}
+
+/// A layer that shadows another one. What it lets through does not depend on light unless a light passes elsewhere than where the eye sees
+/// the shadowed place.
+struct OuterLayer {
+    layer: Layer,
+    map: Map,
+    angles: Angles,
+    passed: Option<Passed>,
+}
 
 /// A layer whose pixels are shaded.
 struct OwnLayer {
@@ -182,14 +224,15 @@ fn shade<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &m
     let OwnLayer { layer, map, angles, .. } = own;
     let hash = own.quad as f32 * 0.618_034;
     let hash = hash - hash.floor();
-    // The part of the light that does not depend on the reflectance, and the factor of the reflectance.
-    let (even, slope) = match columns.settings.shading {
-        ClusterShading::AsStrands => {
-            (1.0 - columns.settings.detail, columns.settings.detail * map.inverse_mean)
-        }
-        ClusterShading::Paper => (0.0, 1.0),
+    // The part of a light that does not depend on the reflectance, and the factor of the reflectance.
+    let detail = columns.settings.detail;
+    let (even, slopes) = match columns.settings.shading {
+        ClusterShading::AsStrands => (1.0 - detail, map.inverse_mean.map(|inverse| detail * inverse)),
+        ClusterShading::Paper => (0.0, [1.0; MAX_LIGHTS]),
     };
-    let channels = [0, 1, 2].map(|k| [0, 1, 2, 3].map(|q| layer.colors[q][k]));
+    let lights = columns.lights.min(MAX_LIGHTS);
+    let channels: [_; PARTS] =
+        std::array::from_fn(|part| [0, 1, 2].map(|k| [0, 1, 2, 3].map(|q| layer.lit[q][part][k])));
     for first in (0..covered.len).step_by(LANES) {
         let of = |values: &'_ [f32]| values[first..].first_chunk::<LANES>().copied().unwrap_or([0.0; LANES]);
         let (u, t) = (of(&covered.u), of(&covered.t));
@@ -198,10 +241,17 @@ fn shade<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &m
             cos_view[lane] = bilinear(angles.cos_view, u[lane], t[lane]);
         }
         let (alpha, reflected) = map.at(layer, [&u, &t], &cos_view);
-        let mut colors = [[0.0; 3]; LANES];
+        // Ambient light, which no record reflects and no layer shadows, and what records reflect of each light.
+        let mut colors = [[[0.0; 3]; LANES]; PARTS];
         for lane in 0..LANES {
-            let gain = max(even + slope * reflected[lane], 0.0);
-            colors[lane] = three(|k| bilinear(channels[k], u[lane], t[lane]) * gain);
+            colors[0][lane] = three(|k| bilinear(channels[0][k], u[lane], t[lane]));
+        }
+        for light in 0..lights {
+            for lane in 0..LANES {
+                let gain = max(even + slopes[light] * reflected[light][lane], 0.0);
+                let channels = &channels[1 + light];
+                colors[1 + light][lane] = three(|k| bilinear(channels[k], u[lane], t[lane]) * gain);
+            }
         }
         for lane in 0..LANES.min(covered.len - first) {
             let n = first + lane;
@@ -209,10 +259,12 @@ fn shade<S: Sink>(columns: &Columns, own: &OwnLayer, covered: &Covered, sink: &m
             if alpha < FAINTEST || alpha.is_nan() {
                 continue;
             }
-            let mut color = colors[lane];
-            if !own.outer.is_empty() {
-                let lit = columns.own_shadow(&own.outer, [u[lane], t[lane]]);
-                color = three(|k| color[k] * lit);
+            let through = columns.own_shadows(&own.outer, [u[lane], t[lane]]);
+            let mut color = colors[0][lane];
+            for (light, through) in through.iter().enumerate().take(lights) {
+                for k in 0..3 {
+                    color[k] += colors[1 + light][lane][k] * through;
+                }
             }
             if columns.settings.view == ClusterView::Records {
                 color = record_color(layer.cells[1][usize::from(t[lane] > 0.5)]);
@@ -236,7 +288,8 @@ const TRIANGLES: [([usize; 3], [[f32; 2]; 3]); 2] =
 /// The angles at the corners of the layers of a column.
 fn angles_of(corners: [&Vertex; 4]) -> Angles {
     Angles {
-        azimuths: [0, 1].map(|k| unwrapped(corners.map(|v| v.angles[k]))),
+        view: unwrapped(corners.map(|v| v.angles[0])),
+        lights: std::array::from_fn(|light| unwrapped(corners.map(|v| v.angles[1 + light]))),
         cos_view: corners.map(|v| v.cos_view),
         sin_view: 0.25 * corners.iter().map(|v| v.sin_view).sum::<f32>(),
     }

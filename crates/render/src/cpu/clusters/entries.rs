@@ -8,13 +8,9 @@ use lovelock_groom::Strands;
 use lovelock_satf::ClusterHair;
 use rayon::prelude::*;
 
-use crate::FrameInput;
-use crate::clusters::to_strongest_light;
-
-/// Moves the points of the ribs toward the strongest light, to the surface of their cluster: the ellipse of their section.
-pub(super) fn place(hair: &ClusterHair, ribs: &Strands, input: &FrameInput, out: &mut Strands) {
+/// Moves the points of the ribs toward a light, to the surface of their cluster: the ellipse of their section.
+pub(super) fn place(hair: &ClusterHair, ribs: &Strands, to_light: Vec3, out: &mut Strands) {
     let (around, points) = (hair.grid.around, hair.grid.points());
-    let to_light = to_strongest_light(input.lights);
     out.first_point = Arc::clone(&ribs.first_point);
     let of_cluster = hair.grid.rib_points();
     let [x, y, z] = [&mut out.x, &mut out.y, &mut out.z].map(|axis| {

@@ -18,11 +18,11 @@ use lovelock_satf::{ClusterHair, ClusterSettings, ClusterShading, LocalShadow};
 
 use super::bins::Bins;
 use super::hair::list::Fragments;
-use super::strand_points::{PointsIn, ShadedPoint, shade_all};
+use super::strand_points::{LitParts, PointsIn, ShadedPoint, shade_all_parts};
 use super::surface::raster::SurfaceSamples;
 use super::tile::{Grid, HairPlanes};
 use super::view::View;
-use crate::clusters::{ClusterStage, cluster_share, guides_of};
+use crate::clusters::{ClusterStage, cluster_share, guides_of, to_lights};
 use crate::cpu::shadow::ShadowStage;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, MAX_LIGHTS};
@@ -38,16 +38,19 @@ pub(super) struct PlacedClusters {
     hair: Option<Arc<ClusterHair>>,
     /// Points of the ribs.
     ribs: Strands,
-    /// Where the light of those points enters their cluster, if layers shadow each other.
-    entries: Strands,
+    /// Where each light of those points enters their cluster, if layers shadow each other.
+    entries: [Strands; MAX_LIGHTS],
     details: StrandDetails,
     transmittance: Vec<u32>,
     /// Transmittances of the ribs by light, before they are packed.
     answers: [Vec<f32>; MAX_LIGHTS],
     shaded: Vec<ShadedPoint>,
+    lit: Vec<LitParts>,
     vertices: Vec<Vertex>,
     bins: Bins,
     settings: ClusterSettings,
+    /// Lights that are on.
+    lights: usize,
     is_hidden: bool,
     /// The part of the optical depth that clusters have.
     share: f32,
@@ -59,11 +62,12 @@ impl PlacedClusters {
     /// Its memory without the list of clusters, bytes.
     pub fn bytes(&self) -> u64 {
         self.ribs.bytes()
-            + self.entries.bytes()
+            + self.entries.iter().map(Strands::bytes).sum::<u64>()
             + self.details.bytes()
             + list_bytes(&self.transmittance)
             + self.answers.iter().map(list_bytes).sum::<u64>()
             + list_bytes(&self.shaded)
+            + list_bytes(&self.lit)
             + list_bytes(&self.vertices)
             + self.bins.bytes()
     }
@@ -106,12 +110,15 @@ impl PlacedClusters {
         grid: &Grid,
     ) {
         let Some(hair) = &self.hair else { return };
-        let asked = if input.picture.clusters.local_shadow == LocalShadow::Map {
-            &self.ribs
-        } else {
-            entries::place(hair, &self.ribs, input, &mut self.entries);
-            &self.entries
-        };
+        let to_lights = to_lights(input.lights);
+        let enters = input.picture.clusters.local_shadow != LocalShadow::Map;
+        if enters {
+            for (entries, to_light) in self.entries.iter_mut().zip(&to_lights) {
+                entries::place(hair, &self.ribs, *to_light, entries);
+            }
+        }
+        let (ribs, entries) = (&self.ribs, &self.entries);
+        let asked = |light: usize| if enters && light < to_lights.len() { &entries[light] } else { ribs };
         shadow.look_up_more(asked, &mut self.answers, &mut self.transmittance);
         let from = PointsIn {
             strands: &self.ribs,
@@ -119,8 +126,10 @@ impl PlacedClusters {
             transmittance: &self.transmittance,
             colours: self.details.colours(),
         };
-        shade_all(width, view, &from, false, &mut self.shaded);
-        vertices::place(hair, &self.ribs, &self.shaded, input, &mut self.vertices);
+        shade_all_parts(width, view, &from, &mut self.shaded, &mut self.lit);
+        self.lights = to_lights.len();
+        let shaded = (&self.shaded[..], &self.lit[..]);
+        vertices::place(hair, &self.ribs, shaded, (input.camera.eye, &to_lights), &mut self.vertices);
         if input.picture.clusters.shading == ClusterShading::Paper {
             published::light(hair, view, (&self.ribs, &self.transmittance), input, &mut self.vertices);
         }
@@ -194,6 +203,7 @@ impl PlacedClusters {
             database: &shared().0,
             vertices: &self.vertices,
             settings: &self.settings,
+            lights: self.lights,
             depth: self.depth,
             origin,
             samples,

@@ -6,10 +6,10 @@ use lovelock_satf::ClusterHair;
 use rayon::prelude::*;
 
 use super::vertices::Vertex;
-use crate::FrameInput;
 use crate::cpu::view::View;
+use crate::{FrameInput, MAX_LIGHTS};
 
-/// Replaces the light at the vertices. `ribs` are their points, each with four packed transmittances.
+/// Replaces the light at the vertices. Ambient light, which the paper does not have, is neither shadowed nor reflected by records. `ribs` are their points, each with four packed transmittances.
 pub(super) fn light(
     hair: &ClusterHair,
     view: &View,
@@ -26,15 +26,15 @@ pub(super) fn light(
         let first = cluster * hair.grid.rib_points();
         for (k, vertex) in out.iter_mut().enumerate() {
             let i = k % points;
-            for (ring, result) in vertex.color.iter_mut().enumerate() {
+            for (ring, result) in vertex.lit.iter_mut().enumerate() {
                 let at = first + ring * of_cluster + k;
                 let here = ribs.point(at);
                 let along =
                     ribs.point(at - i + (i + 1).min(points - 1)) - ribs.point(at - usize::from(i > 0));
                 let tangent = along.normalize_or_zero();
                 let to_eye = (input.camera.eye - here).normalize_or_zero();
-                let mut sum = ambient * color * 0.22;
-                for (l, light) in view.lights.iter().enumerate() {
+                result[0] = (ambient * color * 0.22).to_array();
+                for (l, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
                     let lit = (transmittance[at] >> (8 * l) & 0xff) as f32 / 255.0;
                     let [body] = light.body_light(
                         &here.to_array().map(|x| [x]),
@@ -43,9 +43,8 @@ pub(super) fn light(
                         &view.strand_disc,
                     );
                     let parts = lighting.parts(tangent, vertex.normal, -light.direction, to_eye);
-                    sum += parts.color(color, light.radiance) * (lit * body);
+                    result[1 + l] = (parts.color(color, light.radiance) * (lit * body)).to_array();
                 }
-                *result = sum.to_array();
             }
         }
     });

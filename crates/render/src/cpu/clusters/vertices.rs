@@ -5,42 +5,40 @@ use lovelock_groom::Strands;
 use lovelock_satf::{ClusterHair, RibGrid};
 use rayon::prelude::*;
 
-use crate::FrameInput;
-use crate::clusters::to_strongest_light;
-use crate::cpu::strand_points::ShadedPoint;
+use crate::cpu::strand_points::{LitParts, PARTS, ShadedPoint};
 
 /// Where an outer and an inner rib cross a section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Vertex {
     /// Pixels from the left and the top, and depth, on the inner and on the outer ring; see [`ShadedPoint`].
     pub at: [[f32; 3]; 2],
-    /// Light there.
-    pub color: [[f32; 3]; 2],
+    /// Ambient light and the light of each light there.
+    pub lit: [LitParts; 2],
     /// The outward normal of the cluster, world space.
     pub normal: Vec3,
     /// Cosine of the azimuth of the eye.
     pub cos_view: f32,
-    /// Azimuths of the eye and of the strongest light, from the outward normal.
-    pub angles: [f32; 2],
+    /// Azimuths of the eye and of each light, from the outward normal.
+    pub angles: [f32; PARTS],
     /// One over the length of the outer arc to the next rib, 1/metres.
     pub inverse_arc: f32,
     /// Sine of the angle between the eye and the hair; negative if the point must not be drawn.
     pub sin_view: f32,
 }
 
-/// Computes the vertices of all clusters, in the order of cluster, rib and section.
+/// Computes the vertices of all clusters, in the order of cluster, rib and section, from the shaded points of the ribs. `eye` is in world
+/// space, and `to_lights` are directions.
 pub(super) fn place(
     hair: &ClusterHair,
     ribs: &Strands,
-    shaded: &[ShadedPoint],
-    input: &FrameInput,
+    (shaded, lit): (&[ShadedPoint], &[LitParts]),
+    (eye, to_lights): (Vec3, &[Vec3]),
     out: &mut Vec<Vertex>,
 ) {
     let RibGrid { around, .. } = hair.grid;
     let points = hair.grid.points();
     let of_cluster = around * points;
     out.resize(hair.clusters() * of_cluster, Vertex::default());
-    let to_light = to_strongest_light(input.lights);
     out.par_chunks_mut(of_cluster).enumerate().for_each(|(cluster, out)| {
         let first = cluster * hair.grid.rib_points();
         let outer = first + of_cluster;
@@ -57,16 +55,21 @@ pub(super) fn place(
                 // Outward, also where the guides have turned the wisp inside out.
                 let normal = side.cross(tangent);
                 let normal = normal * normal.dot(here - ribs.point(first + at)).signum();
-                let to_eye = (input.camera.eye - here).normalize_or_zero();
+                let to_eye = (eye - here).normalize_or_zero();
                 let azimuth = |v: Vec3| v.dot(side).atan2(v.dot(normal));
                 let rings = [&shaded[first + at], &shaded[outer + at]];
+                let mut angles = [0.0; PARTS];
+                angles[0] = azimuth(to_eye);
+                for (angle, to_light) in angles[1..].iter_mut().zip(to_lights) {
+                    *angle = azimuth(*to_light);
+                }
                 let drawn = rings.iter().all(|point| point.half_width >= 0.0) && normal != Vec3::ZERO;
                 out[at] = Vertex {
                     at: rings.map(|point| [point.x, point.y, point.depth]),
-                    color: rings.map(|point| point.color),
-                    angles: [azimuth(to_eye), azimuth(to_light)],
+                    lit: [lit[first + at], lit[outer + at]],
+                    angles,
                     normal,
-                    cos_view: azimuth(to_eye).cos(),
+                    cos_view: angles[0].cos(),
                     inverse_arc: 1.0 / (next - here).cross(tangent).length().max(1e-6),
                     sin_view: if drawn { to_eye.cross(tangent).length() } else { -1.0 },
                 };

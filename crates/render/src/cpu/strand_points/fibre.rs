@@ -5,7 +5,7 @@
 use lovelock_appearance::fibre::arithmetic::acos;
 use lovelock_appearance::fibre::{LongitudinalLobe, PointLight, PointScatter, ScatterRow};
 
-use super::{LANES, Lane, ShadedFrom};
+use super::{LANES, Parts, ShadedFrom, part_of};
 use crate::MAX_LIGHTS;
 use crate::cpu::math::{log2, max};
 use crate::cpu::view::{FibreView, View};
@@ -13,9 +13,9 @@ use crate::fibre::{
     FACING_FIBRES, FIBRES_PER_DEPTH, LEAST_COSINE, LEAST_TRANSMITTANCE, MAX_INCLINED, OWN_FIBRES,
 };
 
-/// The light that points scatter toward the eye.
+/// The light that points scatter toward the eye, in `N` parts.
 #[inline(always)]
-pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane; 3] {
+pub(super) fn shade<const N: usize>(view: &View, fibre: &FibreView, from: &ShadedFrom) -> Parts<N> {
     let uniform = view.uniform;
     let ShadedFrom { here, tangent, to_eye, absorption, turn, packed, .. } = from;
     let (mut sin_v, mut cos_v) = (from.sin_v, from.cos_v);
@@ -29,7 +29,7 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
         let sigma = [absorption[0][lane], absorption[1][lane], absorption[2][lane]];
         *point = PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma);
     }
-    let mut sum = [[0.0; LANES]; 3];
+    let mut parts = [[[0.0; LANES]; 3]; N];
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
         let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
@@ -75,17 +75,19 @@ pub(super) fn shade(view: &View, fibre: &FibreView, from: &ShadedFrom) -> [Lane;
             found[2][lane] = b;
         }
         let radiance = light.radiance.to_array();
+        let sum = &mut parts[part_of::<N>(Some(k))];
         for c in 0..3 {
             for lane in 0..LANES {
                 sum[c][lane] += radiance[c] * shadow[lane] * found[c][lane];
             }
         }
     }
+    let sum = &mut parts[part_of::<N>(None)];
     for lane in 0..LANES {
         let around = view.grid.at([here[0][lane], here[1][lane], here[2][lane]]);
         for c in 0..3 {
             sum[c][lane] += around[c] * points[lane].albedo[c];
         }
     }
-    sum
+    parts
 }

@@ -9,12 +9,14 @@ use lovelock_groom::{PigmentVariation, Strands};
 use rayon::prelude::*;
 
 use super::math::{exp, floor, max, min, saturate, smoothstep, three};
-use super::view::View;
+use super::view::{ShadingView, View};
+use crate::MAX_LIGHTS;
 use crate::strand_details::PointColours;
 use crate::uniform::{FrameUniform, MAX_LIGHT};
 
 mod fibre;
 mod kajiya_kay;
+mod two_highlights;
 
 /// Points that are shaded together.
 const LANES: usize = 16;
@@ -66,7 +68,7 @@ pub(super) fn shade_all(
 ) {
     out.resize(out_of(input), ShadedPoint::default());
     let points = view.points_per_strand();
-    let is_sparse = is_draft && points > 2 && view.fibre.is_some();
+    let is_sparse = is_draft && points > 2 && matches!(view.shading, ShadingView::Fibre(_));
     let piece = if is_sparse { points * (PIECE / points).max(1) } else { PIECE };
     out.par_chunks_mut(piece).enumerate().for_each(|(k, out)| {
         if is_sparse {
@@ -80,6 +82,24 @@ pub(super) fn shade_all(
 }
 
 type Lane = [f32; LANES];
+
+/// The light that points send to the eye: all of it, or ambient light and then that of each light apart.
+type Parts<const N: usize> = [[Lane; 3]; N];
+
+/// The number of parts of the light that can be told apart.
+pub(super) const PARTS: usize = 1 + MAX_LIGHTS;
+
+/// The light of a point by its parts.
+pub(super) type LitParts = [[f32; 3]; PARTS];
+
+/// The place of ambient light, which has no `light`, or of a light among so many parts.
+#[inline(always)]
+const fn part_of<const N: usize>(light: Option<usize>) -> usize {
+    match light {
+        Some(light) if N > 1 => 1 + light,
+        _ => 0,
+    }
+}
 
 /// Points to shade.
 struct ShadedFrom<'a> {
@@ -148,6 +168,46 @@ simd_versions! {
     }
 }
 
+simd_versions! {
+    /// [`shade_parts`] for the vectors of `width`.
+    fn shade_parts_simd(
+        view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint], lit: &mut [LitParts]
+    ) -> () {
+        shade_parts(view, input, first, out, lit)
+    }
+}
+
+/// Shades all points, in parallel, and tells the parts of their light apart.
+pub(super) fn shade_all_parts(
+    width: Width,
+    view: &View,
+    input: &PointsIn,
+    out: &mut Vec<ShadedPoint>,
+    lit: &mut Vec<LitParts>,
+) {
+    out.resize(out_of(input), ShadedPoint::default());
+    lit.resize(out.len(), LitParts::default());
+    let pieces = out.par_chunks_mut(PIECE).zip(lit.par_chunks_mut(PIECE));
+    pieces.enumerate().for_each(|(k, (out, lit))| {
+        shade_parts_simd(width, view, input, k * PIECE, out, lit);
+    });
+}
+
+/// Shades the points from `first` on, and tells the parts of their light apart.
+#[inline(always)]
+fn shade_parts(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint], lit: &mut [LitParts]) {
+    for (group, (out, lit)) in out.chunks_mut(LANES).zip(lit.chunks_mut(LANES)).enumerate() {
+        let indices = std::array::from_fn(|lane| first + group * LANES + lane);
+        let (shaded, parts) = shade_group::<true, PARTS>(view, input, &indices);
+        out.copy_from_slice(&shaded[..out.len()]);
+        for (lane, lit) in lit.iter_mut().enumerate() {
+            for (part, from) in lit.iter_mut().zip(&parts) {
+                *part = three(|c| min(from[c][lane], MAX_LIGHT));
+            }
+        }
+    }
+}
+
 /// Shades the points from `first` on.
 #[inline(always)]
 fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
@@ -156,7 +216,7 @@ fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
         for (lane, index) in indices.iter_mut().enumerate() {
             *index = first + group * LANES + lane;
         }
-        let shaded = shade_group::<true>(view, input, &indices);
+        let (shaded, _) = shade_group::<true, 1>(view, input, &indices);
         out.copy_from_slice(&shaded[..out.len()]);
     }
 }
@@ -170,7 +230,7 @@ fn shade_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
         for (lane, index) in indices.iter_mut().enumerate() {
             *index = first + (2 * (start + lane)).min(last);
         }
-        let shaded = shade_group::<true>(view, input, &indices);
+        let (shaded, _) = shade_group::<true, 1>(view, input, &indices);
         for (index, shaded) in indices.iter().zip(shaded) {
             out[index - first] = shaded;
         }
@@ -179,7 +239,7 @@ fn shade_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
         for (lane, index) in indices.iter_mut().enumerate() {
             *index = first + (2 * (start + lane) + 1).min(last);
         }
-        let placed = shade_group::<false>(view, input, &indices);
+        let (placed, _) = shade_group::<false, 1>(view, input, &indices);
         for (index, mut placed) in indices.iter().zip(placed) {
             let k = index - first;
             // Of an even number of points the last one is odd, and shaded already.
@@ -310,9 +370,14 @@ fn runs(from: &[Lane; 3], to: &[Lane; 3]) -> [Lane; 2] {
     run
 }
 
-/// The light that points reflect toward the eye.
+/// The light that points reflect toward the eye, in `N` parts.
 #[inline(always)]
-fn light_of(view: &View, input: &PointsIn, indices: &[usize; LANES], group: &Group) -> [Lane; 3] {
+fn light_of<const N: usize>(
+    view: &View,
+    input: &PointsIn,
+    indices: &[usize; LANES],
+    group: &Group,
+) -> Parts<N> {
     let uniform = view.uniform;
     let [tangent, to_eye] = group.directions(uniform.eye.to_array());
     let mut sin_v = [0.0; LANES];
@@ -347,25 +412,34 @@ fn light_of(view: &View, input: &PointsIn, indices: &[usize; LANES], group: &Gro
         turn: group.turns(),
         packed: group.packed,
     };
-    match &view.fibre {
-        Some(fibre) => fibre::shade(view, fibre, &from),
-        None => kajiya_kay::shade(view, &from),
+    match &view.shading {
+        ShadingView::Fibre(fibre) => fibre::shade(view, fibre, &from),
+        ShadingView::TwoHighlights => two_highlights::shade(view, &from),
+        ShadingView::KajiyaKay => kajiya_kay::shade(view, &from),
     }
 }
 
-/// The points of `indices`, with their colours or black.
+/// The points of `indices`, with their colours or black, and the `N` parts of their light.
 #[inline(always)]
-fn shade_group<const COLORED: bool>(
+fn shade_group<const COLORED: bool, const N: usize>(
     view: &View,
     input: &PointsIn,
     indices: &[usize; LANES],
-) -> [ShadedPoint; LANES] {
+) -> ([ShadedPoint; LANES], Parts<N>) {
     let uniform = view.uniform;
     let group = Group::gather(input, indices);
     let at = project(uniform, &group.here);
     let (at_before, at_after) = (project(uniform, &group.before), project(uniform, &group.after));
     let run = runs(&at_before, &at_after);
-    let sum = if COLORED { light_of(view, input, indices, &group) } else { [[0.0; LANES]; 3] };
+    let parts = if COLORED { light_of(view, input, indices, &group) } else { [[[0.0; LANES]; 3]; N] };
+    let mut sum = parts[0];
+    for part in &parts[1..] {
+        for c in 0..3 {
+            for lane in 0..LANES {
+                sum[c][lane] += part[c][lane];
+            }
+        }
+    }
     // The last of fine strands fade.
     let points_per_strand = uniform.points_per_strand.max(1);
     let fine = points_per_strand > 1;
@@ -399,7 +473,7 @@ fn shade_group<const COLORED: bool>(
             hash: hash[lane],
         };
     }
-    out
+    (out, parts)
 }
 
 /// Changes the `absorption` that points have by the look to that of their strands.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::placed::{PlacedScene, TileScratch, copy_rows};
 use super::pool::Pool;
 use super::tile::{Grid, HairPlanes, STRIDE, TILE};
-use super::view::View;
+use super::view::{ShadingView, View};
 use crate::scene_light::NO_LIGHT;
 use crate::strand_details::StrandDetails;
 use crate::uniform::FrameUniform;
@@ -120,7 +120,7 @@ impl ValueRenderer {
             return Err(RenderError::Known { of: "values (one per strand point)", found, needed });
         }
         let uniform = FrameUniform::new(input, None, &NO_LIGHT, (width, height), &[], 1);
-        let view = View::new(&uniform, (&NO_LIGHT.grid, None), &[], &[], 1);
+        let view = View::new(&uniform, (&NO_LIGHT.grid, ShadingView::TwoHighlights), &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
         // In place of colours: the value times 1 or 0, and 1 or 0. Their quotient is the mean of the values.
         self.placed.points.par_iter_mut().zip(values).with_min_len(8192).for_each(|(point, &value)| {

@@ -10,7 +10,7 @@ use crate::cpu::hair::fragments::is_drawn;
 use crate::cpu::placed::{TileScratch, posed_body};
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::tile::{Grid, STRIDE, TILE};
-use crate::cpu::view::View;
+use crate::cpu::view::{ShadingView, View};
 use crate::scene_light::NO_LIGHT;
 use crate::uniform::FrameUniform;
 
@@ -56,7 +56,7 @@ impl ValueRenderer {
         pixel: [f32; 2],
     ) -> Option<HairHit> {
         let uniform = FrameUniform::new(input, None, &NO_LIGHT, (width, height), &[], 1);
-        let view = View::new(&uniform, (&NO_LIGHT.grid, None), &[], &[], 1);
+        let view = View::new(&uniform, (&NO_LIGHT.grid, ShadingView::TwoHighlights), &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
         let points = &self.placed.points;
         let near = |&first: &u32| {

@@ -6,10 +6,6 @@ struct ClusterUniform {
     eye: vec3f,
     // The optical depth of a strand times the length of the arc that it lies in, metres.
     depth: f32,
-    // Unit vector toward the strongest light.
-    to_light: vec3f,
-    // How strongly records vary the light of strands.
-    detail: f32,
     // The pixels that may show hair: left and top, right and bottom.
     low: vec2f,
     high: vec2f,
@@ -29,11 +25,20 @@ struct ClusterUniform {
     matt: f32,
     primary: f32,
     secondary: f32,
+    // How strongly records vary the light of strands.
+    detail: f32,
     // Entries of a map, the pattern of the literal look-up, and threads per triangle.
     entries: u32,
     pattern: u32,
     lanes: u32,
+    // The light whose entries are placed.
+    light: u32,
+    // Unit vectors toward the lights.
+    to_lights: array<vec4f, 4>,
 }
+
+// The parts of light that are told apart: ambient light, and four lights.
+const LIT_PARTS: u32 = 5u;
 
 // Where an outer and an inner rib cross a section. Twin of `Vertex` in cpu/clusters/vertices.rs.
 struct ClusterVertex {
@@ -44,12 +49,12 @@ struct ClusterVertex {
     outer: vec3f,
     // One over the length of the outer arc to the next rib, 1/metres.
     inverse_arc: f32,
-    // Azimuths of the eye and of the strongest light, from the outward normal.
-    angles: vec2f,
+    // Azimuths of the lights and of the eye, from the outward normal.
+    light_angles: vec4f,
+    view_angle: f32,
     cos_view: f32,
-    // Colours as half floats: red and green, blue.
-    inner_color: vec2u,
-    outer_color: vec2u,
+    // Ambient light and that of each light on the inner and the outer ring, as half floats: red and green, blue.
+    lit: array<vec4u, LIT_PARTS>,
 }
 
 @group(0) @binding(10) var<uniform> clusters: ClusterUniform;

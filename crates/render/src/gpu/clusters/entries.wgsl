@@ -1,4 +1,4 @@
-// Moves the points of ribs toward the strongest light, to where it enters their cluster: the ellipse of their section. Twin of
+// Moves the points of ribs toward a light, to where it enters their cluster: the ellipse of their section. Twin of
 // cpu/clusters/entries.rs.
 
 @group(0) @binding(1) var<storage, read> points: array<vec4f>;
@@ -15,7 +15,7 @@ fn turned_by(rib: u32) -> vec2f {
 // How far it is to the surface from rib `rib` at `radius` of section `i`, metres.
 fn way_out(outer: u32, i: u32, rib: u32, radius: f32) -> f32 {
     let around = clusters.around;
-    let toward = clusters.to_light;
+    let toward = clusters.to_lights[clusters.light].xyz;
     // The axes of the ellipse to which the disk's axes are mapped.
     var x = vec3f(0.0);
     var y = vec3f(0.0);
@@ -53,5 +53,5 @@ fn place_entries(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let rib = k / sections;
     let radius = select(1.0, clusters.core, rib < around);
     let way = way_out(thread - k + ring, k % sections, rib % around, radius);
-    entries[thread] = vec4f(points[thread].xyz + clusters.to_light * way, 0.0);
+    entries[thread] = vec4f(points[thread].xyz + clusters.to_lights[clusters.light].xyz * way, 0.0);
 }

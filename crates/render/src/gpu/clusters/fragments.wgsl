@@ -3,7 +3,7 @@
 //
 // Several threads share a triangle that may cover very many pixels, because software adapters end loops after 65,535 iterations.
 
-@group(0) @binding(12) var<storage, read> maps: array<vec2u>;
+@group(0) @binding(12) var<storage, read> maps: array<u32>;
 @group(0) @binding(14) var<storage, read> crossings: array<vec2u>;
 
 // Whether each map is read at its nearest texel.
@@ -47,36 +47,42 @@ fn span_of(edge_a: vec3f, edge_b: vec3f, edge_c: vec3f) -> Span {
     );
 }
 
-// Optical depth before the curve of the layer, and reflectance, of a map at a place of its layer.
-fn map_at(quad: u32, texels: u32, u: f32, t: f32) -> vec2f {
-    let first = quad * clusters.entries;
+// Where a map is read: the first words of two texels, and where between them.
+struct MapPlace { low: u32, high: u32, f: f32 }
+
+fn map_place(quad: u32, texels: u32, u: f32) -> MapPlace {
     let x = u * f32(texels) + 0.5;
     let i = min(u32(select(x, floor(x + 0.5), NEAREST)), texels);
-    let f = select(x - f32(i), 0.0, NEAREST);
-    let low = maps[first + 1u + i];
-    let high = maps[first + 2u + i];
-    let low_depths = unpack2x16float(low.x);
-    let low_reflected = unpack2x16float(low.y);
-    let depths = low_depths + (unpack2x16float(high.x) - low_depths) * f;
-    let reflected = low_reflected + (unpack2x16float(high.y) - low_reflected) * f;
-    return vec2f(between(depths.x, depths.y, t), between(reflected.x, reflected.y, t));
+    let low = map_of(quad) + (1u + i) * entry_words();
+    return MapPlace(low, low + entry_words(), select(x - f32(i), 0.0, NEAREST));
 }
 
-// The light that other layers let through to a place on a layer (Xu et al., equation 12).
-fn own_shadow(quad: u32, layer: u32, cos_view: f32, u: f32, t: f32) -> f32 {
+// A value of a map between both sections: its optical depth before the curve of the layer (0), or its reflectance under a light (1 and on).
+fn map_value(at: MapPlace, value: u32, t: f32) -> f32 {
+    let low = unpack2x16float(maps[at.low + value]);
+    let both = low + (unpack2x16float(maps[at.high + value]) - low) * at.f;
+    return between(both.x, both.y, t);
+}
+
+// The fraction of a light that other layers let through to a place on a layer (Xu et al., equation 12). Only where light passes elsewhere
+// than where the eye sees the place does it depend on the light.
+fn own_shadow(quad: u32, layer: u32, light: u32, u: f32, t: f32, at: vec4u) -> f32 {
     let layers = clusters.layers;
     let strength = clusters.shadow_strength;
+    let sums_opacities = LOCAL_SHADOW == SHADOW_LINEAR || LOCAL_SHADOW == SHADOW_EXPONENTIAL;
     var sum = 0.0;
-    if (LOCAL_SHADOW == SHADOW_OF_LAYERS || LOCAL_SHADOW == SHADOW_LINEAR) {
+    if (LOCAL_SHADOW == SHADOW_OF_LAYERS || sums_opacities) {
+        let cos_view = bilinear(cosines_of(at), u, t);
         for (var outer = layer + 1u; outer < layers; outer++) {
             let above = quad + outer - layer;
-            let depth = map_at(above, maps[above * clusters.entries].y, u, t).x * curved(cos_view, thickness_of(outer));
-            sum += select(min(depth, OPAQUE_DEPTH), 1.0 - exp(-depth), LOCAL_SHADOW == SHADOW_LINEAR);
+            let depth = map_value(map_place(above, maps[map_of(above)], u), 0u, t) * curved(cos_view, thickness_of(outer));
+            sum += select(min(depth, OPAQUE_DEPTH), 1.0 - exp(-depth), sums_opacities);
         }
     }
     if (LOCAL_SHADOW == SHADOW_DIRECTIONAL) {
+        let first = crossings_of(quad, light);
         for (var k = 0u; k < 2u * layers; k++) {
-            let crossing = crossings[quad * 2u * layers + k];
+            let crossing = crossings[first + k];
             let depths = unpack2x16float(crossing.x);
             let cosines = unpack2x16snorm(crossing.y);
             let depth = between(depths.x, depths.y, t) * curved(between(cosines.x, cosines.y, t), thickness_of(k / 2u));
@@ -89,12 +95,30 @@ fn own_shadow(quad: u32, layer: u32, cos_view: f32, u: f32, t: f32) -> f32 {
     return exp(-strength * sum);
 }
 
-fn color_on(vertex: u32, share: f32) -> vec3f {
-    let inner = vertices[vertex].inner_color;
-    let outer = vertices[vertex].outer_color;
-    let a = vec3f(unpack2x16float(inner.x), unpack2x16float(inner.y).x);
-    let b = vec3f(unpack2x16float(outer.x), unpack2x16float(outer.y).x);
+// A part of the light at a vertex on the surface of a layer.
+fn lit_on(vertex: u32, part: u32, share: f32) -> vec3f {
+    let lit = vertices[vertex].lit[part];
+    let a = vec3f(unpack2x16float(lit.x), unpack2x16float(lit.y).x);
+    let b = vec3f(unpack2x16float(lit.z), unpack2x16float(lit.w).x);
     return a + (b - a) * share;
+}
+
+// A part of the light at the corners of a layer.
+struct CornerLight { a: vec3f, b: vec3f, c: vec3f, d: vec3f }
+
+fn corner_light(at: vec4u, part: u32, share: f32) -> CornerLight {
+    return CornerLight(
+        lit_on(at.x, part, share),
+        lit_on(at.y, part, share),
+        lit_on(at.z, part, share),
+        lit_on(at.w, part, share),
+    );
+}
+
+fn light_between(corners: CornerLight, u: f32, t: f32) -> vec3f {
+    let lower = corners.a + (corners.b - corners.a) * u;
+    let upper = corners.c + (corners.d - corners.c) * u;
+    return lower + (upper - lower) * t;
 }
 
 // A colour for a record: hues for patterns, brighter for denser ones.
@@ -155,14 +179,17 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let depth_of = vec3f(p.z, q.z, r.z);
     let cosines = cosines_of(at);
     let thickness = thickness_of(layer);
-    let color_a = color_on(at.x, share);
-    let color_b = color_on(at.y, share);
-    let color_c = color_on(at.z, share);
-    let color_d = color_on(at.w, share);
-    let header = maps[quad * clusters.entries];
+    var lit: array<CornerLight, LIT_PARTS>;
+    lit[0] = corner_light(at, 0u, share);
+    let header = map_of(quad);
+    let texels = maps[header];
     let detail = clusters.detail;
     let as_published = clusters.as_published != 0u;
-    let slope = select(detail * bitcast<f32>(header.x), 1.0, as_published);
+    var slopes: vec4f;
+    for (var light = 0u; light < CLUSTER_LIGHTS; light++) {
+        lit[1u + light] = corner_light(at, 1u + light, share);
+        slopes[light] = select(detail * bitcast<f32>(maps[header + 1u + light]), 1.0, as_published);
+    }
     let even = select(1.0 - detail, 0.0, as_published);
     let hash = fract(f32(quad) * 0.618034);
     let middle_distance = 4.0 / max(corner_a.z + corner_b.z + corner_c.z + corner_d.z, 1e-9);
@@ -214,8 +241,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
             let u = clamp(dot(middle, u_of), 0.0, 1.0);
             let t = clamp(dot(middle, t_of), 0.0, 1.0);
             let cos_view = bilinear(cosines, u, t);
-            let found = map_at(quad, header.y, u, t);
-            let alpha = 1.0 - exp(-found.x * curved(cos_view, thickness));
+            let found = map_place(quad, texels, u);
+            let alpha = 1.0 - exp(-map_value(found, 0u, t) * curved(cos_view, thickness));
             if (!(alpha >= FAINTEST)) {
                 continue;
             }
@@ -223,10 +250,16 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
             if (SHOWS_RECORDS) {
                 color = record_color(cell_of(column, layer, 1u, select(0u, 1u, t > 0.5)));
             } else {
-                let lower = color_a + (color_b - color_a) * u;
-                let upper = color_c + (color_d - color_c) * u;
-                let gain = max(even + slope * found.y, 0.0) * own_shadow(quad, layer, cos_view, u, t);
-                color = (lower + (upper - lower) * t) * gain;
+                // Ambient light, which no record reflects and no layer shadows, and what records reflect of each light.
+                color = light_between(lit[0], u, t);
+                var through = 1.0;
+                for (var light = 0u; light < CLUSTER_LIGHTS; light++) {
+                    if (light == 0u || LOCAL_SHADOW == SHADOW_DIRECTIONAL) {
+                        through = own_shadow(quad, layer, light, u, t, at);
+                    }
+                    let gain = max(even + slopes[light] * map_value(found, 1u + light, t), 0.0);
+                    color += light_between(lit[1u + light], u, t) * (gain * through);
+                }
             }
             take(place.y * eye.size.x + place.x, Fragment(depth, alpha, seen, color, hash, middle_distance, pixel));
         }

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use lovelock_gpu::Gpu;
 use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 
 use super::constant::Largest;
 use super::kernels::{ClusterVariant, MAX_PIXELS_A_THREAD};
-use crate::clusters::{guides_of, to_strongest_light};
-use crate::{FrameInput, HairPose, PictureSettings};
+use crate::clusters::{guides_of, to_lights};
+use crate::{FrameInput, HairPose, MAX_LIGHTS, PictureSettings};
 
 /// Twin of `ClusterUniform` in clusters.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -18,8 +18,6 @@ use crate::{FrameInput, HairPose, PictureSettings};
 pub(super) struct ClusterUniform {
     eye: Vec3,
     depth: f32,
-    to_light: Vec3,
-    detail: f32,
     pub low: Vec2,
     pub high: Vec2,
     around: u32,
@@ -33,16 +31,18 @@ pub(super) struct ClusterUniform {
     matt: f32,
     primary: f32,
     secondary: f32,
+    detail: f32,
     entries: u32,
     pattern: u32,
     pub lanes: u32,
-    unused: [u32; 2],
+    pub light: u32,
+    to_lights: [Vec4; MAX_LIGHTS],
 }
 
 /// Twin of `ClusterVertex` in clusters.wgsl; never read on the CPU.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct Vertex([u32; 16]);
+pub(super) struct Vertex([u32; 36]);
 
 /// What the last frame drew.
 #[derive(Debug)]
@@ -72,9 +72,15 @@ impl Frame {
 
     /// The finest level of detail for which the maps of all layers fit a buffer of the device.
     pub fn finest(&self, gpu: &Gpu) -> u32 {
-        let fits = |mip: &u32| 8 * self.quads() * u64::from(entries_of(*mip)) <= gpu.most_storage_bytes();
+        let fits = |mip: &u32| 4 * self.map_words(*mip) <= gpu.most_storage_bytes();
         let last = layout::MIPS as u32 - 1;
         (0..last).find(fits).unwrap_or(last)
+    }
+
+    /// Words of the maps of all layers, with texels from level `finest` on. Twin of `entry_words` in layer.wgsl.
+    pub fn map_words(&self, finest: u32) -> u64 {
+        let entry_words = 1 + self.variant.lights().max(1) as u64;
+        self.quads() * u64::from(entries_of(finest)) * entry_words
     }
 
     /// `input` with the ribs in place of the hairstyle.
@@ -101,8 +107,6 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
     ClusterUniform {
         eye: input.camera.eye,
         depth: frame.share * opacity * lovelock_satf::strand_width(&input.look, frame.hair.strands),
-        to_light: to_strongest_light(input.lights),
-        detail: settings.detail,
         low: Vec2::ZERO,
         high: Vec2::ZERO,
         around,
@@ -116,10 +120,16 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
         matt: settings.diffuse,
         primary: settings.primary,
         secondary: settings.secondary,
+        detail: settings.detail,
         entries: entries_of(finest),
         pattern: SectorRef::literal(1.0).index / layout::DEPTHS as u32,
         lanes: 1,
-        unused: [0; 2],
+        light: 0,
+        to_lights: {
+            let mut all = [Vec4::ZERO; MAX_LIGHTS];
+            all.iter_mut().zip(to_lights(input.lights)).for_each(|(to, light)| *to = light.extend(0.0));
+            all
+        },
     }
 }
 
@@ -167,8 +177,6 @@ mod tests {
             [
                 offset_of!(ClusterUniform, eye),
                 offset_of!(ClusterUniform, depth),
-                offset_of!(ClusterUniform, to_light),
-                offset_of!(ClusterUniform, detail),
                 offset_of!(ClusterUniform, low),
                 offset_of!(ClusterUniform, high),
                 offset_of!(ClusterUniform, around),
@@ -182,9 +190,12 @@ mod tests {
                 offset_of!(ClusterUniform, matt),
                 offset_of!(ClusterUniform, primary),
                 offset_of!(ClusterUniform, secondary),
+                offset_of!(ClusterUniform, detail),
                 offset_of!(ClusterUniform, entries),
                 offset_of!(ClusterUniform, pattern),
                 offset_of!(ClusterUniform, lanes),
+                offset_of!(ClusterUniform, light),
+                offset_of!(ClusterUniform, to_lights),
                 size_of::<ClusterUniform>(),
             ]
         );

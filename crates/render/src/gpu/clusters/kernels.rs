@@ -1,6 +1,7 @@
 //! The kernels of clusters.
 
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource};
+use lovelock_groom::HairShading;
 use lovelock_satf::{ClusterSettings, ClusterView, LocalShadow, RecordLookup};
 
 macro_rules! part {
@@ -17,14 +18,15 @@ const ENTRIES: ShaderPart = part!("entries.wgsl");
 const MAPS: ShaderPart = part!("maps.wgsl");
 const VERTICES: ShaderPart = part!("vertices.wgsl");
 const SURFACE: ShaderPart = part!("surface.wgsl");
+const RIB_LIGHT: ShaderPart = part!("rib_light.wgsl");
 const PUBLISHED: ShaderPart = part!("published.wgsl");
 const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
 
 /// The parts that call `take` for each fragment of clusters.
 pub(in crate::gpu) const FRAGMENT_PARTS: [ShaderPart; 4] = [CLUSTERS, LAYER, CELLS, FRAGMENTS];
 
-/// The parts that, after those of strand points, light ribs as published.
-pub(in crate::gpu) const PUBLISHED_PARTS: [ShaderPart; 3] = [CLUSTERS, SURFACE, PUBLISHED];
+/// The parts that, after those of strand points, light ribs, as strands or as published.
+pub(in crate::gpu) const RIB_PARTS: [ShaderPart; 4] = [CLUSTERS, SURFACE, RIB_LIGHT, PUBLISHED];
 
 /// The most steps of loops per thread: half of what software adapters allow.
 pub(super) const MAX_PIXELS_A_THREAD: f32 = 32_768.0;
@@ -35,16 +37,23 @@ pub(in crate::gpu) struct ClusterVariant {
     shadow: LocalShadow,
     lookup: RecordLookup,
     view: ClusterView,
+    /// Lights that are on.
+    lights: usize,
 }
 
 impl ClusterVariant {
-    /// The variant for these settings.
-    pub fn of(settings: &ClusterSettings) -> Self {
-        Self { shadow: settings.local_shadow, lookup: settings.lookup, view: settings.view }
+    /// The variant for these settings and so many lights.
+    pub fn of(settings: &ClusterSettings, lights: usize) -> Self {
+        Self { shadow: settings.local_shadow, lookup: settings.lookup, view: settings.view, lights }
+    }
+
+    /// Lights that are on.
+    pub(super) fn lights(self) -> usize {
+        self.lights
     }
 
     /// The overrides of the shaders.
-    pub fn constants(self) -> [Constant; 3] {
+    pub fn constants(self) -> [Constant; 4] {
         let flag = |is: bool| f64::from(u8::from(is));
         // Twin of the constants in layer.wgsl.
         let shadow = match self.shadow {
@@ -52,11 +61,13 @@ impl ClusterVariant {
             LocalShadow::Layers => 1.0,
             LocalShadow::Linear => 2.0,
             LocalShadow::Directional => 3.0,
+            LocalShadow::Exponential => 4.0,
         };
         [
             ("LOCAL_SHADOW", shadow),
             ("NEAREST", flag(self.lookup == RecordLookup::Nearest)),
             ("SHOWS_RECORDS", flag(self.view == ClusterView::Records)),
+            ("CLUSTER_LIGHTS", self.lights as f64),
         ]
     }
 
@@ -73,8 +84,8 @@ impl ClusterVariant {
     pub(super) fn shadow_steps(self, layers: usize) -> usize {
         match self.shadow {
             LocalShadow::Map => 0,
-            LocalShadow::Layers | LocalShadow::Linear => layers,
-            LocalShadow::Directional => 2 * layers,
+            LocalShadow::Layers | LocalShadow::Linear | LocalShadow::Exponential => layers,
+            LocalShadow::Directional => 2 * layers * self.lights,
         }
     }
 }
@@ -85,14 +96,23 @@ pub(super) struct ClusterKernels {
     pub vertices: Kernel,
     entries: Option<Kernel>,
     maps: Vec<(ClusterVariant, Kernel)>,
-    /// By the number of lights.
-    published: Vec<(usize, Kernel)>,
+    rib_light: Vec<(RibVariant, Kernel)>,
+}
+
+/// What the kernel that lights ribs is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RibVariant {
+    pub lights: usize,
+    /// How they are shaded as strands; `None` for the published light.
+    pub as_strands: Option<HairShading>,
+    /// Whether ribs have colours of their own.
+    pub colored: bool,
 }
 
 impl ClusterKernels {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let vertices = Kernel::new(gpu, "cluster vertices", &vertices_source(), "place_vertices")?;
-        Ok(Self { vertices, entries: None, maps: Vec::new(), published: Vec::new() })
+        Ok(Self { vertices, entries: None, maps: Vec::new(), rib_light: Vec::new() })
     }
 
     /// The kernel that finds where light enters clusters.
@@ -104,16 +124,22 @@ impl ClusterKernels {
         Ok(self.entries.insert(kernel))
     }
 
-    /// The kernel of the published light, whose shader is `source`, for a number of lights.
-    pub fn published(
+    /// The kernel that lights ribs, whose shader is `source`.
+    pub fn rib_light(
         &mut self,
         gpu: &Gpu,
         source: &ShaderSource,
-        lights: usize,
+        variant: RibVariant,
     ) -> Result<&Kernel, GpuError> {
-        find_or_make(&mut self.published, lights, || {
-            let constants = [("LIGHTS", lights as f64)];
-            Kernel::specialised(gpu, "published light", source, "published_points", &constants)
+        find_or_make(&mut self.rib_light, variant, || {
+            let RibVariant { lights, as_strands, colored } = variant;
+            let constants = [
+                ("LIGHTS", lights as f64),
+                ("SHADING", f64::from(as_strands.unwrap_or_default() as u8)),
+                ("COLORED", f64::from(u8::from(colored))),
+            ];
+            let entry = if as_strands.is_some() { "light_ribs" } else { "published_points" };
+            Kernel::specialised(gpu, "light on ribs", source, entry, &constants)
         })
     }
 

@@ -1,11 +1,10 @@
 // Computes what each layer of each column that may be seen lets through and reflects: twin of cpu/clusters/records.rs and of
 // `toward_light` in cpu/clusters/columns.rs.
 
-// Maps of `clusters.entries` entries: the header, which is one over the mean reflectance and the number of texels; and the texels, with
-// one of each neighbour at the ends. A texel is its optical depth at both sections, and its reflectance there, as half floats.
-@group(0) @binding(12) var<storage, read_write> maps: array<vec2u>;
-// Per layer of a column and layer that shadows it, for light that comes in and for light that leaves: the optical depth at both sections,
-// and the cosine of the light's azimuth there. 0 where no light passes.
+// See `entry_words` in layer.wgsl.
+@group(0) @binding(12) var<storage, read_write> maps: array<u32>;
+// Per layer of a column, light, and layer that shadows it, for light that comes in and for light that leaves: the optical depth at both
+// sections, and the cosine of the light's azimuth there. 0 where no light passes.
 @group(0) @binding(14) var<storage, read_write> crossings: array<vec2u>;
 
 // Sine of the angle between eye and hair below which the azimuth of the eye is not defined well: five degrees.
@@ -17,7 +16,7 @@ struct Place {
     column: u32,
     layer: u32,
     view: vec4f,
-    light: vec4f,
+    lights: array<vec4f, 4>,
     // The part of the records toward the eye; the rest is that of their mean over azimuths.
     share: f32,
     mip: f32,
@@ -42,34 +41,55 @@ fn depths_of(at: vec4u, layer: u32) -> vec2f {
     return clusters.depth * vec2f(vertices[at.x].inverse_arc, vertices[at.z].inverse_arc) / middle_radius_of(layer);
 }
 
-// Optical depth of a texel with the strands of a cell, and reflectance.
-fn read_cell(place: Place, cell: u32, u: f32, inside: f32, t: f32) -> vec2f {
+// A cell that is read at `u` of a map, at `inside` of the sector and at `t` along the hair.
+struct Spot { sector: Sector, texels: Texels, u: f32, t: f32 }
+
+fn spot_of(place: Place, cell: u32, u: f32, inside: f32, t: f32) -> Spot {
     let sector = sector_of(cell);
-    let texels = texels_of(sector, inside, place.mip);
-    let angles = vec2f(bilinear(place.view, u, t), bilinear(place.light, u, t));
-    var found = stored(sector, angles, texels);
-    if (place.share < 1.0) {
-        let any_view = stored_any_view(sector, angles.y, texels);
-        found = any_view + (found - any_view) * place.share;
-    }
-    return vec2f(depth_of_opacity(found.x) / depth_of_bin(sector.index), found.y);
+    return Spot(sector, texels_of(sector, inside, place.mip), u, t);
 }
 
-// Entry `k` of a map: optical depths at both sections, and reflectances.
-fn texel_of(place: Place, k: u32) -> vec4f {
+// Optical depth of a texel with one strand.
+fn depth_of(place: Place, spot: Spot) -> f32 {
+    var opacity = stored_opacity(spot.sector, bilinear(place.view, spot.u, spot.t), spot.texels);
+    if (place.share < 1.0) {
+        let any_view = stored_any_view(spot.sector, bilinear(place.lights[0], spot.u, spot.t), spot.texels).x;
+        opacity = any_view + (opacity - any_view) * place.share;
+    }
+    return depth_of_opacity(opacity) / depth_of_bin(spot.sector.index);
+}
+
+// Reflectance of a texel under a light.
+fn reflectance_of(place: Place, spot: Spot, light: u32) -> f32 {
+    let angles = vec2f(bilinear(place.view, spot.u, spot.t), bilinear(place.lights[light], spot.u, spot.t));
+    var reflected = stored_reflectance(spot.sector, angles, spot.texels);
+    if (place.share < 1.0) {
+        let any_view = stored_any_view(spot.sector, angles.y, spot.texels).y;
+        reflected = any_view + (reflected - any_view) * place.share;
+    }
+    return reflected;
+}
+
+// The cells of entry `k` of a map at both sections. Equal sectors are one record, swept from section to section.
+struct Pair { low: Spot, high: Spot, strands: vec2f }
+
+fn pair_of(place: Place, k: u32) -> Pair {
     let u = (f32(k) - 0.5) / f32(place.texels);
     let side = select(select(1u, 2u, k > place.texels), 0u, k == 0u);
     let inside = u + 1.0 - f32(side);
     let low = cell_of(place.column, place.layer, side, 0u);
     let high = cell_of(place.column, place.layer, side, 1u);
-    // Equal sectors are one record, swept from section to section.
     let swept = ((low ^ high) & 0xffffu) == 0u;
-    let at_low = read_cell(place, low, u, inside, select(0.0, 0.5, swept));
-    var at_high = at_low;
-    if (!swept) {
-        at_high = read_cell(place, high, u, inside, 1.0);
-    }
-    return vec4f(strands_of(low) * at_low.x * place.depths.x, strands_of(high) * at_high.x * place.depths.y, at_low.y, at_high.y);
+    return Pair(
+        spot_of(place, low, u, inside, select(0.0, 0.5, swept)),
+        spot_of(place, high, u, inside, select(1.0, 0.5, swept)),
+        vec2f(strands_of(low), strands_of(high)),
+    );
+}
+
+// Optical depths at both sections.
+fn depths_of_pair(place: Place, pair: Pair) -> vec2f {
+    return pair.strands * vec2f(depth_of(place, pair.low), depth_of(place, pair.high)) * place.depths;
 }
 
 // The sector of an average optical depth, as published, and 1 if there is any hair.
@@ -85,10 +105,11 @@ fn wrapped(angle: f32) -> f32 {
 // Sectors, and azimuths of eye and light, of the records at both sections.
 struct Published { sectors: array<vec2u, 2>, angles: array<vec2f, 2> }
 
-// The nearest record of the average density, one for both sections where they are alike: `fill_nearest` and satf/src/boundary.rs.
-fn published(place: Place) -> Published {
-    let low = vec2f(bilinear(place.view, 0.5, 0.0), bilinear(place.light, 0.5, 0.0));
-    let high = vec2f(bilinear(place.view, 0.5, 1.0), bilinear(place.light, 0.5, 1.0));
+// The nearest record of the average density under a light, one for both sections where they are alike: `fill_nearest` and
+// satf/src/boundary.rs.
+fn published(place: Place, light: u32) -> Published {
+    let low = vec2f(bilinear(place.view, 0.5, 0.0), bilinear(place.lights[light], 0.5, 0.0));
+    let high = vec2f(bilinear(place.view, 0.5, 1.0), bilinear(place.lights[light], 0.5, 1.0));
     let depth_low = strands_of(cell_of(place.column, place.layer, 1u, 0u)) * place.depths.x;
     let depth_high = strands_of(cell_of(place.column, place.layer, 1u, 1u)) * place.depths.y;
     let turn = vec2f(wrapped(low.x - high.x), wrapped(low.y - high.y));
@@ -101,37 +122,67 @@ fn published(place: Place) -> Published {
     return Published(array(literal_sector(depth_low), literal_sector(depth_high)), array(low, high));
 }
 
-fn read_published(sector: vec2u, angles: vec2f, u: f32, depth: f32) -> vec2f {
-    let found = stored(Sector(sector.x, 1.0), angles, texels_at(u, 0.0));
-    return vec2f(depth_of_opacity(found.x * f32(sector.y)) * min(depth / 1e-9, 1.0), found.y);
+// The azimuth of the eye is enough for the optical depth.
+fn published_depth(sector: vec2u, angle: f32, u: f32, depth: f32) -> f32 {
+    let opacity = stored_opacity(Sector(sector.x, 1.0), angle, texels_at(u, 0.0));
+    return depth_of_opacity(opacity * f32(sector.y)) * min(depth / 1e-9, 1.0);
 }
 
-fn published_texel(place: Place, pair: Published, k: u32) -> vec4f {
+// Optical depths of entry `k` at both sections.
+fn published_depths(place: Place, pair: Published, k: u32) -> vec2f {
     let u = (f32(k) - 0.5) / f32(place.texels);
-    let low = read_published(pair.sectors[0], pair.angles[0], u, place.depths.x);
-    let high = read_published(pair.sectors[1], pair.angles[1], u, place.depths.y);
-    return vec4f(low.x, high.x, low.y, high.y);
+    return vec2f(
+        published_depth(pair.sectors[0], pair.angles[0].x, u, place.depths.x),
+        published_depth(pair.sectors[1], pair.angles[1].x, u, place.depths.y),
+    );
+}
+
+// Reflectances of entry `k` at both sections.
+fn published_reflectances(place: Place, pair: Published, k: u32) -> vec2f {
+    let texels = texels_at((f32(k) - 0.5) / f32(place.texels), 0.0);
+    return vec2f(
+        stored_reflectance(Sector(pair.sectors[0].x, 1.0), pair.angles[0], texels),
+        stored_reflectance(Sector(pair.sectors[1].x, 1.0), pair.angles[1], texels),
+    );
 }
 
 fn fill_map(quad: u32, place: Place) {
-    let first = quad * clusters.entries;
-    var pair: Published;
+    let first = map_of(quad);
+    var published_pairs: array<Published, 4>;
     if (NEAREST) {
-        pair = published(place);
-    }
-    var sum = 0.0;
-    for (var k = 0u; k < place.texels + 2u; k++) {
-        var texel: vec4f;
-        if (NEAREST) {
-            texel = published_texel(place, pair, k);
-        } else {
-            texel = texel_of(place, k);
+        published_pairs[0] = published(place, 0u);
+        for (var light = 1u; light < CLUSTER_LIGHTS; light++) {
+            published_pairs[light] = published(place, light);
         }
-        sum += select(0.0, texel.z + texel.w, k > 0u && k <= place.texels);
-        maps[first + 1u + k] = vec2u(pack2x16float(min(texel.xy, vec2f(MAX_DEPTH))), pack2x16float(texel.zw));
     }
-    let mean = sum / f32(2u * place.texels);
-    maps[first] = vec2u(bitcast<u32>(1.0 / max(mean, 0.02)), place.texels);
+    var sums = vec4f(0.0);
+    for (var k = 0u; k < place.texels + 2u; k++) {
+        let entry = first + (1u + k) * entry_words();
+        var pair: Pair;
+        var depths: vec2f;
+        if (NEAREST) {
+            depths = published_depths(place, published_pairs[0], k);
+        } else {
+            pair = pair_of(place, k);
+            depths = depths_of_pair(place, pair);
+        }
+        maps[entry] = pack2x16float(min(depths, vec2f(MAX_DEPTH)));
+        for (var light = 0u; light < CLUSTER_LIGHTS; light++) {
+            var reflected: vec2f;
+            if (NEAREST) {
+                reflected = published_reflectances(place, published_pairs[light], k);
+            } else {
+                reflected = vec2f(reflectance_of(place, pair.low, light), reflectance_of(place, pair.high, light));
+            }
+            sums[light] += select(0.0, reflected.x + reflected.y, k > 0u && k <= place.texels);
+            maps[entry + 1u + light] = pack2x16float(reflected);
+        }
+    }
+    maps[first] = place.texels;
+    for (var light = 0u; light < CLUSTER_LIGHTS; light++) {
+        let mean = sums[light] / f32(2u * place.texels);
+        maps[first + 1u + light] = bitcast<u32>(1.0 / max(mean, 0.02));
+    }
 }
 
 // Where light passes a layer at `u` of a column: optical depths at both sections.
@@ -140,14 +191,14 @@ fn light_depths(place: Place, u: f32) -> vec2f {
     let i = min(u32(select(x, floor(x + 0.5), NEAREST)), place.texels);
     let f = select(x - f32(i), 0.0, NEAREST);
     if (NEAREST) {
-        return published_texel(place, published(place), i).xy;
+        return published_depths(place, published(place, 0u), i);
     }
-    let low = texel_of(place, i).xy;
-    return low + (texel_of(place, i + 1u).xy - low) * f;
+    let low = depths_of_pair(place, pair_of(place, i));
+    return low + (depths_of_pair(place, pair_of(place, i + 1u)) - low) * f;
 }
 
-// Writes where light passes layer `met` on its way to a layer: see `crossings` in satf/src/shadow.rs.
-fn cross_layer(slot: u32, column: u32, met: u32, position: vec2f) {
+// Writes where a light passes layer `met` on its way to a layer: see `crossings` in satf/src/shadow.rs.
+fn cross_layer(slot: u32, column: u32, met: u32, light: u32, position: vec2f) {
     let around = clusters.around;
     let along = clusters.along;
     let turn = atan2(position.y, position.x) / TAU;
@@ -156,20 +207,21 @@ fn cross_layer(slot: u32, column: u32, met: u32, position: vec2f) {
     let rib = first + u32(at) % around;
     let passed = rib * along + column % along;
     let vertices_of = corners(passed);
-    let light = azimuths_of(vertices_of, 1u);
+    let toward = light_azimuths(vertices_of, light);
+    let lights = array(toward, toward, toward, toward);
     let mip = mip_of(vertices_of, met);
-    let place = Place(passed, met, light, light, 1.0, mip, FINEST_TEXELS >> u32(mip), depths_of(vertices_of, met));
+    let place = Place(passed, met, toward, lights, 1.0, mip, FINEST_TEXELS >> u32(mip), depths_of(vertices_of, met));
     let u = at - floor(at);
     let depths = light_depths(place, u);
-    let cosines = cos(light.xz) + (cos(light.yw) - cos(light.xz)) * u;
+    let cosines = cos(toward.xz) + (cos(toward.yw) - cos(toward.xz)) * u;
     crossings[slot] = vec2u(pack2x16float(min(depths, vec2f(MAX_DEPTH))), pack2x16snorm(cosines));
 }
 
-fn fill_crossings(quad: u32, column: u32, layer: u32, light: vec4f) {
+fn fill_crossings(quad: u32, column: u32, layer: u32, light: u32, azimuths: vec4f) {
     let layers = clusters.layers;
     let sector = TAU / f32(clusters.around);
     let here = (f32(column / clusters.along % clusters.around) + 0.5) * sector;
-    let toward = here + dot(light, vec4f(0.25));
+    let toward = here + dot(azimuths, vec4f(0.25));
     let direction = vec2f(cos(toward), sin(toward));
     let radius = radius_of(layer);
     let start = radius * vec2f(cos(here), sin(here));
@@ -183,10 +235,10 @@ fn fill_crossings(quad: u32, column: u32, layer: u32, light: vec4f) {
         // Through the inside: layers within are met twice, that of the point once more.
         let within = along < 0.0 && outer * outer > nearest;
         let is_met = select(within && (met < layer), within || (met > layer), enters);
-        let slot = quad * 2u * layers + k;
+        let slot = crossings_of(quad, light) + k;
         if (is_met) {
             let half = sqrt(max(outer * outer - nearest, 0.0));
-            cross_layer(slot, column, met, start + direction * (select(-half, half, enters) - along));
+            cross_layer(slot, column, met, light, start + direction * (select(-half, half, enters) - along));
         } else {
             crossings[slot] = vec2u(0u);
         }
@@ -216,13 +268,16 @@ fn fill_maps(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     if (!seen) {
         return;
     }
-    let light = azimuths_of(at, 1u);
+    let lights =
+        array(light_azimuths(at, 0u), light_azimuths(at, 1u), light_azimuths(at, 2u), light_azimuths(at, 3u));
     let mip = mip_of(at, layer);
     let share = min(dot(sines, vec4f(0.25)) / ALONG_HAIR, 1.0);
     let place =
-        Place(column, layer, azimuths_of(at, 0u), light, share, mip, FINEST_TEXELS >> u32(mip), depths_of(at, layer));
+        Place(column, layer, view_azimuths(at), lights, share, mip, FINEST_TEXELS >> u32(mip), depths_of(at, layer));
     fill_map(quad, place);
     if (LOCAL_SHADOW == SHADOW_DIRECTIONAL) {
-        fill_crossings(quad, column, layer, light);
+        for (var light = 0u; light < CLUSTER_LIGHTS; light++) {
+            fill_crossings(quad, column, layer, light, light_azimuths(at, light));
+        }
     }
 }

@@ -12,19 +12,20 @@ mod parts;
 use std::sync::Arc;
 
 use glam::{Vec3, vec2};
-use lovelock_gpu::{Commands, Gpu, GpuError, ShaderSource, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, ShaderSource, wgpu};
 use lovelock_satf::{ClusterHair, ClusterShading};
 use lovelock_shadow::{Bounds, GpuTargets, LightFrame};
 
 use super::frame_resources::FrameResources;
 use super::hair::PointShading;
 use super::shadow::GpuShadowStage;
-use crate::FrameInput;
 use crate::clusters::{ClusterStage, cluster_share, without_strands};
 use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps};
+use crate::{FrameInput, Light, MAX_LIGHTS};
 use frame::{ClusterUniform, Frame, lanes, uniform_of};
-pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, PUBLISHED_PARTS, shaders};
+use kernels::RibVariant;
+pub(in crate::gpu) use kernels::{ClusterVariant, FRAGMENT_PARTS, RIB_PARTS, shaders};
 use parts::Parts;
 
 /// The clusters of a frame, as input of the passes over fragments.
@@ -58,8 +59,8 @@ impl DrawnClusters<'_> {
 pub(super) struct RibLighting<'a> {
     /// The kernels of strand points with the tables of fibres.
     pub shading: PointShading<'a>,
-    /// The shader of the published light.
-    pub published: &'a ShaderSource,
+    /// The shader of the light on ribs.
+    pub rib_light: &'a ShaderSource,
     pub lights: usize,
     /// The area of the hair: left, top, right and bottom.
     pub area: [f32; 4],
@@ -86,7 +87,10 @@ impl Clusters {
             hair: self.stage.follow(input),
             share,
             picture: without_strands(input.picture),
-            variant: ClusterVariant::of(&input.picture.clusters),
+            variant: ClusterVariant::of(
+                &input.picture.clusters,
+                Light::enabled(input.lights).take(MAX_LIGHTS).count(),
+            ),
             uniform: ClusterUniform::default(),
         });
         self.frame.as_ref().map(|frame| (Arc::clone(&frame.hair), frame.share))
@@ -137,15 +141,15 @@ impl Clusters {
     /// Encodes looking up the ribs in the maps of all lights.
     pub fn look_up(&mut self, gpu: &Gpu, commands: &mut Commands, shadow: &mut GpuShadowStage) {
         let Some((parts, frame)) = self.placed() else { return };
-        let entries = frame.variant.has_entries().then(|| parts.entries.raw());
-        let targets = GpuTargets {
-            points: entries.unwrap_or(parts.ribs.asked()),
-            stride: 1,
-            count: parts.ribs.drawn().point_count,
-            out: parts.ribs.transmittance(),
-            sum: None,
-        };
         for slot in 0..shadow.lights() {
+            let entries = parts.entries.get(slot).filter(|_| frame.variant.has_entries());
+            let targets = GpuTargets {
+                points: entries.map_or(parts.ribs.asked(), GrowBuffer::raw),
+                stride: 1,
+                count: parts.ribs.drawn().point_count,
+                out: parts.ribs.transmittance(),
+                sum: None,
+            };
             shadow.look_up(slot, gpu, commands, &targets);
         }
     }
@@ -183,18 +187,16 @@ impl Clusters {
             lanes(parts.constant.largest, frame, lighting.area, lighting.scale / lighting.nearest.max(0.05));
         let [left, top, right, bottom] = lighting.area;
         (frame.uniform.low, frame.uniform.high) = (vec2(left, top), vec2(right, bottom));
-        if frame.picture.clusters.shading == ClusterShading::Paper {
-            let kernel = parts.kernels.published(gpu, lighting.published, lighting.lights)?;
-            let uniform = commands.constants("clusters", &frame.uniform);
-            parts.ribs.run_over_points(
-                gpu,
-                kernel,
-                "draw/published-light",
-                commands,
-                &of_ribs,
-                [(10, uniform.as_entire_binding())],
-            );
-        }
+        let is_published = frame.picture.clusters.shading == ClusterShading::Paper;
+        let variant = RibVariant {
+            lights: lighting.lights,
+            as_strands: (!is_published).then_some(lighting.shading.model),
+            colored: parts.ribs.is_colored(),
+        };
+        let kernel = parts.kernels.rib_light(gpu, lighting.rib_light, variant)?;
+        let uniform = commands.constants("clusters", &frame.uniform);
+        let more = [(10, uniform.as_entire_binding()), (24, parts.rib_light.raw().as_entire_binding())];
+        parts.ribs.light(gpu, kernel, "draw/rib-light", lighting.shading, commands, (&of_ribs, more));
         parts.place_vertices(gpu, commands, frame);
         parts.fill_maps(gpu, commands, frame)
     }
@@ -217,8 +219,11 @@ impl Clusters {
     /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.parts.as_ref().map_or(0, |parts| {
-            let own = [parts.entries.raw(), parts.vertices.raw(), parts.maps.raw(), parts.crossings.raw()];
-            own.iter().map(|buffer| buffer.size()).sum::<u64>()
+            let own = [parts.rib_light.raw(), parts.vertices.raw(), parts.maps.raw(), parts.crossings.raw()];
+            own.into_iter()
+                .chain(parts.entries.iter().map(GrowBuffer::raw))
+                .map(wgpu::Buffer::size)
+                .sum::<u64>()
                 + parts.ribs.memory_bytes()
                 + parts.constant.bytes()
         })

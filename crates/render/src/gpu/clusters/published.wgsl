@@ -1,5 +1,5 @@
-// Replaces the light on ribs by the published one: a matt part and two shifted highlights (Xu et al., "SATF", equations 8 to 11). Twin of
-// cpu/clusters/published.rs and of satf/src/lighting.rs. Joined with strand_points.wgsl.
+// The light on ribs as published: a matt part and two shifted highlights (Xu et al., "SATF", equations 8 to 11). Twin of
+// cpu/clusters/published.rs and of satf/src/lighting.rs. Joined with rib_light.wgsl.
 
 const PRIMARY_SHIFT: f32 = 0.1;
 const SECONDARY_SHIFT: f32 = 0.15;
@@ -38,7 +38,7 @@ fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let p = points[i].xyz;
     let v = unit_or_zero(clusters.eye - p);
     let color = strand_color(frame.mean_absorption).body;
-    var sum = ambient(vec3f(0.0, 0.3, 0.0)) * color * 0.22;
+    put_part(i, 0u, ambient(vec3f(0.0, 0.3, 0.0)) * color * 0.22);
     for (var k = 0u; k < LIGHTS; k++) {
         let light = frame.lights[k];
         let l = -light.direction;
@@ -48,9 +48,6 @@ fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
             * published_highlight(shifted_tangent(tangent, normal, PRIMARY_SHIFT), l, v, PRIMARY_EXPONENT);
         let second = clusters.secondary
             * published_highlight(shifted_tangent(tangent, normal, -SECONDARY_SHIFT), l, v, SECONDARY_EXPONENT);
-        sum += light.radiance * (color * (matt + second) + first) * lit;
+        put_part(i, 1u + k, light.radiance * (color * (matt + second) + first) * lit);
     }
-    sum = min(sum, vec3f(MAX_LIGHT));
-    let hash = shaded[i].color.y & 0xffff0000u;
-    shaded[i].color = vec2u(pack2x16float(sum.rg), (pack2x16float(vec2f(sum.b, 0.0)) & 0xffffu) | hash);
 }

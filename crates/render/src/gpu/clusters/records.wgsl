@@ -101,8 +101,8 @@ fn stored_opacity(sector: Sector, angle: f32, texels: Texels) -> f32 {
     return between(opacity_in(first + view.low, texels), opacity_in(first + view.high, texels), view.fraction) / 255.0;
 }
 
-// Opacity and reflectance as they are stored.
-fn stored(sector: Sector, angles: vec2f, texels: Texels) -> vec2f {
+// The reflectance as it is stored, for azimuths of the eye and of a light.
+fn stored_reflectance(sector: Sector, angles: vec2f, texels: Texels) -> f32 {
     let view = azimuth_of(sector, angles.x);
     let light = azimuth_of(sector, angles.y);
     let reflected = between(
@@ -110,10 +110,10 @@ fn stored(sector: Sector, angles: vec2f, texels: Texels) -> vec2f {
         reflectance_toward(sector.index, view.high, light, texels),
         view.fraction,
     );
-    return vec2f(stored_opacity(sector, angles.x, texels), reflected / 255.0);
+    return reflected / 255.0;
 }
 
-// Their means over all azimuths of view, for an eye that looks along the strands.
+// Opacity and reflectance as their means over all azimuths of view, for an eye that looks along the strands.
 fn stored_any_view(sector: Sector, light_angle: f32, texels: Texels) -> vec2f {
     let light = azimuth_of(sector, light_angle);
     var sum = vec2f(0.0);

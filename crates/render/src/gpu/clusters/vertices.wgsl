@@ -11,6 +11,8 @@ struct ShadedPoint {
 @group(0) @binding(1) var<storage, read> points: array<vec4f>;
 @group(0) @binding(2) var<storage, read> shaded: array<ShadedPoint>;
 @group(0) @binding(11) var<storage, read_write> vertices: array<ClusterVertex>;
+// The parts of the light of each point: see rib_light.wgsl.
+@group(0) @binding(24) var<storage, read> rib_light: array<vec2u>;
 
 // The angle of `v` around the strand; 0 where it has none.
 fn azimuth(v: vec3f, surface: Surface) -> f32 {
@@ -34,14 +36,25 @@ fn place_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     let b = shaded[inner + ring + at];
     let drawn = a.half_width >= 0.0 && b.half_width >= 0.0 && any(surface.normal != vec3f(0.0));
     let view = azimuth(to_eye, surface);
+    var lights: vec4f;
+    for (var k = 0u; k < 4u; k++) {
+        lights[k] = azimuth(clusters.to_lights[k].xyz, surface);
+    }
+    var lit: array<vec4u, LIT_PARTS>;
+    for (var part = 0u; part < LIT_PARTS; part++) {
+        lit[part] = vec4u(
+            rib_light[(inner + at) * LIT_PARTS + part],
+            rib_light[(inner + ring + at) * LIT_PARTS + part],
+        );
+    }
     vertices[thread] = ClusterVertex(
         a.at,
         select(-1.0, length(cross(to_eye, surface.tangent)), drawn),
         b.at,
         1.0 / max(length(cross(surface.next - surface.here, surface.tangent)), 1e-6),
-        vec2f(view, azimuth(clusters.to_light, surface)),
+        lights,
+        view,
         cos(view),
-        a.color,
-        b.color,
+        lit,
     );
 }

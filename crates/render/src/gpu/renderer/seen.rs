@@ -108,7 +108,7 @@ impl GpuRenderer {
         let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
         // Values replace their light.
         let shading =
-            PointShading { kernels: lit, model: HairShading::KajiyaKay, tables: self.light.tables() };
+            PointShading { kernels: lit, model: HairShading::TwoHighlights, tables: self.light.tables() };
         self.hair.shade(gpu, "draw/points", shading, commands, &frame)?;
         Ok(())
     }

@@ -171,6 +171,11 @@ fn ambient(n: vec3f) -> vec3f {
     return max(sum, vec3f(0.0));
 }
 
+// The mean light from all directions: irradiance over pi, averaged over the directions of surfaces.
+fn ambient_mean() -> vec3f {
+    return max(frame.surround[0].xyz, vec3f(0.0));
+}
+
 // Light from all directions at a position among the hair.
 fn ambient_at(p: vec3f) -> vec4f {
     let place = (p - frame.grid_corner) * frame.cells_per_metre;

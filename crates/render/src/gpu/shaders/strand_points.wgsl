@@ -47,8 +47,11 @@ fn project(p: vec3f) -> Projected {
     return Projected(pixel, ndc.z, clip.w);
 }
 
-// Whether hair scatters as fibres do; otherwise it is shaded by Kajiya-Kay.
-override FIBRE: bool = true;
+// How hair is shaded. Twin of `HairShading` in groom.
+const FIBRE: u32 = 0u;
+const TWO_HIGHLIGHTS: u32 = 1u;
+const KAJIYA_KAY: u32 = 2u;
+override SHADING: u32 = FIBRE;
 
 // Whether strands have colours of their own.
 override COLORED: bool = false;
@@ -115,8 +118,12 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let body = body_light_on_strand(k, point.p);
     let toward = -light.direction;
     let specular = light.specular;
-    if (FIBRE) {
+    if (SHADING == FIBRE) {
         return light.radiance * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);
+    }
+    if (SHADING == KAJIYA_KAY) {
+        return light.radiance * (lit * body)
+            * published_strand_light(point.t, toward, point.v, point.color.body, specular);
     }
     return light.radiance * (lit * body)
         * strand_light(point.t, toward, point.v, point.color, specular, lit);
@@ -129,33 +136,19 @@ fn turn_variance(a: vec3f, b: vec3f) -> f32 {
     return 2.0 / 3.0 * max(1.0 - cosine, 0.0);
 }
 
-@compute @workgroup_size(64)
-fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let thread = id.x + id.y * groups.x * 64u;
-    let count = drawn_points();
-    // Surplus threads repeat the last point: on software adapters code after a branch is slow.
-    let i = min(thread, count - 1u);
+// Point `i` as it is shaded.
+fn point_at(i: u32) -> Point {
     let detail = details[i];
-    let taper = f32(detail & 0xffu) / 255.0;
     let along = f32((detail >> 8u) & 0xffu) / 255.0;
     let shade = f32((detail >> 16u) & 0xffu) / 255.0;
     let first = (detail >> 24u) & 1u;
     let last = (detail >> 25u) & 1u;
-
     let p = points[i].xyz;
     let before = points[i - (1u - first)].xyz;
     let after = points[i + (1u - last)].xyz;
     var t = after - before;
     t = t / max(length(t), 1e-9);
     let turn = turn_variance(p - before, after - p);
-
-    let here = project(p);
-    let a = project(before);
-    let b = project(after);
-    var run = b.pixel - a.pixel;
-    let run_length = length(run);
-    run = select(vec2f(0.0, 1.0), run / max(run_length, 1e-6), run_length > 1e-4);
-
     let to_eye = frame.eye - p;
     let distance = max(length(to_eye), 1e-3);
     let v = to_eye / distance;
@@ -166,39 +159,78 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     }
     var color: StrandColor;
     var scatter: Scatter;
-    if (FIBRE) {
+    if (SHADING == FIBRE) {
         scatter = scatter_of(t, v, absorption);
     } else {
         color = strand_color(absorption);
     }
+    return Point(p, t, v, color, scatter, turn);
+}
 
-    let transmittance = unpack4x8unorm(light_left[i]);
-    let point = Point(p, t, v, color, scatter, turn);
-    var sum = vec3f(0.0);
+// The light from all directions that a point reflects toward the eye, given the transmittance of hair for each light.
+fn ambient_of(point: Point, transmittance: vec4f) -> vec3f {
+    if (SHADING == FIBRE) {
+        return ambient_at(point.p).xyz * point.scatter.albedo;
+    }
+    if (SHADING == KAJIYA_KAY) {
+        // As published, hair does not shadow it.
+        return ambient_mean() * point.color.body;
+    }
+    // Ambient light reaches the inside through the same hair; a part of it always does.
     var inside = 1.0;
     if (LIGHTS > 0u) {
-        sum += light_of(0u, point, transmittance.x);
         inside = sqrt(transmittance.x);
     }
     if (LIGHTS > 1u) {
-        sum += light_of(1u, point, transmittance.y);
         inside += sqrt(transmittance.y);
     }
     if (LIGHTS > 2u) {
-        sum += light_of(2u, point, transmittance.z);
         inside += sqrt(transmittance.z);
     }
     if (LIGHTS > 3u) {
-        sum += light_of(3u, point, transmittance.w);
         inside += sqrt(transmittance.w);
     }
-    // Ambient light reaches the inside through the same hair; a part of it always does.
     inside /= f32(max(LIGHTS, 1u));
-    if (FIBRE) {
-        sum += ambient_at(p).xyz * scatter.albedo;
-    } else {
-        sum += ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
+    return ambient(vec3f(0.0, 0.3, 0.0)) * point.color.body * (0.22 + 0.78 * inside);
+}
+
+@compute @workgroup_size(64)
+fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let thread = id.x + id.y * groups.x * 64u;
+    let count = drawn_points();
+    // Surplus threads repeat the last point: on software adapters code after a branch is slow.
+    let i = min(thread, count - 1u);
+    let detail = details[i];
+    let taper = f32(detail & 0xffu) / 255.0;
+    let shade = f32((detail >> 16u) & 0xffu) / 255.0;
+    let first = (detail >> 24u) & 1u;
+    let last = (detail >> 25u) & 1u;
+    let before = points[i - (1u - first)].xyz;
+    let after = points[i + (1u - last)].xyz;
+
+    let here = project(points[i].xyz);
+    let a = project(before);
+    let b = project(after);
+    var run = b.pixel - a.pixel;
+    let run_length = length(run);
+    run = select(vec2f(0.0, 1.0), run / max(run_length, 1e-6), run_length > 1e-4);
+
+    let point = point_at(i);
+    let transmittance = unpack4x8unorm(light_left[i]);
+    var sum = vec3f(0.0);
+    if (LIGHTS > 0u) {
+        sum += light_of(0u, point, transmittance.x);
     }
+    if (LIGHTS > 1u) {
+        sum += light_of(1u, point, transmittance.y);
+    }
+    if (LIGHTS > 2u) {
+        sum += light_of(2u, point, transmittance.z);
+    }
+    if (LIGHTS > 3u) {
+        sum += light_of(3u, point, transmittance.w);
+    }
+    sum += ambient_of(point, transmittance);
 
     sum = min(sum, vec3f(MAX_LIGHT));
     let width = frame.strand_width * taper * share_of_strand(i) * frame.pixels_per_metre / max(here.w, 1e-3);

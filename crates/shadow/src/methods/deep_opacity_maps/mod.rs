@@ -31,6 +31,7 @@ pub(super) static METHOD: Method = Method {
             per_texel: Some(settings.deep_opacity_maps.layers),
         })
     },
+    words: texels::gpu::map_words::<Layers>,
     marks: &[LAYER],
     settings: |settings| Some(&settings.deep_opacity_maps),
     footprint: |input, settings, bounds| {

@@ -36,6 +36,7 @@ pub(super) static METHOD: Method = Method {
             per_texel: Some(settings.density_clustering.clusters),
         })
     },
+    words: texels::gpu::map_words::<Clustering>,
     marks: &[BIN],
     settings: |settings| Some(&settings.density_clustering),
     footprint: |input, settings, bounds| {

@@ -23,6 +23,7 @@ pub(super) static METHOD: Method = Method {
     advice: "lower the map's resolution or the number of strands, or raise the limit",
     map: MapKind::Texels,
     size: |settings| Some(MapSize { edge: settings.exact.resolution, per_texel: None }),
+    words: texels::gpu::map_words::<SortedFragments>,
     marks: &[RayMarkKind::FRAGMENT],
     settings: |settings| Some(&settings.exact),
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),

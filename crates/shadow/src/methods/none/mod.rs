@@ -17,6 +17,7 @@ pub(super) static METHOD: Method = Method {
     advice: "lower the map's resolution or the number of strands",
     map: MapKind::None,
     size: |_| None,
+    words: |_| 0,
     marks: &[],
     settings: |_| None,
     // Compared over the texels of the exact method.

@@ -31,6 +31,7 @@ pub(super) static METHOD: Method = Method {
             per_texel: Some(settings.occupancy_maps.slices),
         })
     },
+    words: texels::gpu::map_words::<Occupancy>,
     marks: &[SLAB, texels::SLICE],
     settings: |settings| Some(&settings.occupancy_maps),
     footprint: |input, settings, bounds| {

@@ -28,6 +28,7 @@ pub(super) static METHOD: Method = Method {
             per_texel: Some(settings.opacity_maps.slices),
         })
     },
+    words: texels::gpu::map_words::<Slices>,
     marks: &[texels::SLICE],
     settings: |settings| Some(&settings.opacity_maps),
     footprint: |input, settings, bounds| {

@@ -28,7 +28,7 @@ use crate::RayMarkKind;
 /// Texels along each edge that a map can have; multiples of 16.
 ///
 /// The setting is an upper limit: texels are at least as wide as strands, so hair with few, wide strands has fewer.
-pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
+pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=4096;
 
 /// A slice of equal depth: every one in opacity maps, those whose bit is set in occupancy maps.
 pub(crate) const SLICE: RayMarkKind = RayMarkKind { label: "Slice", resolves_depth: true };
@@ -79,7 +79,7 @@ pub(crate) const fn resolution<S>(field: Field<S>) -> Setting<S> {
     Setting::count(field, range, "Map resolution", text)
         .unit(Unit::TEXELS)
         .step(16)
-        .offered(&[64, 128, 256, 512, 1024, 2048])
+        .stops(&[64, 128, 256, 512, 1024, 2048, 4096])
 }
 
 /// The setting `filter` of every method with texels.
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn every_resolution_is_brought_into_range() {
         for (asked, used) in
-            [(0, 64), (1, 64), (64, 64), (71, 64), (72, 80), (500, 496), (512, 512), (u32::MAX, 2048)]
+            [(0, 64), (1, 64), (64, 64), (71, 64), (72, 80), (500, 496), (512, 512), (u32::MAX, 4096)]
         {
             let settings = ExactSettings { resolution: asked, ..ExactSettings::default() };
             assert_eq!(settings.clamped().resolution, used);

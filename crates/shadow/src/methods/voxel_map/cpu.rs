@@ -141,7 +141,7 @@ impl BuiltMap {
             cells: &map.cells,
             touched: &self.touched,
             filled: &map.used,
-            as_printed: self.filter == VoxelFilter::Paper,
+            filter: self.filter,
         })
     }
 
@@ -313,7 +313,7 @@ mod tests {
             anchor: Vec3::Y,
             maps: 1,
         };
-        for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
+        for filter in [VoxelFilter::Closest, VoxelFilter::Centred, VoxelFilter::Paper] {
             let mut settings = ShadowSettings::default();
             settings.voxel_map.filter = filter;
             let answers = |width: Width| {

@@ -36,7 +36,12 @@ impl Layout {
             resolution,
             tiles_per_edge: resolution >> EDGE_SHIFT,
             tile_shift: (resolution.next_power_of_two() * TILE_CELLS as u32).ilog2(),
-            group_shift: if resolution <= 256 { 2 } else { 3 },
+            // Between 8 and 64 groups per tile: as many bits as a word has, and whole bytes of them.
+            group_shift: match resolution {
+                ..=31 => 1,
+                32..=256 => 2,
+                _ => 3,
+            },
         }
     }
 
@@ -104,7 +109,7 @@ mod tests {
 
     #[test]
     fn every_cell_has_its_own_address() {
-        for resolution in [32, 40, 56] {
+        for resolution in [16, 24, 32, 40, 56] {
             let layout = Layout::new(resolution);
             let mut seen = vec![false; layout.cells()];
             for i in 0..resolution {
@@ -125,7 +130,7 @@ mod tests {
 
     #[test]
     fn addresses_fit_at_every_resolution() {
-        for resolution in (32..=512).step_by(8) {
+        for resolution in (16..=512).step_by(8) {
             let layout = Layout::new(resolution);
             assert!(layout.cells() <= 1 << 27);
             assert!(layout.groups() <= 64 && layout.groups().is_multiple_of(8));

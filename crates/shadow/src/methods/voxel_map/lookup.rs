@@ -7,6 +7,7 @@ use lovelock_base::numbers::mix;
 use lovelock_base::simd::whole_part;
 use lovelock_base::simd_versions;
 
+use super::VoxelFilter;
 use super::lattice::Lattice;
 use super::layout::{Layout, TILE_CELLS};
 use crate::exp::exp_of_minus_steps;
@@ -32,8 +33,7 @@ pub(super) struct Lookup<'a> {
     pub touched: &'a [u64],
     /// Groups that hold faces, per tile. Elsewhere the last group before it counts; before the first one a column is lit.
     pub filled: &'a [u64],
-    /// Whether to filter as printed in the paper.
-    pub as_printed: bool,
+    pub filter: VoxelFilter,
 }
 
 /// The positions of a block of points in the map.
@@ -82,7 +82,7 @@ impl Lookup<'_> {
     fn block(&self, points: [&[f32; BLOCK]; 3], out: &mut [f32; BLOCK]) {
         let places = self.place(points);
         let faces = self.load(&places);
-        if self.as_printed {
+        if self.filter == VoxelFilter::Paper {
             filter::<true>(&places, &faces, out);
         } else {
             filter::<false>(&places, &faces, out);
@@ -95,7 +95,14 @@ impl Lookup<'_> {
         let first = lattice.first.as_vec3();
         let n = layout.resolution as f32;
         // The value of a column belongs to its centre; in the printed filter, to its far edge.
-        let lead = if self.as_printed { 1.0 } else { 0.5 };
+        let lead = match self.filter {
+            VoxelFilter::Closest => 0.0,
+            VoxelFilter::Centred => 0.5,
+            VoxelFilter::Paper => 1.0,
+        };
+        // The back face of the closest cell alone. Only beyond the last column is a fraction 1.
+        let closest = self.filter == VoxelFilter::Closest;
+        let least = if closest { 1.0 } else { 0.0 };
         let mut places = Places {
             along: [0.0; BLOCK],
             across_y: [0.0; BLOCK],
@@ -114,9 +121,9 @@ impl Lookup<'_> {
             let (u, i) = split(u, n, layout.resolution - 1);
             let (fy, j) = split(v - lead, n - 1.0, layout.resolution - 2);
             let (fz, k) = split(w - lead, n - 1.0, layout.resolution - 2);
-            places.along[lane] = u;
-            places.across_y[lane] = fy;
-            places.across_z[lane] = fz;
+            places.along[lane] = if closest { 1.0 } else { u };
+            places.across_y[lane] = if fy < least { 0.0 } else { fy };
+            places.across_z[lane] = if fz < least { 0.0 } else { fz };
             places.slice[lane] = i;
             let (near_j, far_j) = (layout.row(j) + Layout::slice(i), layout.row(j + 1) + Layout::slice(i));
             let (near_k, far_k) = (layout.column(k), layout.column(k + 1));

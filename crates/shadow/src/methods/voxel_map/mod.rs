@@ -44,6 +44,7 @@ pub(super) static METHOD: Method = Method {
     advice: "lower the map's resolution or the number of strands",
     map: MapKind::Cells,
     size: |settings| Some(MapSize { edge: settings.voxel_map.resolution, per_texel: None }),
+    words: |_| 1,
     marks: &[CELL],
     settings: |settings| Some(&settings.voxel_map),
     footprint: |input, settings, bounds| {
@@ -80,6 +81,8 @@ pub enum VoxelFilter {
     /// As printed: interpolates transmittance on all three axes as if it belonged to the far corner of a cell, which displaces the
     /// shadow by half a cell on both axes across the light.
     Paper,
+    /// Reads the cell that contains the point without a filter, as on the left of the paper's figure 5: patterns along the map show.
+    Closest,
 }
 
 /// What strands add to the cells.

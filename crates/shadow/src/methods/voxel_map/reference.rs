@@ -144,6 +144,9 @@ impl DenseMap {
 
     /// Filtered transmittance at `p`.
     pub fn transmittance(&self, p: Vec3) -> f64 {
+        if self.filter == VoxelFilter::Closest && p.is_finite() {
+            return self.unfiltered(p);
+        }
         let n = self.lattice.resolution as f32;
         let p = self.lattice.window_from_world(p);
         if !p.is_finite() {
@@ -153,10 +156,7 @@ impl DenseMap {
         let i = (along as i32).min(n as i32 - 1);
         let along = f64::from(along) - f64::from(i);
         // The value of a column belongs to its centre; as printed in the paper, to its far edge.
-        let lead = match self.filter {
-            VoxelFilter::Centred => 0.5,
-            VoxelFilter::Paper => 1.0,
-        };
+        let lead = if self.filter == VoxelFilter::Paper { 1.0 } else { 0.5 };
         let (y, z) = ((p.y - lead).clamp(-1.0, n), (p.z - lead).clamp(-1.0, n));
         let (j, k) = (y.floor(), z.floor());
         let mut sum = 0.0;
@@ -166,9 +166,10 @@ impl DenseMap {
                 let back = self.back_face(i, j as i32 + dj, k as i32 + dk);
                 sum += wj
                     * wk
-                    * match self.filter {
-                        VoxelFilter::Centred => (-(front + (back - front) * along)).exp(),
-                        VoxelFilter::Paper => (1.0 - along) * (-front).exp() + along * (-back).exp(),
+                    * if self.filter == VoxelFilter::Paper {
+                        (1.0 - along) * (-front).exp() + along * (-back).exp()
+                    } else {
+                        (-(front + (back - front) * along)).exp()
                     };
             }
         }
@@ -176,7 +177,7 @@ impl DenseMap {
     }
 
     /// Unfiltered transmittance of the cell that contains `p`.
-    pub fn unfiltered(&self, p: Vec3) -> f64 {
+    fn unfiltered(&self, p: Vec3) -> f64 {
         let cell = self.lattice.window_from_world(p).floor().as_ivec3();
         (-self.back_face(cell.x, cell.y, cell.z)).exp()
     }

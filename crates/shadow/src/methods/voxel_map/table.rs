@@ -9,7 +9,7 @@ impl Settings for VoxelMapSettings {
     const TABLE: &'static [Setting<Self>] = &[
         Setting::count(
             field!(Self, resolution),
-            [32, 512],
+            [16, 512],
             "Map resolution",
             "Number of cells along each edge of the map. More cells show finer shadows and take longer; the brightness does \
              not change.",
@@ -17,7 +17,7 @@ impl Settings for VoxelMapSettings {
         .symbol("N")
         .unit(Unit::CELLS)
         .step(8)
-        .offered(&[32, 48, 64, 96, 128, 192, 256, 384, 512]),
+        .stops(&[16, 32, 48, 64, 96, 128, 192, 256, 384, 512]),
         Setting::choice::<MapExtent>(
             field!(Self, extent),
             "Map extent",
@@ -34,7 +34,8 @@ impl Settings for VoxelMapSettings {
         Setting::choice::<VoxelFilter>(
             field!(Self, filter),
             "Filter",
-            "How a point reads the cells around it. As published, shadows are displaced by half a cell.",
+            "How a point reads the cells: the closest one, whose pattern shows; linearly between those around it; or the same as \
+             printed, which displaces shadows by half a cell.",
         ),
         Setting::choice::<VoxelDeposit>(
             field!(Self, deposit),
@@ -67,12 +68,14 @@ impl Choices for MapExtent {
 }
 
 impl Choices for VoxelFilter {
-    const ALL: &'static [Self] = &[Self::Centred, Self::Paper];
+    // A track stores the place in this list.
+    const ALL: &'static [Self] = &[Self::Centred, Self::Paper, Self::Closest];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
-            Self::Centred => ("centred", "Centred"),
-            Self::Paper => ("paper", "As printed"),
+            Self::Centred => ("centred", "Linear"),
+            Self::Paper => ("paper", "Linear, as printed"),
+            Self::Closest => ("closest", "Closest"),
         }
     }
 }

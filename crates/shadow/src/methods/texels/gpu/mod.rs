@@ -154,6 +154,11 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
     }
 }
 
+/// Words of the map of `M` per texel.
+pub(crate) fn map_words<M: GpuTexelMethod>(settings: &ShadowSettings) -> u64 {
+    M::new(settings).needs().map_words
+}
+
 /// A method with a record per texel on the GPU.
 #[derive(Debug)]
 pub(crate) struct TexelShadow<M: GpuTexelMethod> {

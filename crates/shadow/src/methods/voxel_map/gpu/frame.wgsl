@@ -16,9 +16,14 @@ struct VoxelUniform {
     edge: u32,
     segments: u32,
     points: u32,
-    // 1 for the filter as printed.
-    as_printed: u32,
+    // CENTRED, AS_PRINTED or CLOSEST.
+    reads: u32,
 }
+
+// How points read cells. Twin of `VoxelFilter`.
+const CENTRED: u32 = 0u;
+const AS_PRINTED: u32 = 1u;
+const CLOSEST: u32 = 2u;
 
 @group(0) @binding(0) var<uniform> voxels: VoxelUniform;
 

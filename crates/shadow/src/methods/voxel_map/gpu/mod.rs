@@ -37,7 +37,7 @@ struct VoxelUniform {
     edge: u32,
     segments: u32,
     points: u32,
-    as_printed: u32,
+    reads: u32,
 }
 
 impl VoxelUniform {
@@ -56,7 +56,11 @@ impl VoxelUniform {
             edge: lattice.resolution,
             segments: input.strands.segment_count,
             points: input.strands.point_count,
-            as_printed: u32::from(filter == VoxelFilter::Paper),
+            reads: match filter {
+                VoxelFilter::Centred => 0,
+                VoxelFilter::Paper => 1,
+                VoxelFilter::Closest => 2,
+            },
         }
     }
 }
@@ -252,7 +256,7 @@ mod tests {
             offset_of!(VoxelUniform, edge),
             offset_of!(VoxelUniform, segments),
             offset_of!(VoxelUniform, points),
-            offset_of!(VoxelUniform, as_printed),
+            offset_of!(VoxelUniform, reads),
             size_of::<VoxelUniform>(),
         ];
         for (label, source) in GpuVoxelMap::shaders() {

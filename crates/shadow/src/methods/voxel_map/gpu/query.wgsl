@@ -18,7 +18,7 @@ fn column_light(cell: vec3u, along: f32) -> f32 {
     let faces = map[cell_at(cell)];
     let front = f32(faces & 0xffffu);
     let back = f32(faces >> 16u);
-    if (voxels.as_printed != 0u) {
+    if (voxels.reads == AS_PRINTED) {
         return mix_of(exp_of_minus_steps(front), exp_of_minus_steps(back), along);
     }
     // Exact for a cell of uniform density.
@@ -33,16 +33,23 @@ fn hair_transmittance(world_position: vec3f) -> f32 {
     let p = window_from_world(world_position);
     let n = f32(voxels.edge);
     // The value of a column belongs to its centre; in the printed filter, to its far edge.
-    let lead = select(0.5, 1.0, voxels.as_printed != 0u);
+    let closest = voxels.reads == CLOSEST;
+    let lead = select(select(0.5, 1.0, voxels.reads == AS_PRINTED), 0.0, closest);
     // Points before the window and NaN read the first face and the border, which are lit.
     let u = split(p.x, n, voxels.edge - 1u);
     let v = split(p.y - lead, n - 1.0, voxels.edge - 2u);
     let w = split(p.z - lead, n - 1.0, voxels.edge - 2u);
     let cell = vec3u(u32(u.y), u32(v.y), u32(w.y));
-    let near = mix_of(column_light(cell, u.x), column_light(cell + vec3u(0u, 0u, 1u), u.x), w.x);
-    let far =
-        mix_of(column_light(cell + vec3u(0u, 1u, 0u), u.x), column_light(cell + vec3u(0u, 1u, 1u), u.x), w.x);
-    return min(mix_of(near, far, v.x), 1.0);
+    // The back face of the closest cell alone. Only beyond the last column is a fraction 1.
+    let along = select(u.x, 1.0, closest);
+    let across = select(vec2f(v.x, w.x), floor(vec2f(v.x, w.x)), closest);
+    let near = mix_of(column_light(cell, along), column_light(cell + vec3u(0u, 0u, 1u), along), across.y);
+    let far = mix_of(
+        column_light(cell + vec3u(0u, 1u, 0u), along),
+        column_light(cell + vec3u(0u, 1u, 1u), along),
+        across.y,
+    );
+    return min(mix_of(near, far, across.x), 1.0);
 }
 
 fn column_count() -> u32 {
