@@ -12,8 +12,12 @@ use common::SplitMix64;
 use glam::Vec3;
 use grooms::Groom;
 use lovelock_groom::Preset;
-use lovelock_shadow::{CpuShadow, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow};
+use lovelock_shadow::{
+    CpuShadow, LineFilter, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
+};
 
+/// Thin lines, lines shared by two texels, and the standard deviations of Gaussians in widths of a strand.
+const LINES: [&str; 6] = ["thin", "two texels", "0.3", "0.5", "1", "2"];
 /// The number of points.
 const POINTS: usize = 4000;
 /// The number of positions of the lattice, within a texel.
@@ -34,12 +38,14 @@ fn main() {
             ShadowSettings { method: ShadowMethod::DensityClustering, ..ShadowSettings::default() };
         let truth = converged(&groom.input(), &settings, [&x, &y, &z]).expect("hair fits").transmittance;
         for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
-            for prefiltered in [false, true] {
+            for lines in LINES {
                 let mut settings = settings;
-                settings.density_clustering.filter = filter;
-                settings.density_clustering.prefiltered = prefiltered;
+                let own = &mut settings.density_clustering;
+                (own.filter, own.prefiltered) = (filter, lines != "thin");
+                if let Ok(width) = lines.parse() {
+                    (own.line_filter, own.line_width) = (LineFilter::Gaussian, width);
+                }
                 let (error, swimming, fragments) = measure(&groom, &settings, &at, &truth);
-                let lines = if prefiltered { "pre-filtered" } else { "thin" };
                 println!(
                     "| {} | {filter:?} | {lines} | {error:.4} | {swimming:.4} | {fragments} |",
                     groom.name

@@ -26,7 +26,9 @@ pub use gpu::{
 };
 pub use light::LightFrame;
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
-pub use methods::density_clustering::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};
+pub use methods::density_clustering::{
+    ClusterDeviation, ClusterSeeds, DensityClusteringSettings, LineFilter,
+};
 pub use methods::exact::{ExactMap, ExactSettings};
 pub use methods::occupancy_maps::OccupancyMapsSettings;
 pub use methods::opacity_maps::OpacityMapsSettings;

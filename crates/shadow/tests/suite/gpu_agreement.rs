@@ -9,7 +9,7 @@ use common::SplitMix64;
 use glam::Vec3;
 use lovelock_groom::{Preset, Strands};
 use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter};
-use lovelock_shadow::{ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
+use lovelock_shadow::{LineFilter, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
 use lovelock_testkit::suite::sample;
 
 /// The number of points.
@@ -103,6 +103,11 @@ fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
                 }
             }
             all
+        }
+        ShadowMethod::DensityClustering => {
+            let mut gaussian = ShadowSettings::default();
+            gaussian.density_clustering.line_filter = LineFilter::Gaussian;
+            TexelFilter::ALL.map(with_filter).into_iter().chain([gaussian]).collect()
         }
         _ => TexelFilter::ALL.map(with_filter).to_vec(),
     }

@@ -6,8 +6,8 @@ use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands, 
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{
-    ClusterDeviation, ClusterSeeds, LayerGrowth, LightFrame, ShadowError, ShadowInput, ShadowMethod,
-    ShadowSettings, TexelFilter, converged, cpu_shadow,
+    ClusterDeviation, ClusterSeeds, LayerGrowth, LightFrame, LineFilter, ShadowError, ShadowInput,
+    ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
 };
 use lovelock_testkit::suite::sample;
 
@@ -79,6 +79,7 @@ fn hostile(of: u32) -> ShadowSettings {
     s.density_clustering.steps = n;
     s.density_clustering.seeds = [ClusterSeeds::Uniform, ClusterSeeds::Histogram][of as usize % 2];
     s.density_clustering.deviation = ClusterDeviation::Merged;
+    (s.density_clustering.line_filter, s.density_clustering.line_width) = (LineFilter::Gaussian, x);
     (s.occupancy_maps.resolution, s.occupancy_maps.slices, s.occupancy_maps.slabs) = (resolution, n, n);
     (s.exact.resolution, s.exact.memory_limit_bytes) = (resolution, u64::MAX);
     s.exact.filter = TexelFilter::Nearest;

@@ -4,9 +4,9 @@
 
 use lovelock_base::settings::Settings;
 
-use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
+use super::super::texels::{Fragment, LineProfile, TexelFilter, TexelMap, TexelMethod};
 use super::seeds::seeds;
-use super::{BIN, ClusterDeviation, DensityClusteringSettings};
+use super::{BIN, ClusterDeviation, DensityClusteringSettings, LineFilter};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::DensityClustering`].
@@ -222,8 +222,12 @@ impl TexelMethod for Clustering {
         self.settings.filter
     }
 
-    fn prefiltered(&self) -> bool {
-        self.settings.prefiltered
+    fn profile(&self) -> LineProfile {
+        match (self.settings.prefiltered, self.settings.line_filter) {
+            (false, _) => LineProfile::Thin,
+            (true, LineFilter::TwoTexels) => LineProfile::TwoTexels,
+            (true, LineFilter::Gaussian) => LineProfile::Gaussian(self.settings.line_width),
+        }
     }
 
     fn cells(&self) -> usize {

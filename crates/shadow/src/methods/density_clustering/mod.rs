@@ -77,6 +77,17 @@ pub enum ClusterDeviation {
     Merged,
 }
 
+/// The profile of pre-filtered lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LineFilter {
+    /// Each step of a strand is shared between the two nearest texels.
+    #[default]
+    TwoTexels,
+    /// A Gaussian, integrated over each texel, as in section 3.4 of the paper.
+    Gaussian,
+}
+
 /// Settings of density clustering.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -93,9 +104,12 @@ pub struct DensityClusteringSettings {
     pub steps: u32,
     /// How the spread of a cluster is computed.
     pub deviation: ClusterDeviation,
-    /// Whether each step of a strand is shared between the two nearest texels (the paper's pre-filtered lines) instead of being
-    /// added to one.
+    /// Whether each step of a strand is shared between texels (the paper's pre-filtered lines) instead of being added to one.
     pub prefiltered: bool,
+    /// The profile of pre-filtered lines.
+    pub line_filter: LineFilter,
+    /// The standard deviation of [`LineFilter::Gaussian`], in widths of a strand. It is at most two texels.
+    pub line_width: f32,
 }
 
 impl DensityClusteringSettings {
@@ -113,6 +127,8 @@ impl Default for DensityClusteringSettings {
             steps: 1,
             deviation: ClusterDeviation::default(),
             prefiltered: true,
+            line_filter: LineFilter::default(),
+            line_width: 0.5,
         }
     }
 }

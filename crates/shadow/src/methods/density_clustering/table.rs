@@ -1,10 +1,10 @@
 //! The table of settings.
 
 use lovelock_base::field;
-use lovelock_base::settings::{Choices, Setting, Settings};
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 
 use super::super::texels;
-use super::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};
+use super::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings, LineFilter};
 
 impl Settings for DensityClusteringSettings {
     const TABLE: &'static [Setting<Self>] = &[
@@ -41,9 +41,23 @@ impl Settings for DensityClusteringSettings {
         Setting::switch(
             field!(Self, prefiltered),
             "Pre-filtered lines",
-            "Shares each strand between the two nearest rows of texels, which halves the swimming of \
-             shadows. Off, it is drawn into one row.",
+            "Shares each strand between rows of texels, which halves the swimming of shadows. Off, it is \
+             drawn into one row.",
         ),
+        Setting::choice::<LineFilter>(
+            field!(Self, line_filter),
+            "Line filter",
+            "How rows of texels share a pre-filtered strand: the two nearest ones by their distance, or all that a \
+             Gaussian of the chosen width reaches, as published.",
+        ),
+        Setting::number(
+            field!(Self, line_width),
+            [0.0, 2.0],
+            "Line width",
+            "Standard deviation of the Gaussian, in widths of a strand. Wider lines make smoother shadows and take \
+             longer.",
+        )
+        .unit(Unit::TIMES),
     ];
 }
 
@@ -55,6 +69,17 @@ impl Choices for ClusterSeeds {
             Self::Uniform => ("uniform", "Even"),
             Self::TowardLight => ("toward-light", "Toward the light"),
             Self::Histogram => ("histogram", "By a histogram"),
+        }
+    }
+}
+
+impl Choices for LineFilter {
+    const ALL: &'static [Self] = &[Self::TwoTexels, Self::Gaussian];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::TwoTexels => ("two-texels", "Two texels"),
+            Self::Gaussian => ("gaussian", "Gaussian"),
         }
     }
 }

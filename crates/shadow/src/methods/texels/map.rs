@@ -4,12 +4,12 @@ use glam::Vec3;
 use lovelock_base::simd::Width;
 use rayon::prelude::*;
 
-use super::TexelFilter;
 use super::fragments::{Fragment, Fragments, needed_bytes, refit, sum_over_segments};
 use super::frame::TexelFrame;
+use super::gaussian::{GaussianLines, line_deviation};
 use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
-use super::method::TexelMethod;
+use super::{LineProfile, TexelFilter, TexelMethod};
 use crate::bounds::Bounds;
 use crate::cpu::safe_extinction;
 use crate::exp::exp_of_minus;
@@ -114,10 +114,26 @@ impl<M: TexelMethod> TexelMap<M> {
         let method = M::new(settings);
         let bounds = Bounds::of_strands(input);
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
+        let method = method.within(&frame);
         let resolution = frame.resolution;
         let texels = u64::from(resolution).pow(2);
-        let per_step = if method.prefiltered() { FilteredLines::PER_STEP } else { 1 };
-        let count = sum_over_segments(input, &frame, |from, to| per_step * Steps::new(from, to).count());
+        let lines = Lines {
+            resolution,
+            depth_per_texel: depth_per_texel(input.extinction_scale, input.strand_width, &frame),
+        };
+        let gaussian = |width: f32| GaussianLines {
+            lines,
+            deviation: line_deviation(width, input.strand_width, &frame),
+        };
+        let count = sum_over_segments(input, &frame, |from, to| {
+            let steps = Steps::new(from, to);
+            let per_step = match method.profile() {
+                LineProfile::Thin => 1,
+                LineProfile::TwoTexels => FilteredLines::PER_STEP,
+                LineProfile::Gaussian(width) => gaussian(width).per_step(&steps),
+            };
+            per_step * steps.count()
+        });
         // Slots, and the memory that sorting needs.
         let sorting = needed_bytes(input, resolution, count).saturating_add(4 * texels);
         Self::check(sorting, &method, input)?;
@@ -129,14 +145,11 @@ impl<M: TexelMethod> TexelMap<M> {
             *self = Self { width: self.width, ..Self::default() };
         }
 
-        let lines = Lines {
-            resolution,
-            depth_per_texel: depth_per_texel(input.extinction_scale, input.strand_width, &frame),
-        };
-        if method.prefiltered() {
-            self.fragments.draw(input, &frame, (resolution, resolution), &FilteredLines(lines));
-        } else {
-            self.fragments.draw(input, &frame, (resolution, resolution), &lines);
+        let size = (resolution, resolution);
+        match method.profile() {
+            LineProfile::Thin => self.fragments.draw(input, &frame, size, &lines),
+            LineProfile::TwoTexels => self.fragments.draw(input, &frame, size, &FilteredLines(lines)),
+            LineProfile::Gaussian(width) => self.fragments.draw(input, &frame, size, &gaussian(width)),
         }
         let in_use: u64 = self.fragments.in_use().iter().sum();
         let needed_bytes = sorting + in_use * cell_bytes;

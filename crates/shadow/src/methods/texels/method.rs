@@ -5,8 +5,19 @@
 use std::fmt::Debug;
 
 use super::fragments::Fragment;
-use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
+use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter, TexelFrame};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
+
+/// The profile across a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineProfile {
+    /// A step of a strand is one fragment.
+    Thin,
+    /// A step is shared by the two nearest texels.
+    TwoTexels,
+    /// A Gaussian whose standard deviation is this many widths of a strand.
+    Gaussian(f32),
+}
 
 /// A method with a record per texel. The value holds the method's settings, clamped to their ranges.
 pub trait TexelMethod: Copy + Debug + Send + Sync {
@@ -22,15 +33,20 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
     /// The method with its section of `settings`.
     fn new(settings: &ShadowSettings) -> Self;
 
+    /// The method for texels of this size and number.
+    fn within(self, _frame: &TexelFrame) -> Self {
+        self
+    }
+
     /// The most texels along each edge, one of [`TEXEL_RESOLUTIONS`](super::TEXEL_RESOLUTIONS).
     fn resolution(&self) -> u32;
 
     /// How a point reads the texels around it.
     fn filter(&self) -> TexelFilter;
 
-    /// Whether strands are drawn as pre-filtered lines, which share each step between two texels.
-    fn prefiltered(&self) -> bool {
-        false
+    /// The profile of the lines as which strands are drawn.
+    fn profile(&self) -> LineProfile {
+        LineProfile::Thin
     }
 
     /// The most memory that the map and its build may use together, bytes.

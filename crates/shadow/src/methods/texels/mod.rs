@@ -6,6 +6,7 @@
 
 pub(crate) mod fragments;
 pub(crate) mod frame;
+pub(crate) mod gaussian;
 pub(crate) mod gpu;
 pub(crate) mod lines;
 mod lookup;
@@ -16,7 +17,7 @@ pub use fragments::Fragment;
 pub use frame::TexelFrame;
 pub(crate) use gpu::TexelShadow;
 pub use map::TexelMap;
-pub use method::TexelMethod;
+pub use method::{LineProfile, TexelMethod};
 
 use std::ops::RangeInclusive;
 

@@ -64,7 +64,6 @@ impl GpuTexelMethod for Clustering {
             parts: clusters as u32,
             seeds,
             merged: u32::from(merged),
-            prefiltered: u32::from(self.settings.prefiltered),
             ..Needs::default()
         }
     }

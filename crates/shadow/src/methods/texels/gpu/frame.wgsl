@@ -23,8 +23,10 @@ struct TexelUniform {
     seeds: u32,
     // 1 if the deviation of clusters is computed together with their centres.
     merged: u32,
-    // 1 for pre-filtered lines.
+    // 1 for lines shared by two texels, 2 for lines with a Gaussian profile.
     prefiltered: u32,
+    // The standard deviation of the profile, in texels.
+    line_deviation: f32,
     // Of deep opacity maps: the start of each layer relative to the first fragment, and 1 over its thickness.
     @align(16) starts: array<vec4f, 4>,
     per_depth: array<vec4f, 4>,

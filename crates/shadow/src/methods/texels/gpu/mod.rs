@@ -18,7 +18,8 @@ use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, Shader
 
 use self::kernels::KernelSets;
 use self::list::{List, Share};
-use super::{TexelFilter, TexelFrame, TexelMethod};
+use super::gaussian::line_deviation;
+use super::{LineProfile, TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
     Buffer, EXP, GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup,
     fits_device, wgsl,
@@ -62,7 +63,7 @@ pub(crate) struct TexelUniform {
     seeds: u32,
     merged: u32,
     prefiltered: u32,
-    unused: u32,
+    line_deviation: f32,
     starts: [f32; MAX_LAYERS],
     per_depth: [f32; MAX_LAYERS],
 }
@@ -72,7 +73,7 @@ pub(crate) struct TexelUniform {
 pub(crate) enum Over {
     /// Every segment: the part defines `put`.
     Segments,
-    /// Every segment, as pre-filtered lines if [`Needs::prefiltered`] is 1: the part defines `put`.
+    /// Every segment, with the profile of [`TexelMethod::profile`]: the part defines `put`.
     FilteredSegments,
     /// Every texel: the part defines `texel_pass`.
     Texels,
@@ -124,8 +125,6 @@ pub(crate) struct Needs {
     pub seeds: u32,
     /// See `seeds`.
     pub merged: u32,
-    /// See `seeds`.
-    pub prefiltered: u32,
     /// See `seeds`.
     pub starts: [f32; MAX_LAYERS],
     /// See `seeds`.
@@ -250,11 +249,16 @@ impl Map {
 }
 
 impl TexelUniform {
-    fn new(frame: &TexelFrame, depth_per_texel: f32, segments: u32, needs: &Needs) -> Self {
+    fn new(frame: &TexelFrame, input: &GpuShadowInput, profile: LineProfile, needs: &Needs) -> Self {
         let axes = frame.axes();
+        let (prefiltered, line_deviation) = match profile {
+            LineProfile::Thin => (0, 0.0),
+            LineProfile::TwoTexels => (1, 0.0),
+            LineProfile::Gaussian(width) => (2, line_deviation(width, input.strand_width, frame)),
+        };
         Self {
             anchor: axes.anchor,
-            optical_depth: depth_per_texel,
+            optical_depth: depth_per_texel(input.extinction_scale, input.strand_width, frame),
             column: axes.column,
             first_column: axes.offset.x,
             row: axes.row,
@@ -262,13 +266,13 @@ impl TexelUniform {
             depth: axes.depth,
             first_depth: axes.offset.z,
             edge: frame.resolution,
-            segments,
+            segments: input.strands.segment_count,
             count: frame.resolution * frame.resolution,
             parts: needs.parts,
             seeds: needs.seeds,
             merged: needs.merged,
-            prefiltered: needs.prefiltered,
-            unused: 0,
+            prefiltered,
+            line_deviation,
             starts: needs.starts,
             per_depth: needs.per_depth,
         }
@@ -293,6 +297,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             method.resolution(),
             &input.bounds,
         );
+        let method = method.within(&frame);
         let needs = method.needs();
         let texels = u64::from(frame.resolution).pow(2);
         let (map_words, scratch_words) = (texels * needs.map_words, texels * needs.scratch_words);
@@ -311,9 +316,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method))?;
 
         self.scratch.fit(gpu, scratch_words);
-        let depth = depth_per_texel(input.extinction_scale, input.strand_width, &frame);
         let segments = input.strands.segment_count;
-        let uniform = TexelUniform::new(&frame, depth, segments, &needs);
+        let uniform = TexelUniform::new(&frame, input, method.profile(), &needs);
         let map = self.map(gpu, slot);
         map.words.fit(gpu, map_words);
         map.used = map_words;

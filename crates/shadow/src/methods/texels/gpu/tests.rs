@@ -24,6 +24,7 @@ fn the_uniform_has_the_layout_of_every_shader() {
         offset_of!(TexelUniform, seeds),
         offset_of!(TexelUniform, merged),
         offset_of!(TexelUniform, prefiltered),
+        offset_of!(TexelUniform, line_deviation),
         offset_of!(TexelUniform, starts),
         offset_of!(TexelUniform, per_depth),
         size_of::<TexelUniform>(),
