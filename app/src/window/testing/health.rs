@@ -75,7 +75,10 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
         window.session.frame.as_ref().is_some_and(|frame| frame.totals.worst_stretch_at.is_some())
     });
     let before = project(&harness);
-    press_button(&mut harness, "Show: Largest stretch");
+    let name = "Show: Largest stretch";
+    control(&harness, Role::Button, name).scroll_to_me();
+    go(&mut harness);
+    press_button(&mut harness, name);
     let pointed = |window: &Window| window.tools.marked_gauge.as_ref().map(|gauge| gauge.kind);
     assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
     // The button goes to the time at which the value was found, and the measured value is kept.
