@@ -245,13 +245,14 @@ fn nothing_pops_while_eye_or_light_turn() {
         let eye = largest_jump(&mut renderer, &mut scene, |scene, turn| seen_from(scene, turn, 0.3));
         let light = largest_jump(&mut renderer, &mut scene, |scene, turn| seen_from(scene, 0.3, turn));
         println!("{draw} {lookup:?}: eye {eye:.5}, light {light:.5}");
-        jumps.push(eye.max(light));
+        jumps.push([eye, light]);
     }
     let [strands, clusters, nearest] = jumps[..] else { panic!("three ways") };
-    // Measured 0.0009, 0.0014 and 0.0074 in the long suite; 0.0007, 0.0023 and 0.0049 in the smaller images of the short one.
-    let most = if is_long() { 2.0 * strands.max(0.001) } else { 0.0024 };
-    assert!(clusters < most, "{jumps:?}");
-    assert!(nearest > 2.0 * clusters, "the control: {jumps:?}");
+    // Eye: measured 0.0003, 0.0014 and 0.0045, and 0.0003, 0.0021 and 0.0084 in the larger images of the long suite. When the light turns,
+    // strands jump too, because the voxel map turns with it: 0.0033, 0.0035 and 0.0050, and 0.0043, 0.0046 and 0.0100.
+    assert!(clusters[0] < if is_long() { 0.003 } else { 0.002 }, "{jumps:?}");
+    assert!(clusters[1] < 1.3 * strands[1], "{jumps:?}");
+    assert!(nearest[0] > 2.0 * clusters[0] && nearest[1] > 1.3 * strands[1], "the control: {jumps:?}");
 }
 
 #[test]
