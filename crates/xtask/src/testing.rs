@@ -4,9 +4,7 @@ use crate::times::{Times, cpu_secs_of_children};
 use crate::totals::{Totals, without_colours};
 use anyhow::ensure;
 use lovelock_xtask::system;
-use lovelock_xtask::tool::{Stream, cargo, root, run as run_tool, timed, watch};
-use std::fs;
-use std::path::Path;
+use lovelock_xtask::tool::{Stream, cargo, run as run_tool, timed, watch};
 
 /// Tells tests which suite runs: `testkit::suite` reads it.
 const SUITE: &str = "LOVELOCK_SUITE";
@@ -107,12 +105,10 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
     });
     good &= ran?;
     let cpu = cpu_before.zip(cpu_secs_of_children()).map(|(before, after)| after - before);
-    for library in libraries_with_examples()? {
-        if package.is_none_or(|package| package == library) {
-            let mut examples =
-                cargo(&["test", "--release", "--doc", "--no-fail-fast", "--package", &library]);
-            good &= watch(examples.args(filter), Stream::Out, &mut see)?;
-        }
+    // Without a library there are no examples in the documentation, and cargo objects.
+    if package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
+        let mut examples = cargo(&["test", "--release", "--doc", "--no-fail-fast"]);
+        good &= watch(examples.args(&scope).args(filter), Stream::Out, &mut see)?;
     }
     let cores = std::thread::available_parallelism().map_or(1.0, |cores| cores.get() as f64);
     times.crowding = cpu.map_or(1.0, |cpu| (wall.as_secs_f64() * cores / cpu.max(1.0)).max(1.0));
@@ -122,58 +118,4 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
         Ok(())
     })();
     Ok(Ran { totals, times, outcome })
-}
-
-/// The names of the libraries whose documentation holds examples that are programs. The others are left out, because cargo would read
-/// the whole source of each to find that it has none.
-fn libraries_with_examples() -> anyhow::Result<Vec<String>> {
-    let mut found = Vec::new();
-    for library in fs::read_dir(root().join("crates"))? {
-        let library = library?;
-        let source = library.path().join("src");
-        if source.join("lib.rs").is_file() && has_examples(&source)? {
-            found.push(format!("lovelock-{}", library.file_name().to_string_lossy()));
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-/// Whether a file of the folder has a block of code without the word `text` in its documentation.
-fn has_examples(folder: &Path) -> anyhow::Result<bool> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        let has = if path.is_dir() {
-            has_examples(&path)?
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let mut inside = false;
-            fs::read_to_string(&path)?.lines().any(|line| {
-                let line = line.trim_start();
-                let comment = line.strip_prefix("//!").or_else(|| line.strip_prefix("///"));
-                let Some(fence) = comment.and_then(|text| text.trim_start().strip_prefix("```")) else {
-                    return false;
-                };
-                inside = !inside;
-                inside && fence.trim() != "text"
-            })
-        } else {
-            false
-        };
-        if has {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::libraries_with_examples;
-
-    #[test]
-    fn the_example_of_the_settings_is_found_and_drawings_in_text_are_not() {
-        let found = libraries_with_examples().unwrap();
-        assert!(found.iter().any(|library| library == "lovelock-base"), "{found:?}");
-        assert!(!found.iter().any(|library| library == "lovelock-record"), "{found:?}");
-    }
 }
