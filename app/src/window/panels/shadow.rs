@@ -120,6 +120,8 @@ fn memory_of_map(ui: &mut Ui, shadow: &ShadowSettings) {
     let mib = shadow.map_bytes() as f64 / (1024.0 * 1024.0);
     let text = match shadow.method {
         ShadowMethod::Exact => format!("{mib:.1} MiB per light, and 8 bytes per strand and texel"),
+        // Each thread of the processor adds its strands to a grid of its own.
+        ShadowMethod::VoxelMap => format!("At most {mib:.1} MiB per light and thread"),
         _ => format!("At most {mib:.1} MiB per light"),
     };
     note(ui, text);

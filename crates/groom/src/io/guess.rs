@@ -71,7 +71,7 @@ impl UnitGuess {
 /// 0.09 to 0.30 m. If none does, the roots are scaled to span 0.15 m, the width of an adult scalp. The span is the middle one of the
 /// three sides of the roots' box, so that neither the length of a mohawk nor the height of a fringe counts.
 ///
-/// Axes: [`StrandAxes`]. A file that states its unit and axes is in metres with Y up already.
+/// Axes: `StrandAxes`. A file that states its unit and axes is in metres with Y up already.
 pub fn guess_units(file: &HairFile) -> UnitGuess {
     let roots = RootShape::of(file);
     let axes = StrandAxes::of(file, &roots);

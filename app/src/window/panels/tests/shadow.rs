@@ -20,7 +20,7 @@ fn resolution(harness: &Harness<'_, Shown<Bench>>) -> u32 {
 #[test]
 fn the_resolution_of_a_map_slides_through_its_sizes_and_shows_the_memory_before_it_is_released() {
     let mut harness = panel("Shadow", Project::default());
-    assert!(harness.query_by_label("At most 8.0 MiB per light").is_some());
+    assert!(harness.query_by_label("At most 8.0 MiB per light and thread").is_some());
     let rail = control(&harness, Role::Slider, "Map resolution").rect();
     let stops = [16, 32, 48, 64, 96, 128, 192, 256, 384, 512];
     let mut met = Vec::new();
@@ -34,7 +34,7 @@ fn the_resolution_of_a_map_slides_through_its_sizes_and_shows_the_memory_before_
         // The button is still held: the value and its memory follow.
         met.push(resolution(&harness));
         let mib = f64::from(resolution(&harness)).powi(3) * 4.0 / f64::from(1 << 20);
-        let memory = format!("At most {mib:.1} MiB per light");
+        let memory = format!("At most {mib:.1} MiB per light and thread");
         assert!(harness.query_by_label(&memory).is_some(), "{memory}");
     }
     press(&harness, rail.right_center(), false);
