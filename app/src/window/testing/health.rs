@@ -9,7 +9,8 @@ use lovelock_session::scene::SceneLoader;
 use lovelock_session::totals::Totals;
 use lovelock_simulation::{BodyPart, InsidePoint, SimulationSettings};
 
-use super::whole::{go, of, playing_window, press_button, project, wait};
+use super::tools::into_view;
+use super::whole::{Whole, go, of, playing_window, press_button, project, wait};
 use super::{control, screen, texts, tooltip_at};
 use crate::window::{Window, panels};
 
@@ -68,6 +69,12 @@ fn gauges_show_advice_and_places() {
     assert!(harness.query_by_label_contains("before the first step").is_some());
 }
 
+/// Presses a button that may be below the end of the panel.
+fn press_in_view(harness: &mut Whole, name: &str) {
+    into_view(harness, Role::Button, name);
+    press_button(harness, name);
+}
+
 #[test]
 fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     let mut harness = playing_window();
@@ -75,10 +82,7 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
         window.session.frame.as_ref().is_some_and(|frame| frame.totals.worst_stretch_at.is_some())
     });
     let before = project(&harness);
-    let name = "Show: Largest stretch";
-    control(&harness, Role::Button, name).scroll_to_me();
-    go(&mut harness);
-    press_button(&mut harness, name);
+    press_in_view(&mut harness, "Show: Largest stretch");
     let pointed = |window: &Window| window.tools.marked_gauge.as_ref().map(|gauge| gauge.kind);
     assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
     // The button goes to the time at which the value was found, and the measured value is kept.
@@ -97,7 +101,7 @@ fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     assert_ne!(project(&harness).camera, before.camera);
     assert!(project(&harness).camera.distance < before.camera.distance, "it goes nearer");
     assert_eq!(of(&harness).document.history().undo_label(), Some("camera"));
-    press_button(&mut harness, "Show: Largest stretch");
+    press_in_view(&mut harness, "Show: Largest stretch");
     assert_eq!((pointed(of(&harness)), of(&harness).document.history().undo_len()), (None, 1));
     go(&mut harness);
 }
