@@ -56,7 +56,9 @@ pub use lovelock_gltf::{GltfError, gltf_reference};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;
-pub use scalp::{FittedScalp, Raise, ScalpFit, Skull, fitted_scalp, hairline_place, raise_hairline};
+pub use scalp::{
+    FittedScalp, Raise, ScalpArea, ScalpFit, Skull, fitted_scalp, hairline_place, raise_hairline,
+};
 pub use seam::Seam;
 pub use settings::{
     BodySettings, Facing, LengthUnit, LoopBlend, MotionSettings, OwnHair, RootPosition, UpAxis,

@@ -43,14 +43,21 @@ impl Panel for BodyPanel {
 fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Command> {
     let mut picked = None;
     ui.horizontal_wrapped(|ui| {
-        let body = &mut project.body;
-        if ui
-            .selectable_label(body.source == BodySource::Dancer, "Dancer")
-            .hover_tooltip("Loads the shipped dancer.")
-            .clicked()
-        {
-            body.switch(None);
+        for (source, name, says) in [
+            (BodySource::Dancer, "Dancer", "Loads the shipped dancer."),
+            (
+                BodySource::Animal,
+                "Animal",
+                "Loads the shipped animal at rest, with hair on its whole skin, as fur.",
+            ),
+            (BodySource::Lawn, "Lawn", "Loads the shipped piece of ground, with hair on it, as grass."),
+        ] {
+            let on = project.body.source == source;
+            if ui.selectable_label(on, name).hover_tooltip(says).clicked() {
+                project.show_shipped_body(source);
+            }
         }
+        let body = &mut project.body;
         let on = body.source == BodySource::File;
         if ui
             .selectable_label(on, "Character file…")
@@ -58,7 +65,7 @@ fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<C
             .clicked()
         {
             if body.file.is_some() && !on {
-                body.switch(body.file.clone());
+                body.switch(BodySource::File, body.file.clone());
             } else {
                 picked = Some(Command::PickFile(Purpose::Body));
             }

@@ -71,7 +71,7 @@ fn controls(
             .hover_tooltip("Paints the same on the other side of the head.");
     }
     let default = ScalpFit::default();
-    settings(ui, &["forward", "up", "nod", "width", "size"], fit, &default);
+    settings(ui, &["area", "forward", "up", "nod", "width", "size"], fit, &default);
     settings(
         ui,
         &[

@@ -22,7 +22,9 @@ pub(super) struct SampledClip {
 }
 
 /// The contents of the file.
-pub(super) struct Dancer {
+pub(super) struct Model {
+    /// Its name in the file.
+    pub(super) name: &'static str,
     /// Rest positions, metres.
     pub(super) positions: Vec<Vec3>,
     /// Unit normals.
@@ -61,11 +63,11 @@ fn bound<const N: usize>(accessor: &mut Value, values: &[[f32; N]]) {
 }
 
 /// The bytes of the `.glb` file.
-pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
+pub(super) fn write(model: &Model) -> anyhow::Result<Vec<u8>> {
     let mut buffer = Buffer::default();
-    let primitive = primitive(dancer, &mut buffer);
+    let primitive = primitive(model, &mut buffer);
 
-    let bind: Vec<[f32; 16]> = dancer
+    let bind: Vec<[f32; 16]> = model
         .joints
         .iter()
         .map(|joint| {
@@ -76,12 +78,12 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
     let bind = floats(&mut buffer, &bind, "MAT4", None);
 
     // Node 0 is the mesh, the joints follow.
-    let mut nodes = vec![json!({"name": "dancer", "mesh": 0, "skin": 0})];
-    for (index, joint) in dancer.joints.iter().enumerate() {
-        let parent = joint.parent.map_or(Vec3::ZERO, |p| dancer.joints[p].rest);
+    let mut nodes = vec![json!({"name": model.name, "mesh": 0, "skin": 0})];
+    for (index, joint) in model.joints.iter().enumerate() {
+        let parent = joint.parent.map_or(Vec3::ZERO, |p| model.joints[p].rest);
         let mut node = json!({"name": joint.name, "translation": (joint.rest - parent).to_array()});
-        let children: Vec<usize> = (0..dancer.joints.len())
-            .filter(|other| dancer.joints[*other].parent == Some(index))
+        let children: Vec<usize> = (0..model.joints.len())
+            .filter(|other| model.joints[*other].parent == Some(index))
             .map(|other| other + 1)
             .collect();
         if !children.is_empty() {
@@ -89,42 +91,45 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
         }
         nodes.push(node);
     }
-    let animations: Vec<Value> = dancer.clips.iter().map(|clip| animation(clip, &mut buffer)).collect();
+    let animations: Vec<Value> = model.clips.iter().map(|clip| animation(clip, &mut buffer)).collect();
 
-    let document = json!({
+    let mut document = json!({
         "asset": {"version": "2.0", "generator": "cargo xtask assets"},
         "scene": 0,
-        "scenes": [{"name": "dancer", "nodes": [0, 1]}],
+        "scenes": [{"name": model.name, "nodes": [0, 1]}],
         "nodes": nodes,
-        "meshes": [{"name": "dancer", "primitives": [primitive]}],
+        "meshes": [{"name": model.name, "primitives": [primitive]}],
         "materials": [{
             "name": "matt",
             "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.75},
         }],
         "skins": [{
-            "name": "dancer",
+            "name": model.name,
             "inverseBindMatrices": bind,
             "skeleton": 1,
-            "joints": (1..=dancer.joints.len()).collect::<Vec<_>>(),
+            "joints": (1..=model.joints.len()).collect::<Vec<_>>(),
         }],
-        "animations": animations,
         "buffers": [{"byteLength": buffer.len()}],
         "bufferViews": buffer.views,
         "accessors": buffer.accessors,
     });
+    // An empty list is not valid.
+    if !animations.is_empty() {
+        document["animations"] = json!(animations);
+    }
     let head = glb::head(serde_json::to_vec(&document)?, buffer.len())
         .map_err(|whole| anyhow::anyhow!("a binary glTF file of {whole} bytes; must be less than 4 GiB"))?;
     Ok([head, buffer.into_bytes()].concat())
 }
 
-fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
-    let count = dancer.positions.len();
-    let positions: Vec<[f32; 3]> = dancer.positions.iter().map(Vec3::to_array).collect();
+fn primitive(model: &Model, buffer: &mut Buffer) -> Value {
+    let count = model.positions.len();
+    let positions: Vec<[f32; 3]> = model.positions.iter().map(Vec3::to_array).collect();
     let position = floats(buffer, &positions, "VEC3", Some(ARRAY_BUFFER));
     bound(&mut buffer.accessors[position], &positions);
-    let normals: Vec<[f32; 3]> = dancer.normals.iter().map(Vec3::to_array).collect();
+    let normals: Vec<[f32; 3]> = model.normals.iter().map(Vec3::to_array).collect();
     let normal = floats(buffer, &normals, "VEC3", Some(ARRAY_BUFFER));
-    let colours: Vec<u8> = dancer
+    let colours: Vec<u8> = model
         .colours
         .iter()
         .flat_map(|c| [c.x, c.y, c.z, 1.0])
@@ -132,22 +137,16 @@ fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
         .collect();
     let colour = buffer.add(&colours, "VEC4", UNSIGNED_SHORT, count, Some(ARRAY_BUFFER));
     buffer.accessors[colour]["normalized"] = json!(true);
-    let scalp: Vec<[f32; 1]> = dancer.scalp.iter().map(|v| [*v]).collect();
+    let scalp: Vec<[f32; 1]> = model.scalp.iter().map(|v| [*v]).collect();
     let scalp = floats(buffer, &scalp, "SCALAR", Some(ARRAY_BUFFER));
-    let joints: Vec<u8> = dancer.influences.iter().flatten().map(|(joint, _)| *joint).collect();
+    let joints: Vec<u8> = model.influences.iter().flatten().map(|(joint, _)| *joint).collect();
     let joints = buffer.add(&joints, "VEC4", UNSIGNED_BYTE, count, Some(ARRAY_BUFFER));
-    let weights: Vec<u8> = dancer.influences.iter().flatten().flat_map(|(_, w)| w.to_le_bytes()).collect();
+    let weights: Vec<u8> = model.influences.iter().flatten().flat_map(|(_, w)| w.to_le_bytes()).collect();
     let weights = buffer.add(&weights, "VEC4", UNSIGNED_SHORT, count, Some(ARRAY_BUFFER));
     buffer.accessors[weights]["normalized"] = json!(true);
-    let indices: Vec<u8> =
-        dancer.triangles.iter().flatten().flat_map(|i| (*i as u16).to_le_bytes()).collect();
-    let indices = buffer.add(
-        &indices,
-        "SCALAR",
-        UNSIGNED_SHORT,
-        dancer.triangles.len() * 3,
-        Some(ELEMENT_ARRAY_BUFFER),
-    );
+    let indices: Vec<u8> = model.triangles.iter().flatten().flat_map(|i| (*i as u16).to_le_bytes()).collect();
+    let indices =
+        buffer.add(&indices, "SCALAR", UNSIGNED_SHORT, model.triangles.len() * 3, Some(ELEMENT_ARRAY_BUFFER));
     json!({
         "attributes": {
             "POSITION": position, "NORMAL": normal, "COLOR_0": colour, "_SCALP": scalp,

@@ -15,12 +15,13 @@ pub(super) struct TriMesh {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Grid lines whose spacing shrinks toward the head and the hands. The lines along x and z converge above the
-/// shoulders, so that the head gets fine cells without the torso paying for them.
-struct Grid {
+/// The lines of a grid along each axis.
+pub(super) struct Grid {
     xs: Vec<f32>,
     ys: Vec<f32>,
     zs: Vec<f32>,
+    /// Whether the lines along x and z converge toward a head at the height of the dancer's.
+    converges: bool,
 }
 
 /// Lines from `low` to `high` with the spacing given at each place.
@@ -35,7 +36,15 @@ fn lines(low: f32, high: f32, spacing: impl Fn(f32) -> f32) -> Vec<f32> {
 }
 
 impl Grid {
-    fn new() -> Self {
+    /// A box from `low` to `high` with lines `spacing` metres apart.
+    pub(super) fn even(low: Vec3, high: Vec3, spacing: f32) -> Self {
+        let [xs, ys, zs] = [0, 1, 2].map(|axis| lines(low[axis], high[axis], |_| spacing));
+        Self { xs, ys, zs, converges: false }
+    }
+
+    /// Lines around the dancer whose spacing shrinks toward the head and the hands. The lines along x and z converge above the
+    /// shoulders, so that the head gets fine cells without the torso paying for them.
+    pub(super) fn dancer() -> Self {
         let half = lines(0.0, 0.74, |x| 0.0100 - 0.0050 * smoothstep(0.46, 0.52, x));
         let xs = half.iter().skip(1).rev().map(|x| -x).chain(half.iter().copied()).collect();
         let ys = lines(-0.03, 1.74, |y| {
@@ -43,11 +52,14 @@ impl Grid {
             let head = smoothstep(1.42, 1.47, y);
             0.0095 - 0.0042 * hands - 0.0065 * head
         });
-        Self { xs, ys, zs: lines(-0.41, 0.41, |_| 0.0095) }
+        Self { xs, ys, zs: lines(-0.41, 0.41, |_| 0.0095), converges: true }
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> Vec3 {
         let y = self.ys[j];
+        if !self.converges {
+            return Vec3::new(self.xs[i], y, self.zs[k]);
+        }
         let head = smoothstep(1.39, 1.48, y);
         let scale = 1.0 - 0.70 * head;
         Vec3::new(self.xs[i] * scale, y, self.zs[k] * scale + 0.02)
@@ -55,15 +67,13 @@ impl Grid {
 }
 
 /// The zero set of `distance` as a mesh, one vertex for each sheet of it in a cell.
-pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
-    let grid = Grid::new();
+pub(super) fn surface_nets(grid: &Grid, distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
     let (nx, ny, nz) = (grid.xs.len(), grid.ys.len(), grid.zs.len());
     let index = |i: usize, j: usize, k: usize| (j * nz + k) * nx + i;
     let values: Vec<f32> = (0..ny * nz)
         .into_par_iter()
         .flat_map_iter(|row| {
             let (j, k) = (row / nz, row % nz);
-            let grid = &grid;
             // The distance bounds how far the surface is: points surely away from it copy their neighbour's.
             let mut free = 0.0_f32;
             let mut last = 0.0;

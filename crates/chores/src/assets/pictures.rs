@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::dance::{LocalPose, world_of};
-use super::glb::{Dancer, SampledClip};
+use super::glb::{Model, SampledClip};
 use super::preview::{Camera, Canvas, View};
 
 /// Images on one contact sheet, in rows of eight.
@@ -34,7 +34,7 @@ fn grid(
 }
 
 /// Writes all images into `folder`.
-pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
+pub(super) fn write(dancer: &Model, folder: &Path) -> anyhow::Result<()> {
     let view = View {
         positions: &dancer.positions,
         normals: &dancer.normals,
@@ -96,7 +96,7 @@ pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
 }
 
 /// The clip as images at equal intervals.
-fn sheet(dancer: &Dancer, view: &View, clip: &SampledClip, folder: &Path) -> anyhow::Result<()> {
+fn sheet(dancer: &Model, view: &View, clip: &SampledClip, folder: &Path) -> anyhow::Result<()> {
     let size = [250, 420];
     let mut canvas = Canvas::new(8 * size[0], SHEET_FRAMES.div_ceil(8) * size[1]);
     for frame in 0..SHEET_FRAMES {
@@ -109,7 +109,7 @@ fn sheet(dancer: &Dancer, view: &View, clip: &SampledClip, folder: &Path) -> any
 }
 
 /// Positions and normals at one key, by linear blending.
-fn skinned(dancer: &Dancer, clip: &SampledClip, key: usize) -> (Vec<Vec3>, Vec<Vec3>) {
+fn skinned(dancer: &Model, clip: &SampledClip, key: usize) -> (Vec<Vec3>, Vec<Vec3>) {
     let pose = LocalPose { rotations: clip.rotations.iter().map(|r| r[key]).collect(), hips: clip.hips[key] };
     let world = world_of(&dancer.joints, &pose);
     let vertices = dancer.positions.iter().zip(&dancer.normals).zip(&dancer.influences);

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 
 use super::rig::rest;
 use super::score::Score;
-use super::{dance, head, ik, mesh, path, remesh, rig, score};
+use super::{animal, dance, glb, head, ik, lawn, mesh, path, remesh, rig, score};
 
 /// The contents of the file.
 struct File {
@@ -25,7 +25,11 @@ struct Vertices {
 }
 
 fn file() -> File {
-    let bytes = std::fs::read(path()).expect("assets/dancer.glb is missing: cargo xtask assets makes it");
+    read("dancer")
+}
+
+fn read(name: &str) -> File {
+    let bytes = std::fs::read(path(name)).expect("a file of assets is missing: cargo xtask assets makes it");
     // `from_slice` validates the document.
     let gltf = gltf::Gltf::from_slice(&bytes).expect("valid glTF");
     File { document: gltf.document, binary: gltf.blob.expect("a binary chunk"), length: bytes.len() }
@@ -99,6 +103,38 @@ fn surface_is_closed() {
     assert_eq!(v - t * 3 / 2 + t, 2);
     // Negative control: without one triangle there are three open edges.
     assert_eq!(open_edges(&vertices.triangles[1..]), 3);
+}
+
+#[test]
+fn the_other_bodies_are_closed_and_hair_grows_on_most_of_their_skin() {
+    for (model, most) in [(animal::make(), 700 << 10), (lawn::make(), 400 << 10)] {
+        let name = model.name;
+        let bytes = glb::write(&model).expect("a file");
+        assert_eq!(
+            std::fs::read(path(name)).expect(name),
+            bytes,
+            "{name}: cargo xtask assets makes it again"
+        );
+        assert!(bytes.len() < most, "{name}: {} bytes", bytes.len());
+        let vertices = read(name).vertices();
+        assert_eq!(open_edges(&vertices.triangles), 0, "{name}");
+        let (v, t) = (vertices.positions.len() as i64, vertices.triangles.len() as i64);
+        assert_eq!(v - t * 3 / 2 + t, 2, "{name}: one body without tunnels");
+        let area = |hairy: bool| -> f32 {
+            let at = |v: u32| vertices.positions[v as usize];
+            let chosen = vertices
+                .triangles
+                .iter()
+                .filter(|t| !hairy || t.iter().all(|v| vertices.scalp[*v as usize] > 0.5));
+            chosen.map(|t| 0.5 * (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).length()).sum()
+        };
+        let share = area(true) / area(false);
+        // Grass grows on the upper side alone.
+        let wanted = if name == "lawn" { 0.35..0.55 } else { 0.9..0.99 };
+        assert!(wanted.contains(&share), "{name}: hair grows on {share} of {} m²", area(false));
+        let (low, _) = extent(&vertices.positions, Vec3::Y, |_| true);
+        assert!(low.abs() < 0.003, "{name} stands at {low} m");
+    }
 }
 
 #[test]
@@ -319,7 +355,7 @@ fn a_ball_is_meshed_closed_even_and_the_same_twice() {
     let centre = Vec3::new(0.0, 1.0, 0.02);
     let distance = |p: Vec3| p.distance(centre) - 0.08;
     let make = || {
-        let mut ball = mesh::surface_nets(&distance);
+        let mut ball = mesh::surface_nets(&mesh::Grid::dancer(), &distance);
         remesh::remesh(&mut ball, &distance, &|_| 0.012, 4);
         ball
     };

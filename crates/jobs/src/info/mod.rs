@@ -156,6 +156,8 @@ fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
         notes: problems.iter().map(ToString::to_string).collect(),
         body: match project.body.source {
             BodySource::Dancer => "dancer".to_owned(),
+            BodySource::Animal => "animal".to_owned(),
+            BodySource::Lawn => "lawn".to_owned(),
             BodySource::File => name(&project.body.file),
         },
         motion: match project.motion.source {

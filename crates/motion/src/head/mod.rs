@@ -5,5 +5,5 @@ mod scalp;
 mod surface;
 
 pub use pick::{guess_head, joint_paths};
-pub(crate) use surface::neck_joints;
 pub use surface::{HeadMesh, head_mesh};
+pub(crate) use surface::{neck_joints, skin_mesh};

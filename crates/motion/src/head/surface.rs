@@ -75,6 +75,24 @@ pub fn head_mesh(body: &Body) -> HeadMesh {
     out
 }
 
+/// The whole resting surface in head space, for hair that grows on all of the skin: where the file has a mask, on what it marks, and
+/// else everywhere.
+pub(crate) fn skin_mesh(body: &Body) -> HeadMesh {
+    let mesh = &body.mesh;
+    if body.skeleton.joints.is_empty() {
+        return HeadMesh::default();
+    }
+    let origin = body.skeleton.rest_position(body.head_joint);
+    HeadMesh {
+        positions: mesh.positions.iter().map(|p| *p - origin).collect(),
+        normals: mesh.normals.clone(),
+        triangles: mesh.triangles.clone(),
+        scalp: if mesh.scalp.is_empty() { vec![1.0; mesh.positions.len()] } else { mesh.scalp.clone() },
+        vertex: (0..mesh.positions.len() as u32).collect(),
+        scalp_is_guessed: false,
+    }
+}
+
 /// Joints between the chest and the head.
 pub(crate) fn neck_joints(body: &Body) -> Vec<usize> {
     let figure = Humanoid::of_skeleton(&body.skeleton);

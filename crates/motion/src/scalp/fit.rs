@@ -5,13 +5,37 @@ use std::f32::consts::PI;
 use glam::{Quat, Vec3};
 use lovelock_base::direction_map::DirectionMap;
 use lovelock_base::field;
-use lovelock_base::settings::{Setting, Settings, Unit};
+use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 use serde::{Deserialize, Serialize};
+
+/// Where hair grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ScalpArea {
+    /// Within a hairline on the head.
+    #[default]
+    Head,
+    /// On the whole skin, as fur; of a file with a mask, where that marks it.
+    Skin,
+}
+
+impl Choices for ScalpArea {
+    const ALL: &'static [Self] = &[Self::Head, Self::Skin];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Head => ("head", "Head"),
+            Self::Skin => ("skin", "Whole skin"),
+        }
+    }
+}
 
 /// What a person changed about the scalp that was fitted to a head. The default is the automatic fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ScalpFit {
+    /// Where hair grows.
+    pub area: ScalpArea,
     /// Moves the scalp toward the face, as a fraction of half the skull.
     pub forward: f32,
     /// Moves the scalp up, in the same measure.
@@ -33,6 +57,7 @@ pub struct ScalpFit {
 impl Default for ScalpFit {
     fn default() -> Self {
         Self {
+            area: ScalpArea::Head,
             forward: 0.0,
             up: 0.0,
             nod: 0.0,
@@ -102,7 +127,7 @@ impl ScalpFit {
 
     /// Whether nothing is changed.
     pub fn is_automatic(&self) -> bool {
-        !self.moves_outline() && self.size == 1.0 && !self.is_painted()
+        self.area == ScalpArea::Head && !self.moves_outline() && self.size == 1.0 && !self.is_painted()
     }
 
     /// Whether the outline is moved, as opposed to painted.
@@ -174,6 +199,12 @@ impl ScalpFit {
 
 impl Settings for ScalpFit {
     const TABLE: &'static [Setting<Self>] = &[
+        Setting::choice::<ScalpArea>(
+            field!(Self, area),
+            "Hair grows on",
+            "Where hair grows: on the head, within the hairline, or on the whole skin, as fur. Fur moves rigidly with \
+             the head joint, so it suits a body at rest.",
+        ),
         Setting::number(
             field!(Self, forward),
             [-0.6, 0.6],

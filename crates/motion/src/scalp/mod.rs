@@ -7,6 +7,8 @@
 //!    head, such as ears, where the body goes on, and on skin that another joint moves.
 //! 4. [`ScalpFit`]: what a person corrects.
 //!
+//! For fur the scalp is the whole skin ([`ScalpArea::Skin`]), and hair has the size that its settings say.
+//!
 //! Where the skin encloses no skull, an ellipsoid around the head's box takes its place.
 
 mod fit;
@@ -18,9 +20,10 @@ mod tests;
 
 use glam::Vec3;
 
-pub use fit::{Raise, ScalpFit};
+pub use fit::{Raise, ScalpArea, ScalpFit};
 pub use skull::Skull;
 
+use crate::head::skin_mesh;
 use crate::{Body, HeadMesh, RestDistance, head_mesh};
 
 /// The surface on which hair grows, and the skull to which it was fitted.
@@ -51,6 +54,9 @@ pub fn fitted_scalp(body: &Body, rest: &RestDistance, fit: &ScalpFit) -> FittedS
     let distance = |p: Vec3| rest.distance(p).0;
     let alone = body.skeleton.joints.len() == 1 || head.positions.len() == body.mesh.positions.len();
     let found = Skull::find(&head.positions, alone, &distance);
+    if fit.area == ScalpArea::Skin {
+        return whole_skin(body, found, &fit);
+    }
     let is_a_cap = found.is_none();
     let Some(skull) = found.or_else(|| mesh::cap_around(&head.positions)) else {
         return FittedScalp { head, scale: 1.0, is_a_cap, ..FittedScalp::default() };
@@ -73,6 +79,18 @@ pub fn fitted_scalp(body: &Body, rest: &RestDistance, fit: &ScalpFit) -> FittedS
         }
     }
     FittedScalp { head, skull: Some(skull), scale: scale * fit.size, body_mask, is_a_cap }
+}
+
+/// The whole skin as a scalp, with what is painted as seen from the middle of the skull.
+fn whole_skin(body: &Body, skull: Option<Skull>, fit: &ScalpFit) -> FittedScalp {
+    let mut head = skin_mesh(body);
+    if let Some(skull) = skull.as_ref().filter(|_| fit.is_painted()) {
+        for (p, mask) in head.positions.iter().zip(&mut head.scalp) {
+            *mask = fit.painted(skull.relative(*p), *mask);
+        }
+    }
+    let body_mask = if head.scalp == body.mesh.scalp { Vec::new() } else { head.scalp.clone() };
+    FittedScalp { head, skull, scale: fit.size, body_mask, is_a_cap: false }
 }
 
 /// A point of the hairline: its place on the ellipsoid of the skull, head space, metres. `azimuth` is the angle from the front toward

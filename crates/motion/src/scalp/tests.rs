@@ -150,3 +150,26 @@ fn a_handle_brings_the_hairline_to_the_pointer_and_paint_adds_and_removes() {
     fit.paint(face, 0.3, 1.0, true);
     assert!(mask(&fit, face) < 0.1, "what was added is removed again");
 }
+
+#[test]
+fn fur_grows_on_the_whole_skin_in_its_own_size() {
+    let mut body = ball(0.3, 0.1);
+    let rest = RestDistance::new(&body);
+    let fit = ScalpFit { area: ScalpArea::Skin, ..ScalpFit::default() };
+    let fur = fitted_scalp(&body, &rest, &fit);
+    assert_eq!((fur.head.positions.len(), fur.scale), (body.mesh.positions.len(), 1.0));
+    assert!(fur.head.scalp.iter().all(|mask| *mask == 1.0) && fur.body_mask == fur.head.scalp);
+    // Control: on the head there is a hairline, and hair has the size of the head.
+    let hair = fitted_scalp(&body, &rest, &ScalpFit::default());
+    assert!(hair.head.scalp.contains(&0.0) && hair.scale > 2.0, "{}", hair.scale);
+    // The mask of the file, what is painted, and the size that is asked for.
+    body.mesh.scalp = body.mesh.positions.iter().map(|p| f32::from(p.z > 0.0)).collect();
+    let masked = fitted_scalp(&body, &rest, &fit);
+    assert!(masked.head.scalp == body.mesh.scalp && masked.body_mask.is_empty());
+    let mut painted = ScalpFit { size: 2.0, ..fit };
+    painted.paint(Vec3::Z, 0.5, 1.0, true);
+    let painted = fitted_scalp(&body, &rest, &painted);
+    let mean = |fitted: &FittedScalp| fitted.head.scalp.iter().sum::<f32>() / fitted.head.scalp.len() as f32;
+    assert!(painted.scale == 2.0 && mean(&painted) < 0.95 * mean(&masked), "{}", mean(&painted));
+    assert_eq!(painted.body_mask, painted.head.scalp);
+}

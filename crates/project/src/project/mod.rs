@@ -132,11 +132,22 @@ impl Project {
 
     /// Switches to a character file that the user picked, with its first clip. Hair and style stay, on the scalp of the new head.
     pub fn set_body_file(&mut self, path: impl Into<std::path::PathBuf>) {
-        self.body.switch(Some(FileRef::new(path)));
+        self.body.switch(BodySource::File, Some(FileRef::new(path)));
         if self.motion.source == MotionSource::Clip {
             self.motion.clip.clear();
             self.motion.loop_blend = LoopBlend::End;
         }
+    }
+
+    /// Switches to a shipped body. Those of fur and grass have no clips and rest.
+    pub fn show_shipped_body(&mut self, source: BodySource) {
+        let rests = |source| matches!(source, BodySource::Animal | BodySource::Lawn);
+        if rests(source) {
+            self.motion.source = MotionSource::Rest;
+        } else if rests(self.body.source) {
+            self.motion.source = MotionSource::Clip;
+        }
+        self.body.switch(source, None);
     }
 
     /// Switches to a motion file that the user picked.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairLook, HairShading, HairTie, Haircut, ImportSettings, Preset};
-use lovelock_motion::{BodySettings, ColliderEdits, LoopBlend, MotionSettings, ScalpFit};
+use lovelock_motion::{BodySettings, ColliderEdits, LoopBlend, MotionSettings, ScalpArea, ScalpFit};
 use lovelock_picture::{Backend, HairDrawing, Transparency};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_shadow::{ShadowMethod, ShadowSettings};
@@ -21,8 +21,20 @@ pub enum BodySource {
     /// The dancer that is part of the program.
     #[default]
     Dancer,
+    /// The four-legged animal that is part of the program, for fur.
+    Animal,
+    /// The piece of ground that is part of the program, for grass.
+    Lawn,
     /// [`BodySection::file`].
     File,
+}
+
+impl BodySource {
+    /// The fitted scalp of a body with which a project begins: fur and grass grow on the whole skin.
+    pub fn scalp(self) -> ScalpFit {
+        let area = if matches!(self, Self::Animal | Self::Lawn) { ScalpArea::Skin } else { ScalpArea::Head };
+        ScalpFit { area, ..ScalpFit::default() }
+    }
 }
 
 /// The body that dances.
@@ -49,7 +61,9 @@ pub struct BodySection {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KeptScalp {
-    /// The file of that body; none for the shipped dancer.
+    /// That body, if it is a shipped one.
+    pub source: BodySource,
+    /// The file of that body; none for a shipped one.
     pub file: Option<FileRef>,
     /// What was changed.
     pub scalp: ScalpFit,
@@ -59,25 +73,29 @@ impl BodySection {
     /// The most bodies whose scalps are kept.
     pub const MAX_SCALPS: usize = 16;
 
-    /// Switches to another body: to a file, or to the shipped dancer. The head joint is guessed again. The corrections of the scalp are
+    /// Switches to another body: to a file, or to a shipped one. The head joint is guessed again. The corrections of the scalp are
     /// kept for the body that they were made for, and those that the new body had before return.
-    pub fn switch(&mut self, file: Option<FileRef>) {
+    pub fn switch(&mut self, source: BodySource, file: Option<FileRef>) {
         let of = (self.source == BodySource::File).then(|| self.file.clone()).flatten();
-        let path = |file: &Option<FileRef>| file.as_ref().map(|file| file.path.clone());
-        if path(&of) != path(&file) {
-            let left = KeptScalp { file: of, scalp: std::mem::take(&mut self.scalp) };
-            self.other_scalps.retain(|kept| path(&kept.file) != path(&left.file));
-            if let Some(i) = self.other_scalps.iter().position(|kept| path(&kept.file) == path(&file)) {
-                self.scalp = self.other_scalps.remove(i).scalp;
-            }
-            if !left.scalp.is_automatic() {
+        let key = |source: BodySource, file: &Option<FileRef>| match file {
+            Some(file) => (BodySource::File, Some(file.path.clone())),
+            None => (source, None),
+        };
+        let of_kept = |kept: &KeptScalp| key(kept.source, &kept.file);
+        if key(self.source, &of) != key(source, &file) {
+            let is_plain = self.scalp == self.source.scalp();
+            let left = KeptScalp { source: self.source, file: of, scalp: std::mem::take(&mut self.scalp) };
+            self.other_scalps.retain(|kept| of_kept(kept) != of_kept(&left));
+            let known = self.other_scalps.iter().position(|kept| of_kept(kept) == key(source, &file));
+            self.scalp = known.map_or_else(|| source.scalp(), |i| self.other_scalps.remove(i).scalp);
+            if !is_plain {
                 self.other_scalps.push(left);
                 let surplus = self.other_scalps.len().saturating_sub(Self::MAX_SCALPS);
                 self.other_scalps.drain(..surplus);
             }
         }
         self.head_joint = None;
-        self.source = if file.is_some() { BodySource::File } else { BodySource::Dancer };
+        self.source = if file.is_some() { BodySource::File } else { source };
         if file.is_some() {
             self.file = file;
         }

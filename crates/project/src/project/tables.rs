@@ -85,11 +85,13 @@ impl Settings for Project {
 }
 
 impl Choices for BodySource {
-    const ALL: &'static [Self] = &[Self::Dancer, Self::File];
+    const ALL: &'static [Self] = &[Self::Dancer, Self::Animal, Self::Lawn, Self::File];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Dancer => ("Dancer", "Dancer"),
+            Self::Animal => ("Animal", "Animal"),
+            Self::Lawn => ("Lawn", "Lawn"),
             Self::File => ("File", "Character file"),
         }
     }
@@ -104,7 +106,7 @@ impl Settings for BodySection {
     const TABLE: &'static [Setting<Self>] = &[Setting::choice::<BodySource>(
         field!(Self, source),
         "Body",
-        "The body that dances: the shipped dancer or a character file.",
+        "The body that carries the hair: the shipped dancer, an animal for fur, ground for grass, or a character file.",
     )];
 
     fn parts(&self) -> Vec<Part<'_>> {

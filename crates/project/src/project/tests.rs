@@ -424,17 +424,40 @@ fn hair_moves_from_one_character_to_another_and_each_keeps_its_scalp() {
     project.set_body_file("/a/one.glb");
     assert_eq!((project.body.scalp.up, project.hair == hair), (0.0, true));
     project.body.scalp.nod = 0.2;
-    project.body.switch(None);
+    project.body.switch(BodySource::Dancer, None);
     assert_eq!(
         (project.body.scalp.up, project.body.scalp.nod, project.body.source),
-        (0.1, 0.0, crate::project::BodySource::Dancer)
+        (0.1, 0.0, BodySource::Dancer)
     );
-    project.body.switch(Some(crate::files::FileRef::new("/a/one.glb")));
+    project.body.switch(BodySource::File, Some(crate::files::FileRef::new("/a/one.glb")));
     assert_eq!((project.body.scalp.up, project.body.scalp.nod), (0.0, 0.2));
     assert_eq!(project.body.other_scalps.len(), 1);
     let text = ron::to_string(&project.body).expect("text");
     let read: crate::project::BodySection = ron::from_str(&text).expect("a section");
     assert_eq!(read, project.body);
+}
+
+#[test]
+fn a_body_of_fur_rests_and_has_hair_on_its_whole_skin() {
+    use lovelock_motion::ScalpArea;
+    let mut project = Project::default();
+    project.body.scalp.up = 0.1;
+    for source in [BodySource::Animal, BodySource::Lawn, BodySource::Animal] {
+        project.show_shipped_body(source);
+        assert_eq!((project.body.scalp.area, project.motion.source), (ScalpArea::Skin, MotionSource::Rest));
+    }
+    project.body.scalp.size = 2.0;
+    project.show_shipped_body(BodySource::Dancer);
+    assert_eq!(
+        (project.body.scalp.area, project.body.scalp.up, project.motion.source),
+        (ScalpArea::Head, 0.1, MotionSource::Clip)
+    );
+    assert_eq!(project.body.other_scalps.len(), 1, "only the changed one is kept");
+    project.show_shipped_body(BodySource::Animal);
+    assert_eq!((project.body.scalp.area, project.body.scalp.size), (ScalpArea::Skin, 2.0));
+    // Kept by files that say nothing about shipped bodies: a scalp without a file is the dancer's.
+    let kept: crate::project::KeptScalp = ron::from_str("(scalp: (up: 0.3))").expect("a section");
+    assert_eq!((kept.source, kept.scalp.area), (BodySource::Dancer, ScalpArea::Head));
 }
 
 #[test]

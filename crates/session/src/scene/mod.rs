@@ -2,22 +2,22 @@
 
 mod camera;
 mod control;
-mod dancer;
 mod hair_part;
 mod hair_slot;
 mod head_path;
 mod loader;
 mod parts;
 mod scalp_part;
+mod shipped;
 mod styling;
 mod surroundings;
 
 pub use camera::{camera_at, camera_for_size, frame_points};
 pub use control::LoadControl;
-pub use dancer::dancer;
 pub use head_path::HeadPath;
 pub use loader::SceneLoader;
 pub(crate) use scalp_part::Enlarged;
+pub use shipped::dancer;
 pub use styling::StyleSource;
 pub(crate) use styling::Styling;
 pub(crate) use surroundings::SurroundingsLoader;

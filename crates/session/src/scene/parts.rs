@@ -16,7 +16,7 @@ use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, BodySource, MotionSection, MotionSource};
 
 use super::control::LoadControl;
-use super::dancer;
+use super::shipped::shipped;
 
 /// Identity of a file's contents when it was read. The file is read again if this changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +40,7 @@ impl Stamp {
 /// The sources of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BodyKey {
+    source: BodySource,
     file: Option<(Stamp, BodySettings)>,
     head_joint: Option<String>,
 }
@@ -60,7 +61,7 @@ impl BodyKey {
     /// The sources in `section`, or a problem if they may not be read.
     pub(super) fn of(section: &BodySection, access: &Access) -> Result<Self, Problem> {
         let file = match (section.source, &section.file) {
-            (BodySource::Dancer, _) => None,
+            (BodySource::Dancer | BodySource::Animal | BodySource::Lawn, _) => None,
             (BodySource::File, Some(file)) => {
                 Some((Stamp::of(&access.read(Place::Body, file)?), section.settings))
             }
@@ -68,12 +69,12 @@ impl BodyKey {
                 return Err(Problem::not_loaded(Place::Body, "no character file is set; pick one"));
             }
         };
-        Ok(Self { file, head_joint: section.head_joint.clone() })
+        Ok(Self { source: section.source, file, head_joint: section.head_joint.clone() })
     }
 
     /// The dancer, whatever the project says.
     pub(super) fn dancer() -> Self {
-        Self { file: None, head_joint: None }
+        Self { source: BodySource::Dancer, file: None, head_joint: None }
     }
 
     /// As [`BodyKey::load_in_steps`], in one go.
@@ -95,7 +96,7 @@ impl BodyKey {
             return Ok(Ok(part.clone()));
         }
         let character = match &self.file {
-            None => dancer(),
+            None => shipped(self.source),
             Some((stamp, settings)) => {
                 let (path, settings) = (stamp.path.clone(), *settings);
                 control.read("loading the body", [0.0, 0.08], move |watch| {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_groom::{Hairstyle, Scalp};
-use lovelock_motion::{Body, RestDistance, ScalpFit, Skull, fitted_scalp};
+use lovelock_motion::{Body, RestDistance, ScalpArea, ScalpFit, Skull, fitted_scalp};
 use lovelock_project::error::{Place, Problem, ProblemKind};
 
 use super::BodyObstacle;
@@ -38,6 +38,10 @@ impl ScalpPart {
             } else {
                 "the file contains no hairline; the scalp was fitted to the shape of the head"
             };
+            notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
+        }
+        if fit.area == ScalpArea::Skin && part.body.skeleton.joints.len() > 1 {
+            let message = "hair grows on the whole skin and moves rigidly with the head joint: it follows the skin while the body rests";
             notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
         }
         let body = if fitted.body_mask.is_empty() {
