@@ -282,8 +282,12 @@ pub(crate) struct Bench {
     pub(crate) strands: Option<u32>,
     /// Earlier run to compare with: the output of `lovelock bench --json`. Stages are compared by their multiples of the machine's
     /// yardstick, so the earlier run may come from another machine; those that slowed by over 10 % are marked.
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", conflicts_with = "threads")]
     pub(crate) baseline: Option<PathBuf>,
+    /// Measure the scenes with each of these numbers of threads, 1 to 256, such as 1,2,4, on the CPU backend. Prints the time and the
+    /// speed-up of every stage.
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub(crate) threads: Vec<u32>,
     /// Frames to measure, 1 to 1000; steps of 1/60 s in scenes that are not rendered.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,

@@ -25,6 +25,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
         shadow: task.shadow,
         draw: task.draw,
         transparency: task.transparency,
+        threads: task.threads.iter().map(|threads| *threads as usize).collect(),
         ..BenchRequest::default()
     };
     if !task.scenes.is_empty() {
@@ -42,6 +43,17 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     }
     if let Some(backend) = task.backend {
         request.backends = vec![backend];
+    }
+    if !task.threads.is_empty() {
+        if let Some(backend) = task.backend.filter(|backend| *backend != Backend::Cpu) {
+            return Err(ProjectError::option(format!(
+                "--threads: found with the backend {backend}; must be used with cpu"
+            )));
+        }
+        if request.scenes.is_empty() {
+            return Err(ProjectError::option("--threads: found without a scene; must be used with one"));
+        }
+        request.backends = vec![Backend::Cpu];
     }
     // Checked now, before minutes of measuring.
     if let Some(out) = &task.out {
@@ -104,6 +116,9 @@ fn references(task: &Bench) -> Result<Vec<ReferenceScene>, ProjectError> {
     }
     if others {
         return refuse("reference scenes are not measured; must be the only scenes of the command");
+    }
+    if !task.threads.is_empty() {
+        return refuse("--threads: found with reference scenes, which are not measured; leave it out");
     }
     if task.baseline.is_some() {
         return refuse("--baseline: found with reference scenes, which are not measured; leave it out");

@@ -19,7 +19,22 @@ fn a_scene_of_the_simulation_is_measured() {
     }
     let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + stages.len());
+    assert!(csv.lines().skip(1).all(|line| line.contains("a Pentium 4 at 3 GHz")), "{csv}");
+    assert!(scene["published_note"].as_str().is_some_and(|note| note.contains("67 ms")), "{scene}");
     assert!(!stages.is_empty() && json["yardstick"]["copy_gb_per_s"].as_f64() > Some(0.0), "{json}");
+}
+
+#[test]
+fn the_speed_up_of_every_stage_is_printed_long_suite() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let args = ["bench", "simulate-402", "--frames", "2", "--threads", "1,2", "-o", "a.csv"];
+    let text = run(dir.path(), args).done().stdout.clone();
+    let heading = text.lines().find(|line| line.contains("2 threads")).expect("a heading");
+    assert!(heading.matches("speed-up").count() == 2, "{text}");
+    let line = text.lines().find(|line| line.trim().starts_with("animation/relaxation")).expect("a stage");
+    assert_eq!(line.split_whitespace().nth(2), Some("1.00"), "{line}");
+    let csv = std::fs::read_to_string(dir.path().join("a.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + 2 * 5, "{csv}");
 }
 
 #[test]
@@ -51,6 +66,7 @@ fn every_stage_of_a_scene_is_measured_long_suite() {
         "motion",
         "simulate",
         "interpolate",
+        "animation",
         "shadow",
         "draw",
         "draw/points",
@@ -62,7 +78,8 @@ fn every_stage_of_a_scene_is_measured_long_suite() {
             ["min_ms", "median_ms", "max_ms"].map(|key| of(name)[key].as_f64().expect("a number"));
         assert!(0.0 < least && least <= median && median <= most, "{name}: {scene}");
     }
-    assert_eq!(of("simulate")["published_ms"], 70.0);
+    assert_eq!(of("animation")["published_ms"], 70.0);
+    assert!(of("simulate")["published_ms"].is_null(), "the published animation includes the strands");
     assert_eq!(of("frame")["published_ms"], 160.0);
     assert!(of("motion")["published_ms"].is_null());
     assert!(of("frame")["median_ms"].as_f64() >= of("draw")["median_ms"].as_f64());
@@ -70,7 +87,7 @@ fn every_stage_of_a_scene_is_measured_long_suite() {
     let rate = scene["pictures_per_second"].as_f64().expect("a number");
     // Conversion to text may change the last digit.
     assert!((rate * picture / 1e3 - 1.0).abs() < 1e-12, "{rate} {picture}");
-    assert!(scene["published_note"].is_null());
+    assert!(scene["published_note"].as_str().is_some_and(|note| note.contains("6 frames")), "{scene}");
     let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + stages.len());
     for figure in ["copy_gb_per_s", "multiply_adds_g_per_s", "scattered_adds_m_per_s"] {
@@ -94,13 +111,13 @@ fn a_run_is_compared_with_an_earlier_one_long_suite() {
     // As if the earlier run had been a hundred times as fast in one stage and as slow in the others.
     let mut earlier = first.clone();
     let stages = earlier["scenes"][0]["stages"].as_array_mut().expect("stages");
-    for (stage, factor) in stages.iter_mut().zip([0.01, 100.0, 100.0]) {
+    for (stage, factor) in stages.iter_mut().zip([0.01, 100.0, 100.0, 100.0, 100.0]) {
         stage["multiple"] = (stage["multiple"].as_f64().expect("a multiple") * factor).into();
     }
     std::fs::write(dir.path().join("before.json"), earlier.to_string()).expect("written");
     let second = run(dir.path(), args.iter().chain(&["--baseline", "before.json"])).done().json();
     let slower = second["comparison"]["slower"].as_array().expect("a comparison");
-    assert_eq!(second["comparison"]["compared"], 3);
+    assert_eq!(second["comparison"]["compared"], 5);
     assert_eq!((slower.len(), &slower[0]["stage"]), (1, &"simulate/direct".into()), "{second}");
     let other = run(dir.path(), ["bench", "smooth", "--baseline", "before.json"]);
     assert!(
@@ -142,7 +159,7 @@ fn a_published_scene_uses_its_own_settings_and_has_published_figures_long_suite(
 #[test]
 fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
-    let wrong: [(&[&str], &str); 10] = [
+    let wrong: [(&[&str], &str); 14] = [
         (&["bench", "wig"], "smooth-2m"),
         (&["bench", "wig"], "voxel-map, occupancy-order or reference"),
         (&["bench", "--baseline", "none.json"], "none.json"),
@@ -151,6 +168,10 @@ fn wrong_requests_are_rejected_before_any_work() {
         (&["bench", "--shadow", "magic"], "occupancy-maps"),
         (&["bench", "--transparency", "magic"], "occupancy-order"),
         (&["bench", "--draw", "magic"], "clusters"),
+        (&["bench", "smooth", "--threads", "1,0"], "1..=256"),
+        (&["bench", "smooth", "--threads", "1", "--backend", "gpu"], "must be used with cpu"),
+        (&["bench", "locks", "--threads", "1"], "without a scene"),
+        (&["bench", "smooth", "--threads", "1", "--baseline", "x.json"], "--baseline"),
         (&["bench", "smooth", "-o", "no folder/x.csv"], "no folder"),
         (&["bench", "smooth", "--size", "8192x8192", "--backend", "cpu"], "at most 35 million"),
     ];

@@ -35,7 +35,7 @@ pub(super) struct Amounts {
 
 /// The bound of each stage and pass. A row applies to the stages whose name begins with it; the first row that does counts.
 /// `docs/performance.md` contains this table with the least work per item.
-const BOUNDS: [(&str, Bound, Item); 16] = [
+const BOUNDS: [(&str, Bound, Item); 18] = [
     ("motion", Bound::MultiplyAdds, Item::Vertex),
     ("simulate", Bound::MultiplyAdds, Item::SimulatedPoint),
     ("interpolate", Bound::Copy, Item::StrandPoint),
@@ -49,6 +49,9 @@ const BOUNDS: [(&str, Bound, Item); 16] = [
     ("draw/background", Bound::Copy, Item::Pixel),
     ("draw/picture", Bound::Copy, Item::Pixel),
     ("draw", Bound::MultiplyAdds, Item::StrandPoint),
+    // Of the simulation and one step by each method.
+    ("animation/", Bound::MultiplyAdds, Item::SimulatedPoint),
+    ("animation", Bound::MultiplyAdds, Item::StrandPoint),
     ("passes", Bound::MultiplyAdds, Item::StrandPoint),
     ("picture", Bound::MultiplyAdds, Item::StrandPoint),
     ("frame", Bound::MultiplyAdds, Item::StrandPoint),
@@ -56,7 +59,7 @@ const BOUNDS: [(&str, Bound, Item); 16] = [
 
 impl Bound {
     /// The unit of work in a table.
-    const fn unit(self) -> &'static str {
+    pub(super) const fn unit(self) -> &'static str {
         match self {
             Self::Copy => "bytes copied",
             Self::MultiplyAdds => "multiply-adds",

@@ -4,10 +4,13 @@ mod baseline;
 mod bound;
 mod comparison;
 mod crowd;
+mod csv;
 mod locks;
 mod memory;
 mod occupancy_order;
+mod published;
 mod report;
+mod scaling;
 mod scenes;
 mod simulation;
 mod text;
@@ -19,6 +22,7 @@ pub use comparison::{Comparison, SlowerStage};
 pub use locks::{LockFigures, LockReport, LockScene, Spread};
 pub use occupancy_order::{OrderReport, OrderTimes};
 pub use report::{BenchReport, SceneReport, StageReport};
+pub use scaling::{ScalingReport, ThreadRun};
 pub use scenes::BenchScene;
 pub use voxel_map::{VoxelMapReport, VoxelMapRow};
 pub use yardstick::{Bound, Yardstick};
@@ -66,6 +70,9 @@ pub struct BenchRequest {
     pub draw: Option<HairDrawing>,
     /// The transparency; `None` uses the scene's own.
     pub transparency: Option<Transparency>,
+    /// Numbers of threads with which the scenes are measured, in order; all threads of the machine if empty. They apply to the CPU
+    /// backend.
+    pub threads: Vec<usize>,
 }
 
 impl Default for BenchRequest {
@@ -82,6 +89,7 @@ impl Default for BenchRequest {
             shadow: None,
             draw: None,
             transparency: None,
+            threads: Vec::new(),
         }
     }
 }
@@ -120,38 +128,15 @@ pub fn bench(
     }
     let yardstick = Yardstick::measure();
     let mut scenes = Vec::new();
-    for &scene in &request.scenes {
-        let mut project = changed(scene, request, change)?;
-        project.picture.draw = request.draw.unwrap_or(project.picture.draw);
-        project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
-        let loaded = load(&project)?;
-        if scene.is_simulated_alone() {
-            if progress(scene.id()).is_break() {
-                return Err(ProjectError::Cancelled);
-            }
-            let (mut report, note) = simulation::measure(scene, &project, &loaded, request);
-            let amounts = Amounts { simulated_points: report.points, ..Amounts::default() };
-            report.stages.iter_mut().for_each(|stage| stage.measure_by(&yardstick, &amounts));
-            scenes.push(report);
-            notes.push(note);
-            continue;
-        }
-        for renderer in &mut renderers {
-            let what = format!("{} on {}", scene.id(), renderer.adapter());
-            if progress(&what).is_break() {
-                return Err(ProjectError::Cancelled);
-            }
-            let mut report = measure(scene, &project, &loaded, renderer, request)?;
-            let amounts = amounts(&project, &loaded, &report);
-            for stage in &mut report.stages {
-                // The yardstick is that of the CPU.
-                if renderer.is_software() || ON_CPU.contains(&stage.name.as_str()) {
-                    stage.measure_by(&yardstick, &amounts);
-                }
-            }
-            scenes.push(report);
-        }
+    for &scene in request.scenes.iter().filter(|_| request.threads.is_empty()) {
+        let prepared = Prepared::new(scene, request, change)?;
+        scenes.extend(prepared.measure(request, &mut renderers, &yardstick, &mut notes, progress)?);
     }
+    let scaling = if request.threads.is_empty() {
+        Vec::new()
+    } else {
+        scaling::measure(request, change, &mut renderers, &mut notes, progress)?
+    };
     let mut locks = Vec::new();
     for scene in &request.locks {
         if progress(&scene.id()).is_break() {
@@ -179,12 +164,82 @@ pub fn bench(
         machine: machine(),
         yardstick,
         scenes,
+        scaling,
         locks,
         voxel_map,
         occupancy_order: orders,
         comparison: None,
         notes,
     })
+}
+
+/// A scene with its project, loaded.
+struct Prepared {
+    scene: BenchScene,
+    project: Project,
+    loaded: Arc<Scene>,
+}
+
+impl Prepared {
+    fn new(
+        scene: BenchScene,
+        request: &BenchRequest,
+        change: &dyn Fn(&mut Project) -> Result<(), ProjectError>,
+    ) -> Result<Self, ProjectError> {
+        let mut project = changed(scene, request, change)?;
+        project.picture.draw = request.draw.unwrap_or(project.picture.draw);
+        project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
+        let loaded = load(&project)?;
+        Ok(Self { scene, project, loaded })
+    }
+
+    /// Measures the scene with each renderer, or its simulation alone.
+    fn measure(
+        &self,
+        request: &BenchRequest,
+        renderers: &mut [Renderer],
+        yardstick: &Yardstick,
+        notes: &mut Vec<String>,
+        progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
+    ) -> Result<Vec<SceneReport>, ProjectError> {
+        let Self { scene, project, loaded } = self;
+        if scene.is_simulated_alone() {
+            if progress(scene.id()).is_break() {
+                return Err(ProjectError::Cancelled);
+            }
+            let (report, note) = self.measure_simulation(request, yardstick);
+            notes.push(note);
+            return Ok(vec![report]);
+        }
+        let mut reports = Vec::new();
+        for renderer in renderers {
+            if progress(&format!("{} on {}", scene.id(), renderer.adapter())).is_break() {
+                return Err(ProjectError::Cancelled);
+            }
+            let mut report = measure(*scene, project, loaded, renderer, request)?;
+            let amounts = amounts(project, loaded, &report);
+            for stage in &mut report.stages {
+                // The yardstick is that of the CPU.
+                if renderer.is_software() || ON_CPU.contains(&stage.name.as_str()) {
+                    stage.measure_by(yardstick, &amounts);
+                }
+            }
+            reports.push(report);
+        }
+        Ok(reports)
+    }
+
+    /// The simulation alone, and a sentence about it.
+    fn measure_simulation(&self, request: &BenchRequest, yardstick: &Yardstick) -> (SceneReport, String) {
+        let (mut report, note) = simulation::measure(self.scene, &self.project, &self.loaded, request);
+        let amounts = Amounts {
+            simulated_points: report.points,
+            strand_points: self.loaded.style.strands.points() as u64,
+            ..Amounts::default()
+        };
+        report.stages.iter_mut().for_each(|stage| stage.measure_by(yardstick, &amounts));
+        (report, note)
+    }
 }
 
 /// Stages that run on the CPU whatever draws.

@@ -1,6 +1,4 @@
-//! Results of measurements: the keys of `bench --json`, and CSV.
-
-use std::fmt::Write;
+//! Results of measurements: the keys of `bench --json`.
 
 use lovelock_groom::StrandSet;
 use lovelock_project::Project;
@@ -13,6 +11,8 @@ use super::comparison::Comparison;
 use super::locks::LockReport;
 use super::memory::peak_memory_bytes;
 use super::occupancy_order::OrderReport;
+use super::published::{ANIMATION, Published};
+use super::scaling::ScalingReport;
 use super::scenes::BenchScene;
 use super::voxel_map::VoxelMapReport;
 use super::yardstick::{Bound, Yardstick};
@@ -26,6 +26,8 @@ pub struct BenchReport {
     pub yardstick: Yardstick,
     /// A report for each scene and backend.
     pub scenes: Vec<SceneReport>,
+    /// The scenes with several numbers of threads, if that was asked for; `scenes` is empty then.
+    pub scaling: Vec<ScalingReport>,
     /// A report for each hairstyle whose locks were measured.
     pub locks: Vec<LockReport>,
     /// The voxel map beside the published loop, if it was measured.
@@ -47,6 +49,8 @@ pub struct SceneReport {
     pub backend: String,
     /// Name of the device that rendered.
     pub adapter: String,
+    /// Number of threads that share the work of the CPU.
+    pub threads: u64,
     /// Id of the shadow method; empty without rendering.
     pub shadow: String,
     /// What hair was drawn as: `strands`, `clusters` or `auto`; empty without rendering.
@@ -65,9 +69,10 @@ pub struct SceneReport {
     pub segments: u64,
     /// Number of measured frames; steps of 1/60 s for a scene without rendering.
     pub frames: u64,
-    /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), all passes of a
-    /// graphics device together (`passes`), interpolation, shadow and drawing (`picture`), and the whole frame with its
-    /// simulation (`frame`). Of a scene that is simulated alone, a step by each method (`simulate/…`).
+    /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), simulation and
+    /// interpolation together (`animation`), all passes of a graphics device together (`passes`), interpolation, shadow and drawing
+    /// (`picture`), and the whole frame with its simulation (`frame`). Of a scene that is simulated alone, a step by each method
+    /// (`simulate/…`), and of `simulate-402` the interpolation of its strands and both together (`animation/relaxation`).
     pub stages: Vec<StageReport>,
     /// Images per second: one divided by the median of `picture`; 0 without rendering.
     pub pictures_per_second: f64,
@@ -96,8 +101,10 @@ pub struct StageReport {
     pub min_ms: f64,
     /// The slowest frame, milliseconds.
     pub max_ms: f64,
-    /// The published time of this stage and scene, milliseconds; null if there is none.
+    /// The published time of this stage and scene as printed, milliseconds; null if there is none.
     pub published_ms: Option<f64>,
+    /// The sum of the printed parts of that time, milliseconds, where it is another; null otherwise.
+    pub published_parts_ms: Option<f64>,
     /// The figure of the yardstick that bounds it; null where the stage does not run on the CPU.
     pub bound: Option<Bound>,
     /// The median in units of that figure, per item that the stage handles.
@@ -109,14 +116,15 @@ pub struct StageReport {
 }
 
 impl StageReport {
-    pub(super) fn new(name: &str, published_ms: Option<f64>, times: &[f64]) -> Self {
+    pub(super) fn new(name: &str, published: Option<Published>, times: &[f64]) -> Self {
         let times = times.iter().copied();
         Self {
             name: name.to_owned(),
             median_ms: lovelock_base::statistics::median(times.clone()).unwrap_or(0.0),
             min_ms: times.clone().fold(f64::INFINITY, f64::min),
             max_ms: times.fold(0.0, f64::max),
-            published_ms,
+            published_ms: published.map(|published| published.ms),
+            published_parts_ms: published.and_then(|published| published.parts_ms),
             bound: None,
             multiple: None,
             multiple_of: None,
@@ -140,7 +148,7 @@ impl SceneReport {
         let as_published = own.shadow.method == project.shadow.method
             && own.picture.draw == project.picture.draw
             && own.picture.transparency == project.picture.transparency;
-        let published = |name: &str| if as_published { scene.published_ms(name) } else { None };
+        let published = |name: &str| if as_published { scene.published(name) } else { None };
         let row = |name: &str, of: &dyn Fn(&(f64, StageTimes, FrameStats)) -> f64| {
             StageReport::new(name, published(name), &frames.iter().map(of).collect::<Vec<f64>>())
         };
@@ -157,6 +165,7 @@ impl SceneReport {
                 stages.push(row(name, &|(.., stats)| of(stats).unwrap_or(0.0)));
             }
         }
+        stages.push(row(ANIMATION, &|(_, times, _)| times.simulate + times.interpolate));
         if renderer.backend() == Backend::Gpu && !passes.is_empty() {
             stages.push(row("passes", &|(.., stats)| stats.passes.iter().map(|pass| pass.ms).sum()));
         }
@@ -168,6 +177,7 @@ impl SceneReport {
             scene: scene.id().to_owned(),
             backend: renderer.backend().to_string(),
             adapter: renderer.adapter().to_owned(),
+            threads: rayon::current_num_threads() as u64,
             shadow: project.shadow.method.to_string(),
             draw: project.picture.draw.to_string(),
             transparency: project.picture.transparency.to_string(),
@@ -194,49 +204,6 @@ impl SceneReport {
     }
 }
 
-impl BenchReport {
-    /// One line per stage of the scenes, with a heading. Every line contains the yardstick.
-    pub fn csv(&self) -> String {
-        let mut out =
-            "scene,backend,adapter,shadow,draw,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes,multiple,multiple_of,change,copy_gb_per_s,multiply_adds_g_per_s,scattered_adds_m_per_s\n"
-                .to_owned();
-        for scene in &self.scenes {
-            for stage in &scene.stages {
-                let optional = |value: Option<String>| value.unwrap_or_default();
-                let _ = writeln!(
-                    out,
-                    "{},{},\"{}\",{},{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{},{},{},{},{:.3},{:.3},{:.3}",
-                    scene.scene,
-                    scene.backend,
-                    scene.adapter.replace('"', "\"\""),
-                    scene.shadow,
-                    scene.draw,
-                    scene.transparency,
-                    scene.width,
-                    scene.height,
-                    scene.points,
-                    scene.segments,
-                    stage.name,
-                    stage.median_ms,
-                    stage.min_ms,
-                    stage.max_ms,
-                    optional(stage.published_ms.map(|ms| ms.to_string())),
-                    scene.shadow_bytes,
-                    scene.draw_bytes,
-                    optional(scene.peak_memory_bytes.map(|bytes| bytes.to_string())),
-                    optional(stage.multiple.map(|multiple| format!("{multiple:.6}"))),
-                    optional(stage.multiple_of.clone()),
-                    optional(stage.change.map(|change| format!("{change:.4}"))),
-                    self.yardstick.copy_gb_per_s,
-                    self.yardstick.multiply_adds_g_per_s,
-                    self.yardstick.scattered_adds_m_per_s,
-                );
-            }
-        }
-        out
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use lovelock_session::health::GaugeKind;
@@ -245,10 +212,12 @@ pub(super) mod tests {
 
     /// A report of one scene on two backends with one stage.
     pub(in crate::bench) fn report() -> BenchReport {
+        let published = Published { ms: 37.0, parts_ms: None };
         let scene = |backend: &str, ms: f64| SceneReport {
             scene: "smooth".to_owned(),
             backend: backend.to_owned(),
             adapter: "a \"quoted\", name".to_owned(),
+            threads: 2,
             shadow: "voxel-map".to_owned(),
             draw: "strands".to_owned(),
             transparency: "sorted".to_owned(),
@@ -258,7 +227,7 @@ pub(super) mod tests {
             points: 6,
             segments: 4,
             frames: 3,
-            stages: vec![StageReport::new("draw", Some(37.0), &[ms, ms + 1.0, ms + 5.0])],
+            stages: vec![StageReport::new("draw", Some(published), &[ms, ms + 1.0, ms + 5.0])],
             pictures_per_second: 90.9,
             frames_per_second: 80.0,
             published_note: None,
@@ -283,32 +252,12 @@ pub(super) mod tests {
                 scattered_adds_m_per_s: 200.0,
             },
             scenes: vec![scene("cpu", 10.0), scene("gpu", 100.0)],
+            scaling: Vec::new(),
             locks: Vec::new(),
             voxel_map: None,
             occupancy_order: Vec::new(),
             comparison: None,
             notes: vec![],
         }
-    }
-
-    #[test]
-    fn csv_quotes_text_and_leaves_unknown_fields_empty() {
-        let mut report = report();
-        report.scenes[0].stages[0].multiple = Some(2.5);
-        report.scenes[0].stages[0].multiple_of = Some("bytes copied per pixel".to_owned());
-        let csv = report.csv();
-        let fields = |line: &str| line.replace("\"a \"\"quoted\"\", name\"", "name").split(',').count();
-        assert!(
-            csv.lines().all(|line| fields(line) == fields(csv.lines().next().expect("a heading"))),
-            "{csv}"
-        );
-        let line = csv.lines().nth(1).expect("a line");
-        assert!(
-            line.contains("\"a \"\"quoted\"\", name\"")
-                && line.ends_with(
-                    "11.0000,10.0000,15.0000,37,3145728,5242880,,2.500000,bytes copied per pixel,,10.000,50.000,200.000"
-                ),
-            "{line}"
-        );
     }
 }

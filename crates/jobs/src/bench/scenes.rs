@@ -1,11 +1,13 @@
-//! The measured scenes and their published figures.
+//! The measured scenes.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 use lovelock_base::settings::Settings;
 use lovelock_groom::{GroomSettings, HairShading, Preset};
 use lovelock_project::Project;
+use lovelock_project::project::parse_project;
 use lovelock_render::{HairDrawing, ShadowMethod, StrandCount, Transparency};
 
 /// A measured scene: the default project with more or other hair.
@@ -25,6 +27,10 @@ pub enum BenchScene {
     Woman300k,
     /// 400,000 strands of 5 segments, as many as the dog of Sintorn and Assarsson 2009 has; short fur on a head.
     Dog2M,
+    /// 400,000 hairs of 5 segments on the whole skin of a four-legged body.
+    Fur400k,
+    /// A lawn of 100,000 blades in the wind.
+    Lawn,
     /// The smooth hairstyle as images show it by default, with fibres that scatter: the whole figure in the image.
     Far,
     /// The same with head and shoulders in the image.
@@ -53,7 +59,7 @@ pub enum BenchScene {
 
 impl BenchScene {
     /// All of them, by paper and from small to large.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::Smooth,
         Self::Curly,
         Self::Smooth500k,
@@ -61,6 +67,8 @@ impl BenchScene {
         Self::Smooth2M,
         Self::Woman300k,
         Self::Dog2M,
+        Self::Fur400k,
+        Self::Lawn,
         Self::Far,
         Self::Middle,
         Self::Near,
@@ -85,6 +93,8 @@ impl BenchScene {
             Self::Smooth2M => "smooth-2m",
             Self::Woman300k => "woman-300k",
             Self::Dog2M => "dog-2m",
+            Self::Fur400k => "fur-400k",
+            Self::Lawn => "lawn",
             Self::Far => "far",
             Self::Middle => "middle",
             Self::Near => "near",
@@ -135,10 +145,23 @@ impl BenchScene {
         matches!(self, Self::ClustersCrowd | Self::ClustersCrowdStrands)
     }
 
+    /// The project of the documents that the scene is, by its name.
+    const fn example(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Fur400k => Some(("fur.lovelock", include_str!("../../../../docs/examples/fur.lovelock"))),
+            Self::Lawn => Some(("lawn.lovelock", include_str!("../../../../docs/examples/lawn.lovelock"))),
+            _ => None,
+        }
+    }
+
     /// The measured project: three lights with `voxel-map`, blended; or, as in the paper, one light with `occupancy-maps` of
     /// 512 x 512 texels and `occupancy-order`. Scenes of clusters have three lights with `occupancy-maps`. Scenes without rendering move at a quarter of the speed, where four substeps are
     /// enough.
     pub fn project(self) -> Project {
+        if let Some((name, text)) = self.example() {
+            let parsed = parse_project(Path::new(name), text).map(|(project, _)| project);
+            return parsed.unwrap_or_default().compared();
+        }
         let mut project = Project::default();
         project.set_preset(if self == Self::Curly { Preset::Curly } else { Preset::Smooth });
         if matches!(self, Self::Far | Self::Middle | Self::Near | Self::Still) {
@@ -159,6 +182,8 @@ impl BenchScene {
             Self::Smooth
             | Self::Curly
             | Self::Simulate402
+            | Self::Fur400k
+            | Self::Lawn
             | Self::Far
             | Self::Middle
             | Self::Near
@@ -221,72 +246,10 @@ impl BenchScene {
         }
         project
     }
-
-    /// Published time of a stage, a pass or the whole frame, milliseconds, if any.
-    ///
-    /// `smooth` and `curly`: Bertails, Ménier, Cani 2005, table 2 (a Pentium 4 at 3 GHz). Animation and collisions correspond to
-    /// our simulation including interpolation of strands, density and transmittance to our shadow, filtering and drawing to our
-    /// rendering. `simulate-402` compares the same with the method of the paper.
-    ///
-    /// `woman-300k` and `dog-2m`: Sintorn, Assarsson 2009 (a `GeForce` GTX 280). The rates of figure 1 are those of an image. The paper's table has passes of another frame, of 20,000 strands (see [`BenchScene::published_note`]): its
-    /// occupancy and slab-size maps are one pass here, its shadow map of the background the body's depth, its
-    /// composition our last pass.
-    #[expect(clippy::match_same_arms, reason = "the table's figures, which are equal by chance")]
-    pub fn published_ms(self, name: &str) -> Option<f64> {
-        let ms = match (self, name) {
-            (Self::Smooth, "simulate") => 67.0 + 3.0,
-            (Self::Smooth, "shadow") => 38.0 + 15.0,
-            (Self::Smooth, "draw") => 37.0,
-            (Self::Curly, "simulate") => 254.0 + 3.0,
-            (Self::Curly, "shadow") => 62.0 + 15.0,
-            (Self::Curly, "draw") => 53.0,
-            (Self::Smooth | Self::Curly, "frame") => {
-                ["simulate", "shadow", "draw"].iter().filter_map(|stage| self.published_ms(stage)).sum()
-            }
-            (Self::Simulate402, "simulate/relaxation") => 67.0 + 3.0,
-            (Self::Woman300k, "picture") => 1e3 / 37.3,
-            (Self::Dog2M, "picture") => 1e3 / 17.2,
-            (Self::Woman300k | Self::Dog2M, pass) => {
-                return PASSES.iter().find(|(name, _)| *name == pass).map(|(_, ms)| *ms);
-            }
-            _ => return None,
-        };
-        Some(ms)
-    }
-
-    /// A note about the published figures.
-    pub const fn published_note(self) -> Option<&'static str> {
-        match self {
-            Self::Woman300k | Self::Dog2M => Some(
-                "published: Sintorn, Assarsson 2009, GeForce GTX 280; the picture is this scene's in figure 1, the stages \
-                 and passes are those of the paper's table, of a frame with 20,000 strands that took 31.6 ms in all",
-            ),
-            Self::Simulate402 => Some(
-                "published: Bertails, Ménier, Cani 2005, a Pentium 4 at 3 GHz: animation with the interpolation of strands 67 ms, \
-                 collisions 3 ms",
-            ),
-            _ => None,
-        }
-    }
 }
 
 /// The distance from which a head is 24 pixels high in an image of 720 rows, metres.
 const FAR: f32 = 20.3;
-
-/// The table of Sintorn, Assarsson 2009, milliseconds, by our stages and passes.
-const PASSES: [(&str, f64); 11] = [
-    ("interpolate", 2.9),
-    ("shadow", 2.54 + 2.56 + 2.89),
-    ("shadow/range", 2.54),
-    ("shadow/occupancy", 2.56 + 2.89),
-    ("draw", 2.63 + 1.8 + 1.88 + 0.5 + 1.0 + 12.8 + 0.1),
-    ("draw/body-depth", 0.5),
-    ("draw/body", 1.0),
-    ("draw/range", 2.63),
-    ("draw/occupancy", 1.8 + 1.88),
-    ("draw/light", 12.8),
-    ("draw/picture", 0.1),
-];
 
 impl fmt::Display for BenchScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -308,8 +271,39 @@ impl FromStr for BenchScene {
 #[cfg(test)]
 mod tests {
     use lovelock_base::settings::Settings;
+    use lovelock_motion::RestDistance;
 
     use super::*;
+
+    #[test]
+    fn the_examples_are_projects_without_problems() {
+        for scene in [BenchScene::Fur400k, BenchScene::Lawn] {
+            let (name, text) = scene.example().expect("an example");
+            let (project, problems) = parse_project(Path::new(name), text).expect(name);
+            assert!(problems.is_empty(), "{name}: {problems:?}");
+            assert_eq!(project.compared(), scene.project(), "{name}");
+            assert_eq!(project.sanitised().0, project, "{name}: every value lies in its range");
+        }
+    }
+
+    #[test]
+    fn fur_and_grass_grow_on_the_whole_skin() {
+        for (scene, area) in [(BenchScene::Fur400k, 0.55..0.9), (BenchScene::Lawn, 2.2..2.6)] {
+            let mut project = scene.project();
+            (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (60, 10);
+            let loaded = crate::bench::load(&project).expect("a scene");
+            let scalp = &loaded.style.scalp;
+            assert_eq!(scalp.positions.len(), loaded.body.mesh.positions.len(), "{scene}");
+            let found = scalp.hairy_area(project.hair.groom.hairline);
+            assert!(area.contains(&found), "{scene}: {found} m²");
+            // Tips stand out of it.
+            let (guides, skin) = (&loaded.style.guides, RestDistance::new(&loaded.body));
+            let last = guides.points_per_guide - 1;
+            let out = (0..guides.count()).filter(|&g| skin.distance(guides.point(g, last)).0 > 0.002);
+            let out = out.count();
+            assert!(10 * out > 9 * guides.count(), "{scene}: {out} of {} tips", guides.count());
+        }
+    }
 
     #[test]
     fn names_read_back_and_others_are_refused() {
@@ -320,30 +314,14 @@ mod tests {
     }
 
     #[test]
-    fn the_published_parts_sum_to_what_the_papers_print() {
-        assert_eq!(BenchScene::Smooth.published_ms("frame"), Some(160.0));
-        // The print says 557 ms for the curly one; its parts sum to this.
-        assert_eq!(BenchScene::Curly.published_ms("frame"), Some(387.0));
-        assert_eq!(BenchScene::Smooth1M.published_ms("frame"), None);
-        let of = |name: &str| BenchScene::Woman300k.published_ms(name).expect(name);
-        let begins = |start: &str| -> f64 {
-            PASSES.iter().filter(|(name, _)| name.starts_with(start)).map(|(_, ms)| ms).sum()
-        };
-        // Except for 0.01 ms of keyframes.
-        assert!((of("interpolate") + of("shadow") + of("draw") - 31.6).abs() < 1e-9);
-        assert!((begins("shadow/") - of("shadow")).abs() < 1e-9);
-        assert!((begins("draw/") - of("draw")).abs() < 1e-9);
-        assert_eq!((1e3 / of("picture")).round(), 37.0);
-        assert_eq!(BenchScene::Dog2M.published_ms("frame"), None, "it has no simulation in it");
-    }
-
-    #[test]
     fn scenes_have_the_published_numbers_of_strands() {
         for (scene, strands, segments) in [
             (BenchScene::Smooth, 3350, 100_500),
             (BenchScene::Curly, 3350, 201_000),
             (BenchScene::Woman300k, 20_000, 300_000),
             (BenchScene::Dog2M, 400_000, 2_000_000),
+            (BenchScene::Fur400k, 400_000, 2_000_000),
+            (BenchScene::Lawn, 100_000, 600_000),
             (BenchScene::Clusters, 21_000, 630_000),
             (BenchScene::ClustersFarStrands, 21_000, 630_000),
             (BenchScene::ClustersCrowd, 21_000, 630_000),

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{GuideFrame, Guides, Hairstyle, MotionFactors, StrandSet, Strands, Wisp, interpolate};
 use lovelock_project::Project;
 use lovelock_render::Backend;
@@ -13,6 +14,7 @@ use lovelock_session::scene::Scene;
 use lovelock_simulation::{Integrator, SimulationSettings};
 
 use super::BenchRequest;
+use super::published::ANIMATION;
 use super::report::{SceneReport, StageReport};
 use super::scenes::BenchScene;
 
@@ -29,6 +31,8 @@ struct Measured {
     times: Vec<f64>,
     /// The largest stretch of a link.
     stretch: f32,
+    /// Times of interpolating the strands after each step, milliseconds; empty where every strand is simulated.
+    strands: Vec<f64>,
     /// Smallest and largest number of substeps per step.
     substeps: [u32; 2],
 }
@@ -62,6 +66,9 @@ pub(super) fn measure(
     start.seek(FIRST_STEP as f64 * STEP_SECS);
     start.settle();
     let mut gauges = Vec::new();
+    let mut strands = Strands::default();
+    // The first time allocates.
+    interpolate(&loaded.style, &start.snapshot().guides, &mut strands);
     let measured: Vec<_> = Integrator::ALL
         .into_iter()
         .map(|method| {
@@ -70,17 +77,23 @@ pub(super) fn measure(
             engine.advance_to_step(FIRST_STEP + WARM_UP);
             engine.clear_totals();
             engine.take_simulate_ms();
-            let (mut times, mut substeps) = (Vec::new(), [u32::MAX, 0]);
+            let (mut times, mut drawn, mut substeps) = (Vec::new(), Vec::new(), [u32::MAX, 0]);
             for _ in 0..request.frames.max(1) {
                 engine.step();
                 let (simulate_ms, taken) = engine.take_simulate_ms();
                 times.push(simulate_ms);
                 substeps = [substeps[0].min(taken), substeps[1].max(taken)];
+                if !scene.simulates_strands() {
+                    let snapshot = engine.snapshot();
+                    let watch = Stopwatch::start();
+                    interpolate(&loaded.style, &snapshot.guides, &mut strands);
+                    drawn.push(watch.ms());
+                }
             }
             if method == Integrator::Direct {
                 gauges = health(&engine.totals(), engine.rest_inside(), &loaded, &project.simulation);
             }
-            Measured { method, times, stretch: engine.totals().max_stretch, substeps }
+            Measured { method, times, stretch: engine.totals().max_stretch, strands: drawn, substeps }
         })
         .collect();
     let stretch = |of: &Measured| format!("{:.2e} ({})", of.stretch, id(of.method));
@@ -98,14 +111,22 @@ pub(super) fn measure(
 impl SceneReport {
     /// The report of a scene without rendering.
     fn of_simulation(scene: BenchScene, guides: &Guides, health: Vec<Gauge>, measured: &[Measured]) -> Self {
-        let row = |of: &Measured| {
-            let name = format!("simulate/{}", id(of.method));
-            StageReport::new(&name, scene.published_ms(&name), &of.times)
-        };
+        let row = |name: &str, times: &[f64]| StageReport::new(name, scene.published(name), times);
+        let mut stages: Vec<_> =
+            measured.iter().map(|of| row(&format!("simulate/{}", id(of.method)), &of.times)).collect();
+        // The published animation is by relaxation, and includes the strands.
+        let published = measured.iter().find(|of| of.method == Integrator::Relaxation);
+        if let Some(of) = published.filter(|of| !of.strands.is_empty()) {
+            let both: Vec<f64> =
+                of.times.iter().zip(&of.strands).map(|(step, strands)| step + strands).collect();
+            stages.push(row("interpolate", &of.strands));
+            stages.push(row(&format!("{ANIMATION}/{}", id(of.method)), &both));
+        }
         Self {
             scene: scene.id().to_owned(),
             backend: Backend::Cpu.to_string(),
             adapter: "simulation".to_owned(),
+            threads: rayon::current_num_threads() as u64,
             shadow: String::new(),
             draw: String::new(),
             transparency: String::new(),
@@ -115,7 +136,7 @@ impl SceneReport {
             points: guides.x.len() as u64,
             segments: (guides.x.len() - guides.count()) as u64,
             frames: measured.first().map_or(0, |of| of.times.len()) as u64,
-            stages: measured.iter().map(row).collect(),
+            stages,
             pictures_per_second: 0.0,
             frames_per_second: 0.0,
             published_note: scene.published_note(),
@@ -229,10 +250,14 @@ mod tests {
         let request = BenchRequest { frames: 3, ..BenchRequest::default() };
         let (report, note) = measure(BenchScene::Simulate402, &project, &loaded, &request);
         let names: Vec<_> = report.stages.iter().map(|stage| stage.name.as_str()).collect();
-        assert_eq!(names, ["simulate/direct", "simulate/relaxation", "simulate/follow-the-leader"]);
+        let methods = ["simulate/direct", "simulate/relaxation", "simulate/follow-the-leader"];
+        assert_eq!(names[..3], methods);
+        assert_eq!(names[3..], ["interpolate", "animation/relaxation"]);
         assert!(report.stages.iter().all(|stage| stage.min_ms > 0.0 && stage.max_ms >= stage.median_ms));
         assert_eq!((report.strands, report.segments, report.frames), (36, 36 * 30, 3));
-        assert_eq!(report.stages[1].published_ms, Some(70.0));
+        // The published animation includes the strands.
+        assert_eq!((report.stages[1].published_ms, report.stages[4].published_ms), (None, Some(70.0)));
+        assert!(report.stages[4].min_ms >= report.stages[1].min_ms + report.stages[3].min_ms);
         assert!(!report.health.is_empty() && note.contains("(relaxation)"), "{note}");
     }
 }

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use super::occupancy_order::OrderReport;
+use super::published::ANIMATION;
 use super::report::{BenchReport, SceneReport, StageReport};
 
 /// Rows that are sums of others, in order.
-const SUMS: [&str; 3] = ["passes", "picture", "frame"];
+const SUMS: [&str; 4] = [ANIMATION, "passes", "picture", "frame"];
 
 /// One number of a report: label, value and unit.
 type Number = (&'static str, fn(&SceneReport) -> f64, &'static str);
@@ -85,7 +86,10 @@ impl fmt::Display for BenchReport {
                         None => write!(f, "{:>48}{:>change_width$}", "", "")?,
                     }
                 }
-                let published = stage.published_ms.map_or_else(String::new, short);
+                let published = match (stage.published_ms, stage.published_parts_ms) {
+                    (Some(printed), Some(parts)) => format!("{} ({})", short(printed), short(parts)),
+                    (printed, _) => printed.map_or_else(String::new, short),
+                };
                 let unit = same
                     .iter()
                     .flat_map(|scene| &scene.stages)
@@ -118,6 +122,9 @@ impl fmt::Display for BenchReport {
                 writeln!(f, "  {note}")?;
             }
         }
+        for scaling in &self.scaling {
+            write!(f, "\n{scaling}")?;
+        }
         for locks in &self.locks {
             write!(f, "\n{locks}")?;
         }
@@ -141,6 +148,7 @@ impl fmt::Display for BenchReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::published::Published;
     use crate::bench::report::tests::report;
 
     #[test]
@@ -165,12 +173,23 @@ mod tests {
     }
 
     #[test]
+    fn a_printed_sum_stands_beside_the_sum_of_its_parts() {
+        let mut report = report();
+        report.scenes[1].stages[0].published_parts_ms = Some(31.6);
+        report.scenes[0].stages[0].published_parts_ms = Some(31.6);
+        let text = report.to_string();
+        let line = text.lines().find(|line| line.trim().starts_with("draw")).expect("a line");
+        assert!(line.ends_with("  37 (31.6)"), "{line}");
+    }
+
+    #[test]
     fn sums_follow_the_passes_of_all_backends() {
         let mut report = report();
+        let published = Published { ms: 26.81, parts_ms: None };
         for (scene, names) in
             report.scenes.iter_mut().zip([&["draw/tiles", "picture"][..], &["draw/a", "passes", "picture"]])
         {
-            scene.stages.extend(names.iter().map(|name| StageReport::new(name, Some(26.81), &[2.0])));
+            scene.stages.extend(names.iter().map(|name| StageReport::new(name, Some(published), &[2.0])));
         }
         let text = report.to_string();
         let rows: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().next()).collect();
