@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use lovelock_groom::{HairFormat, Unit, UpAxis};
 use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::convert::written_extensions;
+use lovelock_jobs::papers::figure_ids;
 use lovelock_jobs::reference::ReferenceScene;
 use lovelock_project::project::{Assignment, RecordingSection};
 use lovelock_record::{FilmQuality, SequenceFormat};
@@ -52,6 +53,8 @@ pub(crate) enum Task {
     Compare(Compare),
     /// Measures frames of known scenes, stage by stage, on each backend, beside published figures.
     Bench(Bench),
+    /// Draws and measures the figures and tables of the papers that the methods come from, beside the published ones, as a page.
+    Papers(Papers),
     /// Describes the contents of a hair, character, motion, project, take, surroundings or sound file.
     Info(Info),
     /// Converts a hair file to another format.
@@ -335,6 +338,27 @@ impl FromStr for BenchTarget {
                 .map_err(|error: String| format!("{error}, locks, voxel-map, occupancy-order or reference")),
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Papers {
+    #[arg(help = format!("Figures, or the beginnings of their names before a dash, such as mertens; all if none is given: {}", figure_ids().join(", ")))]
+    pub(crate) figures: Vec<String>,
+    /// Folder for the page papers.html, its data and its images. Other figures that it holds stay on the page.
+    #[arg(short, long, value_name = "DIR", default_value = "papers")]
+    pub(crate) out: PathBuf,
+    /// Replace files named papers.html and papers.json that this program did not make. Its own are always replaced.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Size of each image in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "480x480")]
+    pub(crate) size: (u32, u32),
+    /// Frames of each measured time, 1 to 1000.
+    #[arg(long, default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: u32,
+    /// Backend: auto (the graphics card if there is a real one), gpu or cpu.
+    #[arg(long, value_name = "BACKEND", default_value = "auto")]
+    pub(crate) backend: Backend,
 }
 
 #[derive(Debug, Args)]

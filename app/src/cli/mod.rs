@@ -8,6 +8,7 @@ mod convert;
 mod farm;
 mod info;
 mod output;
+mod papers;
 mod presets;
 mod record;
 mod replace;
@@ -52,6 +53,7 @@ pub(crate) fn run() -> ExitCode {
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Compare(task)) => compare::run(&task, output),
         Some(Task::Bench(task)) => bench::run(&task, output),
+        Some(Task::Papers(task)) => papers::run(&task, output),
         Some(Task::Presets(task)) => presets::run(&task, output),
         Some(Task::Settings(task)) => settings::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),

@@ -34,6 +34,9 @@ impl Holds {
     /// The page, the table and the numbers of a comparison.
     pub(super) const REPORT: Self =
         Self::Made(&[b"Shadow methods compared", b"name,method,draw,transparency,", b"\"swim_frames\""]);
+    /// The page and the data of the papers' figures.
+    pub(super) const PAPERS: Self =
+        Self::Made(&[b"<title>Figures of the papers</title>", b"\"papers_version\""]);
     /// The database of hair clusters.
     pub(super) const DATABASE: Self = Self::Made(&[&lovelock_satf::file::MAGIC]);
 }

@@ -30,12 +30,13 @@ macro_rules! pages {
 }
 
 /// The pages for users, in the order of the contents.
-pub(super) static PAGES: [Source; 13] = pages![
+pub(super) static PAGES: [Source; 14] = pages![
     "user_guide.md",
     "styling.md",
     "takes.md",
     "comparing.md",
     "shadow_methods.md",
+    "papers.md",
     "simulation.md",
     "appearance.md",
     "satf.md",

@@ -30,6 +30,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
     (
         "jobs",
         &[
+            "study",
             "panes",
             "session",
             "project",

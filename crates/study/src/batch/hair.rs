@@ -26,14 +26,18 @@ impl<'a> LitHair<'a> {
 
 /// Hair at one instant, interpolated once for all uses.
 #[derive(Debug)]
-pub(super) struct Hair {
+pub struct Hair {
+    /// The instant.
     pub snapshot: Arc<FrameSnapshot>,
+    /// Its strands, world space.
     pub strands: Strands,
+    /// The camera of the project at that instant.
     pub camera: Camera,
 }
 
 impl Hair {
-    pub(super) fn new(snapshot: Arc<FrameSnapshot>, project: &Project) -> Self {
+    /// Interpolates the strands of an instant, seen by the camera of `project`.
+    pub fn new(snapshot: Arc<FrameSnapshot>, project: &Project) -> Self {
         let mut strands = Strands::default();
         snapshot.interpolate(&mut strands);
         let camera = snapshot.camera(&project.camera);
@@ -41,7 +45,7 @@ impl Hair {
     }
 
     /// The render input with the settings of `project`.
-    pub(super) fn frame_input<'a>(&'a self, project: &'a Project) -> FrameInput<'a> {
+    pub fn frame_input<'a>(&'a self, project: &'a Project) -> FrameInput<'a> {
         FrameInput {
             hair: HairPose::Strands(&self.strands),
             ..self.snapshot.frame_input(project, &self.camera)
@@ -49,7 +53,7 @@ impl Hair {
     }
 
     /// The input of a shadow map for `light`, as in rendering.
-    pub(super) fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
+    pub fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
         ShadowInput {
             strands: &self.strands,
             strand_width: self.snapshot.look(project).shadow_width(self.snapshot.scene.style.strands.count()),
@@ -69,6 +73,6 @@ impl Hair {
 }
 
 /// The enabled lights, as in rendering.
-pub(super) fn lights(project: &Project) -> Vec<Light> {
+pub fn lights(project: &Project) -> Vec<Light> {
     Light::enabled(&project.lights).collect()
 }

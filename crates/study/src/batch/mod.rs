@@ -22,6 +22,7 @@ mod swim;
 mod truth;
 mod work;
 
+pub use hair::{Hair, lights};
 pub use request::CompareRequest;
 pub use run::compare;
 pub use sweep::Sweep;

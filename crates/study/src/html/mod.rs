@@ -4,10 +4,10 @@
 mod figures;
 mod names;
 mod pictures;
-mod plot;
+pub(crate) mod plot;
 mod stability;
 mod tables;
-mod words;
+pub(crate) mod words;
 
 use crate::report::{CompareReport, ImageDifference, ProbeReport};
 use figures::Cost;
@@ -42,12 +42,18 @@ pub(super) fn page(report: &CompareReport) -> String {
         }
     }
     let _ = write!(body, "<nav aria-label=\"Contents\">{}</nav><main>{text}</main>", contents.join(""));
+    document(&title(report), &body, "")
+}
+
+/// A whole page for local use: styles and script are part of it, images are files beside it, and a content security policy prevents
+/// network access. `style` is added to the common styles; all arguments but the title are inserted as they are.
+pub fn document(title: &str, body: &str, style: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" \
          content=\"default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>\n{}</style>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>\n{}{style}</style>\n\
          </head>\n<body>\n{body}\n<script>\n{}</script>\n</body>\n</html>\n",
-        escaped(&title(report)),
+        escaped(title),
         include_str!("page.css"),
         include_str!("page.js"),
     )

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 /// Shown if nothing was measured.
-pub(super) const NOTHING: &str = "–";
+pub const NOTHING: &str = "–";
 
 /// Escapes text for an element or a double-quoted attribute.
-pub(super) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -22,7 +22,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// The URL of an image by its file name relative to the page, with special characters percent-encoded.
-pub(super) fn address(file: &str) -> String {
+pub fn address(file: &str) -> String {
     let mut out = String::with_capacity(file.len());
     for byte in file.bytes() {
         if byte.is_ascii_alphanumeric() || b"-_./~".contains(&byte) {
@@ -36,7 +36,7 @@ pub(super) fn address(file: &str) -> String {
 }
 
 /// A number with `places` decimals and a true minus sign; a dash if there is none or it is not finite.
-pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
+pub fn fixed(value: Option<f64>, places: usize) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(value) => {
             let text = format!("{value:.places$}");
@@ -48,7 +48,7 @@ pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
 }
 
 /// A possibly small number with at least two significant digits: four decimals, or a power of ten below 0.001.
-pub(super) fn small(value: Option<f64>) -> String {
+pub fn small(value: Option<f64>) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(0.0) => "0".into(),
         Some(value) if value.abs() < 9.995e-4 => format!("{value:.1e}").replace('-', "−"),
@@ -57,14 +57,14 @@ pub(super) fn small(value: Option<f64>) -> String {
 }
 
 /// As [`fixed`], with a plus sign if positive.
-pub(super) fn signed(value: Option<f64>, places: usize) -> String {
+pub fn signed(value: Option<f64>, places: usize) -> String {
     let text = fixed(value, places);
     let digits = text.contains(|letter: char| ('1'..='9').contains(&letter));
     if digits && !text.starts_with('−') { format!("+{text}") } else { text }
 }
 
 /// Milliseconds with three significant digits.
-pub(super) fn ms(value: Option<f64>) -> String {
+pub fn ms(value: Option<f64>) -> String {
     let places = match value.map_or(0.0, f64::abs) {
         size if size < 10.0 => 2,
         size if size < 100.0 => 1,
@@ -74,7 +74,7 @@ pub(super) fn ms(value: Option<f64>) -> String {
 }
 
 /// Bytes in the largest binary unit with a number above one.
-pub(super) fn bytes(value: Option<u64>) -> String {
+pub fn bytes(value: Option<u64>) -> String {
     let Some(bytes) = value else { return NOTHING.into() };
     let units = [("GiB", 30), ("MiB", 20), ("KiB", 10)];
     for (unit, power) in units {
@@ -87,7 +87,7 @@ pub(super) fn bytes(value: Option<u64>) -> String {
 }
 
 /// A whole number in groups of three digits.
-pub(super) fn grouped(value: u64) -> String {
+pub fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut out = String::new();
     for (index, digit) in digits.chars().enumerate() {

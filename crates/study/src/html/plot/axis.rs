@@ -8,9 +8,9 @@ const WIDEST: f64 = 1e5;
 
 /// One axis of a plot.
 #[derive(Clone, Debug, PartialEq)]
-pub(in super::super) struct Axis {
+pub struct Axis {
     /// Quantity with unit.
-    pub(in super::super) label: String,
+    pub(crate) label: String,
     /// Numbers at the two ends, in ascending order.
     low: f64,
     high: f64,
@@ -20,14 +20,14 @@ pub(in super::super) struct Axis {
 
 impl Axis {
     /// A linear axis from `low` to `high`; an empty range is extended.
-    pub(in super::super) fn even(label: &str, low: f64, high: f64) -> Self {
+    pub fn even(label: &str, low: f64, high: f64) -> Self {
         let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
         let high = if high - low > f64::EPSILON * low.abs().max(1e-30) { high } else { low + 1.0 };
         Self { label: label.into(), low, high, logarithmic: false }
     }
 
     /// A logarithmic axis for the positive `values`, with a margin, down to 1/100,000 of the largest.
-    pub(in super::super) fn logarithmic(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn logarithmic(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
         let (low, high) = positive.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
         let (low, high) = if high > 0.0 { (low / 1.35, high * 1.35) } else { (0.1, 10.0) };

@@ -11,7 +11,7 @@ type Box4 = [f64; 4];
 
 /// The label of a dot.
 #[derive(Clone, Debug, PartialEq)]
-pub(in super::super) enum Label {
+pub enum Label {
     /// Always drawn unless empty.
     Always(String),
     /// Left out if it would overlap too much.

@@ -3,10 +3,10 @@
 mod axis;
 mod labels;
 
-pub(super) use axis::Axis;
+pub use axis::Axis;
 
 use super::words::escaped;
-pub(super) use labels::Label;
+pub use labels::Label;
 use labels::Labels;
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ const CORNERS: usize = 2000;
 const MARGINS: [f64; 4] = [70.0, 12.0, 16.0, 46.0];
 
 /// A plot under construction.
-pub(super) struct Plot {
+pub struct Plot {
     width: f64,
     height: f64,
     x: Axis,
@@ -30,18 +30,18 @@ pub(super) struct Plot {
 
 /// The style of a line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke<'a> {
+pub struct Stroke<'a> {
     /// A CSS colour.
-    pub(super) color: &'a str,
+    pub color: &'a str,
     /// Pixels.
-    pub(super) width: f64,
+    pub width: f64,
     /// Whether it is dashed.
-    pub(super) dashed: bool,
+    pub dashed: bool,
 }
 
 /// The style of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Dot {
+pub enum Dot {
     /// On the front.
     Full,
     /// Not on the front.
@@ -50,7 +50,7 @@ pub(super) enum Dot {
 
 impl Plot {
     /// An empty plot; the size is that of the field between the axes, pixels.
-    pub(super) fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
+    pub fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
         let (body, labels) = (String::new(), Labels::new(width, height));
         let mut plot = Self { width, height, x, y, below: 0.0, body, labels };
         plot.grid();
@@ -112,7 +112,7 @@ impl Plot {
     }
 
     /// A line through points; `of` is the number of the method that it belongs to.
-    pub(super) fn line(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>, of: Option<usize>) {
+    pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>, of: Option<usize>) {
         let mut d = String::new();
         for (index, (x, y)) in self.places(points).into_iter().enumerate() {
             let _ = write!(d, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' });
@@ -129,7 +129,7 @@ impl Plot {
     }
 
     /// A step function: each value holds from its x to the next one's, the last to the end of the field.
-    pub(super) fn steps(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>) {
+    pub fn steps(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>) {
         let mut d = String::new();
         for (index, (x, y)) in self.places(points).into_iter().enumerate() {
             let _ = if index == 0 { write!(d, "M{x:.1} {y:.1}") } else { write!(d, "H{x:.1}V{y:.1}") };
@@ -141,7 +141,7 @@ impl Plot {
     }
 
     /// A horizontal line with a label above its right end.
-    pub(super) fn level(&mut self, y: f64, word: &str) {
+    pub fn level(&mut self, y: f64, word: &str) {
         let (at, width) = (self.top(y), self.width);
         let _ = write!(
             self.body,
@@ -154,7 +154,7 @@ impl Plot {
     }
 
     /// A vertical line with a label at its bottom.
-    pub(super) fn upright(&mut self, x: f64, word: &str) {
+    pub fn upright(&mut self, x: f64, word: &str) {
         let (at, height) = (self.left(x), self.height);
         let _ = write!(
             self.body,
@@ -166,7 +166,7 @@ impl Plot {
     }
 
     /// A dot, if its numbers are finite. `title` is its tooltip; the label is placed when all dots are known.
-    pub(super) fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: Label, title: &str) {
+    pub fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: Label, title: &str) {
         if !(x.is_finite() && y.is_finite()) {
             return;
         }
@@ -183,7 +183,7 @@ impl Plot {
     }
 
     /// A lane below the field on the same x: its name to the left, and spans from start to end with a weight of 0 to 1.
-    pub(super) fn lane(
+    pub fn lane(
         &mut self,
         name: &str,
         color: &str,
@@ -217,7 +217,7 @@ impl Plot {
     }
 
     /// The whole figure. `says` is its description for screen readers; `wide` is additional width on the left.
-    pub(super) fn svg(mut self, says: &str, wide: f64) -> String {
+    pub fn svg(mut self, says: &str, wide: f64) -> String {
         self.body += &self.labels.svg();
         let [left, top, right, bottom] = MARGINS;
         let left = left + wide;
