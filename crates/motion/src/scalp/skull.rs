@@ -15,6 +15,8 @@ const SAMPLES: f32 = 18.0;
 const SMALLEST: f32 = 0.07;
 /// The farthest that the middle of the skull is below the top of a figure without joints, in radii of the ball.
 const BELOW_TOP: f32 = 1.8;
+/// The part of the height of a figure without joints in which its head is.
+const TOP: f32 = 0.2;
 /// Skin farther from the middle than this, in radii of the ball, belongs to something else.
 const FAR: f32 = 2.0;
 
@@ -46,6 +48,16 @@ impl Skull {
     /// Finds the skull in a head with these vertices. `alone` says that the vertices may also be those of a whole figure, whose head is
     /// at its top. `None` where the skin encloses no skull.
     pub(super) fn find(head: &[Vec3], alone: bool, distance: Distance<'_>) -> Option<Self> {
+        Self::within(head, alone, distance).or_else(|| {
+            // Beside a whole figure its head is small, so the search is repeated at its top.
+            let (low, high) = bounds(head).filter(|_| alone)?;
+            let least = high.y - TOP * (high.y - low.y);
+            let top: Vec<Vec3> = head.iter().copied().filter(|p| p.y > least).collect();
+            Self::within(&top, alone, distance)
+        })
+    }
+
+    fn within(head: &[Vec3], alone: bool, distance: Distance<'_>) -> Option<Self> {
         let (low, high) = bounds(head)?;
         let size = (high - low).max_element();
         let step = size / SAMPLES;

@@ -116,6 +116,56 @@ fn a_sheet_has_a_cap_and_nothing_has_no_scalp() {
     assert!(found.skull.is_none() && found.head.triangles.is_empty());
 }
 
+/// A figure of 1.64 m without joints: a ball as its head, and a trunk that is thicker than it.
+fn figure() -> Body {
+    let mut body = ball(0.09, 1.55);
+    let trunk = ball(1.0, 0.0).mesh;
+    let first = body.mesh.positions.len() as u32;
+    body.mesh.positions.extend(trunk.positions.iter().map(|p| Vec3::new(0.2, 0.7, 0.14) * p + 0.7 * Vec3::Y));
+    body.mesh.normals.extend(&trunk.normals);
+    body.mesh.colors.extend(&trunk.colors);
+    body.mesh.joints.extend(&trunk.joints);
+    body.mesh.weights.extend(&trunk.weights);
+    body.mesh.triangles.extend(trunk.triangles.iter().map(|triangle| triangle.map(|v| v + first)));
+    body
+}
+
+#[test]
+fn the_skull_of_a_whole_figure_without_joints_is_in_its_head() {
+    let body = figure();
+    let found = fitted_scalp(&body, &RestDistance::new(&body), &ScalpFit::default());
+    let skull = found.skull.expect("a skull");
+    assert!(!found.is_a_cap && skull.middle.distance(1.55 * Vec3::Y) < 0.02, "{skull:?}");
+    assert!((skull.half / 0.09 - 1.0).abs().max_element() < 0.15, "{skull:?}");
+    // Negative control: a flat figure has no skull.
+    let mut flat = body;
+    flat.mesh.positions.iter_mut().for_each(|p| p.z = 0.0);
+    assert!(fitted_scalp(&flat, &RestDistance::new(&flat), &ScalpFit::default()).is_a_cap);
+}
+
+#[test]
+fn a_real_body_without_joints_has_its_scalp_on_its_head() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    let path = data.join("reports/whole_body_without_joints.glb");
+    let body = load_character(&path).expect("a body").body;
+    assert_eq!(body.skeleton.joints.len(), 1);
+    let found = fitted_scalp(&body, &RestDistance::new(&body), &ScalpFit::default());
+    let skull = found.skull.expect("a skull");
+    println!("{skull:?}, scale {}", found.scale);
+    // The eyes are at 1.498 m, the top at 1.604 m.
+    assert!(!found.is_a_cap && (1.48..1.58).contains(&skull.middle.y), "{skull:?}");
+    assert!(skull.half.min_element() > 0.06 && skull.half.max_element() < 0.13, "{skull:?}");
+    for x in [-0.03, 0.03] {
+        let eye = skull.relative(Vec3::new(x, 1.498, 0.11));
+        assert!(eye.z > 0.3 && eye.length() < 1.3, "{eye}");
+    }
+    let hairy = found.head.positions.iter().zip(&found.head.scalp).filter(|(_, mask)| **mask >= 0.5);
+    let heights: Vec<f32> = hairy.map(|(p, _)| p.y).collect();
+    assert!(heights.len() > 100 && heights.iter().all(|y| (1.35..1.62).contains(y)));
+    // Negative control: the chest is far outside of the skull.
+    assert!(skull.relative(Vec3::new(0.0, 1.2, 0.05)).length() > 2.0);
+}
+
 #[test]
 fn a_handle_brings_the_hairline_to_the_pointer_and_paint_adds_and_removes() {
     let skull = Skull { middle: Vec3::Y, half: Vec3::new(0.08, 0.09, 0.1) };
