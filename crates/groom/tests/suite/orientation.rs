@@ -199,9 +199,14 @@ fn real_grooms_in_every_rotation_are_right_or_in_doubt() {
         ("tressfx/sintel_16pt.tfx", Mat3::IDENTITY, true),
         ("tressfx/sintel_vk.tfx", Mat3::IDENTITY, true),
         ("tressfx/side.tfx", Mat3::IDENTITY, true),
+        ("tressfx/back.tfx", Mat3::IDENTITY, false),
+        ("tressfx/front_top.tfx", Mat3::IDENTITY, false),
         ("tressfx/Ratboy_mohawk.tfx", Mat3::IDENTITY, false),
+        ("tressfx/Ratboy_mohawk_v40.tfx", Mat3::IDENTITY, false),
         ("tressfx/TestHair1.tfx", Mat3::IDENTITY, false),
         ("gltf_lines/sintel_LINES.glb", Mat3::IDENTITY, true),
+        ("gltf_lines/sintel_LINE_STRIP_x228.glb", Mat3::IDENTITY, true),
+        ("pbrt/straight_300.pbrt", z_up, true),
     ] {
         let file = load_hair(&data.join("hair").join(name)).expect(name);
         let mut strands = strands_of(&file, 500);
