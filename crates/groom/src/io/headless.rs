@@ -4,6 +4,7 @@
 //! Yuksel's, the numbers are those of points, not of segments.
 
 use glam::Vec3;
+use lovelock_base::words::counted;
 
 use super::HairFileError;
 use super::bytes::{Bytes, triples};
@@ -54,10 +55,10 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
     file.header(HEADER)?;
     let (strands, points) = (u64::from(file.u32(0)), u64::from(file.u32(4)));
     let counts = file.array(HEADER, strands, 2, "numbers of points")?;
-    let counted: u64 = point_counts(counts).map(u64::from).sum();
-    if counted != points {
-        let wanted = format!("{counted}, from the {strands} strands");
-        return Err(file.malformed(4, format!("{points} points"), wanted));
+    let expected: u64 = point_counts(counts).map(u64::from).sum();
+    if expected != points {
+        let wanted = format!("{expected}, from the {}", counted(strands, "strand", "strands"));
+        return Err(file.malformed(4, counted(points, "point", "points"), wanted));
     }
     let offset = HEADER + counts.len() as u64;
     let array = file.array(offset, points, 12, "points")?;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use lovelock_base::words::counted;
 use lovelock_motion::MotionInfo;
 
 use super::{Content, Info};
@@ -35,12 +36,20 @@ impl fmt::Display for Info {
             Content::Character(character) => {
                 line(f, "kind", format_args!("character, {}", character.format))?;
                 line(f, "height", format_args!("{:.2} m", character.height_m))?;
-                line(f, "joints", format_args!("{}, {} skins", character.joints, character.skins))?;
+                line(
+                    f,
+                    "joints",
+                    format_args!("{}, {}", character.joints, counted(character.skins, "skin", "skins")),
+                )?;
                 line(f, "head", &character.head)?;
                 line(
                     f,
                     "surface",
-                    format_args!("{} vertices, {} triangles", character.vertices, character.triangles),
+                    format_args!(
+                        "{}, {}",
+                        counted(character.vertices, "vertex", "vertices"),
+                        counted(character.triangles, "triangle", "triangles")
+                    ),
                 )?;
                 if character.morph_targets > 0 {
                     line(f, "morphs", character.morph_targets)?;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use lovelock_base::words::counted;
 use lovelock_gltf::document::{Accessor, Document, Primitive};
 use lovelock_gltf::{Accessors, DRACO, GltfError};
 
@@ -41,7 +42,11 @@ pub(super) fn read_primitive(
         n => Err(MotionError::malformed(
             accessors.file,
             format!("accessor {accessor}"),
-            format!("{n} elements; the mesh has {count} vertices"),
+            format!(
+                "{}; the mesh has {}",
+                counted(n, "element", "elements"),
+                counted(count, "vertex", "vertices")
+            ),
         )),
     };
     let attribute = |name: &str| primitive.attributes.get(name).map(|&a| same_count(a)).transpose();

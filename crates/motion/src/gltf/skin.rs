@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Mat4};
 
+use lovelock_base::words::counted;
 use lovelock_gltf::Accessors;
 use lovelock_gltf::document::Primitive;
 
@@ -63,8 +64,9 @@ pub(super) fn read_vertex_weights(
     ) {
         for accessor in [joints, weights] {
             if accessors.count(accessor)? != vertices as u64 {
-                let problem =
-                    format!("{} elements; the mesh has {vertices} vertices", accessors.count(accessor)?);
+                let elements = counted(accessors.count(accessor)?, "element", "elements");
+                let vertices = counted(vertices, "vertex", "vertices");
+                let problem = format!("{elements}; the mesh has {vertices}");
                 return Err(MotionError::malformed(accessors.file, format!("accessor {accessor}"), problem));
             }
         }

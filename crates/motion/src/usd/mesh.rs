@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, DMat4, Vec3};
+use lovelock_base::words::counted;
 use lovelock_usd::{Layer, Undrawn, Value, primvar, undrawn};
 
 use super::over_mesh::{Influences, OverMesh, Sizes};
@@ -56,13 +57,16 @@ impl Reader<'_> {
             usize::try_from(count).ok().and_then(|count| sum.checked_add(count))
         });
         if sum != Some(indices.len()) {
-            let problem = format!("{} corners in {} faces that do not add up", indices.len(), counts.len());
+            let corners = counted(indices.len(), "corner", "corners");
+            let faces = counted(counts.len(), "face", "faces");
+            let problem = format!("{corners} in {faces} that do not add up");
             return Err(refuse(problem));
         }
         if let Some(&wrong) =
             indices.iter().find(|&&i| usize::try_from(i).is_ok_and(|i| i >= points.len()) || i < 0)
         {
-            return Err(refuse(format!("a corner at point {wrong}; the mesh has {} points", points.len())));
+            let points = counted(points.len(), "point", "points");
+            return Err(refuse(format!("a corner at point {wrong}; the mesh has {points}")));
         }
         let sizes = Sizes { points: points.len(), faces: counts.len(), corners: indices.len() };
         let normals = OverMesh::normals(layer, prim, sizes)?;

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use lovelock_alembic::{AlembicError, Archive, metadata_value};
+use lovelock_base::words::counted;
 
 use super::objects::CurveObject;
 use super::{named, refused, shape, transform};
@@ -106,7 +107,11 @@ fn add(
         if found == wanted as u64 {
             return Ok(());
         }
-        Err(refused(object, format!("{found} points in sample {sample}"), "as many as at the first time"))
+        Err(refused(
+            object,
+            format!("{} in sample {sample}", counted(found, "point", "points")),
+            "as many as at the first time",
+        ))
     };
     check(archive, sample)?;
     let start = out.len();

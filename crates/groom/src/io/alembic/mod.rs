@@ -12,6 +12,7 @@ mod values;
 
 use glam::{DMat4, Vec3};
 use lovelock_alembic::{AlembicError, Archive, HDF5_MAGIC, OGAWA_MAGIC, Source as Bytes, metadata_value};
+use lovelock_base::words::counted;
 
 use super::HairFileError;
 use super::basis::Spread;
@@ -157,7 +158,8 @@ impl Hair {
         let controls = archive.elements(&object.points, 0)?;
         let sum = counts.iter().try_fold(0_u64, |sum, &count| sum.checked_add(count as u64));
         if sum != Some(controls) {
-            let found = format!("{controls} points in {} curves", counts.len());
+            let points = counted(controls, "point", "points");
+            let found = format!("{points} in {}", counted(counts.len(), "curve", "curves"));
             return Err(refused(object, found, "as many points as nVertices add up to"));
         }
         self.controls += controls;

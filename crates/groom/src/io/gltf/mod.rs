@@ -262,7 +262,14 @@ impl Lines<'_> {
             if length == count {
                 return Ok(());
             }
-            Err(lines.malformed(format!("{length} values of {what} for {count} points"), "one per point"))
+            Err(lines.malformed(
+                format!(
+                    "{} of {what} for {}",
+                    counted(length, "value", "values"),
+                    counted(count, "point", "points")
+                ),
+                "one per point",
+            ))
         };
         let end = self.raw.points.len() + chains.vertices.len();
         if let Some(radius) = of(RADIUS) {
