@@ -1,12 +1,12 @@
 //! Figures and tables of Bertails, Ménier, Cani 2005. Numbers of figures are those of Graphics Interface; the report counts differently.
 
-use lovelock_groom::Preset;
+use lovelock_groom::{HairShading, Preset};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Backend, ShadowMethod};
+use lovelock_render::{Backend, MapForm, MapValue, ShadowMethod, VoxelFilter};
 
 use super::figures::{Figure, Paper};
-use super::studio::{Moment, Studio, brightness, slice};
+use super::studio::{Moment, Studio, brightness};
 use crate::bench::{BenchRequest, BenchScene, SceneReport, bench};
 
 const PAPER: Paper = Paper::Bertails;
@@ -19,8 +19,16 @@ pub(super) const FIGURES: &[Figure] = &[
         title: "Figure 1 (report: 8): without shadow, the map, with shadow.",
         shows: "Dynamic hair without self-shadowing looks flat; the light-oriented map holds density and transmittance; shaded with \
                 it, hair shows its volume.",
-        differs: "The map is shown as a slice through the middle of the hair that contains the direction of the light.",
+        differs: "The map is drawn over the hair: its density at points, and its transmittance on a plane along the light.",
         make: shadow_and_map,
+    },
+    Figure {
+        id: "bertails-5",
+        paper: PAPER,
+        title: "Figure 5: the effect of filtering.",
+        shows: "Without a filter, regular patterns along the map are visible in the shadow; with the filter they have vanished.",
+        differs: "Beside the printed filter stands ours, which does not displace the shadow.",
+        make: filters,
     },
     Figure {
         id: "bertails-7",
@@ -79,6 +87,7 @@ pub(super) const FIGURES: &[Figure] = &[
 pub(super) fn scene(preset: Preset) -> Project {
     let mut project = Project::default();
     project.set_preset(preset);
+    project.compare.shading = HairShading::KajiyaKayPublished;
     let mut project = project.compared();
     project.lights.truncate(1);
     if let Some(key) = project.lights.first_mut() {
@@ -97,44 +106,52 @@ pub(super) fn unshadowed(project: &Project) -> Project {
     project
 }
 
-/// Pixels along a side of a slice of the map.
-const SLICE: u32 = 360;
-
 fn shadow_and_map(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let project = scene(Preset::Smooth);
     let moment = studio.moment(&project, 40)?;
     let plain = studio.draw("without", "Without self-shadowing", &unshadowed(&project), &moment)?;
-    let (width, height, light) = slice(&project, &project.shadow, &moment, SLICE)?;
     let size = project.shadow.size_label();
-    studio.numbers(
-        "transmittance",
-        format!("Transmittance in the map of {size}; light comes from the left"),
-        (width, height, &light),
-        ("Transmittance", 1.0),
-    )?;
-    // Optical depth per pixel along the light is the density of hair, up to a factor.
-    let depth = |value: f32| -value.max(1e-4).ln();
-    let mut density = vec![0.0; light.len()];
-    for (row, out) in light.chunks_exact(width as usize).zip(density.chunks_exact_mut(width as usize)) {
-        for (pair, out) in row.windows(2).zip(out) {
-            *out = (depth(pair[1]) - depth(pair[0])).max(0.0);
-        }
+    for (name, value, form) in [
+        ("density", MapValue::Density, MapForm::Points),
+        ("transmittance", MapValue::Transmittance, MapForm::AlongLightY),
+    ] {
+        let mut shown = project.clone();
+        (shown.picture.map_view.value, shown.picture.map_view.form) = (value, form);
+        studio.draw(name, format!("The map of {size}: {name}"), &shown, &moment)?;
     }
-    let mut sorted = density.clone();
-    sorted.sort_by(f32::total_cmp);
-    let largest = sorted[sorted.len() * 99 / 100].max(1e-3);
-    studio.numbers(
-        "density",
-        "Density in the map, as optical depth per pixel",
-        (width, height, &density),
-        ("Density", largest),
-    )?;
     let shaded = studio.draw("with", "With the light-oriented map", &project, &moment)?;
     let (before, after) = (brightness(&plain.picture), brightness(&shaded.picture));
     studio.check(
         "Self-shadowing darkens the image",
         format!("mean grey value {before:.1} without, {after:.1} with it"),
         after < before - 1.0,
+    );
+    Ok(())
+}
+
+fn filters(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
+    let mut project = scene(Preset::Smooth);
+    project.shadow.voxel_map.resolution = 64;
+    project.camera.distance = 0.8;
+    let moment = studio.moment(&project, 40)?;
+    let truth = studio.truth(&project, &moment)?;
+    let (mut rows, mut errors) = (Vec::new(), Vec::new());
+    for (filter, id, name) in [
+        (VoxelFilter::Closest, "closest", "Without a filter"),
+        (VoxelFilter::Paper, "paper", "The printed filter"),
+        (VoxelFilter::Centred, "centred", "Our filter"),
+    ] {
+        project.shadow.voxel_map.filter = filter;
+        studio.draw(id, format!("{name}, 64³ cells"), &project, &moment)?;
+        let error = studio.measure(&project, &project.shadow, &moment)?.rmse(&truth);
+        rows.push(vec![name.to_owned(), format!("{error:.4}")]);
+        errors.push(error);
+    }
+    studio.table("Transmittance at every strand point against the exact method", &["", "RMSE"], rows);
+    studio.check(
+        "Our filter is closer to the exact shadow than no filter",
+        format!("RMSE {:.4} and {:.4}", errors[2], errors[0]),
+        errors[2] < errors[0],
     );
     Ok(())
 }

@@ -7,7 +7,7 @@ use lovelock_render::{ShadowMethod, ShadowSettings};
 use lovelock_shadow::methods::density_clustering::Clustering;
 use lovelock_shadow::methods::opacity_maps::Slices;
 use lovelock_shadow::methods::texels::Fragment;
-use lovelock_shadow::{ClusterSeeds, TexelFilter};
+use lovelock_shadow::{ClusterSeeds, LineFilter, TexelFilter};
 
 use super::bertails::{scene, smooth, unshadowed};
 use super::curves::{SAMPLES, curve, gaussians, named, rmse, spread, steps};
@@ -63,6 +63,7 @@ fn clustering(project: &Project) -> Project {
     project.shadow.method = ShadowMethod::DensityClustering;
     let settings = &mut project.shadow.density_clustering;
     (settings.clusters, settings.seeds, settings.steps) = (4, ClusterSeeds::Uniform, 1);
+    (settings.prefiltered, settings.line_filter) = (true, LineFilter::Gaussian);
     project
 }
 

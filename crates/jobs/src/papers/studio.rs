@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lovelock_base::statistics::median;
-use lovelock_metrics::{ColorMap, Image, Legend, errors, paint};
+use lovelock_metrics::{Image, errors};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
@@ -219,30 +219,6 @@ impl<'a> Studio<'a> {
         Ok(rays.max_by_key(Vec::len).unwrap_or_default())
     }
 
-    /// Puts an image of numbers into the figure, with its legend. `values` are per pixel, row after row; NaN shows nothing.
-    pub(super) fn numbers(
-        &mut self,
-        name: &str,
-        caption: impl Into<String>,
-        (width, height, values): (u32, u32, &[f32]),
-        (title, largest): (&str, f32),
-    ) -> Result<(), ProjectError> {
-        let range = 0.0..=largest;
-        let rgba = paint(values, range.clone(), ColorMap::Viridis);
-        let image = Image::new(width, height, &rgba).map_err(ProjectError::work)?;
-        let canvas = Legend { map: ColorMap::Viridis, range, title: title.to_owned() }.beside(&image);
-        let size = (canvas.width() as u32, canvas.height() as u32);
-        let file =
-            self.folder.picture(&format!("{}-{name}", self.figure), (size.0, size.1, canvas.rgba()))?;
-        self.report.pictures.push(PictureReport {
-            file,
-            caption: caption.into(),
-            project: None,
-            command: None,
-        });
-        Ok(())
-    }
-
     /// Puts curves into the figure; the first is the truth.
     pub(super) fn plot(&mut self, caption: impl Into<String>, axes: [&str; 2], curves: Vec<CurveReport>) {
         let axes = axes.map(str::to_owned);
@@ -281,45 +257,6 @@ fn built(
     let mut map = cpu_shadow(settings.method);
     map.build(&input, settings).map_err(ProjectError::work)?;
     Ok(map)
-}
-
-/// The transmittance of a method on a square through the middle of the hair that contains the direction of the first light: width and
-/// height of the image, and a value per pixel. Light comes from the left.
-pub(super) fn slice(
-    project: &Project,
-    settings: &ShadowSettings,
-    moment: &Moment,
-    side: u32,
-) -> Result<(u32, u32, Vec<f32>), ProjectError> {
-    let map = built(project, settings, moment)?;
-    let light = lights(project)
-        .first()
-        .map_or(glam::Vec3::NEG_Y, |light| light.direction.normalize_or(glam::Vec3::NEG_Y));
-    let strands = &moment.hair.strands;
-    let (mut low, mut high) = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
-    for at in 0..strands.points() {
-        (low, high) = (low.min(strands.point(at)), high.max(strands.point(at)));
-    }
-    if !(low.is_finite() && high.is_finite()) {
-        return Err(ProjectError::work("the figure has no hair"));
-    }
-    let (middle, half) = (0.5 * (low + high), 0.55 * (high - low).max_element());
-    // Up in the image is as nearly up in the world as the light allows.
-    let aside = light.cross(glam::Vec3::Y).normalize_or(glam::Vec3::X);
-    let up = aside.cross(light).normalize_or(glam::Vec3::Z);
-    let mut places: [Vec<f32>; 3] = Default::default();
-    for y in 0..side {
-        for x in 0..side {
-            let along = |at: u32| 2.0 * (at as f32 + 0.5) / side as f32 - 1.0;
-            let p = middle + half * (light * along(x) - up * along(y));
-            for (axis, value) in places.iter_mut().zip(p.to_array()) {
-                axis.push(value);
-            }
-        }
-    }
-    let mut values = vec![1.0; places[0].len()];
-    map.transmittance_at(&places[0], &places[1], &places[2], &mut values);
-    Ok((side, side, values))
 }
 
 /// Mean of the grey values of an image, 0 to 255.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use glam::Vec3;
-use lovelock_groom::{Facing, Preset};
+use lovelock_groom::{Facing, HairShading, Preset};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
@@ -75,7 +75,7 @@ fn published(mut project: Project, layers: u32) -> Project {
     let clusters = &mut project.picture.clusters;
     clusters.layers = layers;
     clusters.shading = ClusterShading::Paper;
-    clusters.local_shadow = LocalShadow::Layers;
+    clusters.local_shadow = LocalShadow::Exponential;
     project
 }
 
@@ -144,7 +144,9 @@ impl Lock {
     fn project(&self, studio: &Studio<'_>) -> Result<Project, ProjectError> {
         let file = studio.file(&format!("lock-{}.usda", self.name));
         write_whole(&file, usd(&vec![SEGMENTS + 1; self.strands as usize], &self.points()).as_bytes())?;
-        let mut project = Project::default().compared();
+        let mut project = Project::default();
+        project.compare.shading = HairShading::KajiyaKayPublished;
+        let mut project = project.compared();
         project.set_hair_file(&file);
         let import = &mut project.hair.import;
         (import.facing, import.fit_scale, import.snap_roots, import.wisps) = (Facing::PlusZ, false, false, 1);
@@ -189,6 +191,7 @@ fn effects(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
 fn hair(wisps: u32, strands: u32) -> Project {
     let mut project = Project::default();
     project.set_preset(Preset::Smooth);
+    project.compare.shading = HairShading::KajiyaKayPublished;
     let mut project = project.compared();
     (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (wisps, strands);
     project.camera.distance = 1.2;
