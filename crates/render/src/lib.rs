@@ -43,7 +43,7 @@ pub use lovelock_picture::{
     PictureSettings, SizeError, StrandCount, Transparency, UnknownBackend, check_size,
 };
 pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
-pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
+pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings, VoxelSlices};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,
     LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind, RayStructure, ShadowError,

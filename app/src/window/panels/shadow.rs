@@ -5,6 +5,7 @@ use lovelock_base::settings::AnySettings;
 use lovelock_project::Project;
 use lovelock_render::{
     MapExtent, MapForm, MapValue, MapView, ShadowMethod, ShadowSettings, VoxelDeposit, VoxelMapSettings,
+    VoxelSlices,
 };
 
 use crate::window::command::Command;
@@ -129,6 +130,10 @@ fn memory_of_map(ui: &mut Ui, shadow: &ShadowSettings) {
 
 /// The rest of the voxel map, whose choices of the published version are folded away.
 fn voxel_map(ui: &mut Ui, map: &mut VoxelMapSettings, default: &VoxelMapSettings) {
+    setting(ui, "slices", map, default);
+    if map.slices == VoxelSlices::Adaptive {
+        return;
+    }
     setting(ui, "filter", map, default);
     section(ui, "As published", false, |ui| {
         settings(ui, &["deposit", "extent"], map, default);

@@ -8,7 +8,7 @@ use crate::grooms::Groom;
 use common::SplitMix64;
 use glam::Vec3;
 use lovelock_groom::{Preset, Strands};
-use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter};
+use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelSlices};
 use lovelock_shadow::{LineFilter, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
 use lovelock_testkit::suite::sample;
 
@@ -36,10 +36,15 @@ impl Differences {
 }
 
 /// The tolerance of transmittance on the GPU. Half a step of its 8 bits is 0.00196. Measured: at most 0.00196 for the 99th percentile
-/// and 0.00206 for the maximum, except for one method.
-fn tolerance(method: ShadowMethod) -> Differences {
-    // A fragment half way between two centres may go to either one. Measured: 0.038.
-    let most = if method == ShadowMethod::DensityClustering { 0.05 } else { 0.0025 };
+/// and 0.00206 for the maximum, except for two.
+fn tolerance(method: ShadowMethod, settings: &ShadowSettings) -> Differences {
+    let most = match method {
+        // A fragment half way between two centres may go to either one. Measured: 0.038.
+        ShadowMethod::DensityClustering => 0.05,
+        // A share of hair half way between two of its 256 steps moves the slices of a column. Measured: 0.061.
+        ShadowMethod::VoxelMap if settings.voxel_map.slices == VoxelSlices::Adaptive => 0.1,
+        _ => 0.0025,
+    };
     Differences { p99: 0.0021, most }
 }
 
@@ -102,6 +107,11 @@ fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
                     all.push(settings);
                 }
             }
+            let mut adaptive = ShadowSettings::default();
+            adaptive.voxel_map.slices = VoxelSlices::Adaptive;
+            let mut isotropic = ShadowSettings::default();
+            isotropic.voxel_map.deposit = VoxelDeposit::Isotropic;
+            all.extend([adaptive, isotropic]);
             all
         }
         ShadowMethod::DensityClustering => {
@@ -129,7 +139,11 @@ fn transmittance_is_that_of_the_definition_with_every_filter() {
                 built.build(0, &groom.input(), &settings).expect("it fits");
                 let found = Differences::of(&defined, &built.look_up(&at));
                 println!("{method}, {variant}, {}: {:.5} {:.5}", groom.name, found.p99, found.most);
-                assert!(found.within(&tolerance(method)), "{}, {method}, {variant}: {found:?}", groom.name);
+                assert!(
+                    found.within(&tolerance(method, &settings)),
+                    "{}, {method}, {variant}: {found:?}",
+                    groom.name
+                );
                 shaded += defined.iter().filter(|t| **t < 0.9).count();
             }
             // Control: there is a substantial shadow.
@@ -208,7 +222,11 @@ fn a_moved_light_a_dropped_slab_and_a_swapped_method_are_found_out() {
             for (what, wrong) in [("moved", moved), ("dropped", dropped), ("swapped", swapped)] {
                 let found = Differences::of(&definition, &wrong);
                 println!("{method}, {}, {what}: {found:?}", groom.name);
-                assert!(!found.within(&tolerance(method)), "{method}, {}, {what}: {found:?}", groom.name);
+                assert!(
+                    !found.within(&tolerance(method, &settings)),
+                    "{method}, {}, {what}: {found:?}",
+                    groom.name
+                );
                 if what != "swapped" {
                     let (right, wrong) = (rmse(&definition, &exact), rmse(&wrong, &exact));
                     let by = (wrong - right).abs();

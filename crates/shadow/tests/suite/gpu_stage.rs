@@ -76,6 +76,7 @@ fn faces_of_voxels_are_the_same() {
         for (resolution, deposit, extent, extinction_scale) in [
             (128, VoxelDeposit::Length, MapExtent::Fit, 0.15),
             (72, VoxelDeposit::PointCount, MapExtent::Paper, 0.15),
+            (48, VoxelDeposit::Isotropic, MapExtent::Fit, 0.15),
             // Cells that wrap around.
             (32, VoxelDeposit::Length, MapExtent::Fit, 1e6),
         ] {

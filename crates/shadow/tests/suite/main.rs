@@ -20,6 +20,7 @@ mod published;
 mod ray;
 mod steadiness;
 mod texel_methods_truth;
+mod voxel_map_adaptive;
 mod voxel_map_agreement;
 mod voxel_map_edges;
 mod voxel_map_truth;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
+use lovelock_shadow::voxel_map::{VoxelDeposit, VoxelSlices};
 use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, LayerGrowth, LightFrame, LineFilter, ShadowError, ShadowInput,
     ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
@@ -71,6 +72,8 @@ fn hostile(of: u32) -> ShadowSettings {
     s.voxel_map.resolution = if n == u32::MAX { 64 } else { n };
     s.voxel_map.head_size = x;
     s.voxel_map.point_extinction = x;
+    s.voxel_map.slices = [VoxelSlices::Uniform, VoxelSlices::Adaptive][of as usize % 2];
+    s.voxel_map.deposit = VoxelDeposit::Isotropic;
     (s.opacity_maps.resolution, s.opacity_maps.slices) = (resolution, n);
     (s.deep_opacity_maps.resolution, s.deep_opacity_maps.layers) = (resolution, n);
     s.deep_opacity_maps.depth_share = x;

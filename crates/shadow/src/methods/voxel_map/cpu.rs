@@ -116,6 +116,7 @@ impl BuiltMap {
             lattice: self.lattice,
             depth: fixed_point_depth((input.extinction_scale, input.strand_width), settings, &self.lattice),
             by_point: settings.voxel_map.deposit == VoxelDeposit::PointCount,
+            squares: settings.voxel_map.deposit.squares(),
         };
         let (strands, pieces) = (input.strands, self.grids.len());
         self.grids
@@ -183,7 +184,7 @@ pub(super) fn fixed_point_depth(
     let scale = safe_extinction(extinction_scale);
     let depth = match deposit {
         // τ = s_ext w ℓ sinθ / ds², with ℓ sinθ in units of ds.
-        VoxelDeposit::Length => scale * strand_width / lattice.cell_size,
+        VoxelDeposit::Length | VoxelDeposit::Isotropic => scale * strand_width / lattice.cell_size,
         // τ = f ds.
         VoxelDeposit::PointCount => scale * point_extinction * lattice.cell_size,
     };

@@ -40,6 +40,8 @@ pub(super) struct Deposit {
     pub depth: f32,
     /// Whether each point adds `depth`, as in the paper. Otherwise each segment adds it times its length.
     pub by_point: bool,
+    /// See [`VoxelDeposit::squares`](super::VoxelDeposit::squares).
+    pub squares: [f32; 2],
 }
 
 /// A block of segments in window coordinates.
@@ -172,7 +174,8 @@ impl Deposit {
             let count = sample_count((x * x + across).sqrt()) as i32 as f32;
             let inverse = 1.0 / count;
             // ℓ sinθ in cells is the length across the light.
-            let depth = self.depth * across.sqrt() * inverse + 0.5;
+            let counted = self.squares[0] * (x * x) + self.squares[1] * across;
+            let depth = self.depth * counted.sqrt() * inverse + 0.5;
             let depth = if depth < MAX_PER_SAMPLE { depth } else { MAX_PER_SAMPLE };
             block.inverse[lane] = inverse;
             block.samples[lane] = whole_part(count * keep[lane]) as u32;

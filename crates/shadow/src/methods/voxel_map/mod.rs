@@ -9,6 +9,8 @@
 //! `docs/shadow_methods.md` has the equations and explains where they differ from the printed paper. The plain version is in
 //! [`mod@reference`]; [`VoxelMap`] is the fast version of the same map.
 
+mod adaptive;
+mod choice;
 mod cpu;
 mod deposit;
 mod gpu;
@@ -22,8 +24,9 @@ mod samples;
 mod sum;
 mod table;
 
+pub use adaptive::Columns;
+use choice::{GpuVoxelShadow, VoxelShadow};
 pub use cpu::VoxelMap;
-use gpu::GpuVoxelMap;
 pub use lattice::{Lattice, longest_strand};
 
 pub use crate::bounds::Bounds;
@@ -31,7 +34,7 @@ pub use crate::bounds::Bounds;
 use serde::{Deserialize, Serialize};
 
 use super::method::{MapKind, MapSize, Method};
-use super::texels::TexelFrame;
+use super::texels::{TexelFrame, TexelMethod};
 use crate::RayMarkKind;
 
 pub(super) static METHOD: Method = Method {
@@ -44,17 +47,26 @@ pub(super) static METHOD: Method = Method {
     advice: "lower the map's resolution or the number of strands",
     map: MapKind::Cells,
     size: |settings| Some(MapSize { edge: settings.voxel_map.resolution, per_texel: None }),
-    words: |_| 1,
+    words: |settings| match settings.voxel_map.slices {
+        VoxelSlices::Uniform => 1,
+        VoxelSlices::Adaptive => Columns::new(settings).words_per_cell(),
+    },
     marks: &[CELL],
     settings: |settings| Some(&settings.voxel_map),
     footprint: |input, settings, bounds| {
+        if settings.voxel_map.slices == VoxelSlices::Adaptive {
+            return TexelFrame::new(input, Columns::new(settings).resolution(), bounds);
+        }
         let Lattice { resolution, cell_size, .. } = Lattice::new(input, &settings.voxel_map, bounds);
         TexelFrame::with_texel_size((input.light, input.anchor), resolution, cell_size, bounds)
     },
-    counts_points: |settings| settings.voxel_map.deposit == VoxelDeposit::PointCount,
-    cpu: || Box::new(VoxelMap::default()),
-    gpu: |gpu| Ok(Box::new(GpuVoxelMap::new(gpu)?)),
-    shaders: GpuVoxelMap::shaders,
+    counts_points: |settings| {
+        settings.voxel_map.slices == VoxelSlices::Uniform
+            && settings.voxel_map.deposit == VoxelDeposit::PointCount
+    },
+    cpu: || Box::new(VoxelShadow::default()),
+    gpu: |gpu| Ok(Box::new(GpuVoxelShadow::new(gpu)?)),
+    shaders: GpuVoxelShadow::shaders,
 };
 
 /// A cell of the column.
@@ -89,13 +101,27 @@ pub enum VoxelFilter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VoxelDeposit {
-    /// The optical depth of each piece of strand: the shadow does not depend on the resolution of the map or on the sampling of
-    /// strands.
+    /// The optical depth of each piece of strand by its length across the light, so that a strand seen end-on covers less: the shadow
+    /// does not depend on the resolution of the map or on the sampling of strands.
     #[default]
     Length,
+    /// The same without orientation: every piece covers as much as the mean over all directions, π/4 of its length.
+    Isotropic,
     /// As printed: one per point of a strand, times [`VoxelMapSettings::point_extinction`] and the size of the cell. Depends on both,
     /// with the third power of the size of the cell.
     PointCount,
+}
+
+/// Where the cells of a column end along the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VoxelSlices {
+    /// At even distances: cells are cubes.
+    #[default]
+    Uniform,
+    /// Where its hair is: each cell holds an equal share of it. The same memory then has room for twice as many columns along each edge.
+    /// The map has the size of the hair, strands add the optical depth of their length, and the filter is centred.
+    Adaptive,
 }
 
 /// Settings of the voxel map.
@@ -104,6 +130,8 @@ pub enum VoxelDeposit {
 pub struct VoxelMapSettings {
     /// Cells along each edge, a multiple of 8.
     pub resolution: u32,
+    /// Where the cells of a column end along the light.
+    pub slices: VoxelSlices,
     /// The extent of the map.
     pub extent: MapExtent,
     /// Size of the head for [`MapExtent::Paper`] (the paper's h with index max), metres.
@@ -117,10 +145,23 @@ pub struct VoxelMapSettings {
     pub point_extinction: f32,
 }
 
+impl VoxelDeposit {
+    /// Factors on the squared lengths of a piece along the light and across it, whose sum is the squared length that counts.
+    pub(crate) const fn squares(self) -> [f32; 2] {
+        /// The square of the mean of the sine over all directions, π/4.
+        const MEAN: f32 = std::f32::consts::FRAC_PI_4 * std::f32::consts::FRAC_PI_4;
+        match self {
+            Self::Length | Self::PointCount => [0.0, 1.0],
+            Self::Isotropic => [MEAN, MEAN],
+        }
+    }
+}
+
 impl Default for VoxelMapSettings {
     fn default() -> Self {
         Self {
             resolution: 128,
+            slices: VoxelSlices::default(),
             extent: MapExtent::default(),
             head_size: 0.24,
             filter: VoxelFilter::default(),

@@ -56,7 +56,14 @@ impl DenseMap {
             Self { lattice, density: vec![0.0; n * n * n], depth: vec![0.0; n * n * n], addressing, filter };
         let scale = f64::from(safe_extinction(input.extinction_scale));
         match settings.voxel_map.deposit {
-            VoxelDeposit::Length => map.deposit_lengths(input, scale),
+            VoxelDeposit::Length => {
+                map.deposit_lengths(input, scale, |step| f64::from(step.y).hypot(f64::from(step.z)));
+            }
+            VoxelDeposit::Isotropic => {
+                map.deposit_lengths(input, scale, |step| {
+                    step.as_dvec3().length() * std::f64::consts::FRAC_PI_4
+                });
+            }
             VoxelDeposit::PointCount => {
                 let f = scale * f64::from(settings.voxel_map.point_extinction);
                 map.deposit_points(input, f * f64::from(lattice.cell_size));
@@ -67,8 +74,8 @@ impl DenseMap {
     }
 
     /// `τ_cell = s_ext Σ w ℓ sinθ / ds²`: in cells, the area across the light is 1 and `ℓ sinθ` is the length of the
-    /// segment's projection along the light.
-    fn deposit_lengths(&mut self, input: &ShadowInput, scale: f64) {
+    /// segment's projection along the light. `counted` of a segment is the length that counts, in cells.
+    fn deposit_lengths(&mut self, input: &ShadowInput, scale: f64, counted: impl Fn(Vec3) -> f64) {
         let per_cell = scale * f64::from(input.strand_width.max(0.0)) / f64::from(self.lattice.cell_size);
         for ends in input.strands.first_point.windows(2) {
             for point in ends[0] as usize + 1..ends[1] as usize {
@@ -79,7 +86,7 @@ impl DenseMap {
                 }
                 let step = to - from;
                 let count = sample_count((step.x * step.x + step.y * step.y + step.z * step.z).sqrt());
-                let projected = f64::from(step.y).hypot(f64::from(step.z));
+                let projected = counted(step);
                 for sample in 0..count {
                     self.add(
                         from + step * sample_at(sample, 1.0 / count as f32),

@@ -3,7 +3,7 @@
 use lovelock_base::field;
 use lovelock_base::settings::{Choices, Setting, Settings, Unit};
 
-use super::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
+use super::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings, VoxelSlices};
 
 impl Settings for VoxelMapSettings {
     const TABLE: &'static [Setting<Self>] = &[
@@ -18,6 +18,12 @@ impl Settings for VoxelMapSettings {
         .unit(Unit::CELLS)
         .step(8)
         .stops(&[16, 32, 48, 64, 96, 128, 192, 256, 384, 512]),
+        Setting::choice::<VoxelSlices>(
+            field!(Self, slices),
+            "Slices",
+            "Where cells end along the light: at even distances, or where each column has its hair. Then twice as many \
+             columns fit along each edge in the same memory; extent, filter and density are the default ones.",
+        ),
         Setting::choice::<MapExtent>(
             field!(Self, extent),
             "Map extent",
@@ -40,7 +46,9 @@ impl Settings for VoxelMapSettings {
         Setting::choice::<VoxelDeposit>(
             field!(Self, deposit),
             "Density",
-            "What strands add to the cells: the optical depth of their length, or one per point as published. Then the brightness depends on the resolution.",
+            "What strands add to the cells: the optical depth of their length across the light, so that a strand seen end-on \
+             covers less; of their length in any direction; or one per point as published, and then the brightness depends on \
+             the resolution.",
         ),
         Setting::number(
             field!(Self, point_extinction),
@@ -54,6 +62,17 @@ impl Settings for VoxelMapSettings {
         .soft([0.1, 1000.0])
         .logarithmic(),
     ];
+}
+
+impl Choices for VoxelSlices {
+    const ALL: &'static [Self] = &[Self::Uniform, Self::Adaptive];
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Uniform => ("uniform", "Uniform"),
+            Self::Adaptive => ("adaptive", "Adaptive"),
+        }
+    }
 }
 
 impl Choices for MapExtent {
@@ -81,11 +100,12 @@ impl Choices for VoxelFilter {
 }
 
 impl Choices for VoxelDeposit {
-    const ALL: &'static [Self] = &[Self::Length, Self::PointCount];
+    const ALL: &'static [Self] = &[Self::Length, Self::Isotropic, Self::PointCount];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Length => ("length", "By length"),
+            Self::Isotropic => ("isotropic", "Isotropic"),
             Self::PointCount => ("point-count", "By points, as printed"),
         }
     }

@@ -49,7 +49,8 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let count = u32(2.0 * sqrt(d.x * d.x + across)) + 1u;
     let inverse = 1.0 / f32(count);
     // The length across the light, in cells, counts.
-    let depth = u32(min(voxels.deposit * sqrt(across) * inverse + 0.5, MAX_PER_SAMPLE));
+    let counted = voxels.squares.x * (d.x * d.x) + voxels.squares.y * across;
+    let depth = u32(min(voxels.deposit * sqrt(counted) * inverse + 0.5, MAX_PER_SAMPLE));
     if (depth == 0u) {
         return;
     }

@@ -18,6 +18,8 @@ struct VoxelUniform {
     points: u32,
     // CENTRED, AS_PRINTED or CLOSEST.
     reads: u32,
+    // Factors on the squared lengths of a piece of strand along the light and across it.
+    squares: vec2f,
 }
 
 // How points read cells. Twin of `VoxelFilter`.

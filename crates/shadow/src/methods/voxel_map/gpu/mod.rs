@@ -7,7 +7,7 @@ use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
 use super::cpu::fixed_point_depth;
-use super::{Lattice, VoxelDeposit, VoxelFilter};
+use super::{Lattice, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 use crate::gpu::{
     Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device, wgsl,
 };
@@ -38,10 +38,12 @@ struct VoxelUniform {
     segments: u32,
     points: u32,
     reads: u32,
+    squares: [f32; 2],
+    unused: [u32; 2],
 }
 
 impl VoxelUniform {
-    fn new(lattice: &Lattice, deposit: f32, input: &GpuShadowInput, filter: VoxelFilter) -> Self {
+    fn new(lattice: &Lattice, deposit: f32, input: &GpuShadowInput, settings: &VoxelMapSettings) -> Self {
         let first = lattice.first.as_vec3();
         let [along, row, column] = lattice.axes_per_cell;
         Self {
@@ -56,11 +58,13 @@ impl VoxelUniform {
             edge: lattice.resolution,
             segments: input.strands.segment_count,
             points: input.strands.point_count,
-            reads: match filter {
+            reads: match settings.filter {
                 VoxelFilter::Centred => 0,
                 VoxelFilter::Paper => 1,
                 VoxelFilter::Closest => 2,
             },
+            squares: settings.deposit.squares(),
+            unused: [0; 2],
         }
     }
 }
@@ -170,7 +174,7 @@ impl GpuShadow for GpuVoxelMap {
             ..ShadowReport::default()
         };
         let depth = fixed_point_depth((input.extinction_scale, input.strand_width), settings, &lattice);
-        let uniform = VoxelUniform::new(&lattice, depth, input, ours.filter);
+        let uniform = VoxelUniform::new(&lattice, depth, input, ours);
         gpu.upload(&map.uniform, 0, &[uniform]);
 
         let encoder = commands.encoder();
@@ -183,7 +187,7 @@ impl GpuShadow for GpuVoxelMap {
             (4, self.full.raw().as_entire_binding()),
         ]);
         let (kernel, threads) = match ours.deposit {
-            VoxelDeposit::Length => (&self.segments, input.strands.segment_count),
+            VoxelDeposit::Length | VoxelDeposit::Isotropic => (&self.segments, input.strands.segment_count),
             VoxelDeposit::PointCount => (&self.points, input.strands.point_count),
         };
         let group = kernel.bind(gpu, &resources);
@@ -257,6 +261,7 @@ mod tests {
             offset_of!(VoxelUniform, segments),
             offset_of!(VoxelUniform, points),
             offset_of!(VoxelUniform, reads),
+            offset_of!(VoxelUniform, squares),
             size_of::<VoxelUniform>(),
         ];
         for (label, source) in GpuVoxelMap::shaders() {
