@@ -69,10 +69,22 @@ pub(super) fn measure(
     renderer: &mut Renderer,
     request: &BenchRequest,
 ) -> Result<OrderReport, ProjectError> {
+    compare(MODES, scene, project, loaded, renderer, request)
+}
+
+/// [`measure`] for any two modes.
+fn compare(
+    modes: [Transparency; 2],
+    scene: BenchScene,
+    project: &Project,
+    loaded: &Arc<Scene>,
+    renderer: &mut Renderer,
+    request: &BenchRequest,
+) -> Result<OrderReport, ProjectError> {
     let (width, height) = request.size.unwrap_or(scene.size());
     let clock = FrameClock::new(30.0);
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
-    let projects = MODES.map(|mode| {
+    let projects = modes.map(|mode| {
         let mut project = project.clone();
         project.picture.transparency = mode;
         project
@@ -189,8 +201,18 @@ mod tests {
         let request = BenchRequest { frames: 2, size: Some((160, 120)), ..BenchRequest::default() };
         let report = measure(BenchScene::Smooth, &project, &loaded, &mut renderer, &request).expect("images");
         assert_eq!((report.frames, report.segments, report.width), (2, 6000, 160));
-        assert!(report.flip > 0.0 && report.flip < 0.1, "{report:?}");
-        let quotient = report.exact.draw_ms / report.occupancy.draw_ms;
-        assert!(report.times == quotient && report.exact.picture_ms > report.exact.draw_ms, "{report:?}");
+        let mut flip_of = |modes| {
+            let of = compare(modes, BenchScene::Smooth, &project, &loaded, &mut renderer, &request);
+            of.expect("images").flip
+        };
+        let average = flip_of([Transparency::Exact, Transparency::WeightedAverage]);
+        let same = flip_of([Transparency::Exact; 2]);
+        println!("occupancy order {}, weighted average {average}, the same mode {same}", report.flip);
+        // Measured: 0.00 and 0.00.
+        assert!((0.0..0.0).contains(&report.flip), "{report:?}");
+        assert!(average > 3.0 * report.flip, "control, a mode without order: {average}");
+        assert_eq!(same, 0.0, "control: the images are of one frame");
+        assert!(report.exact.picture_ms > report.exact.draw_ms, "{report:?}");
+        assert!(report.exact.draw_bytes != report.occupancy.draw_bytes, "{report:?}");
     }
 }
