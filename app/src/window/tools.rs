@@ -25,6 +25,9 @@ impl Window {
             return true;
         };
         self.colliders_over(ui, response, view, &painted.snapshot, project);
+        if self.panels.light.unfolded && self.tools.active == PointerTool::Camera {
+            overlay::lights::edit(ui, view, &mut project.lights, &mut self.panels.light.selected);
+        }
         self.paint_marked_gauge(ui, view, painted);
         if project.take.file.is_some() {
             self.end_stroke();

@@ -76,6 +76,7 @@ impl Shadowed {
             light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
             anchor: Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         self.map.build(&input, &ShadowSettings::default()).expect("the map fits into memory");
     }

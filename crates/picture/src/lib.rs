@@ -13,7 +13,7 @@ mod transparency;
 
 pub use backend::{Backend, UnknownBackend};
 pub use hair_drawing::HairDrawing;
-pub use light::{Light, MAX_LIGHTS};
+pub use light::{Light, LightKind, MAX_LIGHTS};
 pub use map_view::{MapForm, MapValue, MapView};
 pub use settings::PictureSettings;
 pub use size::{MAX_PIXELS, MAX_SIDE, SizeError, check_size, check_size_for};

@@ -41,9 +41,10 @@ pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
     }
 }
 
-/// The directions toward the lights that are on.
-pub(crate) fn to_lights(lights: &[Light]) -> Vec<Vec3> {
-    Light::enabled(lights).take(MAX_LIGHTS).map(|light| -light.direction).collect()
+/// The directions toward the lights that are on, at the head.
+pub(crate) fn to_lights(input: &FrameInput) -> Vec<Vec3> {
+    let head = Vec3::from(input.world_from_head.translation);
+    Light::enabled(input.lights).take(MAX_LIGHTS).map(|light| -light.way_to(head)).collect()
 }
 
 /// The picture's settings where only clusters are drawn: strands, which cast shadows only, are as they are stored.

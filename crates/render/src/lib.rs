@@ -23,6 +23,7 @@ mod renderer;
 mod scene_light;
 mod shadow_look;
 mod skin;
+mod standing;
 mod strand_details;
 mod strand_portion;
 mod strand_values;
@@ -39,7 +40,7 @@ pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
 pub use lovelock_picture::{
-    Backend, HairDrawing, Light, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, MapForm, MapValue, MapView,
+    Backend, HairDrawing, Light, LightKind, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, MapForm, MapValue, MapView,
     PictureSettings, SizeError, StrandCount, Transparency, UnknownBackend, check_size,
 };
 pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
@@ -51,3 +52,4 @@ pub use lovelock_shadow::{
 };
 pub use picture::Picture;
 pub use renderer::Renderer;
+pub use standing::light_frame;

@@ -1,11 +1,28 @@
 //! The view of a light onto the body.
 
 use glam::{Mat4, Vec3};
+use lovelock_shadow::LightFrame;
 
+use crate::Light;
+use crate::standing::StandingUniform;
 use crate::uniform::LightMaps;
 
+/// The views of a sphere from a light whose maps have the axes `frame`, in maps of `texels` along each edge.
+pub(crate) fn light_views(
+    light: &Light,
+    frame: &LightFrame,
+    (center, radius): (Vec3, f32),
+    texels: u32,
+) -> LightMaps {
+    let view = light_view(light.direction, center, radius, texels);
+    if !light.stands() {
+        return view;
+    }
+    LightMaps { standing: StandingUniform::new(light, frame, (center, radius), texels), ..view }
+}
+
 /// The orthographic view of a sphere from a light that travels along `direction`, and the size of its texels.
-pub(crate) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32) -> LightMaps {
+fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32) -> LightMaps {
     let radius = radius.max(0.01);
     let up = if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
     let view = glam::camera::rh::view::look_at_mat4(center - direction * radius, center, up);
@@ -15,6 +32,7 @@ pub(crate) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32
         shadow_from_world: project * view,
         columns_from_world: Mat4::IDENTITY,
         metres_per_texel: 2.0 * radius / texels as f32,
+        standing: StandingUniform::default(),
     }
 }
 

@@ -19,20 +19,21 @@ pub(crate) struct ShadowLook {
     pub settings: ShadowSettings,
     /// The head, at whose origin maps are anchored.
     pub world_from_head: Affine3A,
-    /// How far apart fine strands look up shadows, metres: half of the softness of the first light.
+    /// How far apart fine strands look up shadows, metres: half of the softness of the first light at the head.
     pub reach: f32,
 }
 
 impl ShadowLook {
     /// That of an image.
     pub fn of(input: &FrameInput) -> Self {
-        let key = input.lights.iter().find(|light| light.enabled);
+        let key = Light::enabled(input.lights).next();
+        let head = Vec3::from(input.world_from_head.translation);
         Self {
             strand_width: input.look.shadow_width(input.style.strands.count()),
             extinction_scale: input.look.extinction_scale,
             settings: *input.shadow,
             world_from_head: input.world_from_head,
-            reach: key.map_or(0.0, |light| 0.5 * Light::normalized(light).softness),
+            reach: key.map_or(0.0, |light| 0.5 * light.softness_at(light.position.distance(head))),
         }
     }
 

@@ -8,6 +8,7 @@ use lovelock_groom::fine::Portion;
 
 use crate::clusters::cluster_share;
 use crate::scene_light::SceneLight;
+use crate::standing::StandingUniform;
 use crate::{FrameInput, MAX_LIGHTS};
 
 /// The brightest colour of a strand point, the largest half float: the GPU keeps no brighter one. Twin of `MAX_LIGHT` in
@@ -76,6 +77,7 @@ pub(crate) struct FrameUniform {
     pub cells_per_metre: f32,
     pub surround: [Vec4; 9],
     pub lights: [LightUniform; MAX_LIGHTS],
+    pub standing: [StandingUniform; MAX_LIGHTS],
 }
 
 /// The placement of the maps of one light.
@@ -84,6 +86,19 @@ pub(crate) struct LightMaps {
     pub shadow_from_world: Mat4,
     pub columns_from_world: Mat4,
     pub metres_per_texel: f32,
+    /// Those of a light that stands somewhere.
+    pub standing: StandingUniform,
+}
+
+impl LightMaps {
+    /// The views of the body: one, or one per side of a cube around the light.
+    pub fn body_views(&self) -> &[Mat4] {
+        if self.standing.is_standing() {
+            &self.standing.shadow_from_world[..self.standing.body_sides as usize]
+        } else {
+            std::slice::from_ref(&self.shadow_from_world)
+        }
+    }
 }
 
 impl FrameUniform {
@@ -101,6 +116,7 @@ impl FrameUniform {
         let (look, colours) = (input.look, &input.style.strands.colours);
         let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
+        let mut standing = [StandingUniform::default(); MAX_LIGHTS];
         let mut lit = 0;
         for (lamp, map) in input.lights.iter().filter(|lamp| lamp.enabled).take(MAX_LIGHTS).zip(maps) {
             let lamp = lamp.normalized();
@@ -112,6 +128,7 @@ impl FrameUniform {
                 shadow_from_world: map.shadow_from_world,
                 columns_from_world: map.columns_from_world,
             };
+            standing[lit] = map.standing;
             lit += 1;
         }
         let [primary_exponent, secondary_exponent] = highlight_exponents(look.roughness);
@@ -161,6 +178,7 @@ impl FrameUniform {
             cells_per_metre: 1.0 / light.grid.cell.max(1e-6),
             surround: light.surroundings.surround.uniform(),
             lights,
+            standing,
         }
     }
 }
@@ -224,6 +242,23 @@ mod tests {
             ]
         );
         assert_eq!(
+            layout_of("StandingUniform"),
+            [
+                offset_of!(StandingUniform, position),
+                offset_of!(StandingUniform, radius),
+                offset_of!(StandingUniform, axes),
+                offset_of!(StandingUniform, cone_axis),
+                offset_of!(StandingUniform, cone_scale),
+                offset_of!(StandingUniform, cone_offset),
+                offset_of!(StandingUniform, texel),
+                offset_of!(StandingUniform, body_sides),
+                offset_of!(StandingUniform, column_sides),
+                offset_of!(StandingUniform, shadow_from_world),
+                offset_of!(StandingUniform, columns_from_world),
+                size_of::<StandingUniform>(),
+            ]
+        );
+        assert_eq!(
             layout_of("LobeUniform"),
             [
                 offset_of!(LobeUniform, sin_tilt),
@@ -271,6 +306,7 @@ mod tests {
                 offset_of!(FrameUniform, cells_per_metre),
                 offset_of!(FrameUniform, surround),
                 offset_of!(FrameUniform, lights),
+                offset_of!(FrameUniform, standing),
                 size_of::<FrameUniform>(),
             ]
         );

@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 
+use crate::bounds::Bounds;
 use crate::{LightFrame, RayStructure, ShadowError, ShadowSettings};
 
 /// The input of a build.
@@ -15,13 +16,31 @@ pub struct ShadowInput<'a> {
     pub strand_width: f32,
     /// Factor on the optical depth of every strand; see `HairLook::extinction_scale`. Negative values and NaN count as 0.
     pub extinction_scale: f32,
-    /// The light's direction and axes.
+    /// The light's direction and axes, and where it stands.
     pub light: LightFrame,
     /// The origin of the map's lattice, world space: the head. Hair that moves with it stays in its cells, so that its shadow
     /// does not flicker.
     pub anchor: Vec3,
     /// The number of maps that are built together, one per light. They share the memory limit evenly. 0 counts as 1.
     pub maps: u32,
+    /// What the strands are if rays that spread from a light were made parallel; `None` for the strands themselves. Only
+    /// [`cpu_shadow`](crate::cpu_shadow) and [`converged`](crate::converged) set it.
+    pub projected: Option<ProjectedStrands<'a>>,
+}
+
+/// What is known of strands that were projected from a light, see [`ShadowInput::projected`].
+#[derive(Clone, Copy, Debug)]
+pub struct ProjectedStrands<'a> {
+    /// A factor on the width of the strand at each point.
+    pub widths: &'a [f32],
+    /// The bounds within which cells and texels lie, along the axes of [`ShadowInput::light`].
+    pub bounds: Bounds,
+    /// Length of the longest strand in the world, metres.
+    pub longest_strand: f32,
+    /// Distance of the plane from the light, metres.
+    pub plane: f32,
+    /// Distance of depth 0 from the light, metres.
+    pub start: f32,
 }
 
 /// A factor on optical depth in its usable range: not negative, finite, and 0 for NaN.
@@ -33,6 +52,11 @@ impl ShadowInput<'_> {
     /// The share of one map in a limit for all of them.
     pub(crate) fn share_of(&self, limit_bytes: u64) -> u64 {
         limit_bytes / u64::from(self.maps.max(1))
+    }
+
+    /// The bounds of the strands along the axes of the light, or those that are given.
+    pub(crate) fn bounds(&self) -> Bounds {
+        self.projected.map_or_else(|| Bounds::of_strands(self), |projected| projected.bounds)
     }
 }
 
@@ -58,7 +82,27 @@ pub struct ShadowReport {
     pub needed_bytes: u64,
 }
 
+impl ShadowReport {
+    /// The statistics of two maps of one light together.
+    #[must_use]
+    pub(crate) fn joined(self, other: Self) -> Self {
+        Self {
+            memory_bytes: self.memory_bytes + other.memory_bytes,
+            cells_touched: self.cells_touched + other.cells_touched,
+            cells_total: self.cells_total + other.cells_total,
+            cell_size: self.cell_size.max(other.cell_size),
+            samples: self.samples + other.samples,
+            points_ignored: self.points_ignored.max(other.points_ignored),
+            scratch_bytes: self.scratch_bytes.max(other.scratch_bytes),
+            needed_bytes: self.needed_bytes + other.needed_bytes,
+        }
+    }
+}
+
 /// The transmittance behind the whole hair, for surfaces far behind it (the ground).
+///
+/// A light that is surrounded by hair has several, one per side of a cube around it. A point belongs to that whose matrix gives
+/// it the largest fourth coordinate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMap {
     /// Texels along each edge.
@@ -66,8 +110,10 @@ pub struct ColumnMap {
     /// `size * size` transmittances, row after row; rows run along u. Texels at the border are 1, so that clamped coordinates
     /// outside the map are lit.
     pub transmittance: Vec<f32>,
-    /// World position to `(u, v, depth)`: u and v in `0..1` over the map with texel centres at
-    /// `(i + 0.5) / size`, depth along the light in `0..1` over the map's extent.
+    /// World position to `(u, v, depth, 1)`: u and v in `0..1` over the map with texel centres at
+    /// `(i + 0.5) / size`, depth along the light in `0..1` over the map's extent. Of a light that stands somewhere the fourth
+    /// coordinate is the distance along the middle of the map, metres: divided by it, u and v are those of the map; where it is not
+    /// positive, the point is behind the light.
     pub uv_from_world: Mat4,
 }
 
@@ -92,6 +138,17 @@ pub trait CpuShadow {
 
     /// The transmittance behind the whole hair; `None` before the first build and if the method casts no shadow.
     fn column_map(&self) -> Option<ColumnMap>;
+
+    /// The same on every side of a light that is surrounded by hair.
+    fn column_maps(&self) -> Vec<ColumnMap> {
+        self.column_map().into_iter().collect()
+    }
+
+    /// The number of fragments before each point (world space, metres) in its texel: how deep it lies in the hair. 0 beside the
+    /// map and before the first build; `None` of a method that does not hold them.
+    fn fragments_before(&self, _points: &[Vec3]) -> Option<Vec<u32>> {
+        None
+    }
 
     /// What the last map holds along the light through `p` (world space, metres), for inspection.
     fn along_ray(&self, p: Vec3) -> RayStructure;

@@ -13,18 +13,20 @@ mod error;
 mod exp;
 mod gpu;
 mod light;
+mod perspective;
 mod ray;
 
 pub mod methods;
 
 pub use bounds::Bounds;
 pub use converged::{CONVERGED_CHANGE, Converged, MAX_CONVERGED_SAMPLES, converged};
-pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport};
+pub use cpu::{ColumnMap, CpuShadow, ProjectedStrands, ShadowInput, ShadowReport};
 pub use error::ShadowError;
 pub use gpu::{
-    GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS,
+    GpuColumns, GpuList, GpuProjected, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets,
+    ProjectedTargets, SUM_WORDS,
 };
-pub use light::LightFrame;
+pub use light::{LightFrame, LightSource};
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
 pub use methods::density_clustering::{
     ClusterDeviation, ClusterSeeds, DensityClusteringSettings, LineFilter,

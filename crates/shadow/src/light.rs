@@ -1,19 +1,42 @@
-//! The axes of a light's maps.
+//! The axes of a light's maps, and where a light stands.
 
 use glam::{Quat, Vec3};
 
-/// Right-handed orthonormal axes along a directional light, in world space (`y × z = x`).
+/// The place from which light spreads in all directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSource {
+    /// World space, metres.
+    pub position: Vec3,
+    /// Radius of what shines, metres; at least [`LightSource::LEAST_RADIUS`] is used. Hair within it casts no shadow.
+    pub radius: f32,
+}
+
+impl LightSource {
+    /// The smallest radius in use, metres.
+    pub const LEAST_RADIUS: f32 = 1e-3;
+
+    /// The radius in its usable range.
+    pub(crate) fn safe_radius(&self) -> f32 {
+        if self.radius > Self::LEAST_RADIUS { self.radius.min(1e3) } else { Self::LEAST_RADIUS }
+    }
+}
+
+/// Right-handed orthonormal axes along a light, in world space (`y × z = x`).
 ///
 /// Create the first frame with [`LightFrame::new`] and follow a moving light with [`LightFrame::transported`]: axes computed
-/// from each direction alone jump somewhere on the sphere, and the whole map jumps with them.
+/// from each direction alone jump somewhere on the sphere, and the whole map jumps with them. A light that stands somewhere has
+/// the axes of [`LightFrame::standing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFrame {
-    /// Direction in which the light travels, unit length (the paper's *L*, also ω).
+    /// Direction in which the light travels, unit length (the paper's *L*, also ω); of a light that stands somewhere, from it
+    /// to the hair.
     pub x: Vec3,
     /// First axis across the light.
     pub y: Vec3,
     /// Second axis across the light.
     pub z: Vec3,
+    /// Where the light stands; `None` for a directional light, which is infinitely far away.
+    pub source: Option<LightSource>,
 }
 
 impl LightFrame {
@@ -27,7 +50,15 @@ impl LightFrame {
         let b = x.x * x.y * a;
         let y = Vec3::new(1.0 + sign * x.x * x.x * a, sign * b, -sign * x.x);
         let z = Vec3::new(b, sign + x.y * x.y * a, -x.y);
-        Self { x, y, z }
+        Self { x, y, z, source: None }
+    }
+
+    /// The axes of a light at `source`: these axes rotated by the smallest rotation so that the first one points at `anchor`.
+    ///
+    /// They depend on nothing but the arguments, so that an image of a light that stands still does not depend on how many were
+    /// drawn before it. They roll only where the light travels opposite to the first of these axes.
+    pub fn standing(&self, source: LightSource, anchor: Vec3) -> Self {
+        Self { source: Some(source), ..self.transported(anchor - source.position) }
     }
 
     /// These axes rotated to another direction by the smallest rotation, which adds no roll: a small change of the light rotates
@@ -41,9 +72,14 @@ impl LightFrame {
         let y = Quat::from_rotation_arc(self.x, x) * self.y;
         // Orthonormalise, because rounding errors would accumulate over a long drag.
         match (y - y.dot(x) * x).try_normalize() {
-            Some(y) => Self { x, y, z: x.cross(y) },
-            None => Self::new(x),
+            Some(y) => Self { x, y, z: x.cross(y), source: self.source },
+            None => Self { source: self.source, ..Self::new(x) },
         }
+    }
+
+    /// The direction in which the light travels at `p`, unit length.
+    pub fn way_at(&self, p: Vec3) -> Vec3 {
+        self.source.map_or(self.x, |source| (p - source.position).normalize_or(self.x))
     }
 
     /// Transforms a vector from world space into the axes of the light.
@@ -129,6 +165,19 @@ mod tests {
             assert_orthonormal(&reversed);
         }
         assert_eq!(frame.transported(Vec3::ZERO).x, frame.x);
+    }
+
+    #[test]
+    fn a_light_that_stands_somewhere_looks_at_the_hair() {
+        let base = LightFrame::new(Vec3::NEG_Y);
+        let source = LightSource { position: Vec3::new(2.0, 3.0, -1.0), radius: 0.05 };
+        let anchor = Vec3::new(0.0, 1.6, 0.1);
+        let frame = base.standing(source, anchor);
+        assert_orthonormal(&frame);
+        assert!((frame.x - (anchor - source.position).normalize_or_zero()).length() < 1e-6);
+        assert_eq!(frame, base.standing(source, anchor));
+        assert_eq!(base.standing(source, source.position), LightFrame { source: Some(source), ..base });
+        assert_eq!((base.source, frame.source), (None, Some(source)));
     }
 
     #[test]

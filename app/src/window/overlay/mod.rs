@@ -3,6 +3,7 @@
 pub(crate) mod brush;
 pub(crate) mod colliders;
 pub(crate) mod head;
+pub(crate) mod lights;
 pub(crate) mod mark;
 pub(crate) mod mask;
 pub(crate) mod pick;

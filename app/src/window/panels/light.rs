@@ -7,7 +7,7 @@ use glam::Vec3;
 use lovelock_base::settings::{Unit, Value};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
-use lovelock_render::{Light, MAX_LIGHTS};
+use lovelock_render::{Light, LightKind, MAX_LIGHTS};
 
 use crate::window::camera_control;
 use crate::window::command::Command;
@@ -17,11 +17,16 @@ use crate::window::light_sphere::light_sphere;
 use crate::window::panel::Panel;
 use crate::window::readings::Readings;
 
+/// How far from the head a light is put that begins to stand somewhere, metres.
+const FROM_HEAD: f32 = 1.5;
+
 /// The lights and the surroundings.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightPanel {
     /// The light that is edited, by its place in the list.
     pub(crate) selected: usize,
+    /// Whether it is unfolded; only then the handles of lights are shown.
+    pub(crate) unfolded: bool,
 }
 
 impl Panel for LightPanel {
@@ -39,14 +44,25 @@ impl Panel for LightPanel {
 
     fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
         let axes = camera_control::axes(&project.camera);
-        list(ui, &mut project.lights, &mut self.selected, axes);
+        let head = readings.frame.map(|frame| frame.guides.world_from_head.translation.into());
+        list(ui, &mut project.lights, &mut self.selected, (axes, head));
         ui.separator();
         super::surroundings::ui(ui, project, readings.surroundings)
     }
+
+    fn end_pass(&mut self, unfolded: bool) {
+        self.unfolded = unfolded;
+    }
 }
 
-/// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back.
-fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3; 3]) {
+/// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back, `head` is the place of the
+/// head.
+fn list(
+    ui: &mut Ui,
+    lights: &mut Vec<Light>,
+    selected: &mut usize,
+    (axes, head): ([Vec3; 3], Option<Vec3>),
+) {
     ui.horizontal_wrapped(|ui| {
         for (i, light) in lights.iter().enumerate() {
             ui.selectable_value(selected, i, &light.name).hover_tooltip("Shows the controls of this light.");
@@ -64,7 +80,9 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3;
     };
     let mut removed = false;
     ui.horizontal(|ui| {
-        light_sphere(ui, &mut light.direction, axes);
+        if light.kind != LightKind::Point {
+            light_sphere(ui, &mut light.direction, axes);
+        }
         ui.vertical(|ui| {
             ui.add(egui::TextEdit::singleline(&mut light.name).desired_width(100.0))
                 .hover_tooltip("Name of this light.");
@@ -72,17 +90,41 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, axes: [Vec3;
         });
     });
     setting(ui, "enabled", light, &default);
+    let before = light.kind;
+    setting(ui, "kind", light, &default);
+    if before == LightKind::Directional && light.stands() && light.position == default.position {
+        // It shines as it did.
+        light.stand_before(head.unwrap_or(Vec3::new(0.0, 1.6, 0.0)), FROM_HEAD);
+        light.intensity *= FROM_HEAD * FROM_HEAD;
+    }
+    match light.kind {
+        LightKind::Directional => {
+            direction_of(ui, light, &default);
+            settings(ui, &["intensity", "color", "specular", "softness"], light, &default);
+        }
+        LightKind::Spot => {
+            settings(ui, &["position"], light, &default);
+            direction_of(ui, light, &default);
+            settings(ui, &["inner_angle", "outer_angle", "radius", "intensity", "color", "specular"], light, &default);
+        }
+        LightKind::Point => {
+            settings(ui, &["position", "radius", "intensity", "color", "specular"], light, &default);
+        }
+    }
+    if removed {
+        lights.remove(*selected);
+        *selected = selected.saturating_sub(1);
+    }
+}
+
+/// The direction of a light.
+fn direction_of(ui: &mut Ui, light: &mut Light, default: &Light) {
     let info = &entry::<Light>("direction").info;
     let mut way = light.direction;
     of_setting(ui, &*light, info, Value::Vector(way.to_array()), |ui| {
         direction(ui, &mut way, default.direction);
     });
     light.direction = way;
-    settings(ui, &["intensity", "color", "specular", "softness"], light, &default);
-    if removed {
-        lights.remove(*selected);
-        *selected = selected.saturating_sub(1);
-    }
 }
 
 /// The direction of a light as the two angles of the place that it comes from.

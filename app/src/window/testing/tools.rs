@@ -7,6 +7,7 @@ use egui::{Key, Modifiers, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_groom::{HairTie, TieKind, TieReach};
+use lovelock_render::LightKind;
 
 use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use super::{Shown, click_at, control, press};
@@ -124,6 +125,65 @@ fn a_tie_can_be_dragged_in_the_viewport() {
     let moved = project(&harness).hair.ties[0];
     assert!(moved.at.y > tie.at.y + 0.01, "{:?} from {:?}", moved.at, tie.at);
     assert_eq!(of(&harness).document.history().undo_len(), 2, "one drag is one step");
+}
+
+#[test]
+fn a_lamp_is_dragged_and_moved_away_and_its_cone_is_turned_and_widened() {
+    let Some(mut harness) = with_picture() else { return };
+    let view_before = view(&harness);
+    let head = {
+        let painted = of(&harness).session.painted.clone().expect("a picture");
+        glam::Vec3::from(painted.snapshot.guides.world_from_head.translation)
+    };
+    // Beside the head, so that lamp and cone are in the picture.
+    let mut lit = (*project(&harness)).clone();
+    lit.lights[0].kind = LightKind::Spot;
+    lit.lights[0].position = head + glam::Vec3::new(0.1, 0.1, 0.1);
+    lit.lights[0].direction = glam::Vec3::new(-1.0, -1.0, -0.2);
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.document.change("light", |project| *project = lit.clone());
+    go(&mut harness);
+    let steps = of(&harness).document.history().undo_len();
+    let light = |harness: &Harness<'_, Shown<Option<Window>>>| project(harness).lights[0].clone();
+    let at = |harness: &Harness<'_, Shown<Option<Window>>>, name| {
+        control(harness, Role::Button, name).rect().center()
+    };
+    let lamp = at(&harness, "Light 1 in the image");
+    drag_over(&mut harness, lamp, lamp + egui::vec2(24.0, 0.0));
+    let moved = light(&harness);
+    let way = moved.position - lit.lights[0].position;
+    assert!(way.length() > 0.005 && moved.direction == lit.lights[0].direction.normalize(), "{way}");
+    let to_lamp = moved.position - view_before.eye;
+    assert!(way.dot(view_before.ray(view_before.place.center())).abs() < 0.05 * way.length(), "across the view");
+    assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
+    let camera = project(&harness).camera;
+    let lamp = at(&harness, "Light 1 in the image");
+    harness.hover_at(lamp);
+    harness.run_steps(1);
+    let delta = egui::vec2(0.0, 30.0);
+    let wheel = egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta,
+        modifiers: Modifiers::NONE,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+    };
+    harness.event(wheel);
+    go(&mut harness);
+    let away = light(&harness).position - view_before.eye;
+    assert!(away.length() > 1.01 * to_lamp.length(), "{away} from {to_lamp}");
+    assert!(away.normalize().dot(to_lamp.normalize()) > 0.999, "along the view");
+    assert_eq!(project(&harness).camera, camera, "the camera stands while the wheel turns over a lamp");
+    let aim = at(&harness, "Direction of light 1 in the image");
+    drag_over(&mut harness, aim, aim + egui::vec2(0.0, 20.0));
+    assert_ne!(light(&harness).direction, moved.direction);
+    let rim = at(&harness, "Width of light 1 in the image");
+    drag_over(&mut harness, rim, rim + egui::vec2(20.0, 0.0));
+    assert!(light(&harness).outer_angle > moved.outer_angle + 0.02);
+    // Without its panel there are no handles.
+    unfold(&mut harness, "Light");
+    let names: Vec<_> = super::controls(&harness, Role::Button).into_iter().map(|(name, _)| name).collect();
+    assert!(names.iter().all(|name| name != "Light 1 in the image"), "{names:?}");
 }
 
 #[test]

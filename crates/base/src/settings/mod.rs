@@ -159,6 +159,7 @@ impl<S> Setting<S> {
         self.info.kind = match self.info.kind {
             Kind::Number(number) => Kind::Number(Range { soft: range, ..number }),
             Kind::Count(count) => Kind::Count(Counts { soft: [range[0] as u64, range[1] as u64], ..count }),
+            Kind::Vector { range: of, axes } => Kind::Vector { range: Range { soft: range, ..of }, axes },
             kind => kind,
         };
         self

@@ -184,8 +184,8 @@ const CIRCLES: [(&str, &[&str], &str); 7] = [
     ("render", &["cpu", "layers"], "layers are an output of the CPU renderer, whose tone mapping they use"),
     (
         "shadow",
-        &["bounds", "cpu", "error", "gpu", "methods"],
-        "a method is a folder with its CPU and GPU parts, and the registry of methods dispatches to them",
+        &["bounds", "cpu", "error", "gpu", "methods", "perspective"],
+        "a method is a folder with its CPU and GPU parts, the registry of methods dispatches to them, and lights are projected below all of them",
     ),
     (
         "study",

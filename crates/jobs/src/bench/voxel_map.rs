@@ -192,6 +192,7 @@ impl<'a> Loops<'a> {
             light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
             anchor: Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         let orders = [CellOrder::AsPrinted, CellOrder::AlongLight];
         let published = orders.map(|order| PublishedMap::new(resolution, order));

@@ -64,7 +64,7 @@ impl Probes {
         let hair = followed.hair.and_then(|(strand, point)| {
             let position = point_of(strands, point)?;
             let first = *snapshot.scene.style.strands.first_point.get(strand)? as usize;
-            let range = reach(strands, position, direction(light));
+            let range = reach(strands, position, way_at(light, position));
             let point = point.saturating_sub(first) as u32;
             Some(ProbedHair {
                 strand: strand as u32,
@@ -84,9 +84,9 @@ fn point_of(strands: &Strands, point: usize) -> Option<Vec3> {
     Some(Vec3::new(*strands.x.get(point)?, *strands.y.get(point)?, *strands.z.get(point)?))
 }
 
-/// The direction in which the light travels.
-pub(super) fn direction(light: &Light) -> Vec3 {
-    light.direction.normalize_or(Vec3::NEG_Y)
+/// The direction in which the light travels at a point.
+pub(super) fn way_at(light: &Light, p: Vec3) -> Vec3 {
+    light.normalized().way_to(p)
 }
 
 /// Range from the first hair near the ray to the last one, with a margin, metres along the light.

@@ -14,9 +14,9 @@ use lovelock_render::{
 };
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_shadow::{LightFrame, ShadowInput, cpu_shadow};
+use lovelock_shadow::{ShadowInput, cpu_shadow};
 
-use super::probes::{Probes, curve, direction};
+use super::probes::{Probes, curve, way_at};
 use super::reference::ExactReference;
 use super::renderers::{Broken, Renderers, device_is_gone};
 use super::takes::PaneTakes;
@@ -242,7 +242,9 @@ impl Rounds {
                 // A pane that could not be rendered has no maps; the pane itself reports why.
                 let strands = &self.strands;
                 let definition = || kept(project, snapshot, strands, pane, light, hair.position);
-                if let Ok(curve) = curve(renderer, (request.view.light, direction(light)), hair, definition) {
+                if let Ok(curve) =
+                    curve(renderer, (request.view.light, way_at(light, hair.position)), hair, definition)
+                {
                     hair.curves.push((pane, curve));
                 }
             }
@@ -261,13 +263,15 @@ fn kept(
     p: Vec3,
 ) -> Result<RayStructure, RenderError> {
     let drawn = project.compare.panes.get(pane).cloned().unwrap_or_default().applied_to(project);
+    let anchor = snapshot.guides.world_from_head.translation.into();
     let input = ShadowInput {
         strands,
         strand_width: snapshot.look(project).shadow_width(strands.count()),
         extinction_scale: project.look.extinction_scale,
-        light: LightFrame::new(direction(light)),
-        anchor: snapshot.guides.world_from_head.translation.into(),
+        light: light_frame(&light.normalized(), anchor),
+        anchor,
         maps: enabled(project).count() as u32,
+        projected: None,
     };
     let mut map = cpu_shadow(drawn.shadow.method);
     map.build(&input, &drawn.shadow)?;

@@ -158,29 +158,35 @@ fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 
         return out;
     }
     let ambient = view.ambient([0.0, 1.0, 0.0]);
-    let mut full = three(|c| ambient[c] * 3.141_59);
-    let mut lit = [[full[0]; N], [full[1]; N], [full[2]; N]];
+    let sky = three(|c| ambient[c] * 3.141_59);
+    let mut full = [[sky[0]; N], [sky[1]; N], [sky[2]; N]];
+    let mut lit = full;
     for light in &view.lights {
-        let facing = max(-light.direction.y, 0.0);
-        let share = (light.radiance * facing).to_array();
-        for c in 0..3 {
-            full[c] += share[c];
+        let (toward, arriving) = light.arriving(&place);
+        let mut facing = [0.0; N];
+        let mut any = false;
+        for lane in 0..N {
+            facing[lane] = max(toward[1][lane], 0.0) * arriving[lane];
+            any |= facing[lane] > 0.0;
         }
-        if facing <= 0.0 {
+        if !any {
             continue;
         }
-        let lean = light.lean_of(&[[0.0; N], [1.0; N], [0.0; N]]);
-        let body = light.body_light(&place, &lean, 0.004, &view.surface_disc);
+        let up = [[0.0; N], [1.0; N], [0.0; N]];
+        let body = light.past_body(&place, Some(&up), 0.004, &view.surface_disc);
+        let radiance = light.radiance.to_array();
         for lane in 0..N {
             let hair = light.columns_light(Vec3::new(place[0][lane], place[1][lane], place[2][lane]));
             for c in 0..3 {
-                lit[c][lane] += share[c] * (body[lane] * hair);
+                let share = radiance[c] * facing[lane];
+                full[c][lane] += share;
+                lit[c][lane] += share * (body[lane] * hair);
             }
         }
     }
     for c in 0..3 {
         for lane in 0..N {
-            out[c][lane] = if out[3][lane] > 0.0 { lit[c][lane] / max(full[c], 1e-4) } else { 1.0 };
+            out[c][lane] = if out[3][lane] > 0.0 { lit[c][lane] / max(full[c][lane], 1e-4) } else { 1.0 };
         }
     }
     out

@@ -2,7 +2,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
 use lovelock_base::simd_versions;
@@ -84,6 +84,46 @@ impl DepthMap {
                 Vec3::new((at.x + 1.0) * half, (1.0 - at.y) * half, at.z)
             })
             .collect_into_vec(&mut self.placed);
+        self.rasterise(width, triangles, closed);
+    }
+
+    /// As [`DepthMap::draw`], for a view whose fourth coordinate is the distance along its axis. Triangles before its near end are cut
+    /// off there.
+    pub fn draw_perspective(
+        &mut self,
+        width: Width,
+        from_world: Mat4,
+        (vertices, triangles, closed): (&[Vec3], &[[u32; 3]], bool),
+    ) {
+        let clip: Vec<Vec4> = vertices.par_iter().map(|&p| from_world * p.extend(1.0)).collect();
+        clip.par_iter().map(|&at| on_map(at)).collect_into_vec(&mut self.placed);
+        let mut seen = Vec::with_capacity(triangles.len());
+        for corners in triangles {
+            let found = corners.map(|i| clip.get(i as usize).copied().unwrap_or(Vec4::NAN));
+            if found.iter().all(|at| at.z >= 0.0) {
+                seen.push(*corners);
+                continue;
+            }
+            let first = self.placed.len() as u32;
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let (a, b) = (found[a], found[b]);
+                if a.z >= 0.0 {
+                    self.placed.push(on_map(a));
+                }
+                // Not for NaN.
+                if (a.z >= 0.0 && b.z < 0.0) || (a.z < 0.0 && b.z >= 0.0) {
+                    self.placed.push(on_map(a.lerp(b, a.z / (a.z - b.z))));
+                }
+            }
+            for last in first + 2..self.placed.len() as u32 {
+                seen.push([first, last - 1, last]);
+            }
+        }
+        self.rasterise(width, &seen, closed);
+    }
+
+    /// Draws triangles of placed vertices.
+    fn rasterise(&mut self, width: Width, triangles: &[[u32; 3]], closed: bool) {
         self.sort_by_band(triangles, closed);
         let (placed, starts, sorted) = (&self.placed, &self.starts, &self.sorted);
         self.depth
@@ -220,6 +260,13 @@ impl DepthMap {
     }
 }
 
+/// The texels from the left and top, and the depth, of a position in clip space; not finite behind the eye.
+fn on_map(at: Vec4) -> Vec3 {
+    let half = 0.5 * SIZE as f32;
+    let inverse = if at.w > 0.0 { 1.0 / at.w } else { f32::NAN };
+    Vec3::new((at.x * inverse + 1.0) * half, (1.0 - at.y * inverse) * half, at.z * inverse)
+}
+
 simd_versions! {
     /// [`draw_band`] for the vectors of `width`.
     fn draw_band_simd(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) -> () {
@@ -344,6 +391,32 @@ mod tests {
         let vertices = [(-3.0, -1.0), (3.0, -1.0), (0.0, 5.0)].map(|(x, y)| Vec3::new(x, y, 0.25));
         let map = drawn(&vertices, &[[0, 1, 2]]);
         assert!(map.depth.iter().all(|z| *z == 0.25), "the view lies within the triangle");
+    }
+
+    #[test]
+    fn a_floor_under_the_light_is_cut_off_at_its_near_end() {
+        // Seen along −z with a right angle; near at 0.1, far at 10. The floor is one metre below and reaches behind the eye.
+        let rows = [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, -10.0 / 9.9, -1.0 / 9.9],
+            [0.0, 0.0, -1.0, 0.0],
+        ];
+        let view = Mat4::from_cols_array_2d(&rows).transpose();
+        let floor = [(-50.0, -9.0), (50.0, -9.0), (0.0, 50.0)].map(|(x, z)| Vec3::new(x, -1.0, z));
+        let mut map = DepthMap::default();
+        map.draw_perspective(Width::widest(), view, (&floor, &[[0, 1, 2]], false));
+        let at = |map: &DepthMap, row: usize| map.depth[row * SIZE + SIZE / 2];
+        assert_eq!(at(&map, SIZE / 4), 1.0, "the sky");
+        // Rows between the horizon and the lower edge show the floor at the distance at which their ray meets it.
+        for row in [600, 700, 900, 1020] {
+            let distance = 512.0 / (row as f32 + 0.5 - 512.0);
+            let wanted = (10.0 / 9.9) * (1.0 - 0.1 / distance);
+            let found = at(&map, row);
+            assert!((found - wanted).abs() < 1e-4, "{row}: {found} for {wanted}");
+        }
+        map.draw(Width::widest(), view, (&floor, &[[0, 1, 2]], false));
+        assert_eq!(at(&map, 900), 1.0, "control: without the division the floor is a line");
     }
 
     #[test]

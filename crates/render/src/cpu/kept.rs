@@ -11,7 +11,7 @@ use lovelock_groom::{GuideFrame, Hairstyle, Strands};
 use lovelock_motion::Body;
 
 use crate::shadow_look::ShadowLook;
-use crate::{FrameInput, HairPose, Light};
+use crate::{FrameInput, HairPose, Light, LightKind};
 
 /// Given strands of more points are not compared: copies of them would cost too much memory beside those of other panes.
 const MAX_STRAND_POINTS: usize = 1 << 18;
@@ -32,12 +32,26 @@ struct HairInputs {
     look: ShadowLook,
 }
 
+/// Where a light comes from: its direction, and of one that stands somewhere its place, radius and cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ComesFrom {
+    direction: Vec3,
+    standing: Option<(LightKind, Vec3, [f32; 2])>,
+}
+
+impl ComesFrom {
+    fn of(light: &Light) -> Self {
+        let place = || (light.kind, light.position, [light.radius, light.outer_angle]);
+        Self { direction: light.direction, standing: light.stands().then(place) }
+    }
+}
+
 #[derive(Debug, Default)]
 struct BodyInputs {
     body: Option<Arc<Body>>,
     positions: Vec<Vec3>,
-    /// The directions of the lights that are on.
-    lights: Vec<Vec3>,
+    /// Where the lights that are on come from.
+    lights: Vec<ComesFrom>,
     is_known: bool,
 }
 
@@ -124,9 +138,7 @@ impl BodyInputs {
     fn follow(&mut self, input: &FrameInput) -> bool {
         let body = input.body.map(|(body, _)| body);
         let positions = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
-        let lights = || {
-            input.lights.iter().filter(|light| light.enabled).map(|light| Light::normalized(light).direction)
-        };
+        let lights = || Light::enabled(input.lights).map(|light| ComesFrom::of(&light));
         let same = self.is_known
             && self.body.as_ref().map(Arc::as_ptr) == body.map(Arc::as_ptr)
             && self.positions == positions

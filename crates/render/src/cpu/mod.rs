@@ -30,6 +30,7 @@ mod placed;
 mod pool;
 mod renderer;
 mod shadow;
+mod standing;
 mod strand_points;
 mod surface;
 mod tile;

@@ -26,11 +26,11 @@ use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::frame::INTERPOLATE;
-use crate::light_view::{bounding_sphere, light_view};
+use crate::light_view::{bounding_sphere, light_views};
 use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{
-    ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, MAX_LIGHTS, Picture, RenderError,
+    ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, Light, Picture, RenderError,
 };
 
 /// Texels along each edge of the body's depth maps.
@@ -48,7 +48,8 @@ pub struct CpuRenderer {
     maps: Vec<LightMaps>,
     shadow: ShadowStage,
     placed: PlacedScene,
-    depth: Vec<DepthMap>,
+    /// The views of the body of each light: one, or one per side of a cube.
+    depth: Vec<Vec<DepthMap>>,
     /// How long the depth maps took when they were last drawn, milliseconds.
     depth_ms: f64,
     /// How long it took to interpolate the stored strands, and to follow them with those that are drawn, when that was last done,
@@ -148,7 +149,7 @@ impl CpuRenderer {
             + self.kept.bytes()
             + self.shadow.kept_bytes()
             + self.placed.bytes()
-            + self.depth.iter().map(DepthMap::bytes).sum::<u64>()
+            + self.depth.iter().flatten().map(DepthMap::bytes).sum::<u64>()
             + list_bytes(&self.tiles)
             + list_bytes(&self.plain.bytes)
             + self.layers.bytes()
@@ -459,17 +460,27 @@ impl CpuRenderer {
     /// Draws the depth maps of the body for all lights.
     fn draw_depth(&mut self, input: &FrameInput) -> Vec<LightMaps> {
         let (positions, triangles) = surface_of(input);
-        let (center, radius) = bounding_sphere(positions);
-        let lights: Vec<_> = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).collect();
-        self.depth.resize_with(lights.len(), DepthMap::default);
+        let sphere = bounding_sphere(positions);
+        let lights: Vec<_> = Light::enabled(input.lights).collect();
+        self.depth.resize_with(lights.len(), Vec::new);
         let (width, closed) = (self.placed.width, self.placed.is_closed(input));
+        let shadow = &self.shadow;
         lights
-            .into_par_iter()
+            .par_iter()
             .zip(&mut self.depth)
-            .map(|(light, depth)| {
-                let view = light_view(light.normalized().direction, center, radius, DEPTH_TEXELS);
-                depth.draw(width, view.shadow_from_world, (positions, triangles, closed));
-                view
+            .enumerate()
+            .map(|(k, (light, depth))| {
+                let views = light_views(light, &shadow.frame(k), sphere, DEPTH_TEXELS);
+                depth.resize_with(views.body_views().len(), DepthMap::default);
+                depth.par_iter_mut().zip(views.body_views()).for_each(|(depth, from_world)| {
+                    if views.standing.is_standing() {
+                        // From within a closed body, triangles that face away are nearest.
+                        depth.draw_perspective(width, *from_world, (positions, triangles, false));
+                    } else {
+                        depth.draw(width, *from_world, (positions, triangles, closed));
+                    }
+                });
+                views
             })
             .collect()
     }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::shadow_look::{PIECE, ShadowLook, has_soft_skin, pack};
 use crate::skin::Neighbours;
+use crate::standing::placed_frame;
 use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
@@ -22,8 +23,8 @@ pub(crate) struct ShadowStage {
     pub at_points: Vec<u32>,
     /// The same for each vertex of the body.
     pub at_vertices: Vec<u32>,
-    /// The transmittance behind all hair per light, for the ground.
-    pub columns: Vec<Option<ColumnMap>>,
+    /// The transmittance behind all hair per light, for the ground: a map, none, or one per side of a cube around it.
+    pub columns: Vec<Vec<ColumnMap>>,
     /// Mean transmittance of the first light over the strands' points.
     pub mean: f32,
     /// Bytes of all maps.
@@ -42,6 +43,8 @@ pub(crate) struct ShadowStage {
 }
 
 struct LightShadow {
+    /// The axes of its direction, and those of its maps.
+    base: LightFrame,
     frame: LightFrame,
     shadow: Box<dyn CpuShadow + Send + Sync>,
     /// Transmittance at the strands' points and at the body's vertices.
@@ -53,13 +56,14 @@ impl LightShadow {
     /// Builds the map, one of `maps` that share the limit of memory.
     fn build(
         &mut self,
-        direction: Vec3,
+        light: &Light,
         maps: u32,
         look: &ShadowLook,
         strands: &Strands,
     ) -> Result<(), ShadowError> {
         // Transported instead of recomputed, so that the map does not roll while the light is dragged.
-        self.frame = self.frame.transported(direction);
+        self.base = self.base.transported(light.direction);
+        self.frame = placed_frame(self.base, light, look.anchor());
         let from = ShadowInput {
             strands,
             strand_width: look.strand_width,
@@ -67,6 +71,7 @@ impl LightShadow {
             light: self.frame,
             anchor: look.anchor(),
             maps,
+            projected: None,
         };
         self.shadow.build(&from, &look.settings)
     }
@@ -135,8 +140,10 @@ impl ShadowStage {
             values.extend(positions.iter().map(|p| p[axis]));
         });
         while self.lights.len() < lights.len() {
+            let base = LightFrame::new(lights[self.lights.len()].direction);
             self.lights.push(LightShadow {
-                frame: LightFrame::new(lights[self.lights.len()].direction),
+                base,
+                frame: base,
                 shadow: cpu_shadow(method),
                 at_points: Vec::new(),
                 at_vertices: Vec::new(),
@@ -149,13 +156,13 @@ impl ShadowStage {
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, &look, stored))?;
+            .try_for_each(|(shadow, light)| shadow.build(light, maps, &look, stored))?;
         self.passed("shadow/build", &part);
         self.look_up(input, drawn);
 
         let part = Stopwatch::start();
         self.columns.clear();
-        self.columns.extend(self.lights.iter().map(|light| light.shadow.column_map()));
+        self.columns.extend(self.lights.iter().map(|light| light.shadow.column_maps()));
         self.passed("shadow/columns", &part);
         self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
         self.is_whole = true;
@@ -247,6 +254,11 @@ impl ShadowStage {
         self.made.retain(|made| made.name != name);
         self.made.push(pass.clone());
         self.passes.push(pass);
+    }
+
+    /// The axes of the maps of light `light` of the last run; those of light from above if it has none.
+    pub fn frame(&self, light: usize) -> LightFrame {
+        self.lights.get(light).map_or_else(LightFrame::default, |light| light.frame)
     }
 
     /// Transmittance of light `light` at the strand points of the last run.

@@ -7,7 +7,8 @@ use lovelock_appearance::fibre::FibreTables;
 use lovelock_shadow::ColumnMap;
 
 use super::body_depth::DepthMap;
-use super::math::{floor, index_of, max, min, three};
+use super::math::{max, three};
+use super::standing::{StandingLight, light_behind};
 use crate::MAX_LIGHTS;
 use crate::ambient::AmbientGrid;
 use crate::fibre::FibreLight;
@@ -60,6 +61,8 @@ pub(super) struct LightView<'a> {
     shadow_from_world: Mat4,
     depth: &'a DepthMap,
     columns: Option<&'a ColumnMap>,
+    /// What replaces all of this for a light that stands somewhere.
+    standing: Option<StandingLight<'a>>,
 }
 
 impl<'a> View<'a> {
@@ -67,16 +70,19 @@ impl<'a> View<'a> {
     pub fn new(
         uniform: &'a FrameUniform,
         (grid, shading): (&'a AmbientGrid, ShadingView<'a>),
-        depth: &'a [DepthMap],
-        columns: &'a [Option<ColumnMap>],
+        depth: &'a [Vec<DepthMap>],
+        columns: &'a [Vec<ColumnMap>],
         texels: u32,
     ) -> Self {
         let count = (uniform.light_count as usize).min(MAX_LIGHTS);
+        let columns = |k: usize| columns.get(k).map_or(&[][..], Vec::as_slice);
         let lights = uniform.lights[..count]
             .iter()
+            .zip(&uniform.standing)
             .zip(depth)
             .enumerate()
-            .map(|(k, (light, depth))| LightView {
+            .filter_map(|(k, ((light, standing), views))| Some((k, light, standing, views, views.first()?)))
+            .map(|(k, light, standing, views, depth)| LightView {
                 direction: light.direction,
                 specular: light.specular,
                 radiance: light.radiance,
@@ -88,7 +94,8 @@ impl<'a> View<'a> {
                 ],
                 shadow_from_world: light.shadow_from_world,
                 depth,
-                columns: columns.get(k).and_then(Option::as_ref),
+                columns: columns(k).first(),
+                standing: standing.is_standing().then(|| StandingLight::new(standing, views, columns(k))),
             })
             .collect();
         Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, shading }
@@ -128,9 +135,37 @@ fn disc<const N: usize>() -> [Vec2; N] {
 }
 
 impl LightView<'_> {
+    /// The unit vectors from positions toward the light, and the share of its brightness that arrives at each if nothing is between.
+    #[inline(always)]
+    pub fn arriving<const N: usize>(&self, p: &[[f32; N]; 3]) -> ([[f32; N]; 3], [f32; N]) {
+        match &self.standing {
+            Some(standing) => standing.arriving(p),
+            None => ((-self.direction).to_array().map(|c| [c; N]), [1.0; N]),
+        }
+    }
+
+    /// The fraction of the light that the body lets through to positions on surfaces with the unit normals `n`, or to points without a
+    /// surface; see [`LightView::body_light`].
+    #[inline(always)]
+    pub fn past_body<const N: usize>(
+        &self,
+        p: &[[f32; N]; 3],
+        n: Option<&[[f32; N]; 3]>,
+        bias: f32,
+        disc: &[Vec2],
+    ) -> [f32; N] {
+        if let Some(standing) = &self.standing {
+            return standing.past_body(p, n, bias, disc);
+        }
+        match n {
+            Some(n) => self.body_light(p, &self.lean_of(n), bias, disc),
+            None => self.body_light(p, &[[0.0; N]; 3], bias, disc),
+        }
+    }
+
     /// The components of the unit normals `n` along u, v and toward the light.
     #[inline(always)]
-    pub fn lean_of<const N: usize>(&self, n: &[[f32; N]; 3]) -> [[f32; N]; 3] {
+    fn lean_of<const N: usize>(&self, n: &[[f32; N]; 3]) -> [[f32; N]; 3] {
         let axes = [self.edges[0], self.edges[1], -self.direction];
         let mut lean = [[0.0; N]; 3];
         for (lean, axis) in lean.iter_mut().zip(axes) {
@@ -147,7 +182,7 @@ impl LightView<'_> {
     /// The disc lies in the plane of the surface, given by `lean`, so that a flat surface does not shadow itself. For points without a
     /// surface `lean` is zero and the disc is perpendicular to the light.
     #[inline(always)]
-    pub fn body_light<const N: usize>(
+    fn body_light<const N: usize>(
         &self,
         p: &[[f32; N]; 3],
         lean: &[[f32; N]; 3],
@@ -214,6 +249,9 @@ impl LightView<'_> {
 
     /// Whether the maps do not cover the bounds of positions.
     pub fn is_beside<const N: usize>(&self, p: &[[f32; N]; 3]) -> bool {
+        if self.standing.is_some() {
+            return false;
+        }
         let m = &self.shadow_from_world;
         let columns = self.columns.map(|map| &map.uv_from_world);
         let beside = |m: &Mat4, low: f32, high: f32| {
@@ -227,24 +265,12 @@ impl LightView<'_> {
 
     /// The transmittance of all hair, for a point behind it.
     pub fn columns_light(&self, p: Vec3) -> f32 {
+        if let Some(standing) = &self.standing {
+            return standing.columns_light(p);
+        }
         let Some(map) = self.columns else { return 1.0 };
         let m = &map.uv_from_world;
         let at = m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis;
-        let inside = at.x >= 0.0 && at.y >= 0.0 && at.x <= 1.0 && at.y <= 1.0;
-        if !inside || map.size == 0 {
-            return 1.0;
-        }
-        let last = (map.size - 1) as f32;
-        let texel = |c: f32| {
-            let c = c * map.size as f32 - 0.5;
-            let low = floor(c);
-            let clamped = |c: f32| index_of(min(max(c, 0.0), last)) as usize;
-            (clamped(low), clamped(low + 1.0), c - low)
-        };
-        let ((x0, x1, fx), (y0, y1, fy)) = (texel(at.x), texel(at.y));
-        let size = map.size as usize;
-        let t = |x: usize, y: usize| map.transmittance.get(y * size + x).copied().unwrap_or(1.0);
-        let row = |y| t(x0, y) + (t(x1, y) - t(x0, y)) * fx;
-        row(y0) + (row(y1) - row(y0)) * fy
+        light_behind(map, [at.x, at.y])
     }
 }

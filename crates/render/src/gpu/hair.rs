@@ -177,9 +177,16 @@ impl HairBuffers {
         let extent = self.extent.get_or_insert_with(|| StrandBounds::new(input.style));
         let bounds = match input.hair {
             HairPose::Strands(strands) => {
-                let input =
-                    ShadowInput { strands, strand_width: 0.0, extinction_scale: 0.0, light, anchor, maps: 1 };
-                Bounds::of_strands(&input)
+                let (strand_width, extinction_scale) = (0.0, 0.0);
+                Bounds::of_strands(&ShadowInput {
+                    strands,
+                    strand_width,
+                    extinction_scale,
+                    light,
+                    anchor,
+                    maps: 1,
+                    projected: None,
+                })
             }
             HairPose::Guides(guides) => {
                 let found = extent.along(guides, [light.x, light.y, light.z], anchor);

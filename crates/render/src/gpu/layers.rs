@@ -2,8 +2,8 @@
 
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, Readback, ShaderSource, wgpu};
 
-use super::light_kernels::LISTS;
-use crate::{Layers, MAX_LIGHTS};
+use super::light_kernels::{LISTS, LightSet};
+use crate::Layers;
 
 /// Bytes per pixel of the two buffers.
 const LIGHT_BYTES: u64 = 16;
@@ -16,7 +16,7 @@ pub(super) struct LayerShaders {
     pub values: ShaderSource,
 }
 
-/// The kernels for a number of lights, with or without the background.
+/// The kernels for some lights, with or without the background.
 #[derive(Debug)]
 pub(super) struct LayerKernels {
     pub background: Kernel,
@@ -31,12 +31,13 @@ impl LayerKernels {
     fn compile(
         gpu: &Gpu,
         shaders: &LayerShaders,
-        lights: usize,
+        lights: LightSet,
         over_background: bool,
     ) -> Result<Self, GpuError> {
         let over = ("OVER_BACKGROUND", f64::from(u8::from(over_background)));
+        let [count, standing] = lights.constants();
         let kernel = |label, entry, list: f64| {
-            let constants = [("LIGHTS", lights as f64), ("LIST", list), over];
+            let constants = [count, standing, ("LIST", list), over];
             Kernel::specialised(gpu, label, &shaders.layers, entry, &constants)
         };
         let lit = |list| kernel("layer lit", "layer_lit", list);
@@ -53,7 +54,7 @@ impl LayerKernels {
 /// The kernels that were used, and the buffers of the pixels.
 #[derive(Debug)]
 pub(super) struct LayerBuffers {
-    kernels: Vec<((usize, bool), LayerKernels)>,
+    kernels: Vec<((LightSet, bool), LayerKernels)>,
     light: GrowBuffer<[f32; 4]>,
     data: GrowBuffer<[f32; 2]>,
     readback: Readback,
@@ -86,21 +87,19 @@ impl LayerBuffers {
         gpu: &Gpu,
         shaders: &LayerShaders,
         pixels: u64,
-        (lights, over_background): (usize, bool),
+        variant: (LightSet, bool),
     ) -> Result<(), GpuError> {
         self.light.reserve(gpu, pixels as usize);
         self.data.reserve(gpu, pixels as usize);
-        let variant = (lights.min(MAX_LIGHTS), over_background);
         if !self.kernels.iter().any(|(known, _)| *known == variant) {
-            let kernels = LayerKernels::compile(gpu, shaders, variant.0, over_background)?;
+            let kernels = LayerKernels::compile(gpu, shaders, variant.0, variant.1)?;
             self.kernels.push((variant, kernels));
         }
         Ok(())
     }
 
     /// The kernels of a kind that [`LayerBuffers::fit`] has made.
-    pub fn kernels(&self, (lights, over_background): (usize, bool)) -> Option<&LayerKernels> {
-        let variant = (lights.min(MAX_LIGHTS), over_background);
+    pub fn kernels(&self, variant: (LightSet, bool)) -> Option<&LayerKernels> {
         self.kernels.iter().find(|(known, _)| *known == variant).map(|(_, kernels)| kernels)
     }
 

@@ -1,11 +1,11 @@
-//! The kernels that evaluate lights, compiled for the number of lights.
+//! The kernels that evaluate lights, compiled for their number and kinds.
 
 use std::sync::{Arc, OnceLock};
 
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
 use lovelock_groom::HairShading;
 
-use crate::MAX_LIGHTS;
+use crate::{Light, MAX_LIGHTS};
 
 /// The lists of pixels that are drawn one by one; twin of `BODY` and the constants below it in picture.wgsl.
 pub(super) const LISTS: usize = 4;
@@ -13,11 +13,32 @@ pub(super) const LISTS: usize = 4;
 /// The values of [`HairShading`].
 const SHADINGS: usize = 3;
 
-/// The kernels for one number of lights.
+/// The lights that kernels are compiled for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct LightSet {
+    /// Their number.
+    pub count: usize,
+    /// Whether any of them stands somewhere.
+    pub standing: bool,
+}
+
+impl LightSet {
+    /// The lights of an image.
+    pub fn of(lights: &[Light]) -> Self {
+        Self { count: lights.len().min(MAX_LIGHTS), standing: lights.iter().any(Light::stands) }
+    }
+
+    /// The values of the constants of shaders.
+    pub fn constants(self) -> [Constant; 2] {
+        [("LIGHTS", self.count as f64), ("STANDING", f64::from(u8::from(self.standing)))]
+    }
+}
+
+/// The kernels for some lights.
 #[derive(Debug)]
 pub(super) struct LightKernels {
     shaders: Arc<LightShaders>,
-    lights: usize,
+    lights: LightSet,
     /// By shading and by whether strands have colours of their own. Rare ones are compiled for the first such hair.
     shade_points: [[OnceLock<Kernel>; 2]; SHADINGS],
     pub ground: Kernel,
@@ -33,35 +54,40 @@ pub(super) struct LightShaders {
     pub picture: ShaderSource,
 }
 
-/// The kernels for each number of lights that has been used.
+/// The kernels for all lights that have been used.
 #[derive(Debug)]
 pub(super) struct LightVariants {
     shaders: Arc<LightShaders>,
-    made: [Option<LightKernels>; MAX_LIGHTS + 1],
+    /// By the number of lights, and whether any stands somewhere.
+    made: [[Option<LightKernels>; 2]; MAX_LIGHTS + 1],
 }
 
 impl LightShaders {
     fn shade_points(
         &self,
         gpu: &Gpu,
-        lights: usize,
+        lights: LightSet,
         shading: HairShading,
         colored: bool,
     ) -> Result<Kernel, GpuError> {
+        let [count, standing] = lights.constants();
         let constants = [
-            ("LIGHTS", lights as f64),
+            count,
+            standing,
             ("SHADING", f64::from(shading as u8)),
             ("COLORED", f64::from(u8::from(colored))),
         ];
         Kernel::specialised(gpu, "strand points", &self.points, "shade_points", &constants)
     }
 
-    fn compile(self: &Arc<Self>, gpu: &Gpu, lights: usize) -> Result<LightKernels, GpuError> {
-        let count = ("LIGHTS", lights as f64);
+    fn compile(self: &Arc<Self>, gpu: &Gpu, lights: LightSet) -> Result<LightKernels, GpuError> {
+        let [count, standing] = lights.constants();
         let kernel = |label, source, entry, constants: &[Constant]| {
             Kernel::specialised(gpu, label, source, entry, constants)
         };
-        let lit = |list: f64| kernel("picture lit", &self.picture, "picture_lit", &[count, ("LIST", list)]);
+        let lit = |list: f64| {
+            kernel("picture lit", &self.picture, "picture_lit", &[count, standing, ("LIST", list)])
+        };
         let usual = |shading: HairShading| {
             let kernel = self.shade_points(gpu, lights, shading, false)?;
             Ok::<_, GpuError>([OnceLock::from(kernel), OnceLock::new()])
@@ -74,7 +100,7 @@ impl LightShaders {
                 usual(HairShading::TwoHighlights)?,
                 [const { OnceLock::new() }; 2],
             ],
-            ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
+            ground: kernel("ground", &self.ground, "ground_corners", &[count, standing])?,
             picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
         })
     }
@@ -97,16 +123,15 @@ impl LightKernels {
 
 impl LightVariants {
     pub fn new(shaders: LightShaders) -> Self {
-        Self { shaders: Arc::new(shaders), made: [const { None }; MAX_LIGHTS + 1] }
+        Self { shaders: Arc::new(shaders), made: [const { [const { None }; 2] }; MAX_LIGHTS + 1] }
     }
 
-    /// The kernels for a number of lights.
+    /// The kernels for some lights.
     ///
     /// # Errors
     /// The driver cannot compile them.
-    pub fn of(&mut self, gpu: &Gpu, lights: usize) -> Result<&LightKernels, GpuError> {
-        let lights = lights.min(MAX_LIGHTS);
-        let made = &mut self.made[lights];
+    pub fn of(&mut self, gpu: &Gpu, lights: LightSet) -> Result<&LightKernels, GpuError> {
+        let made = &mut self.made[lights.count.min(MAX_LIGHTS)][usize::from(lights.standing)];
         if made.is_none() {
             *made = Some(self.shaders.compile(gpu, lights)?);
         }

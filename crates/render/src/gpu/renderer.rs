@@ -29,8 +29,9 @@ use super::surface::SurfaceBuffers;
 use super::targets::Targets;
 use crate::clusters::{of_casters, without_strands};
 use crate::image::DeviceImage;
-use crate::light_view::{bounding_sphere, light_view};
+use crate::light_view::{bounding_sphere, light_views};
 use crate::shadow_look::has_soft_skin;
+use crate::standing::layer_of;
 use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{FrameInput, FrameStats, Light, MAX_LIGHTS, RenderError};
 use flight::Flights;
@@ -221,6 +222,9 @@ impl GpuRenderer {
         }
 
         let maps = self.light_maps(input);
+        let last_layer = |(k, map): (usize, &LightMaps)| layer_of(k, map.body_views().len().max(1) - 1);
+        let layers = maps.iter().enumerate().map(last_layer).max().map_or(0, |last| last + 1);
+        self.surface.fit_depth(gpu, &self.pipelines, layers);
         let uniform = FrameUniform::new(
             input,
             self.hair.portion(),
@@ -238,17 +242,22 @@ impl GpuRenderer {
         let Some(targets) = &self.targets else { return Err(RenderError::NoPicture) };
         let frame = FrameResources {
             uniform: &self.uniform,
-            body_depth: &self.surface.depth,
+            body_depth: self.surface.depth(),
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,
             ambient: self.light.cells(),
         };
         for (k, map) in maps.iter().enumerate() {
-            self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
+            // From within a closed body, triangles that face away are nearest.
+            let behind = !map.standing.is_standing();
+            for (side, view) in map.body_views().iter().enumerate() {
+                let of = (layer_of(k, side), *view);
+                self.surface.draw_depth(gpu, &self.pipelines, &mut commands, of, behind);
+            }
         }
         self.draw_body(gpu, &mut commands, targets);
-        let lit = self.pipelines.lit.of(gpu, maps.len())?;
+        let lit = self.pipelines.lit.of(gpu, self.shadow.light_set())?;
         let shading = PointShading { kernels: lit, model: input.look.shading, tables: self.light.tables() };
         if seen.has_strands {
             self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame)?;
@@ -256,7 +265,7 @@ impl GpuRenderer {
         let lighting = RibLighting {
             shading,
             rib_light: &self.pipelines.rib_light,
-            lights: maps.len(),
+            lights: self.shadow.light_set(),
             area: seen.area.edges(),
             scale: uniform.pixels_per_metre,
             nearest: seen.nearest_rib,
@@ -304,10 +313,15 @@ impl GpuRenderer {
 
     /// The placement of the maps of each light that is on.
     fn light_maps(&self, input: &FrameInput) -> Vec<LightMaps> {
-        let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
-        let map = |(slot, light): (usize, Light)| LightMaps {
-            columns_from_world: self.shadow.columns_from_world(slot),
-            ..light_view(light.direction, center, radius, self.surface.texels)
+        let sphere = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
+        let map = |(slot, light): (usize, Light)| {
+            let mut maps = light_views(&light, &self.shadow.frame(slot), sphere, self.surface.texels);
+            maps.columns_from_world = self.shadow.columns_from_world(slot, 0);
+            maps.standing.column_sides = self.shadow.column_sides(slot) as u32;
+            for (side, matrix) in maps.standing.columns_from_world.iter_mut().enumerate() {
+                *matrix = self.shadow.columns_from_world(slot, side);
+            }
+            maps
         };
         Light::enabled(input.lights).enumerate().map(map).collect()
     }

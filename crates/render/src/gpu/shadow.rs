@@ -12,7 +12,9 @@ use lovelock_shadow::{
 };
 
 use super::hair::HairBuffers;
+use super::light_kernels::LightSet;
 use crate::shadow_look::{ShadowLook, pack};
+use crate::standing::{layer_of, placed_frame};
 use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
@@ -20,11 +22,12 @@ pub(super) struct GpuShadowStage {
     /// Methods that were used, with their pipelines. Only the one in use has maps.
     methods: BTreeMap<ShadowMethod, Box<dyn GpuShadow>>,
     method: ShadowMethod,
-    frames: Vec<LightFrame>,
+    /// The axes of the direction of each light, and those of its maps.
+    frames: Vec<[LightFrame; 2]>,
     /// Sum of the first light's bytes over the strands' points.
     sum: wgpu::Buffer,
     columns: Columns,
-    lights: usize,
+    lights: LightSet,
 }
 
 impl fmt::Debug for GpuShadowStage {
@@ -57,8 +60,8 @@ impl GpuShadowStage {
                     | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
-            columns: Columns::new(gpu, 1),
-            lights: 0,
+            columns: Columns::new(gpu, 1, MAX_LIGHTS),
+            lights: LightSet::default(),
         }
     }
 
@@ -90,7 +93,7 @@ impl GpuShadowStage {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(gpu_shadow(method, gpu)?),
         };
-        self.lights = lights.len();
+        self.lights = LightSet::of(&lights);
         self.frames.truncate(lights.len());
         let look = ShadowLook::of(input);
         let anchor = look.anchor();
@@ -99,12 +102,13 @@ impl GpuShadowStage {
         }
         for (slot, light) in lights.iter().enumerate() {
             // Transported instead of recomputed, so that the map does not roll while the light is dragged.
-            let frame = match self.frames.get(slot) {
-                Some(frame) => frame.transported(light.direction),
+            let base = match self.frames.get(slot) {
+                Some([base, _]) => base.transported(light.direction),
                 None => LightFrame::new(light.direction),
             };
+            let frame = placed_frame(base, light, anchor);
             self.frames.truncate(slot);
-            self.frames.push(frame);
+            self.frames.push([base, frame]);
             let (bounds, longest_strand) = hair.bounds(input, frame, anchor);
             let from = GpuShadowInput {
                 strands: hair.strands(),
@@ -115,6 +119,7 @@ impl GpuShadowStage {
                 light: frame,
                 anchor,
                 maps: lights.len() as u32,
+                projected: None,
             };
             shadow.build(slot, gpu, commands, &from, &look.settings)?;
             let strands = hair.drawn();
@@ -124,6 +129,7 @@ impl GpuShadowStage {
                 count: strands.point_count,
                 out: hair.transmittance(),
                 sum: Some(&self.sum),
+                projected: None,
             };
             if input.known.is_none() {
                 shadow.look_up(slot, gpu, commands, &targets);
@@ -136,6 +142,7 @@ impl GpuShadowStage {
                     count: vertices.count,
                     out: vertices.hair,
                     sum: None,
+                    projected: None,
                 };
                 shadow.look_up(slot, gpu, commands, &targets);
             }
@@ -148,10 +155,14 @@ impl GpuShadowStage {
             self.columns.clear();
         }
         let most = (0..lights.len()).map(|slot| shadow.columns_size(slot)).max().unwrap_or(0);
-        self.columns.fit(gpu, most.max(1));
-        for slot in 0..lights.len() {
-            let written = shadow.columns(slot, gpu, commands, &self.columns.layers[slot]);
-            self.columns.written[slot] = written;
+        let sides = |slot: usize| (0..shadow.column_sides(slot)).map(move |side| (slot, side));
+        let maps: Vec<_> = (0..lights.len()).flat_map(sides).collect();
+        let layers = maps.iter().map(|(slot, side)| layer_of(*slot, *side) + 1).max().unwrap_or(0);
+        self.columns.fit(gpu, most.max(1), layers);
+        for (slot, side) in maps {
+            let layer = layer_of(slot, side);
+            let written = shadow.columns((slot, side), gpu, commands, &self.columns.layers[layer]);
+            self.columns.written[layer] = written;
         }
         Ok(())
     }
@@ -159,7 +170,7 @@ impl GpuShadowStage {
     /// The lists of the maps of the last frame, which come first among its slots.
     pub fn lists(&self) -> impl Iterator<Item = GpuList<'_>> {
         let shadow = self.methods.get(&self.method);
-        (0..self.lights).map_while(move |slot| shadow?.list(slot))
+        (0..self.lights.count).map_while(move |slot| shadow?.list(slot))
     }
 
     /// See [`GpuShadow::settle`]. Heads of a frame of another method are ignored.
@@ -190,19 +201,34 @@ impl GpuShadowStage {
 
     /// The number of lights of the last frame.
     pub fn lights(&self) -> usize {
+        self.lights.count
+    }
+
+    /// The lights of the last frame.
+    pub fn light_set(&self) -> LightSet {
         self.lights
+    }
+
+    /// The axes of the maps of light `k` of the last frame; those of light from above if it has none.
+    pub fn frame(&self, k: usize) -> LightFrame {
+        self.frames.get(k).map_or_else(LightFrame::default, |[_, frame]| *frame)
+    }
+
+    /// The maps of transmittance behind all hair of light `k`: one, or one per side of a cube around it.
+    pub fn column_sides(&self, k: usize) -> usize {
+        self.methods.get(&self.method).map_or(1, |shadow| shadow.column_sides(k))
     }
 
     /// Whether the last frame had a light.
     pub fn has_light(&self) -> bool {
-        self.lights > 0
+        self.lights.count > 0
     }
 
     /// Memory of the maps, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let Some(shadow) = self.methods.get(&self.method) else { return 0 };
-        let scratch = (0..self.lights).map(|slot| shadow.report(slot).scratch_bytes).max().unwrap_or(0);
-        (0..self.lights).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
+        let scratch = (0..self.lights.count).map(|slot| shadow.report(slot).scratch_bytes).max().unwrap_or(0);
+        (0..self.lights.count).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
     }
 
     /// Words whose total is the sum of the first light's transmittance bytes over strand points.
@@ -215,9 +241,9 @@ impl GpuShadowStage {
         &self.columns.view
     }
 
-    /// The transform from world space to the layer of light `k`; far outside if it has none.
-    pub fn columns_from_world(&self, k: usize) -> Mat4 {
-        self.columns.uv_from_world(k)
+    /// The transform from world space to the layer of a side of light `k`; far outside if it has none.
+    pub fn columns_from_world(&self, k: usize, side: usize) -> Mat4 {
+        self.columns.uv_from_world(layer_of(k, side))
     }
 }
 
@@ -246,20 +272,20 @@ fn write_known(
     }
 }
 
-/// The transmittance behind all hair, one layer per light, for surfaces far behind it.
+/// The transmittance behind all hair, one layer per light and side, for surfaces far behind it.
 #[derive(Debug)]
 struct Columns {
     size: u32,
     view: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
-    written: [Option<GpuColumns>; MAX_LIGHTS],
+    written: Vec<Option<GpuColumns>>,
 }
 
 impl Columns {
-    fn new(gpu: &Gpu, size: u32) -> Self {
+    fn new(gpu: &Gpu, size: u32, layers: usize) -> Self {
         let texture = gpu.create_texture(&wgpu::TextureDescriptor {
             label: Some("hair columns"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: MAX_LIGHTS as u32 },
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers as u32 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -267,7 +293,7 @@ impl Columns {
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
             view_formats: &[],
         });
-        let layers = (0..MAX_LIGHTS as u32).map(|layer| {
+        let views = (0..layers as u32).map(|layer| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
                 base_array_layer: layer,
@@ -277,25 +303,26 @@ impl Columns {
         });
         Self {
             size,
-            layers: layers.collect(),
+            layers: views.collect(),
             view: texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
             }),
-            written: [None; MAX_LIGHTS],
+            written: vec![None; layers],
         }
     }
 
     /// Makes room for layers of `size` by `size` texels, with a margin so that swaying hair does not need a new texture.
-    fn fit(&mut self, gpu: &Gpu, size: u32) {
-        if size > self.size {
-            *self = Self::new(gpu, size.next_multiple_of(64));
+    fn fit(&mut self, gpu: &Gpu, size: u32, layers: usize) {
+        let layers = layers.max(MAX_LIGHTS);
+        if size > self.size || layers > self.layers.len() {
+            *self = Self::new(gpu, size.next_multiple_of(64).max(self.size), layers);
         }
         self.clear();
     }
 
     fn clear(&mut self) {
-        self.written = [None; MAX_LIGHTS];
+        self.written.fill(None);
     }
 
     fn uv_from_world(&self, k: usize) -> Mat4 {

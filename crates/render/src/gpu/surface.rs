@@ -41,59 +41,15 @@ pub(super) struct SurfaceBuffers {
     fixed: GrowBuffer<VertexColor>,
     indices: GrowBuffer<u32>,
     staging: Vec<VertexPose>,
-    /// The depth maps of all lights, as a texture array.
-    pub depth: wgpu::TextureView,
-    layers: Vec<wgpu::TextureView>,
-    uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
+    depth: DepthMaps,
     /// Texels along the edge of a depth map.
     pub texels: u32,
 }
 
 impl SurfaceBuffers {
     pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
-        let device = &gpu.device;
         // A texel is about one millimetre for a standing figure on a GPU, two on a software adapter.
         let texels = if gpu.is_software() { 1024 } else { 2048 };
-        let texture = gpu.create_texture(&wgpu::TextureDescriptor {
-            label: Some("body depth"),
-            size: wgpu::Extent3d { width: texels, height: texels, depth_or_array_layers: MAX_LIGHTS as u32 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let layers = (0..MAX_LIGHTS as u32)
-            .map(|layer| {
-                texture.create_view(&wgpu::TextureViewDescriptor {
-                    dimension: Some(wgpu::TextureViewDimension::D2),
-                    base_array_layer: layer,
-                    array_layer_count: Some(1),
-                    ..Default::default()
-                })
-            })
-            .collect();
-        let depth = texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        });
-        let uniforms = (0..MAX_LIGHTS)
-            .map(|_| {
-                let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("depth pass"),
-                    size: 64,
-                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("depth pass"),
-                    layout: &pipelines.uniform_layout,
-                    entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-                });
-                (buffer, group)
-            })
-            .collect();
         let vertex = wgpu::BufferUsages::VERTEX;
         Self {
             body: None,
@@ -105,10 +61,21 @@ impl SurfaceBuffers {
             fixed: GrowBuffer::new(gpu, "body colours", vertex),
             indices: GrowBuffer::new(gpu, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
-            depth,
-            layers,
-            uniforms,
+            depth: DepthMaps::new(gpu, pipelines, texels, MAX_LIGHTS),
             texels,
+        }
+    }
+
+    /// The depth maps of all lights, as a texture array.
+    pub fn depth(&self) -> &wgpu::TextureView {
+        &self.depth.view
+    }
+
+    /// Makes room for so many depth maps.
+    pub fn fit_depth(&mut self, gpu: &Gpu, pipelines: &Pipelines, layers: usize) {
+        let layers = layers.max(MAX_LIGHTS);
+        if layers > self.depth.layers.len() || layers * 2 < self.depth.layers.len() {
+            self.depth = DepthMaps::new(gpu, pipelines, self.texels, layers);
         }
     }
 
@@ -154,20 +121,20 @@ impl SurfaceBuffers {
         })
     }
 
-    /// Draws the depth of the body for light `k`.
+    /// Draws the depth of the body into a layer. Triangles that face away from the light are left out if they are `behind` others.
     pub fn draw_depth(
         &self,
         gpu: &Gpu,
         pipelines: &Pipelines,
         commands: &mut Commands,
-        k: usize,
-        shadow_from_world: Mat4,
+        (layer, shadow_from_world): (usize, Mat4),
+        behind: bool,
     ) {
-        let (buffer, group) = &self.uniforms[k];
+        let (buffer, group) = &self.depth.uniforms[layer];
         gpu.upload(buffer, 0, &[shadow_from_world]);
         let descriptor = wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.layers[k],
+                view: &self.depth.layers[layer],
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Store,
@@ -180,7 +147,7 @@ impl SurfaceBuffers {
             if self.indices.is_empty() {
                 return;
             }
-            pass.set_pipeline(&pipelines.depth[usize::from(self.is_closed)]);
+            pass.set_pipeline(&pipelines.depth[usize::from(self.is_closed && behind)]);
             pass.set_bind_group(0, group, &[]);
             pass.set_vertex_buffer(0, self.moving.raw().slice(..));
             pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
@@ -200,5 +167,60 @@ impl SurfaceBuffers {
         pass.set_vertex_buffer(2, self.hair.raw().slice(..));
         pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
+    }
+}
+
+/// The depth maps of the body: layers of a texture, each with the uniform of its pass.
+#[derive(Debug)]
+struct DepthMaps {
+    view: wgpu::TextureView,
+    layers: Vec<wgpu::TextureView>,
+    uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
+}
+
+impl DepthMaps {
+    fn new(gpu: &Gpu, pipelines: &Pipelines, texels: u32, count: usize) -> Self {
+        let device = &gpu.device;
+        let texture = gpu.create_texture(&wgpu::TextureDescriptor {
+            label: Some("body depth"),
+            size: wgpu::Extent3d { width: texels, height: texels, depth_or_array_layers: count as u32 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let layers = (0..count as u32)
+            .map(|layer| {
+                texture.create_view(&wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: layer,
+                    array_layer_count: Some(1),
+                    ..Default::default()
+                })
+            })
+            .collect();
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let uniforms = (0..count)
+            .map(|_| {
+                let buffer = gpu.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("depth pass"),
+                    size: 64,
+                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("depth pass"),
+                    layout: &pipelines.uniform_layout,
+                    entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+                });
+                (buffer, group)
+            })
+            .collect();
+        Self { view, layers, uniforms }
     }
 }

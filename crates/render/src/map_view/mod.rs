@@ -12,6 +12,7 @@ use lovelock_picture::{MapForm, MapValue, MapView};
 use lovelock_shadow::{Bounds, CpuShadow, LightFrame, MapKind, ShadowInput, ShadowMethod, cpu_shadow};
 
 use crate::shadow_look::ShadowLook;
+use crate::standing::placed_frame;
 use crate::{FrameInput, HairPose, Light, MAX_LIGHTS, Picture, RenderError};
 use paint::Canvas;
 
@@ -26,13 +27,14 @@ const THINNEST: f32 = 0.01;
 #[derive(Default)]
 pub(crate) struct MapStage {
     strands: Strands,
-    frame: Option<LightFrame>,
+    /// The axes of the light's direction.
+    base: Option<LightFrame>,
     shadow: Option<(ShadowMethod, Box<dyn CpuShadow + Send + Sync>)>,
 }
 
 impl std::fmt::Debug for MapStage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("MapStage").field("frame", &self.frame).finish_non_exhaustive()
+        f.debug_struct("MapStage").field("base", &self.base).finish_non_exhaustive()
     }
 }
 
@@ -47,7 +49,7 @@ impl MapStage {
         let chosen = (view.light.max(1) as usize - 1).min(lights.len().saturating_sub(1));
         let Some(light) = lights.get(chosen).filter(|_| view.value != MapValue::None) else {
             // As the maps of the image, the axes do not outlast their light.
-            self.frame = None;
+            self.base = None;
             return Ok(());
         };
         if let Some(field) = self.field(input, light)? {
@@ -69,10 +71,11 @@ impl MapStage {
         let look = ShadowLook::of(input);
         let method = look.settings.method;
         // Transported instead of recomputed, so that the map does not roll while the light is dragged.
-        let frame = self
-            .frame
-            .map_or_else(|| LightFrame::new(light.direction), |frame| frame.transported(light.direction));
-        self.frame = Some(frame);
+        let base = self
+            .base
+            .map_or_else(|| LightFrame::new(light.direction), |base| base.transported(light.direction));
+        self.base = Some(base);
+        let frame = placed_frame(base, light, look.anchor());
         let from = ShadowInput {
             strands,
             strand_width: look.strand_width,
@@ -80,6 +83,7 @@ impl MapStage {
             light: frame,
             anchor: look.anchor(),
             maps: 1,
+            projected: None,
         };
         let bounds = Bounds::of_strands(&from);
         if bounds.min.x > bounds.max.x {
@@ -134,7 +138,7 @@ impl Field<'_> {
 
     /// What hair absorbs per metre at points of world space: the fall of the logarithm of transmittance along the light.
     pub fn density(&self, points: &[Vec3]) -> Vec<f32> {
-        let moved = |by: f32| points.iter().map(|p| *p + by * self.light.x).collect::<Vec<_>>();
+        let moved = |by: f32| points.iter().map(|p| *p + by * self.light.way_at(*p)).collect::<Vec<_>>();
         let [before, behind] = [-0.5, 0.5].map(|steps| self.transmittance(&moved(steps * self.step)));
         let fall = |(before, behind): (&f32, &f32)| {
             ((before.max(DARKEST) / behind.max(DARKEST)).ln() / self.step).max(0.0)

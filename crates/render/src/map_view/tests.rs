@@ -54,6 +54,7 @@ fn with_field<T>(method: ShadowMethod, extinction: f32, with: impl FnOnce(&Field
         light,
         anchor: Vec3::ZERO,
         maps: 1,
+        projected: None,
     };
     let mut shadow = cpu_shadow(method);
     shadow.build(&input, &ShadowSettings { method, ..ShadowSettings::default() }).expect("fits");

@@ -1,5 +1,7 @@
 //! Pictures of tiny scenes with known results, for the backend of the test.
 
+mod standing;
+
 use std::sync::Arc;
 
 use super::BACKEND;

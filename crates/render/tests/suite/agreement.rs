@@ -5,7 +5,7 @@ use crate::common;
 use common::{Scene, soft_wig, tuft_scene};
 use glam::Vec3;
 use lovelock_base::simd::Width;
-use lovelock_render::{Backend, Camera, CpuRenderer, Picture, ShadowMethod, Transparency};
+use lovelock_render::{Backend, Camera, CpuRenderer, LightKind, Picture, ShadowMethod, Transparency};
 use lovelock_testkit::{Flip, flip, suite::sample};
 
 /// FLIP between the pictures of the two backends. Measured on a software adapter: mean 0.0017 to 0.0025 and 99th percentile 0.008
@@ -53,6 +53,35 @@ fn every_shadow_method_looks_the_same_on_both() {
         println!("{name}, {method}: {difference:?}");
         assert!(difference.mean < MEAN && difference.p99 < P99, "{name}, {method}: {difference:?}");
     }
+}
+
+/// The default lights as lamps: a spot, a light beside the hair, and one far away.
+fn with_lamps(mut s: Scene) -> Scene {
+    let kinds = [LightKind::Spot, LightKind::Point, LightKind::Point];
+    let places = [Vec3::new(0.5, 0.6, 0.5), Vec3::new(0.05, 0.02, 0.06), Vec3::new(-2.0, 1.0, 3.0)];
+    for ((light, kind), position) in s.lights.iter_mut().zip(kinds).zip(places) {
+        light.intensity *= position.length_squared();
+        light.direction = -position;
+        (light.kind, light.position, light.radius) = (kind, position, 0.02);
+    }
+    s
+}
+
+#[test]
+fn lamps_look_the_same_on_both() {
+    let methods = ShadowMethod::ALL.iter().copied();
+    for method in sample(methods, 3) {
+        let mut s = with_lamps(tuft_scene(400));
+        s.shadow.method = method;
+        let Some(difference) = compared(&s, &s) else { return };
+        println!("{method}: {difference:?}");
+        assert!(difference.mean < MEAN && difference.p99 < P99, "{method}: {difference:?}");
+    }
+    let s = with_lamps(tuft_scene(400));
+    let mut other = with_lamps(tuft_scene(400));
+    other.lights[1].position.y += 0.05;
+    let Some(control) = compared(&s, &other) else { return };
+    assert!(control.mean > MEAN, "control, a lamp moved by 5 cm: {control:?}");
 }
 
 #[test]
@@ -159,7 +188,8 @@ fn the_cpu_gives_the_same_bytes_for_any_threads_and_vectors() {
         scene.picture.transparency = transparency;
         (transparency.to_string(), scene)
     });
-    for (name, mut scene) in tufts.chain([("fine strands".to_owned(), soft_wig())]) {
+    let more = [("fine strands".to_owned(), soft_wig()), ("lamps".to_owned(), with_lamps(tuft_scene(120)))];
+    for (name, mut scene) in tufts.chain(more) {
         let first = draw(&mut CpuRenderer::default(), &scene);
         for threads in [1, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");

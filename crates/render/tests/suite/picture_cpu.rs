@@ -11,7 +11,7 @@ const BACKEND: Backend = Backend::Cpu;
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_render::{CpuRenderer, FrameStats, Light, Picture, ShadowMethod};
+use lovelock_render::{CpuRenderer, FrameStats, Light, LightKind, Picture, ShadowMethod};
 
 use crate::common::{Scene, grid, scene, soft_wig, tuft};
 
@@ -35,7 +35,7 @@ fn what_is_kept_of_fine_strands_changes_no_byte() {
 fn keeps(mut scene: Scene) {
     let (mut keeping, mut plain) = (CpuRenderer::default(), CpuRenderer::default().keeping_nothing());
     // What changes, and whether the depth maps of the body and the shadows of hair are kept.
-    let changes: [(&str, Change, [bool; 2]); 12] = [
+    let changes: [(&str, Change, [bool; 2]); 16] = [
         ("the first picture", |_| {}, [false, false]),
         ("nothing", |_| {}, [true, true]),
         ("the camera", |scene| scene.camera.eye.x += 0.1, [true, true]),
@@ -47,6 +47,10 @@ fn keeps(mut scene: Scene) {
         ("brightness of a light", |scene| scene.lights[0].intensity *= 0.7, [true, true]),
         ("another light", |scene| scene.lights.push(Light::default()), [false, false]),
         ("a light turns", |scene| scene.lights[0].direction.x += 0.3, [false, false]),
+        ("a lamp", |scene| scene.lights[0].kind = LightKind::Spot, [false, false]),
+        ("a lamp moves", |scene| scene.lights[0].position.x += 0.3, [false, false]),
+        ("a wider cone", |scene| scene.lights[0].outer_angle += 0.4, [false, false]),
+        ("a softer cone", |scene| scene.lights[0].inner_angle *= 0.5, [true, true]),
         (
             "the body",
             |scene| {

@@ -98,7 +98,12 @@ impl Exact {
         map.build(&groom.input(), &settings).expect("hair fits");
         let hair = &groom.strands;
         let points: Vec<_> = (0..hair.points()).map(|point| hair.point(point)).collect();
-        let first = map.fragments_before(&points).into_iter().map(|before| before < FIRST).collect();
+        let first = map
+            .fragments_before(&points)
+            .unwrap_or_default()
+            .into_iter()
+            .map(|before| before < FIRST)
+            .collect();
         Self { resolution, light: look_up(&map, groom), first }
     }
 }

@@ -8,12 +8,14 @@ mod footprint;
 mod ribbons;
 mod strips;
 
-use crate::bounds::Bounds;
 use crate::methods::exact::cpu::{sort_and_sum, sum_before};
 use crate::methods::texels::TexelFrame;
 use crate::methods::texels::fragments::Fragments;
+use crate::methods::voxel_map::longest_strand;
+use crate::perspective::{Projected, perspective_of};
 use crate::{ShadowError, ShadowInput, ShadowSettings};
 use footprint::Footprint;
+use glam::Vec3;
 use rayon::prelude::*;
 use ribbons::Ribbons;
 use strips::Strips;
@@ -57,10 +59,51 @@ pub fn converged(
     [x, y, z]: [&[f32]; 3],
 ) -> Result<Converged, ShadowError> {
     assert!(x.len() == y.len() && y.len() == z.len(), "slices of one length");
-    let bounds = Bounds::of_strands(input);
+    let Some(perspective) = perspective_of(input, settings) else {
+        return converged_parallel(input, settings, [x, y, z]);
+    };
+    let mut all = Converged { transmittance: vec![1.0; x.len()], ..Converged::default() };
+    let longest = longest_strand(input.strands);
+    let faces = perspective.faces().len() as u32;
+    let settings = &if faces > 1 { settings.for_sides() } else { *settings };
+    for (at, face) in perspective.faces().iter().enumerate() {
+        let Some(face) = face else { continue };
+        let point = |i: usize| Vec3::new(x[i], y[i], z[i]);
+        let these: Vec<_> = (0..x.len()).filter(|i| perspective.face_of(point(*i)) == at).collect();
+        let places: Vec<_> = these.iter().map(|i| face.project(point(*i))).collect();
+        let [x, y, z] = [0, 1, 2].map(|axis| places.iter().map(|p| p[axis]).collect::<Vec<_>>());
+        let projected = Projected::new(input, face, longest, false);
+        let found = converged_parallel(&projected.input(input, face, faces), settings, [&x, &y, &z])?;
+        all.join(&found, &these);
+    }
+    Ok(all)
+}
+
+impl Converged {
+    /// Puts what was found for the points `these` in their places. Of samples and changes the larger ones remain.
+    fn join(&mut self, found: &Self, these: &[usize]) {
+        these.iter().zip(&found.transmittance).for_each(|(i, t)| self.transmittance[*i] = *t);
+        self.samples = self.samples.max(found.samples);
+        self.change = self.change.max(found.change);
+        for &(samples, change) in &found.changes {
+            match self.changes.iter_mut().find(|(known, _)| *known == samples) {
+                Some((_, known)) => *known = known.max(change),
+                None => self.changes.push((samples, change)),
+            }
+        }
+    }
+}
+
+/// [`converged`] for light that is parallel.
+fn converged_parallel(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    [x, y, z]: [&[f32]; 3],
+) -> Result<Converged, ShadowError> {
+    let bounds = input.bounds();
     let frame = settings.footprint(input, &bounds);
     let axes = frame.axes();
-    let place = |((x, y), z): ((&f32, &f32), &f32)| axes.transform(glam::Vec3::new(*x, *y, *z));
+    let place = |((x, y), z): ((&f32, &f32), &f32)| axes.transform(Vec3::new(*x, *y, *z));
     let places: Vec<_> = x.par_iter().zip(y).zip(z).map(place).collect();
 
     let mut scratch = Fragments::default();
@@ -84,7 +127,7 @@ fn round(
     input: &ShadowInput,
     settings: &ShadowSettings,
     frame: &TexelFrame,
-    places: &[glam::Vec3],
+    places: &[Vec3],
     samples: u32,
     scratch: &mut Fragments,
 ) -> Result<Vec<f32>, ShadowError> {

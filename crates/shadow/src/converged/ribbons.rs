@@ -8,7 +8,7 @@ use glam::Vec3;
 use crate::ShadowInput;
 use crate::cpu::safe_extinction;
 use crate::methods::texels::TexelFrame;
-use crate::methods::texels::lines::{Draw, Steps};
+use crate::methods::texels::lines::{Along, Draw, Steps};
 
 /// The largest optical depth of a ribbon; e^−10⁴ is 0 in any float.
 const MAX_DEPTH: f32 = 1e4;
@@ -69,9 +69,9 @@ impl Ribbons {
     }
 
     /// Calls `with` for the rows of texels that a segment may touch, each with an upper bound of its fragments there.
-    pub(super) fn bound(&self, from: Vec3, to: Vec3, mut with: impl FnMut(u32, u64)) {
+    pub(super) fn bound(&self, (from, to): (Vec3, Vec3), widest: f32, mut with: impl FnMut(u32, u64)) {
         let steps = self.steps(from, to);
-        let across = f64::from(self.width * steps.length) + 2.0;
+        let across = f64::from(self.width * widest * steps.length) + 2.0;
         let reach = if steps.by_row { 0.0 } else { (across / f64::from(self.samples)) as f32 };
         let last = self.resolution - 1;
         let low = ((from.y.min(to.y) - reach).max(0.0) as u32).min(last);
@@ -91,11 +91,11 @@ impl Ribbons {
     }
 
     /// Whether a segment may touch a texel of a footprint: a conservative test of the texels around it.
-    fn may_touch_wanted(&self, from: Vec3, to: Vec3) -> bool {
+    fn may_touch_wanted(&self, from: Vec3, to: Vec3, widest: f32) -> bool {
         /// A segment over more texels than this is always rasterised.
         const MAX: u32 = 1024;
         // Half the width over the cosine of at most 45 degrees.
-        let reach = Vec3::splat(0.71 * self.width / self.samples as f32);
+        let reach = Vec3::splat(0.71 * self.width * widest / self.samples as f32);
         let last = (self.resolution - 1) as f32;
         let low = (from.min(to) - reach).clamp(Vec3::ZERO, Vec3::splat(last));
         let high = (from.max(to) + reach).clamp(Vec3::ZERO, Vec3::splat(last));
@@ -117,18 +117,20 @@ impl Ribbons {
 }
 
 impl Draw for Ribbons {
-    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
-        if !self.may_touch_wanted(from, to) {
+    fn draw(&self, from: Vec3, to: Vec3, along: &impl Along, put: &mut impl FnMut(u32, u32, f32, f32)) {
+        if !self.may_touch_wanted(from, to, along.widest()) {
             return;
         }
         let steps = self.steps(from, to);
-        let half = 0.5 * self.width * steps.length;
+        let half_of = 0.5 * self.width * steps.length;
         let columns = self.columns();
         let (long, wide) =
             if steps.by_row { (&self.rows, 0..columns) } else { (&(0..columns), self.rows.clone()) };
         let touched = steps.touched();
         for major in touched.start.max(long.start as i32)..touched.end.min(long.end as i32) {
             let (part, middle, depth) = steps.covered(major);
+            let (depth, width) = along.at(steps.way(steps.middle(major)), depth);
+            let half = half_of * width;
             // False for a segment without length across the light.
             if !(part > 0.0 && half >= 0.0) {
                 continue;

@@ -6,7 +6,8 @@ use lovelock_base::settings::Settings;
 
 use super::ribbons::Ribbons;
 use crate::methods::texels::TexelFrame;
-use crate::methods::texels::fragments::{BYTES_PER_FRAGMENT, for_each_segment};
+use crate::methods::texels::fragments::{BYTES_PER_FRAGMENT, curved, for_each_segment};
+use crate::methods::texels::lines::Along;
 use crate::{ShadowError, ShadowInput, ShadowMethod, ShadowSettings};
 
 /// The target memory of a strip within the limit, bytes.
@@ -27,8 +28,10 @@ impl Strips {
         ribbons: &Ribbons,
     ) -> Result<Self, ShadowError> {
         let mut fragments = vec![0_u64; frame.resolution as usize];
-        for_each_segment(input, frame, 0..input.strands.count(), |from, to| {
-            ribbons.bound(from, to, |row, count| {
+        for_each_segment(input, frame, 0..input.strands.count(), |from, to, first| {
+            let along = input.projected.as_ref().map(|projected| curved(input, frame, projected, first));
+            let widest = along.map_or(1.0, |along| along.widest());
+            ribbons.bound((from, to), widest, |row, count| {
                 let sum = &mut fragments[row as usize];
                 *sum = sum.saturating_add(count);
             });

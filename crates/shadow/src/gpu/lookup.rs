@@ -1,6 +1,7 @@
 //! Looking up many points in a map of any method.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
 
 use super::{EXP, GpuTargets, wgsl};
@@ -9,13 +10,50 @@ const LOOKUP: ShaderPart = wgsl!("gpu/", "lookup.wgsl");
 const COLUMNS: ShaderPart = wgsl!("gpu/", "columns.wgsl");
 
 /// Twin of `Lookup` in lookup.wgsl.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 struct LookupUniform {
     count: u32,
     stride: u32,
     slot: u32,
     sums: u32,
+    anchor: Vec3,
+    sides: u32,
+    axis: Vec3,
+    side: u32,
+    across: Vec3,
+    lit: u32,
+    more: Vec3,
+    plane: f32,
+    offset: Vec3,
+    unused: u32,
+}
+
+impl LookupUniform {
+    fn new(slot: usize, targets: &GpuTargets, sums: bool) -> Self {
+        let own = Self {
+            count: targets.count,
+            stride: targets.stride,
+            slot: slot as u32,
+            sums: u32::from(sums),
+            ..Self::default()
+        };
+        let Some(projected) = targets.projected else { return own };
+        let [axis, across, more] = projected.axes;
+        Self {
+            slot: projected.slot,
+            anchor: projected.anchor,
+            sides: projected.sides,
+            axis,
+            side: projected.side,
+            across,
+            lit: projected.lit,
+            more,
+            plane: projected.plane,
+            offset: projected.offset,
+            ..own
+        }
+    }
 }
 
 /// The two kernels that read the map of a method: at points, and behind the whole hair.
@@ -25,6 +63,11 @@ pub(crate) struct PointLookup {
     columns: Option<Kernel>,
     /// Bound where no sum is wanted.
     no_sum: wgpu::Buffer,
+}
+
+/// The value of `PROJECTED` in shaders: whether they are for projected strands.
+pub(crate) fn projected_constant(projected: bool) -> Constant {
+    ("PROJECTED", f64::from(u8::from(projected)))
 }
 
 /// The source of a shader of [`PointLookup`], composed from the query of a method.
@@ -73,13 +116,9 @@ impl PointLookup {
         map: &[(u32, wgpu::BindingResource)],
         targets: &GpuTargets,
     ) {
-        let sum = targets.sum.filter(|_| slot == 0);
-        let uniform = LookupUniform {
-            count: targets.count,
-            stride: targets.stride,
-            slot: slot as u32,
-            sums: u32::from(sum.is_some()),
-        };
+        let first = targets.projected.map_or(slot == 0, |projected| projected.slot == 0);
+        let sum = targets.sum.filter(|_| first);
+        let uniform = LookupUniform::new(slot, targets, sum.is_some());
         let buffer = commands.constants("lookup", &uniform);
         let mut resources = map.to_vec();
         resources.extend([
@@ -125,6 +164,15 @@ mod tests {
             offset_of!(LookupUniform, stride),
             offset_of!(LookupUniform, slot),
             offset_of!(LookupUniform, sums),
+            offset_of!(LookupUniform, anchor),
+            offset_of!(LookupUniform, sides),
+            offset_of!(LookupUniform, axis),
+            offset_of!(LookupUniform, side),
+            offset_of!(LookupUniform, across),
+            offset_of!(LookupUniform, lit),
+            offset_of!(LookupUniform, more),
+            offset_of!(LookupUniform, plane),
+            offset_of!(LookupUniform, offset),
             size_of::<LookupUniform>(),
         ];
         for (label, source) in all_shaders().iter().filter(|(label, _)| label.ends_with("lookup")) {
@@ -138,10 +186,11 @@ mod tests {
         let right = wgsl!("gpu/", "lookup.wgsl").text;
         let wrong = right.replacen(
             "    slot: u32,\n    sums: u32,",
-            "    sums: u32,\n    more: u32,\n    slot: u32,",
+            "    sums: u32,\n    other: u32,\n    slot: u32,",
             1,
         );
-        let query = part("fn hair_transmittance(p: vec3f) -> f32 { return 1.0; }");
+        let query =
+            part("override PROJECTED: bool = false; fn hair_transmittance(p: vec3f) -> f32 { return 1.0; }");
         let layout = |text| layout_in_shader(&ShaderSource::new(&[query, part(text)]), "Lookup");
         assert_ne!(layout(Box::leak(wrong.into_boxed_str())), layout(right));
     }

@@ -11,7 +11,7 @@ use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, wgpu};
 use crate::bounds::Bounds;
 use crate::{LightFrame, ShadowError, ShadowReport, ShadowSettings};
 
-pub(crate) use lookup::PointLookup;
+pub(crate) use lookup::{PointLookup, projected_constant};
 pub(crate) use memory::{Buffer, fits_device};
 
 /// Strands in GPU memory.
@@ -46,6 +46,28 @@ pub struct GpuShadowInput<'a> {
     pub anchor: Vec3,
     /// As [`ShadowInput::maps`](crate::ShadowInput::maps).
     pub maps: u32,
+    /// As [`ShadowInput::projected`](crate::ShadowInput::projected): only [`gpu_shadow`](crate::gpu_shadow) sets it.
+    pub projected: Option<GpuProjected>,
+}
+
+/// What is known of strands that were projected from a light. The fourth coordinate of a point is a factor on the width of its strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GpuProjected {
+    /// Distance of the plane, metres.
+    pub plane: f32,
+    /// Distance from the light of depth 0, metres.
+    pub start: f32,
+    /// The slot whose list of fragments this map continues, if it is another one.
+    pub list_of: usize,
+    /// Slots that are in use.
+    pub slots: u32,
+}
+
+impl GpuShadowInput<'_> {
+    /// Slots that are in use.
+    pub(crate) fn slots(&self) -> usize {
+        self.projected.map_or(self.maps, |projected| projected.slots).max(1) as usize
+    }
 }
 
 /// Points to look up, and the buffers for the results.
@@ -62,6 +84,29 @@ pub struct GpuTargets<'a> {
     pub out: &'a wgpu::Buffer,
     /// If set, an `array<u32>` of [`SUM_WORDS`] words whose total is increased by the bytes of slot 0.
     pub sum: Option<&'a wgpu::Buffer>,
+    /// How the points are projected before they are looked up: only [`gpu_shadow`](crate::gpu_shadow) sets it.
+    pub projected: Option<&'a ProjectedTargets>,
+}
+
+/// How points are projected before they are looked up, and for which light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProjectedTargets {
+    /// A point near the hair, world space, and the light's axes.
+    pub anchor: Vec3,
+    /// See `anchor`.
+    pub axes: [Vec3; 3],
+    /// The anchor, seen from the light along the axes.
+    pub offset: Vec3,
+    /// Distance of the plane, metres.
+    pub plane: f32,
+    /// Planes of the light: 1 or 6.
+    pub sides: u32,
+    /// The plane whose points are looked up.
+    pub side: u32,
+    /// Bits of the planes without hair, whose points are lit.
+    pub lit: u32,
+    /// The slot of the light.
+    pub slot: u32,
 }
 
 /// Words of [`GpuTargets::sum`]; twin of the constant in `lookup.wgsl`.
@@ -72,7 +117,7 @@ pub const SUM_WORDS: u64 = 256;
 pub struct GpuColumns {
     /// Texels along each edge that were written, from the first corner of the texture.
     pub size: u32,
-    /// World position to `(u, v, depth)`, u and v in `0..1` over these texels.
+    /// As [`ColumnMap::uv_from_world`](crate::ColumnMap::uv_from_world), u and v in `0..1` over these texels.
     pub uv_from_world: Mat4,
 }
 
@@ -116,11 +161,16 @@ pub trait GpuShadow: Debug + Send {
     /// The most texels along an edge that [`GpuShadow::columns`] writes for the map of a slot; 0 if it writes none.
     fn columns_size(&self, slot: usize) -> u32;
 
-    /// Encodes writing the transmittance behind the whole hair into a texture of `rgba8unorm` with at least
-    /// [`GpuShadow::columns_size`] texels along each edge.
+    /// The maps of transmittance behind all hair of a slot: one, or one per side of a cube around its light.
+    fn column_sides(&self, _slot: usize) -> usize {
+        1
+    }
+
+    /// Encodes writing the transmittance behind the whole hair, of a slot and one of its sides, into a texture of `rgba8unorm` with at
+    /// least [`GpuShadow::columns_size`] texels along each edge.
     fn columns(
         &mut self,
-        slot: usize,
+        map: (usize, usize),
         gpu: &Gpu,
         commands: &mut Commands,
         into: &wgpu::TextureView,
@@ -177,3 +227,6 @@ pub(crate) use wgsl;
 
 /// The first part of every shader: the exponential function of the definitions on the CPU.
 pub(crate) const EXP: ShaderPart = wgsl!("gpu/", "exp.wgsl");
+
+/// What projected pieces of strands are along rays of the light; see [`crate::perspective`].
+pub(crate) const RAY: ShaderPart = wgsl!("gpu/", "ray.wgsl");

@@ -4,11 +4,14 @@ use std::fmt;
 use std::str::FromStr;
 
 use lovelock_base::field;
-use lovelock_base::settings::{AnySettings, Choices, Part, PartMut, Setting, Settings};
+use lovelock_base::settings::{
+    AnySettings, Choices, Part, PartMut, Setting, Settings, Value, find, set_value,
+};
 use lovelock_gpu::{Gpu, GpuError, ShaderSource};
 
-use super::texels::TexelFrame;
+use super::texels::{TEXEL_RESOLUTIONS, TexelFrame};
 use super::{ShadowMethod, ShadowSettings};
+use crate::perspective::{GpuLightMaps, LightMap, MakeGpuShadow, margin};
 use crate::{Bounds, CpuShadow, GpuShadow, RayMarkKind, ShadowInput};
 
 /// Everything about one shadow method that the rest of the program uses. Each method's folder has one.
@@ -40,8 +43,8 @@ pub(crate) struct Method {
     pub counts_points: fn(&ShadowSettings) -> bool,
     /// An empty map on the CPU.
     pub cpu: fn() -> Box<dyn CpuShadow + Send + Sync>,
-    /// The pipelines of the GPU's passes.
-    pub gpu: fn(&Gpu) -> Result<Box<dyn GpuShadow>, GpuError>,
+    /// The pipelines of the GPU's passes, for the strands themselves or for projected ones.
+    pub gpu: MakeGpuShadow,
     /// Every composed shader with its label.
     pub shaders: fn() -> Vec<(String, ShaderSource)>,
 }
@@ -145,11 +148,29 @@ impl ShadowSettings {
     pub fn counts_points(&self) -> bool {
         (self.method.method().counts_points)(self)
     }
+
+    /// The settings of the maps on the sides of a cube around a light: they have half of the resolution, because six of them together
+    /// need the memory of one map otherwise, and hair is near.
+    pub(crate) fn for_sides(&self) -> Self {
+        let mut settings = *self;
+        if let Some(section) = settings.of_method_mut(self.method)
+            && let Some((_, Value::Count(edge))) = find(&*section, "resolution")
+        {
+            set_value(section, "resolution", Value::Count(edge / 2));
+        }
+        settings
+    }
+
+    /// How far the maps on the sides of a cube around a light reach into each other, as a tangent.
+    pub(crate) fn face_margin(&self) -> f32 {
+        let cells = self.for_sides().map_size().filter(|_| self.method.map_kind() == MapKind::Cells);
+        margin(cells.map_or(*TEXEL_RESOLUTIONS.start(), |size| size.edge))
+    }
 }
 
 /// An empty map of `method` on the CPU: everything is lit until it is built.
 pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
-    (method.method().cpu)()
+    Box::new(LightMap::new(method.method().cpu))
 }
 
 /// Compiles a method's pipelines for the GPU; its maps are empty.
@@ -157,7 +178,7 @@ pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
 /// # Errors
 /// A shader that does not compile, by file and line.
 pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
-    (method.method().gpu)(gpu)
+    Ok(Box::new(GpuLightMaps::new(gpu, method.method().gpu)?))
 }
 
 /// Every composed shader of every method with its label, so that a test can validate them without a device.
@@ -166,7 +187,7 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
         let named = move |(label, source)| (format!("{method}: {label}"), source);
         (method.method().shaders)().into_iter().map(named).collect::<Vec<_>>()
     };
-    ShadowMethod::ALL.iter().flat_map(of).collect()
+    ShadowMethod::ALL.iter().flat_map(of).chain(GpuLightMaps::shaders()).collect()
 }
 
 impl Choices for ShadowMethod {

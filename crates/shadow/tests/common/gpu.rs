@@ -72,6 +72,7 @@ impl Uploaded {
             light: input.light,
             anchor: input.anchor,
             maps: input.maps,
+            projected: None,
         }
     }
 }
@@ -184,8 +185,14 @@ impl Built {
     pub fn ask_slots(&mut self, slots: &[usize], at: &[Vec3]) -> Vec<u32> {
         let points: Vec<_> = at.iter().map(|&p| padded(p)).collect();
         let (points, out) = (buffer(self.gpu, &points), buffer(self.gpu, &vec![0_u32; at.len()]));
-        let targets =
-            GpuTargets { points: points.raw(), stride: 1, count: at.len() as u32, out: out.raw(), sum: None };
+        let targets = GpuTargets {
+            points: points.raw(),
+            stride: 1,
+            count: at.len() as u32,
+            out: out.raw(),
+            sum: None,
+            projected: None,
+        };
         let mut commands = self.timer.begin(self.gpu, "test");
         for &slot in slots {
             self.shadow.look_up(slot, self.gpu, &mut commands, &targets);

@@ -30,6 +30,7 @@ impl Groom {
             light: LightFrame::new(LIGHT),
             anchor: Vec3::new(0.0, 0.11, 0.0),
             maps: 1,
+            projected: None,
         }
     }
 

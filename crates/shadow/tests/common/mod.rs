@@ -5,13 +5,29 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
-use lovelock_shadow::{LightFrame, MapKind, ShadowInput, ShadowMethod};
+use lovelock_shadow::{LightFrame, MapKind, ShadowInput, ShadowMethod, ShadowSettings};
 
 pub use lovelock_base::random::SplitMix64;
 
 /// The methods with a record per texel, which have a limit of memory.
 pub fn texel_methods() -> impl Iterator<Item = ShadowMethod> {
     ShadowMethod::ALL.iter().copied().filter(|method| method.map_kind() == MapKind::Texels)
+}
+
+/// A method with maps of so many texels or cells along each edge.
+pub fn of_edge(method: ShadowMethod, edge: u32) -> ShadowSettings {
+    let mut settings = ShadowSettings { method, ..ShadowSettings::default() };
+    settings.voxel_map.resolution = edge;
+    for resolution in [
+        &mut settings.opacity_maps.resolution,
+        &mut settings.deep_opacity_maps.resolution,
+        &mut settings.density_clustering.resolution,
+        &mut settings.occupancy_maps.resolution,
+        &mut settings.exact.resolution,
+    ] {
+        *resolution = edge;
+    }
+    settings
 }
 
 /// The default factor on optical depth.
@@ -62,6 +78,7 @@ pub fn lit(strands: &Strands) -> ShadowInput<'_> {
         light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
         anchor: HEAD,
         maps: 1,
+        projected: None,
     }
 }
 

@@ -13,7 +13,15 @@ use lovelock_testkit::suite::sample;
 
 fn input(strands: &Strands) -> ShadowInput<'_> {
     let light = LightFrame::new(Vec3::new(0.3, -1.0, 0.2));
-    ShadowInput { strands, strand_width: 1e-3, extinction_scale: EXTINCTION, light, anchor: HEAD, maps: 1 }
+    ShadowInput {
+        strands,
+        strand_width: 1e-3,
+        extinction_scale: EXTINCTION,
+        light,
+        anchor: HEAD,
+        maps: 1,
+        projected: None,
+    }
 }
 
 fn hair(wisps: usize, seed: u64) -> Strands {
@@ -220,7 +228,8 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
         before[0] = 7;
         let (out, sum) = (buffer(gpu, &vec![0_u32; count as usize]), buffer(gpu, &before));
         let points = hair.input(&groom.input()).strands.points;
-        let targets = GpuTargets { points, stride, count, out: out.raw(), sum: Some(sum.raw()) };
+        let (out_raw, total) = (out.raw(), Some(sum.raw()));
+        let targets = GpuTargets { points, stride, count, out: out_raw, sum: total, projected: None };
         let mut timer = PassTimer::new(gpu).expect("a timer");
         let mut commands = timer.begin(gpu, "test");
         built.shadow.look_up(0, gpu, &mut commands, &targets);
@@ -236,7 +245,7 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let columns = built.shadow.columns(0, gpu, &mut commands, &view);
+        let columns = built.shadow.columns((0, 0), gpu, &mut commands, &view);
         commands.submit();
         gpu.check().expect("the device takes it");
 

@@ -22,6 +22,7 @@ fn input(strands: &Strands) -> ShadowInput<'_> {
         light: LightFrame::new(LIGHT),
         anchor: HEAD,
         maps: 1,
+        projected: None,
     }
 }
 

@@ -24,6 +24,7 @@ fn input(hair: &Strands) -> ShadowInput<'_> {
         light,
         anchor: common::HEAD,
         maps: 1,
+        projected: None,
     }
 }
 
@@ -154,16 +155,16 @@ fn fragments_before_points_are_the_steps_before_them() {
     let mut map = ExactMap::default();
     map.build(&input(&hair), &ShadowSettings::default()).expect("fits");
     let points = some_points(&hair);
-    let counts = map.fragments_before(&points);
+    let counts = map.fragments_before(&points).expect("it holds them");
     for (p, &count) in points.iter().zip(&counts) {
         let marks = map.along_ray(*p).marks;
         assert_eq!(marks.iter().filter(|mark| mark.start < 0.0).count(), count as usize);
-        let moved = map.fragments_before(&[*p + input(&hair).light.x * 10.0]);
+        let moved = map.fragments_before(&[*p + input(&hair).light.x * 10.0]).expect("it holds them");
         assert_eq!(moved, [marks.len() as u32], "behind all of it");
     }
     assert!(counts.iter().any(|&count| count > 10) && counts.iter().any(|&count| count < 10), "{counts:?}");
-    assert_eq!(map.fragments_before(&[Vec3::NAN, Vec3::splat(50.0)]), [0, 0]);
-    assert_eq!(map.fragments_before(&[]), [0; 0]);
+    assert_eq!(map.fragments_before(&[Vec3::NAN, Vec3::splat(50.0)]), Some(vec![0, 0]));
+    assert_eq!(map.fragments_before(&[]), Some(Vec::new()));
 }
 
 #[test]

@@ -22,6 +22,7 @@ fn input(strands: &Strands, direction: Vec3, strand_width: f32) -> ShadowInput<'
         light: LightFrame::new(direction),
         anchor: HEAD,
         maps: 1,
+        projected: None,
     }
 }
 

@@ -64,6 +64,7 @@ fn a_thin_sheet_at_a_slope_is_a_step_where_cells_of_a_centimetre_are_a_ramp() {
         light,
         anchor: HEAD,
         maps: 1,
+        projected: None,
     };
     // 8000 strands of 0.2 mm in 30 cm.
     let sheet = (-0.15_f32 * 2e-4 * 8000.0 / 0.3).exp();
@@ -152,6 +153,7 @@ fn a_strand_seen_end_on_covers_less() {
             light,
             anchor: HEAD,
             maps: 1,
+            projected: None,
         };
         // Behind the box: s w (total length) sinθ / area across the light.
         let depth = |sine: f32| 0.2 * 1e-4 * 20_000.0 * 0.008 * sine / (0.06 * 0.06);

@@ -24,6 +24,7 @@ fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
         light: LightFrame::new(direction),
         anchor: HEAD,
         maps: 1,
+        projected: None,
     }
 }
 

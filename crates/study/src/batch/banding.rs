@@ -42,6 +42,7 @@ pub(super) fn slab(settings: &ShadowSettings) -> Option<BandingReport> {
         light,
         anchor: Vec3::ZERO,
         maps: 1,
+        projected: None,
     };
     let mut map = cpu_shadow(settings.method);
     map.build(&input, settings).ok()?;

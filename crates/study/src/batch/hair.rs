@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_groom::Strands;
 use lovelock_project::Project;
-use lovelock_render::{Camera, FrameInput, HairPose, Light};
+use lovelock_render::{Camera, FrameInput, HairPose, Light, light_frame};
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_shadow::{LightFrame, ShadowInput};
+use lovelock_shadow::ShadowInput;
 
 /// Hair in the light of one lamp, with the settings of a project.
 #[derive(Clone, Copy, Debug)]
@@ -54,14 +54,21 @@ impl Hair {
 
     /// The input of a shadow map for `light`, as in rendering.
     pub fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
+        let anchor = self.head();
         ShadowInput {
             strands: &self.strands,
             strand_width: self.snapshot.look(project).shadow_width(self.snapshot.scene.style.strands.count()),
             extinction_scale: project.look.extinction_scale,
-            light: LightFrame::new(light.direction),
-            anchor: self.snapshot.guides.world_from_head.translation.into(),
+            light: light_frame(light, anchor),
+            anchor,
             maps: 1,
+            projected: None,
         }
+    }
+
+    /// The origin of the head, world space, metres.
+    pub(super) fn head(&self) -> Vec3 {
+        self.snapshot.guides.world_from_head.translation.into()
     }
 
     /// The head's transform, with the grid of maps moved by `shift`, metres in world space.

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use lovelock_groom::Strands;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{Picture, Renderer};
+use lovelock_render::{Light, Picture, Renderer, light_frame};
 use lovelock_shadow::{LightFrame, ShadowInput};
 
 use super::hair::{Hair, LitHair};
@@ -52,7 +52,8 @@ impl LightSweep {
         mut check_cancel: impl FnMut() -> Result<(), ProjectError>,
     ) -> Result<Result<Self, String>, ProjectError> {
         let LitHair { hair, project, light } = lit;
-        let first = LightFrame::new(light.direction);
+        let input = hair.shadow_input(project, light);
+        let first = input.light;
         let strands = &hair.strands;
         let points = patches(strands, &first);
         if let Err(refused) = fits("a light that turns", STEPS as u64 + 1, points.len(), known.len()) {
@@ -60,7 +61,6 @@ impl LightSweep {
         }
         let directions = directions(first.x);
         let [x, y, z] = [&strands.x, &strands.y, &strands.z].map(|axis| picked(axis, &points));
-        let input = hair.shadow_input(project, light);
         let mut worst: Option<FootprintTruth> = None;
         let mut truths = Vec::with_capacity(known.len());
         for known in known {
@@ -68,7 +68,7 @@ impl LightSweep {
             // If it fails without turning, another note says so.
             for &direction in directions.iter().filter(|_| known.transmittance.is_ok()) {
                 check_cancel()?;
-                match converge_at(&turned(&input, direction), &known.settings, [&x, &y, &z]) {
+                match converge_at(&turned(&input, light, direction), &known.settings, [&x, &y, &z]) {
                     (Ok(found), facts) => {
                         frames.push(found);
                         if worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
@@ -104,7 +104,7 @@ impl LightSweep {
         let mut frames = Vec::with_capacity(self.directions.len());
         for &direction in &self.directions {
             check_cancel()?;
-            lit.lights.iter_mut().for_each(|light| light.direction = direction);
+            lit.lights.iter_mut().for_each(|light| *light = turned_light(light, direction, hair.head()));
             frames.push(picked(&drawn(renderer, &hair.frame_input(&lit))?, &self.points));
         }
         // Rendering without lights clears the axes of the map, so that the next render is not affected.
@@ -115,8 +115,23 @@ impl LightSweep {
 }
 
 /// The input with another light direction, with axes as in rendering.
-fn turned<'a>(input: &ShadowInput<'a>, direction: Vec3) -> ShadowInput<'a> {
-    ShadowInput { light: input.light.transported(direction), ..*input }
+fn turned<'a>(input: &ShadowInput<'a>, light: &Light, direction: Vec3) -> ShadowInput<'a> {
+    let frame = if light.stands() {
+        light_frame(&turned_light(light, direction, input.anchor), input.anchor)
+    } else {
+        input.light.transported(direction)
+    };
+    ShadowInput { light: frame, ..*input }
+}
+
+/// A light with another direction. One that stands somewhere goes around the head.
+fn turned_light(light: &Light, direction: Vec3, head: Vec3) -> Light {
+    let mut turned = light.clone();
+    turned.direction = direction;
+    if turned.stands() {
+        turned.stand_before(head, light.position.distance(head));
+    }
+    turned
 }
 
 /// Directions that start at `first` (unit length) and turn sideways about the perpendicular axis nearest to the vertical.
@@ -214,6 +229,7 @@ mod tests {
             light,
             anchor: Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         let settings = ShadowSettings::default();
         let [x, y, z] = [0, 1, 2].map(|axis| {

@@ -64,6 +64,7 @@ fn behind(settings: &ShadowSettings, depths: &[f32]) -> Option<Vec<Vec<f32>>> {
             light,
             anchor: Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         map.build(&input, settings).ok()?;
         let mut found = vec![1.0; x.len()];
@@ -157,6 +158,7 @@ mod tests {
                 light,
                 anchor: Vec3::ZERO,
                 maps: 1,
+                projected: None,
             };
             converged(&input, &settings, [&axis(|p| p.x), &axis(|p| p.y), &axis(|p| p.z)]).expect("fits")
         };
@@ -183,6 +185,7 @@ mod tests {
             light,
             anchor: Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         let mut map = cpu_shadow(ShadowMethod::Exact);
         map.build(&input, &settings).expect("fits");

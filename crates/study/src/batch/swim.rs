@@ -7,9 +7,8 @@ use lovelock_base::random::SplitMix64;
 use lovelock_metrics::{Stability, swim};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
-use lovelock_render::{FrameInput, Light, Renderer};
+use lovelock_render::{FrameInput, Light, Renderer, light_frame};
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_shadow::LightFrame;
 
 use super::hair::{Hair, LitHair};
 use super::stability::drawn;
@@ -40,12 +39,12 @@ pub(super) fn swimming(
     (project, light): (&Project, &Light),
     check_cancel: &mut CheckCancel,
 ) -> Result<Stability, ProjectError> {
-    let axes = LightFrame::new(light.direction);
     let mut random = SplitMix64::new(7);
     let mut frames = Vec::with_capacity(snapshots.len());
     for snapshot in snapshots {
         check_cancel()?;
         let hair = Hair::new(Arc::clone(snapshot), project);
+        let axes = light_frame(light, hair.head());
         let cell_size = cell_size(LitHair { hair: &hair, project, light }, &project.shadow).unwrap_or(0.0);
         let mut shifts = Vec::with_capacity(SHIFTS);
         for _ in 0..SHIFTS {

@@ -8,7 +8,7 @@ use glam::Vec3;
 use lovelock_metrics::errors;
 use lovelock_render::{ShadowMethod, ShadowSettings, TexelFilter};
 use lovelock_shadow::{
-    CONVERGED_CHANGE, CpuShadow, ExactMap, MapKind, ShadowError, ShadowInput, converged, cpu_shadow,
+    CONVERGED_CHANGE, CpuShadow, MapKind, ShadowError, ShadowInput, ShadowReport, converged, cpu_shadow,
 };
 
 use super::hair::LitHair;
@@ -140,7 +140,7 @@ const FINEST: u32 = 2048;
 /// The ground truth at points.
 #[derive(Debug)]
 pub(super) struct Points {
-    pub map: ExactMap,
+    report: ShadowReport,
     pub transmittance: Vec<f32>,
     /// Points with few fragments before them.
     pub first: Vec<usize>,
@@ -158,25 +158,29 @@ impl Points {
         let strands = &lit.hair.strands;
         let at = |point: usize| Vec3::new(strands.x[point], strands.y[point], strands.z[point]);
         let all: Vec<Vec3> = (0..strands.points()).map(at).collect();
-        let before = map.fragments_before(&all);
+        let before = map.fragments_before(&all).unwrap_or_default();
         let first =
             before.iter().enumerate().filter(|(_, count)| **count < FIRST).map(|(at, _)| at).collect();
-        let facts = PointTruth { resolution: edge, memory_bytes: map.report().memory_bytes, change };
-        Ok(Self { map, transmittance, first, facts })
+        let report = map.report();
+        let facts = PointTruth { resolution: edge, memory_bytes: report.memory_bytes, change };
+        Ok(Self { report, transmittance, first, facts })
     }
 
     /// Whether `settings` give the map of this ground truth, which must not be compared with itself.
     pub(super) fn is_made_by(&self, settings: &ShadowSettings, cell_size: Option<f32>) -> bool {
-        settings.method == ShadowMethod::Exact && cell_size == Some(self.map.report().cell_size)
+        settings.method == ShadowMethod::Exact && cell_size == Some(self.report.cell_size)
     }
 }
 
+/// The map of any method.
+type AnyMap = Box<dyn CpuShadow + Send + Sync>;
+
 /// The exact method with at most that many texels along the edge: its map, the transmittance at every strand point, and the actual
 /// number of texels.
-fn exact(lit: LitHair, resolution: u32) -> Result<(ExactMap, Vec<f32>, u32), ShadowError> {
+fn exact(lit: LitHair, resolution: u32) -> Result<(AnyMap, Vec<f32>, u32), ShadowError> {
     let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..lit.project.shadow };
     (settings.exact.resolution, settings.exact.filter) = (resolution, TexelFilter::Nearest);
-    let mut map = ExactMap::default();
+    let mut map = cpu_shadow(ShadowMethod::Exact);
     map.build(&lit.shadow_input(), &settings)?;
     let strands = &lit.hair.strands;
     let mut transmittance = vec![1.0; strands.points()];

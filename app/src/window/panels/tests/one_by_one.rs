@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_groom::{GroomSettings, HAIR_COLOURS, HairTie, Preset, TieKind, Unit};
 use lovelock_project::Project;
 use lovelock_project::project::{BodySource, HairSource, MotionSource};
-use lovelock_render::{HairDrawing, MAX_LIGHTS, ShadowMethod, VoxelDeposit};
+use lovelock_render::{HairDrawing, LightKind, MAX_LIGHTS, ShadowMethod, VoxelDeposit};
 use lovelock_session::stats::Stage;
 use lovelock_simulation::SimulationSettings;
 
@@ -14,7 +14,7 @@ use super::{Bench, panel};
 use crate::window::command::Command;
 use crate::window::pointer_tool::PointerTool;
 use crate::window::purpose::Purpose;
-use crate::window::testing::{Shown, control, drag, is_on, texts, tooltip_at, type_at};
+use crate::window::testing::{Shown, control, controls, drag, is_on, texts, tooltip_at, type_at};
 
 /// Chooses an entry of a combo box.
 pub(super) fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, entry: &str) {
@@ -305,6 +305,37 @@ fn the_sphere_sets_the_light_direction() {
         let light = harness.state().state.project.lights[0].direction;
         assert!((light.length() - 1.0).abs() < 1e-5, "{light} after a drag to {to}");
     }
+}
+
+#[test]
+fn a_light_that_begins_to_stand_somewhere_shines_as_it_did() {
+    let mut harness = panel("Light", Project::default());
+    let before = Project::default().lights[0].clone();
+    let labels = |harness: &egui_kittest::Harness<'_, _>| {
+        let rows = controls(harness, Role::SpinButton);
+        rows.into_iter().map(|(label, _)| label).collect::<Vec<_>>()
+    };
+    assert!(labels(&harness).contains(&"Softness".to_owned()));
+    choose(&mut harness, "Light from", "Spot");
+    let light = harness.state().state.project.lights[0].clone();
+    assert_eq!(light.kind, LightKind::Spot);
+    let head = Vec3::new(0.0, 1.6, 0.0);
+    assert!((light.way_to(head) - before.direction.normalize_or_zero()).length() < 1e-5);
+    let brightness = light.intensity * light.share_at(head);
+    assert!((brightness - before.intensity).abs() < 1e-3, "{brightness} for {}", before.intensity);
+    for label in ["Position x", "Position y", "Position z", "Azimuth", "Inner angle", "Outer angle", "Light radius"] {
+        assert!(labels(&harness).contains(&label.to_owned()), "{label} of {:?}", labels(&harness));
+    }
+    for (label, rect) in controls(&harness, Role::SpinButton) {
+        assert!(tooltip_at(&mut harness, rect.center()).is_some_and(|said| said.len() > 2), "{label}");
+        assert!(rect.right() <= crate::window::testing::WIDTH, "{label} at {rect:?}");
+    }
+    choose(&mut harness, "Light from", "Point");
+    assert!(!labels(&harness).contains(&"Azimuth".to_owned()) && !labels(&harness).contains(&"Inner angle".to_owned()));
+    let moved = harness.state().state.project.lights[0].position;
+    assert_eq!(moved, light.position, "it stays where it stands");
+    choose(&mut harness, "Light from", "Directional");
+    assert!(labels(&harness).contains(&"Softness".to_owned()));
 }
 
 #[test]

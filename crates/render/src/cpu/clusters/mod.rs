@@ -110,7 +110,7 @@ impl PlacedClusters {
         grid: &Grid,
     ) {
         let Some(hair) = &self.hair else { return };
-        let to_lights = to_lights(input.lights);
+        let to_lights = to_lights(input);
         let enters = input.picture.clusters.local_shadow != LocalShadow::Map;
         if enters {
             for (entries, to_light) in self.entries.iter_mut().zip(&to_lights) {

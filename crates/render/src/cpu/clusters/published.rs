@@ -36,14 +36,13 @@ pub(super) fn light(
                 result[0] = (ambient * color * 0.22).to_array();
                 for (l, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
                     let lit = (transmittance[at] >> (8 * l) & 0xff) as f32 / 255.0;
-                    let [body] = light.body_light(
-                        &here.to_array().map(|x| [x]),
-                        &[[0.0]; 3],
-                        0.006,
-                        &view.strand_disc,
-                    );
-                    let parts = lighting.parts(tangent, vertex.normal, -light.direction, to_eye);
-                    result[1 + l] = (parts.color(color, light.radiance) * (lit * body)).to_array();
+                    let place = here.to_array().map(|x| [x]);
+                    let [body] = light.past_body(&place, None, 0.006, &view.strand_disc);
+                    let (toward, [arriving]) = light.arriving(&place);
+                    let toward = Vec3::from(toward.map(|[c]| c));
+                    let parts = lighting.parts(tangent, vertex.normal, toward, to_eye);
+                    let share = lit * (body * arriving);
+                    result[1 + l] = (parts.color(color, light.radiance) * share).to_array();
                 }
             }
         }

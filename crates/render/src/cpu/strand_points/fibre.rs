@@ -32,13 +32,14 @@ pub(super) fn shade<const N: usize>(view: &View, fibre: &FibreView, from: &Shade
     let mut parts = [[[0.0; LANES]; 3]; N];
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
-        let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
-        let [lx, ly, lz] = (-light.direction).to_array();
+        let shadow = light.past_body(here, None, 0.006, &view.strand_disc);
+        let ([lx, ly, lz], arriving) = light.arriving(here);
         let mut sin_l = [0.0; LANES];
         let mut cos_l = [0.0; LANES];
         let mut phi = [0.0; LANES];
         let mut fibres = [0.0; LANES];
         for lane in 0..LANES {
+            let (lx, ly, lz) = (lx[lane], ly[lane], lz[lane]);
             let sin = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
             let cos = max(1.0 - sin * sin, 0.0).sqrt();
             let lv = lx * to_eye[0][lane] + ly * to_eye[1][lane] + lz * to_eye[2][lane];
@@ -78,7 +79,7 @@ pub(super) fn shade<const N: usize>(view: &View, fibre: &FibreView, from: &Shade
         let sum = &mut parts[part_of::<N>(Some(k))];
         for c in 0..3 {
             for lane in 0..LANES {
-                sum[c][lane] += radiance[c] * shadow[lane] * found[c][lane];
+                sum[c][lane] += radiance[c] * (shadow[lane] * arriving[lane]) * found[c][lane];
             }
         }
     }

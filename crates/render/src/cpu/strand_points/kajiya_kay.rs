@@ -30,13 +30,15 @@ pub(super) fn shade<const N: usize>(view: &View, from: &ShadedFrom) -> Parts<N> 
     }
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
-        let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
-        let [lx, ly, lz] = (-light.direction).to_array();
+        let shadow = light.past_body(here, None, 0.006, &view.strand_disc);
+        let (toward, arriving) = light.arriving(here);
         let strength = light.specular * uniform.primary_strength;
         let mut matt = [0.0; LANES];
         let mut shine = [0.0; LANES];
         for lane in 0..LANES {
-            let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0) * shadow[lane];
+            let [lx, ly, lz] = [toward[0][lane], toward[1][lane], toward[2][lane]];
+            let shadow = shadow[lane] * arriving[lane];
+            let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0) * shadow;
             let along = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
             let across = max(1.0 - along * along, 0.0).sqrt();
             let mirrored = max(across * cos_v[lane] - along * sin_v[lane], 0.0);

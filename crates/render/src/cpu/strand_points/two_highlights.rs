@@ -44,8 +44,8 @@ pub(super) fn shade<const N: usize>(view: &View, from: &ShadedFrom) -> Parts<N> 
     let (primary, secondary) = (uniform.primary_strength, uniform.secondary_strength);
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
-        let shadow = light.body_light(here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
-        let [lx, ly, lz] = (-light.direction).to_array();
+        let shadow = light.past_body(here, None, 0.006, &view.strand_disc);
+        let (toward, arriving) = light.arriving(here);
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut share = [0.0; LANES];
         let mut diffuse = [0.0; LANES];
@@ -56,9 +56,10 @@ pub(super) fn shade<const N: usize>(view: &View, from: &ShadedFrom) -> Parts<N> 
         for lane in 0..LANES {
             let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
             open[lane] += lit.sqrt();
-            share[lane] = lit * shadow[lane];
+            share[lane] = lit * (shadow[lane] * arriving[lane]);
             // Light that has passed through other hair is more coloured with depth.
             depth[lane] = 1.0 + 0.45 * (1.0 - lit);
+            let [lx, ly, lz] = [toward[0][lane], toward[1][lane], toward[2][lane]];
             let sin_l = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
             let cos_l = max(1.0 - sin_l * sin_l, 0.0).sqrt();
             let (sin_v, cos_v) = (sin_v[lane], cos_v[lane]);

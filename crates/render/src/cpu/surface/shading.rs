@@ -93,14 +93,15 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
 
     let mut sum = [[0.0; LANES]; 3];
     for (light, hair) in view.lights.iter().zip(&batch.hair) {
-        let l = (-light.direction).to_array();
+        let (l, arriving) = light.arriving(&batch.position);
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut facing = [0.0; LANES];
         let mut above = [0.0; LANES];
         // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
         let mut reached = f32::NEG_INFINITY;
         for lane in 0..LANES {
-            facing[lane] = normal[0][lane] * l[0] + normal[1][lane] * l[1] + normal[2][lane] * l[2];
+            facing[lane] =
+                normal[0][lane] * l[0][lane] + normal[1][lane] * l[1][lane] + normal[2][lane] * l[2][lane];
             // At grazing angles the flat triangles of a round limb shadow each other.
             above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
             reached = max(facing[lane], reached);
@@ -114,16 +115,15 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
                 place[c][lane] = batch.position[c][lane] + normal[c][lane] * above[lane];
             }
         }
-        let lit = light.body_light(&place, &light.lean_of(&normal), 0.003, &view.surface_disc);
+        let lit = light.past_body(&place, Some(&normal), 0.003, &view.surface_disc);
         let mut shares = [0.0; LANES];
         let mut gloss = [0.0; LANES];
         for lane in 0..LANES {
-            let (hx, hy, hz) =
-                (l[0] + toward_eye[0][lane], l[1] + toward_eye[1][lane], l[2] + toward_eye[2][lane]);
+            let [hx, hy, hz] = [0, 1, 2].map(|c| l[c][lane] + toward_eye[c][lane]);
             let inverse = 1.0 / max((hx * hx + hy * hy + hz * hz).sqrt(), 1e-6);
             let nh = (normal[0][lane] * hx + normal[1][lane] * hy + normal[2][lane] * hz) * inverse;
             let shine = exp2(24.0 * log2(max(nh, 1e-12)));
-            let share = lit[lane] * hair[lane];
+            let share = lit[lane] * hair[lane] * arriving[lane];
             shares[lane] = share * 0.318;
             gloss[lane] = share
                 * saturate(facing[lane])

@@ -127,7 +127,7 @@ pub(super) fn uniform_of(input: &FrameInput, frame: &Frame, finest: u32) -> Clus
         light: 0,
         to_lights: {
             let mut all = [Vec4::ZERO; MAX_LIGHTS];
-            all.iter_mut().zip(to_lights(input.lights)).for_each(|(to, light)| *to = light.extend(0.0));
+            all.iter_mut().zip(to_lights(input)).for_each(|(to, light)| *to = light.extend(0.0));
             all
         },
     }

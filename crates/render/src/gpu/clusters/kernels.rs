@@ -4,6 +4,8 @@ use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource};
 use lovelock_groom::HairShading;
 use lovelock_satf::{ClusterSettings, ClusterView, LocalShadow, RecordLookup};
 
+use crate::gpu::light_kernels::LightSet;
+
 macro_rules! part {
     ($name:literal) => {
         ShaderPart { name: concat!("crates/render/src/gpu/clusters/", $name), text: include_str!($name) }
@@ -102,7 +104,7 @@ pub(super) struct ClusterKernels {
 /// What the kernel that lights ribs is compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RibVariant {
-    pub lights: usize,
+    pub lights: LightSet,
     /// How they are shaded as strands; `None` for the published light.
     pub as_strands: Option<HairShading>,
     /// Whether ribs have colours of their own.
@@ -133,8 +135,10 @@ impl ClusterKernels {
     ) -> Result<&Kernel, GpuError> {
         find_or_make(&mut self.rib_light, variant, || {
             let RibVariant { lights, as_strands, colored } = variant;
+            let [count, standing] = lights.constants();
             let constants = [
-                ("LIGHTS", lights as f64),
+                count,
+                standing,
                 ("SHADING", f64::from(as_strands.unwrap_or_default() as u8)),
                 ("COLORED", f64::from(u8::from(colored))),
             ];

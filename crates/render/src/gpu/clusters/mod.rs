@@ -18,6 +18,7 @@ use lovelock_shadow::{Bounds, GpuTargets, LightFrame};
 
 use super::frame_resources::FrameResources;
 use super::hair::PointShading;
+use super::light_kernels::LightSet;
 use super::shadow::GpuShadowStage;
 use crate::clusters::{ClusterStage, cluster_share, without_strands};
 use crate::scene_light::SceneLight;
@@ -61,7 +62,7 @@ pub(super) struct RibLighting<'a> {
     pub shading: PointShading<'a>,
     /// The shader of the light on ribs.
     pub rib_light: &'a ShaderSource,
-    pub lights: usize,
+    pub lights: LightSet,
     /// The area of the hair: left, top, right and bottom.
     pub area: [f32; 4],
     /// Pixels that a metre covers at one metre.
@@ -149,6 +150,7 @@ impl Clusters {
                 count: parts.ribs.drawn().point_count,
                 out: parts.ribs.transmittance(),
                 sum: None,
+                projected: None,
             };
             shadow.look_up(slot, gpu, commands, &targets);
         }

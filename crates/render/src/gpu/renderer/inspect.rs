@@ -48,8 +48,14 @@ impl GpuRenderer {
         let out = buffer("answers", (points.len() as u64 * 4).max(16), wgpu::BufferUsages::COPY_SRC);
         let mut timer = PassTimer::default();
         let mut commands = timer.begin(gpu, "ask");
-        let targets =
-            GpuTargets { points: &asked, stride: 1, count: points.len() as u32, out: &out, sum: None };
+        let targets = GpuTargets {
+            points: &asked,
+            stride: 1,
+            count: points.len() as u32,
+            out: &out,
+            sum: None,
+            projected: None,
+        };
         self.shadow.look_up(light, gpu, &mut commands, &targets);
         commands.submit();
         let mut words = vec![0; points.len()];

@@ -36,7 +36,7 @@ impl GpuRenderer {
         let mut stats = drawn?;
 
         let uniform = self.last;
-        let kind = (uniform.light_count as usize, over_background);
+        let kind = (self.shadow.light_set(), over_background);
         // Depth and transmittance of clusters are those of the strands that cast their shadow.
         let seen = self.seen.of_strands();
         self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;
@@ -48,7 +48,7 @@ impl GpuRenderer {
         };
         let frame = FrameResources {
             uniform: &self.uniform,
-            body_depth: &self.surface.depth,
+            body_depth: self.surface.depth(),
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,

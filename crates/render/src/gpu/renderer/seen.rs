@@ -99,13 +99,13 @@ impl GpuRenderer {
         }
         let frame = FrameResources {
             uniform: &self.uniform,
-            body_depth: &self.surface.depth,
+            body_depth: self.surface.depth(),
             columns: self.shadow.columns_view(),
             linear: &self.linear,
             compare: &self.compare,
             ambient: self.light.cells(),
         };
-        let lit = self.pipelines.lit.of(gpu, self.shadow.lights())?;
+        let lit = self.pipelines.lit.of(gpu, self.shadow.light_set())?;
         // Values replace their light.
         let shading =
             PointShading { kernels: lit, model: HairShading::TwoHighlights, tables: self.light.tables() };

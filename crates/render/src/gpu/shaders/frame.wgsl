@@ -17,6 +17,27 @@ struct LightUniform {
     columns_from_world: mat4x4f,
 }
 
+// A light that stands somewhere. Twin of `StandingUniform` in standing.rs.
+struct StandingUniform {
+    position: vec3f,
+    // 0 for a directional light.
+    radius: f32,
+    // Unit axes, by which a side of a cube is told.
+    axes: array<vec4f, 3>,
+    // The middle of a spot's cone, and what makes the cosine of the angle to it 0 at the outer and 1 at the inner angle.
+    cone_axis: vec3f,
+    cone_scale: f32,
+    cone_offset: f32,
+    // Tangent of a texel of the body's depth map.
+    texel: f32,
+    // Views of the body, and maps of transmittance behind all hair: 1 or 6.
+    body_sides: u32,
+    column_sides: u32,
+    // See `LightUniform`; both are divided by the fourth coordinate.
+    shadow_from_world: array<mat4x4f, 6>,
+    columns_from_world: array<mat4x4f, 6>,
+}
+
 // One of the lobes R, TT, TRT and the rest.
 struct LobeUniform {
     sin_tilt: f32,
@@ -73,6 +94,7 @@ struct FrameUniform {
     // Light from all directions: see `Surround` in appearance.
     surround: array<vec4f, 9>,
     lights: array<LightUniform, 4>,
+    standing: array<StandingUniform, 4>,
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;
@@ -86,6 +108,9 @@ struct FrameUniform {
 // The number of lights. Code per light is unrolled, because software adapters load a number with a constant index once for all threads
 // of a vector.
 override LIGHTS: u32 = MAX_LIGHTS;
+
+// Whether any light stands somewhere.
+override STANDING: bool = false;
 
 // The components of the unit normal `n` along u, v and toward light `i`.
 fn lean_of(i: u32, n: vec3f) -> vec3f {
@@ -146,8 +171,119 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     return sum / f32(taps);
 }
 
+// The side of a cube that a vector points at: twice its longest axis, plus 1 if it points backward. Twin of `side_of` in standing.rs.
+fn side_of(v: vec3f) -> u32 {
+    let a = abs(v);
+    if (a.x >= a.y && a.x >= a.z) {
+        return select(0u, 1u, v.x < 0.0);
+    }
+    if (a.y >= a.z) {
+        return select(2u, 3u, v.y < 0.0);
+    }
+    return select(4u, 5u, v.z < 0.0);
+}
+
+// The side of light `i` that a position belongs to, of `sides`.
+fn side_at(i: u32, p: vec3f, sides: u32) -> u32 {
+    let q = p - frame.standing[i].position;
+    let v = vec3f(
+        dot(frame.standing[i].axes[0].xyz, q),
+        dot(frame.standing[i].axes[1].xyz, q),
+        dot(frame.standing[i].axes[2].xyz, q),
+    );
+    return select(0u, side_of(v), sides > 1u);
+}
+
+// The layer of a side of light `i` in arrays of textures: twin of `layer_of` in standing.rs.
+fn layer_of(i: u32, side: u32) -> u32 {
+    return select(MAX_LIGHTS + 5u * i + side - 1u, i, side == 0u);
+}
+
+// The unit vector toward a light, and the share of its brightness that arrives if nothing is between.
+struct Arriving { toward: vec3f, share: f32 }
+
+fn arriving(i: u32, p: vec3f) -> Arriving {
+    if (STANDING) {
+        if (frame.standing[i].radius > 0.0) {
+            let way = frame.standing[i].position - p;
+            let far = length(way);
+            let toward = way / max(far, 1e-6);
+            let near = max(far, frame.standing[i].radius);
+            let cosine = -dot(toward, frame.standing[i].cone_axis);
+            let t = clamp(cosine * frame.standing[i].cone_scale + frame.standing[i].cone_offset, 0.0, 1.0);
+            return Arriving(toward, t * t * (3.0 - 2.0 * t) / (near * near));
+        }
+    }
+    return Arriving(-frame.lights[i].direction, 1.0);
+}
+
+// Twins of the constants of `Light` in picture.
+const BLOCKER_METRES: f32 = 0.1;
+const MAX_SOFTNESS: f32 = 0.1;
+
+// The position in the view of the body from light `i`, its depth, and the layer of the view. Beside all views the fourth is negative.
+fn body_place(i: u32, p: vec3f) -> vec4f {
+    let side = side_at(i, p, frame.standing[i].body_sides);
+    let at = frame.standing[i].shadow_from_world[side] * vec4f(p, 1.0);
+    let inside = at.w > 0.0 && abs(at.x) <= at.w && abs(at.y) <= at.w;
+    let ndc = at.xyz / max(at.w, 1e-9);
+    return vec4f(ndc.xy * vec2f(0.5, -0.5) + 0.5, ndc.z, select(-1.0, f32(layer_of(i, side)), inside));
+}
+
+// As `body_light`, for a light that stands somewhere. The taps are on a disc perpendicular to the unit vector `n`.
+fn body_light_standing(i: u32, p: vec3f, n: vec3f, bias: f32, taps: u32) -> f32 {
+    if (body_place(i, p).w < 0.0) {
+        return 1.0;
+    }
+    let way = frame.standing[i].position - p;
+    let far = max(length(way), 1e-6);
+    let l = way / far;
+    let texel = far * frame.standing[i].texel;
+    let cosine = max(dot(n, l), 0.0);
+    // Texels around a position are nearer by the slope of the plane over one texel; see `body_light`.
+    let slope = 1.414 * sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 0.25);
+    let start = p + l * (bias + texel * slope);
+    // Twin of `across` in cpu/standing.rs: Duff et al. 2017.
+    let sign = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    let y = vec3f(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    let z = vec3f(b, sign + n.y * n.y * a, -n.y);
+    let soft = frame.standing[i].radius * BLOCKER_METRES / max(far, frame.standing[i].radius);
+    let radius = max(min(soft, MAX_SOFTNESS), texel);
+    var direction = vec2f(1.0, 0.0);
+    var sum = 0.0;
+    for (var k = 0u; k < taps; k++) {
+        let tap = radius * sqrt((f32(k) + 0.5) / f32(taps)) * direction;
+        let place = body_place(i, start + y * tap.x + z * tap.y);
+        let layer = u32(max(place.w, 0.0));
+        let lit = textureSampleCompareLevel(body_depth, compare, place.xy, layer, min(place.z, 1.0));
+        sum += select(lit, 1.0, place.w < 0.0);
+        direction = vec2f(
+            direction.x * -0.737368878 - direction.y * 0.675490294,
+            direction.x * 0.675490294 + direction.y * -0.737368878,
+        );
+    }
+    return sum / f32(taps);
+}
+
+// The fraction of light `i` that the body lets through to a position on a surface with the unit normal `n`.
+fn past_body(i: u32, p: vec3f, n: vec3f, bias: f32, taps: u32) -> f32 {
+    if (STANDING) {
+        if (frame.standing[i].radius > 0.0) {
+            return body_light_standing(i, p, n, bias, taps);
+        }
+    }
+    return body_light(i, p, lean_of(i, n), bias, taps);
+}
+
 // The transmittance of all hair for light `i`, for a point behind it.
 fn columns_light(i: u32, p: vec3f) -> f32 {
+    if (STANDING) {
+        if (frame.standing[i].radius > 0.0) {
+            return columns_light_standing(i, p);
+        }
+    }
     let at = (frame.lights[i].columns_from_world * vec4f(p, 1.0)).xyz;
     if (any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(at.z))) {
         return 1.0;
@@ -155,6 +291,17 @@ fn columns_light(i: u32, p: vec3f) -> f32 {
     // Nothing outside this map's part of the texture is read.
     let last = vec2f(at.z) - 0.5 / vec2f(textureDimensions(hair_columns));
     return textureSampleLevel(hair_columns, linear_clamp, min(at.xy, last), i, 0.0).r;
+}
+
+fn columns_light_standing(i: u32, p: vec3f) -> f32 {
+    let side = side_at(i, p, frame.standing[i].column_sides);
+    let at = frame.standing[i].columns_from_world[side] * vec4f(p, 1.0);
+    let uv = at.xy / max(at.w, 1e-9);
+    if (at.w <= 0.0 || any(uv < vec2f(0.0)) || any(uv > vec2f(at.z))) {
+        return 1.0;
+    }
+    let last = vec2f(at.z) - 0.5 / vec2f(textureDimensions(hair_columns));
+    return textureSampleLevel(hair_columns, linear_clamp, min(uv, last), layer_of(i, side), 0.0).r;
 }
 
 // Light from all directions on a surface with the unit normal `n`: irradiance over pi.

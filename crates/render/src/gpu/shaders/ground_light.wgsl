@@ -3,13 +3,14 @@
 const UP: vec3f = vec3f(0.0, 1.0, 0.0);
 
 // The unshadowed light `k` on the ground.
-fn share_of(k: u32) -> vec3f {
-    return frame.lights[k].radiance * max(-frame.lights[k].direction.y, 0.0);
+fn share_of(k: u32, p: vec3f) -> vec3f {
+    let from = arriving(k, p);
+    return frame.lights[k].radiance * (max(from.toward.y, 0.0) * from.share);
 }
 
 // The fraction of it that arrives.
 fn left_on_ground(k: u32, p: vec3f) -> f32 {
-    return body_light(k, p, lean_of(k, UP), 0.004, 6u) * columns_light(k, p);
+    return past_body(k, p, UP, 0.004, 6u) * columns_light(k, p);
 }
 
 // The fraction of the light on the ground behind a position of the picture, and whether there is ground: 1 or 0. Without shadow, and above
@@ -25,20 +26,20 @@ fn ground_light(ndc: vec2f) -> vec4f {
     var full = ambient(UP) * 3.14159;
     var lit = full;
     if (LIGHTS > 0u) {
-        full += share_of(0u);
-        lit += share_of(0u) * left_on_ground(0u, p);
+        full += share_of(0u, p);
+        lit += share_of(0u, p) * left_on_ground(0u, p);
     }
     if (LIGHTS > 1u) {
-        full += share_of(1u);
-        lit += share_of(1u) * left_on_ground(1u, p);
+        full += share_of(1u, p);
+        lit += share_of(1u, p) * left_on_ground(1u, p);
     }
     if (LIGHTS > 2u) {
-        full += share_of(2u);
-        lit += share_of(2u) * left_on_ground(2u, p);
+        full += share_of(2u, p);
+        lit += share_of(2u, p) * left_on_ground(2u, p);
     }
     if (LIGHTS > 3u) {
-        full += share_of(3u);
-        lit += share_of(3u) * left_on_ground(3u, p);
+        full += share_of(3u, p);
+        lit += share_of(3u, p) * left_on_ground(3u, p);
     }
     return vec4f(lit / max(full, vec3f(1e-4)), 1.0);
 }

@@ -96,6 +96,12 @@ fn pigment_of(detail: u32, along: f32, shade: f32) -> f32 {
 
 // Like `body_light` for points without a surface: three taps on a disc perpendicular to the light.
 fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
+    if (STANDING) {
+        if (frame.standing[k].radius > 0.0) {
+            let way = frame.standing[k].position - p;
+            return body_light_standing(k, p, way / max(length(way), 1e-6), 0.006, 3u);
+        }
+    }
     let light = frame.lights[k];
     // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
     let at = light.shadow_from_world * vec4f(p - light.direction * 0.006, 1.0);
@@ -115,8 +121,9 @@ fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
 // The light that a point reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
-    let body = body_light_on_strand(k, point.p);
-    let toward = -light.direction;
+    let from = arriving(k, point.p);
+    let body = body_light_on_strand(k, point.p) * from.share;
+    let toward = from.toward;
     let specular = light.specular;
     if (SHADING == FIBRE) {
         return light.radiance * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);

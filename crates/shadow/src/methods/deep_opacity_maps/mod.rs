@@ -39,7 +39,7 @@ pub(super) static METHOD: Method = Method {
     },
     counts_points: |_| false,
     cpu: || Box::new(DeepOpacityMaps::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<Layers>::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Layers>::new(gpu, projected)?)),
     shaders: TexelShadow::<Layers>::shaders,
 };
 

@@ -44,7 +44,7 @@ pub(super) static METHOD: Method = Method {
     },
     counts_points: |_| false,
     cpu: || Box::new(DensityClustering::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<Clustering>::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Clustering>::new(gpu, projected)?)),
     shaders: TexelShadow::<Clustering>::shaders,
 };
 

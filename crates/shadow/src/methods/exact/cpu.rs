@@ -4,7 +4,6 @@
 
 use glam::Vec3;
 use lovelock_base::settings::Settings;
-use rayon::prelude::*;
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::ExactSettings;
@@ -47,16 +46,6 @@ impl ExactMap {
         let Some(frame) = self.frame() else { return &[] };
         let centre = Vec3::new(column as f32 + 0.5, row as f32 + 0.5, 0.0);
         self.fragments_at(frame.world_from_texel(centre)).0
-    }
-
-    /// The number of fragments before each point (world space, metres) in its texel: how deep it lies in the hair. 0 beside the
-    /// map and before the first build.
-    pub fn fragments_before(&self, points: &[Vec3]) -> Vec<u32> {
-        let count = |p: &Vec3| {
-            let (fragments, depth) = self.fragments_at(*p);
-            count_before(fragments, depth) as u32
-        };
-        points.par_iter().with_min_len(4096).map(count).collect()
     }
 }
 

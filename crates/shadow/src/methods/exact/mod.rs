@@ -29,7 +29,7 @@ pub(super) static METHOD: Method = Method {
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
     cpu: || Box::new(ExactMap::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu, projected)?)),
     shaders: TexelShadow::<SortedFragments>::shaders,
 };
 

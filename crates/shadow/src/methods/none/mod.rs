@@ -6,7 +6,9 @@ use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use super::method::{MapKind, Method};
 use super::texels::TexelFrame;
-use crate::gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, wgsl};
+use crate::gpu::{
+    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, projected_constant, wgsl,
+};
 use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 pub(super) static METHOD: Method = Method {
@@ -24,7 +26,7 @@ pub(super) static METHOD: Method = Method {
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
     cpu: || Box::new(NoShadow),
-    gpu: |gpu| Ok(Box::new(GpuNoShadow::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(GpuNoShadow::new(gpu, projected)?)),
     shaders: GpuNoShadow::shaders,
 };
 
@@ -65,8 +67,8 @@ const QUERY: ShaderPart = wgsl!("methods/none/", "query.wgsl");
 pub(crate) struct GpuNoShadow(PointLookup);
 
 impl GpuNoShadow {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        PointLookup::new(gpu, &[QUERY], false, &[]).map(Self)
+    pub(crate) fn new(gpu: &Gpu, projected: bool) -> Result<Self, GpuError> {
+        PointLookup::new(gpu, &[QUERY], false, &[projected_constant(projected)]).map(Self)
     }
 
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
@@ -96,7 +98,7 @@ impl GpuShadow for GpuNoShadow {
 
     fn columns(
         &mut self,
-        _slot: usize,
+        _map: (usize, usize),
         _gpu: &Gpu,
         _commands: &mut Commands,
         _into: &wgpu::TextureView,

@@ -39,7 +39,7 @@ pub(super) static METHOD: Method = Method {
     },
     counts_points: |_| false,
     cpu: || Box::new(OccupancyMaps::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu, projected)?)),
     shaders: TexelShadow::<Occupancy>::shaders,
 };
 

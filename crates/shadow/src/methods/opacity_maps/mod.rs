@@ -36,7 +36,7 @@ pub(super) static METHOD: Method = Method {
     },
     counts_points: |_| false,
     cpu: || Box::new(OpacityMaps::default()),
-    gpu: |gpu| Ok(Box::new(TexelShadow::<Slices>::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Slices>::new(gpu, projected)?)),
     shaders: TexelShadow::<Slices>::shaders,
 };
 

@@ -7,8 +7,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::frame::TexelFrame;
-use super::lines::Draw;
-use crate::ShadowInput;
+use super::lines::{Curved, Draw, Straight};
+use crate::perspective::Ray;
+use crate::{ProjectedStrands, ShadowInput};
 
 /// Rows per band: its counters fit into the L1 cache.
 pub(crate) const BAND_ROWS: u32 = 16;
@@ -234,7 +235,7 @@ impl Fragments {
                     optical_depth,
                 });
             };
-            for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put));
+            draw_segments(input, frame, strands, draw, &mut put);
             piece.bands.iter_mut().for_each(|blocks| blocks.spare = Vec::new());
         });
         let pieces = &self.pieces[..];
@@ -308,12 +309,44 @@ impl Fragments {
     }
 }
 
-/// Calls `with` with both ends, in texel coordinates, of each valid segment of the strands `strands`.
+/// Draws the valid segments of the strands `strands`.
+fn draw_segments(
+    input: &ShadowInput,
+    frame: &TexelFrame,
+    strands: std::ops::Range<usize>,
+    draw: &impl Draw,
+    put: &mut impl FnMut(u32, u32, f32, f32),
+) {
+    match &input.projected {
+        None => for_each_segment(input, frame, strands, |from, to, _| draw.draw(from, to, &Straight, put)),
+        Some(projected) => for_each_segment(input, frame, strands, |from, to, first| {
+            draw.draw(from, to, &curved(input, frame, projected, first), put);
+        }),
+    }
+}
+
+/// The segment between the points `first` and `first + 1` of projected strands.
+pub(crate) fn curved(
+    input: &ShadowInput,
+    frame: &TexelFrame,
+    projected: &ProjectedStrands,
+    first: usize,
+) -> Curved {
+    let ends = [first, first + 1].map(|point| input.strands.point(point));
+    // The axes of projected strands are those of their coordinates.
+    Curved {
+        ray: Ray::new(projected, ends, first),
+        per_metre: 1.0 / frame.depth_range,
+        first: frame.anchor_depth,
+    }
+}
+
+/// Calls `with` with both ends, in texel coordinates, of each valid segment of the strands `strands`, and the index of its first point.
 pub(crate) fn for_each_segment(
     input: &ShadowInput,
     frame: &TexelFrame,
     strands: std::ops::Range<usize>,
-    mut with: impl FnMut(Vec3, Vec3),
+    mut with: impl FnMut(Vec3, Vec3, usize),
 ) {
     let axes = frame.axes();
     for strand in strands {
@@ -324,7 +357,7 @@ pub(crate) fn for_each_segment(
             let p = axes.transform(input.strands.point(point));
             let p = frame.holds(p).then(|| frame.held(p));
             if let (Some(from), Some(to)) = (last, p) {
-                with(from, to);
+                with(from, to, point - 1);
             }
             last = p;
         }
@@ -341,7 +374,7 @@ pub(crate) fn sum_over_segments(
     let sum = |piece: usize| {
         let strands = first_strand(input, piece, pieces)..first_strand(input, piece + 1, pieces);
         let mut sum = 0_u64;
-        for_each_segment(input, frame, strands, |from, to| sum = sum.saturating_add(of(from, to)));
+        for_each_segment(input, frame, strands, |from, to, _| sum = sum.saturating_add(of(from, to)));
         sum
     };
     (0..pieces).into_par_iter().with_max_len(1).map(sum).reduce(|| 0, u64::saturating_add)

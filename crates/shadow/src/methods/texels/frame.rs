@@ -210,6 +210,7 @@ mod tests {
             light,
             anchor,
             maps: 1,
+            projected: None,
         };
         TexelFrame::new(&input, 64, &Bounds::of_strands(&input))
     }
@@ -278,6 +279,7 @@ mod tests {
                 light,
                 anchor: Vec3::ZERO,
                 maps: 1,
+                projected: None,
             };
             TexelFrame::new(&input, 512, &Bounds::of_strands(&input))
         };

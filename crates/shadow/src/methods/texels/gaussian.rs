@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::frame::TexelFrame;
-use super::lines::{Draw, Lines, Steps};
+use super::lines::{Along, Draw, Lines, Steps};
 use crate::exp::exp_of_minus;
 
 /// Standard deviations on each side of a line that have texels of their own; what lies beyond goes to the last of them. Twin of
@@ -40,7 +40,7 @@ impl GaussianLines {
 
 impl Draw for GaussianLines {
     #[inline]
-    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+    fn draw(&self, from: Vec3, to: Vec3, along: &impl Along, put: &mut impl FnMut(u32, u32, f32, f32)) {
         let steps = Steps::new(from, to);
         let beta = self.lines.depth_per_texel * steps.length;
         // The shorter axis cuts the profile at an angle.
@@ -49,6 +49,8 @@ impl Draw for GaussianLines {
         let last = self.lines.resolution as i32 - 2;
         for major in steps.first..steps.end {
             let (minor, depth) = steps.at(major);
+            let (depth, width) = along.at(steps.way(major as f32 + 0.5), depth);
+            let beta = beta * width;
             let first = (minor - REACH * deviation).floor();
             let mut before = 0.0;
             for at in 1..=count {
@@ -82,13 +84,14 @@ fn normal(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::methods::texels::lines::Straight;
 
     const LINES: Lines = Lines { resolution: 64, depth_per_texel: 0.1 };
 
     fn fragments(deviation: f32, from: Vec3, to: Vec3) -> Vec<(u32, u32, f32, f32)> {
         let mut found = Vec::new();
         let lines = GaussianLines { lines: LINES, deviation };
-        lines.draw(from, to, &mut |c, r, d, b| found.push((c, r, d, b)));
+        lines.draw(from, to, &Straight, &mut |c, r, d, b| found.push((c, r, d, b)));
         let steps = Steps::new(from, to);
         assert_eq!(found.len() as u64, lines.per_step(&steps) * steps.count());
         found
@@ -155,7 +158,7 @@ mod tests {
         {
             let ends = [Vec3::new(a.0, a.1, 0.2), Vec3::new(b.0, b.1, 0.4)];
             let mut thin = Vec::new();
-            LINES.draw(ends[0], ends[1], &mut |c, r, d, b| thin.push((c, r, d, b)));
+            LINES.draw(ends[0], ends[1], &Straight, &mut |c, r, d, b| thin.push((c, r, d, b)));
             assert_eq!(fragments(0.0, ends[0], ends[1]), thin);
             let whole: f32 = thin.iter().map(|f| f.3).sum();
             for deviation in [0.1, 0.7, MOST] {

@@ -2,11 +2,59 @@
 
 use glam::Vec3;
 
+use crate::perspective::Ray;
+
 /// Rasterises segments.
 pub(crate) trait Draw: Sync {
     /// Calls `put` for each fragment of the segment between two points, which are columns, rows and depths from 0 to 1. A fragment
-    /// is a column, a row, a depth and an optical depth.
-    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32));
+    /// is a column, a row, a depth and an optical depth. `along` says what the segment is between its ends.
+    fn draw(&self, from: Vec3, to: Vec3, along: &impl Along, put: &mut impl FnMut(u32, u32, f32, f32));
+}
+
+/// What a segment is between its ends.
+pub(crate) trait Along {
+    /// Its depth and the factor on its width at the fraction `t` of its way across the light, where a line between its ends has the depth
+    /// `depth`.
+    fn at(&self, t: f32, depth: f32) -> (f32, f32);
+
+    /// The largest factor on its width.
+    fn widest(&self) -> f32;
+}
+
+/// A straight segment of one width.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Straight;
+
+impl Along for Straight {
+    #[inline]
+    fn at(&self, _t: f32, depth: f32) -> (f32, f32) {
+        (depth, 1.0)
+    }
+
+    fn widest(&self) -> f32 {
+        1.0
+    }
+}
+
+/// A segment that was projected from a light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curved {
+    pub ray: Ray,
+    /// Depth per metre, and the depth of distance 0.
+    pub per_metre: f32,
+    pub first: f32,
+}
+
+impl Along for Curved {
+    #[inline]
+    fn at(&self, t: f32, _depth: f32) -> (f32, f32) {
+        let [distance, width] = self.ray.at(t);
+        ((distance * self.per_metre + self.first).clamp(0.0, 1.0), width)
+    }
+
+    fn widest(&self) -> f32 {
+        self.ray.widest()
+    }
 }
 
 /// A segment as steps along its longer axis, from its lower to its higher end.
@@ -22,6 +70,8 @@ pub(crate) struct Steps {
     pub length: f32,
     /// The lower end: coordinates on the longer and the shorter axis, and depth.
     start: [f32; 3],
+    /// Whether the lower end is the first one.
+    forward: bool,
     /// The coordinate of the higher end on the longer axis.
     high: f32,
     /// The difference between the ends on the shorter axis and in depth.
@@ -49,6 +99,7 @@ impl Steps {
             end: centres_below(high[0]),
             length: (d.x * d.x + d.y * d.y).sqrt() * per_texel,
             start: low,
+            forward: a[0] <= b[0],
             high: high[0],
             rise: [high[1] - low[1], high[2] - low[2]],
             per_texel,
@@ -72,6 +123,19 @@ impl Steps {
         let (low, high) = (self.start[0].max(at as f32), self.high.min(at as f32 + 1.0));
         let t = (0.5 * (low + high) - self.start[0]) * self.per_texel;
         (high - low, self.start[1] + t * self.rise[0], (self.start[2] + t * self.rise[1]).clamp(0.0, 1.0))
+    }
+
+    /// The coordinate in the middle of the part of texel `at` of the longer axis that lies between the ends.
+    #[inline]
+    pub(crate) fn middle(&self, at: i32) -> f32 {
+        0.5 * (self.start[0].max(at as f32) + self.high.min(at as f32 + 1.0))
+    }
+
+    /// The fraction of the way from the first end to the second at a coordinate on the longer axis.
+    #[inline]
+    pub(crate) fn way(&self, at: f32) -> f32 {
+        let t = (at - self.start[0]) * self.per_texel;
+        if self.forward { t } else { 1.0 - t }
     }
 
     /// The coordinate on the shorter axis, and the depth, at the centre of texel `at` of the longer axis.
@@ -101,16 +165,17 @@ pub(crate) struct Lines {
 
 impl Draw for Lines {
     #[inline]
-    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+    fn draw(&self, from: Vec3, to: Vec3, along: &impl Along, put: &mut impl FnMut(u32, u32, f32, f32)) {
         let steps = Steps::new(from, to);
         let beta = self.depth_per_texel * steps.length;
         let last = self.resolution as i32 - 2;
         for major in steps.first..steps.end {
             let (minor, depth) = steps.at(major);
+            let (depth, width) = along.at(steps.way(major as f32 + 0.5), depth);
             let minor = (minor as i32).clamp(1, last) as u32;
             let major = major as u32;
             let (column, row) = if steps.by_row { (minor, major) } else { (major, minor) };
-            put(column, row, depth, beta);
+            put(column, row, depth, beta * width);
         }
     }
 }
@@ -127,12 +192,14 @@ impl FilteredLines {
 
 impl Draw for FilteredLines {
     #[inline]
-    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+    fn draw(&self, from: Vec3, to: Vec3, along: &impl Along, put: &mut impl FnMut(u32, u32, f32, f32)) {
         let steps = Steps::new(from, to);
         let beta = self.0.depth_per_texel * steps.length;
         let last = self.0.resolution as i32 - 2;
         for major in steps.first..steps.end {
             let (minor, depth) = steps.at(major);
+            let (depth, width) = along.at(steps.way(major as f32 + 0.5), depth);
+            let beta = beta * width;
             let at = minor - 0.5;
             let low = at.floor();
             let second = beta * (at - low);
@@ -155,7 +222,7 @@ mod tests {
     fn fragments(of: &[Vec3]) -> Vec<(u32, u32, f32, f32)> {
         let mut found = Vec::new();
         for ends in of.windows(2) {
-            LINES.draw(ends[0], ends[1], &mut |c, r, d, b| found.push((c, r, d, b)));
+            LINES.draw(ends[0], ends[1], &Straight, &mut |c, r, d, b| found.push((c, r, d, b)));
         }
         found
     }
@@ -204,11 +271,38 @@ mod tests {
         }
     }
 
+    /// A segment whose width grows from 1 to 3 and whose depth is a square.
+    struct Widening;
+
+    impl Along for Widening {
+        fn at(&self, t: f32, _depth: f32) -> (f32, f32) {
+            (t * t, 1.0 + 2.0 * t)
+        }
+
+        fn widest(&self) -> f32 {
+            3.0
+        }
+    }
+
+    #[test]
+    fn depth_and_width_are_those_along_the_segment_in_both_directions() {
+        let (a, b) = (Vec3::new(3.0, 7.3, 0.2), Vec3::new(9.0, 7.3, 0.8));
+        for (from, to) in [(a, b), (b, a)] {
+            let mut found = Vec::new();
+            LINES.draw(from, to, &Widening, &mut |c, _, d, b| found.push((c, d, b)));
+            assert_eq!(found.len(), 6);
+            for (column, depth, beta) in found {
+                let t = (column as f32 + 0.5 - from.x) / (to.x - from.x);
+                assert!((depth - t * t).abs() < 1e-6 && (beta - 0.1 * (1.0 + 2.0 * t)).abs() < 1e-6, "{t}");
+            }
+        }
+    }
+
     #[test]
     fn filtered_lines_share_a_step_by_the_distance_of_centres() {
         let mut found = Vec::new();
         let ends = [Vec3::new(3.0, 7.75, 0.5), Vec3::new(5.0, 7.75, 0.5)];
-        FilteredLines(LINES).draw(ends[0], ends[1], &mut |c, r, d, b| found.push((c, r, d, b)));
+        FilteredLines(LINES).draw(ends[0], ends[1], &Straight, &mut |c, r, d, b| found.push((c, r, d, b)));
         let expected = [(3, 7, 0.075), (3, 8, 0.025), (4, 7, 0.075), (4, 8, 0.025)];
         assert_eq!(found.len(), expected.len());
         for (found, (column, row, beta)) in found.iter().zip(expected) {
@@ -225,7 +319,7 @@ mod tests {
             let ends = [Vec3::new(a.0, a.1, 0.2), Vec3::new(b.0, b.1, 0.4)];
             let thin: f32 = fragments(&ends).iter().map(|f| f.3).sum();
             let mut filtered = 0.0;
-            FilteredLines(LINES).draw(ends[0], ends[1], &mut |c, r, _, beta| {
+            FilteredLines(LINES).draw(ends[0], ends[1], &Straight, &mut |c, r, _, beta| {
                 assert!((1..=62).contains(&c) && (1..=62).contains(&r) && beta >= 0.0);
                 filtered += beta;
             });

@@ -10,7 +10,6 @@ use super::gaussian::{GaussianLines, line_deviation};
 use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
 use super::{LineProfile, TexelFilter, TexelMethod};
-use crate::bounds::Bounds;
 use crate::cpu::safe_extinction;
 use crate::exp::exp_of_minus;
 use crate::{
@@ -112,7 +111,7 @@ impl<M: TexelMethod> TexelMap<M> {
         settings: &ShadowSettings,
     ) -> Result<BuiltMap<M>, ShadowError> {
         let method = M::new(settings);
-        let bounds = Bounds::of_strands(input);
+        let bounds = input.bounds();
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
         let method = method.within(&frame);
         let resolution = frame.resolution;
@@ -275,6 +274,15 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let texels = transmittance.par_iter_mut().enumerate().with_min_len(4096);
         texels.for_each(|(texel, out)| *out = lookup.behind(texel));
         Some(ColumnMap { size, transmittance, uv_from_world: built.frame.uv_from_world() })
+    }
+
+    fn fragments_before(&self, points: &[Vec3]) -> Option<Vec<u32>> {
+        let count = |p: &Vec3| {
+            let (fragments, depth) = self.fragments_at(*p);
+            fragments.partition_point(|fragment| fragment.depth() < depth) as u32
+        };
+        // Fragments that are read are sorted by depth.
+        M::READS_FRAGMENTS.then(|| points.par_iter().with_min_len(4096).map(count).collect())
     }
 
     fn along_ray(&self, p: Vec3) -> RayStructure {

@@ -75,11 +75,13 @@ pub(super) struct GpuVoxelShadow {
     /// Compiled when it is first used.
     adaptive: Option<TexelShadow<Columns>>,
     is_adaptive: bool,
+    projected: bool,
 }
 
 impl GpuVoxelShadow {
-    pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { uniform: GpuVoxelMap::new(gpu)?, adaptive: None, is_adaptive: false })
+    /// For the strands themselves, or for projected ones.
+    pub(super) fn new(gpu: &Gpu, projected: bool) -> Result<Self, GpuError> {
+        Ok(Self { uniform: GpuVoxelMap::new(gpu, projected)?, adaptive: None, is_adaptive: false, projected })
     }
 
     /// Every composed shader with its label.
@@ -119,7 +121,7 @@ impl GpuShadow for GpuVoxelShadow {
             self.is_adaptive = adaptive;
         }
         if adaptive && self.adaptive.is_none() {
-            self.adaptive = Some(TexelShadow::new(gpu)?);
+            self.adaptive = Some(TexelShadow::new(gpu, self.projected)?);
         }
         self.map_mut().build(slot, gpu, commands, input, settings)
     }

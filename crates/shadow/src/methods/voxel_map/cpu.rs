@@ -10,6 +10,7 @@ use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
 use super::lookup::{Lookup, behind_all, look_up_simd};
+use super::projected::deposit_projected;
 use super::{CELL, VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
 use crate::bounds::{Bounds, bounds_simd};
 use crate::cpu::safe_extinction;
@@ -69,7 +70,7 @@ impl VoxelMap {
     }
 
     fn build_with(&mut self, input: &ShadowInput, settings: &ShadowSettings, width: Width) {
-        let bounds = bounds(width, input);
+        let bounds = input.projected.map_or_else(|| bounds(width, input), |projected| projected.bounds);
         let lattice = Lattice::new(input, &settings.voxel_map, &bounds);
         let layout = Layout::new(lattice.resolution);
         let grids = grid_count(&layout, input.strands.points());
@@ -127,7 +128,10 @@ impl BuiltMap {
                 grid.clear(&layout);
                 let (first, last) =
                     (first_strand(strands, piece, pieces), first_strand(strands, piece + 1, pieces));
-                let samples = deposit_simd(width, &deposit, strands, first, last, grid);
+                let samples = match &input.projected {
+                    None => deposit_simd(width, &deposit, strands, first, last, grid),
+                    Some(projected) => deposit_projected(&deposit, (strands, projected), first..last, grid),
+                };
                 grid.take_marks(&layout);
                 samples
             })
@@ -313,6 +317,7 @@ mod tests {
             light,
             anchor: Vec3::Y,
             maps: 1,
+            projected: None,
         };
         for filter in [VoxelFilter::Closest, VoxelFilter::Centred, VoxelFilter::Paper] {
             let mut settings = ShadowSettings::default();

@@ -22,7 +22,7 @@ const LANES: usize = 16;
 /// Segments with more samples than this, among shorter ones, are processed one at a time.
 const LONG: u32 = 24;
 /// The most that one sample adds, in fixed point: τ = 32, twice the largest depth of a cell.
-const MAX_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
+pub(super) const MAX_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
 
 simd_versions! {
     /// [`Deposit::run`] for the vectors of `width`.
@@ -244,7 +244,7 @@ impl Deposit {
     }
 
     #[inline(always)]
-    fn add(&self, grid: &mut Grid, address: u32, depth: u32) {
+    pub(super) fn add(&self, grid: &mut Grid, address: u32, depth: u32) {
         let cell = &mut grid.cells[address as usize];
         // Saturating sums of non-negative numbers do not depend on their order either.
         *cell = cell.saturating_add(depth);
@@ -253,6 +253,6 @@ impl Deposit {
 }
 
 /// The largest coordinate whose cell leaves one empty cell at the end of the window.
-fn highest_inside(resolution: u32) -> f32 {
+pub(super) fn highest_inside(resolution: u32) -> f32 {
     (resolution - 1) as f32 * (1.0 - f32::EPSILON)
 }

@@ -36,7 +36,7 @@ impl Lattice {
     /// The size of a cell is rounded up to a sixteenth of an octave, so that it stays the same from frame to frame while the
     /// extent of the hair changes little.
     pub fn new(input: &ShadowInput, settings: &VoxelMapSettings, bounds: &Bounds) -> Self {
-        Self::place((input.light, input.anchor), || longest_strand(input.strands), settings, bounds)
+        Self::place((input.light, input.anchor), || longest(input), settings, bounds)
     }
 
     /// [`Lattice::new`] for strands in GPU memory. `longest_strand` is called only where the extent depends on it.
@@ -114,6 +114,11 @@ impl Lattice {
     pub fn wrapped(&self, cell: IVec3) -> [usize; 3] {
         cell.to_array().map(|c| c.rem_euclid(self.resolution as i32) as usize)
     }
+}
+
+/// The longest strand that casts the shadow, metres.
+fn longest(input: &ShadowInput) -> f32 {
+    input.projected.map_or_else(|| longest_strand(input.strands), |projected| projected.longest_strand)
 }
 
 /// The largest sum of segment lengths of a strand, metres. Strands that are not finite are ignored.

@@ -18,6 +18,7 @@ mod grid;
 mod lattice;
 mod layout;
 mod lookup;
+mod projected;
 pub mod published;
 pub mod reference;
 mod samples;
@@ -65,7 +66,7 @@ pub(super) static METHOD: Method = Method {
             && settings.voxel_map.deposit == VoxelDeposit::PointCount
     },
     cpu: || Box::new(VoxelShadow::default()),
-    gpu: |gpu| Ok(Box::new(GpuVoxelShadow::new(gpu)?)),
+    gpu: |gpu, projected| Ok(Box::new(GpuVoxelShadow::new(gpu, projected)?)),
     shaders: GpuVoxelShadow::shaders,
 };
 

@@ -122,6 +122,7 @@ mod tests {
             light,
             anchor: Vec3::Y,
             maps: 1,
+            projected: None,
         };
         let mut settings = ShadowSettings::default();
         settings.voxel_map.resolution = 32;

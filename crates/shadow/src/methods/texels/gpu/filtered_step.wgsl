@@ -18,8 +18,9 @@ fn normal(x: f32) -> f32 {
     return select(half, 1.0 - half, x > 0.0);
 }
 
-fn put_step(by_row: bool, major: i32, minor: f32, depth: f32, length: f32) {
-    let weight = u32(length * WEIGHT_ONE + 0.5);
+fn put_step(by_row: bool, major: i32, minor: f32, depth: f32, length: f32, width: f32) {
+    let all = length * width * WEIGHT_ONE;
+    let weight = u32(all + 0.5);
     let filtered = texels.prefiltered != 0u;
     let gaussian = texels.prefiltered == 2u;
     let deviation = texels.line_deviation * length;
@@ -27,13 +28,13 @@ fn put_step(by_row: bool, major: i32, minor: f32, depth: f32, length: f32) {
     let count = select(select(1u, 2u, filtered), u32(ceil(2.0 * reach)) + 1u, gaussian);
     let at = minor - reach;
     let low = floor(at);
-    let second = u32(length * WEIGHT_ONE * (at - low) + 0.5);
+    let second = u32(all * (at - low) + 0.5);
     var before = 0u;
     for (var k = 1u; k <= count; k++) {
         var until = weight;
         if (k < count) {
             let part = normal((low + f32(k) - minor) / deviation);
-            until = select(weight - second, u32(length * WEIGHT_ONE * part + 0.5), gaussian);
+            until = select(weight - second, u32(all * part + 0.5), gaussian);
         }
         until = clamp(until, before, weight);
         put(texel_of(by_row, major, i32(low) + i32(k) - 1), depth, until - before);

@@ -27,10 +27,17 @@ struct TexelUniform {
     prefiltered: u32,
     // The standard deviation of the profile, in texels.
     line_deviation: f32,
+    // Of projected strands: distance of the plane, and distance from the light of depth 0, metres.
+    @align(16) plane: f32,
+    start: f32,
     // Of deep opacity maps: the start of each layer relative to the first fragment, and 1 over its thickness.
     @align(16) starts: array<vec4f, 4>,
     per_depth: array<vec4f, 4>,
 }
+
+// Whether strands are projected from a light: then the fourth coordinate of a point is a factor on the width of its strand, and points
+// are projected before they are looked up.
+override PROJECTED: bool = false;
 
 @group(0) @binding(0) var<uniform> texels: TexelUniform;
 

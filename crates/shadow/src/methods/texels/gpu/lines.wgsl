@@ -56,7 +56,14 @@ fn draw(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     let rise = high - low;
     for (var major = centres_below(low.x); major < end; major++) {
         let t = (f32(major) + 0.5 - low.x) * per_texel;
-        let depth = clamp(low.z + t * rise.z, 0.0, 1.0);
-        put_step(by_row, major, low.y + t * rise.y, depth, length);
+        if (PROJECTED) {
+            let part = select(1.0 - t, t, forward);
+            let ray = on_ray(points[first], points[first + 1u], part, texels.plane, texels.start);
+            let along = texel_from_world(vec3f(ray.x, 0.0, 0.0)).z;
+            put_step(by_row, major, low.y + t * rise.y, clamp(along, 0.0, 1.0), length, ray.y);
+        } else {
+            let depth = clamp(low.z + t * rise.z, 0.0, 1.0);
+            put_step(by_row, major, low.y + t * rise.y, depth, length, 1.0);
+        }
     }
 }

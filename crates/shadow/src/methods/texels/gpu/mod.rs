@@ -22,7 +22,7 @@ use super::gaussian::line_deviation;
 use super::{LineProfile, TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
     Buffer, EXP, GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup,
-    fits_device, wgsl,
+    RAY, fits_device, projected_constant, wgsl,
 };
 use crate::methods::texels::map::depth_per_texel;
 use crate::{ShadowError, ShadowReport, ShadowSettings};
@@ -64,6 +64,9 @@ pub(crate) struct TexelUniform {
     merged: u32,
     prefiltered: u32,
     line_deviation: f32,
+    plane: f32,
+    start: f32,
+    unused: [u32; 2],
     starts: [f32; MAX_LAYERS],
     per_depth: [f32; MAX_LAYERS],
 }
@@ -93,8 +96,8 @@ pub(crate) struct Pass {
 impl Pass {
     fn source(&self) -> ShaderSource {
         let last = match self.over {
-            Over::Segments => &[THIN_STEP, LINES][..],
-            Over::FilteredSegments => &[FILTERED_STEP, LINES],
+            Over::Segments => &[THIN_STEP, RAY, LINES][..],
+            Over::FilteredSegments => &[FILTERED_STEP, RAY, LINES],
             Over::Texels => &[EACH_TEXEL],
             Over::Groups => &[],
         };
@@ -162,6 +165,8 @@ pub(crate) fn map_words<M: GpuTexelMethod>(settings: &ShadowSettings) -> u64 {
 #[derive(Debug)]
 pub(crate) struct TexelShadow<M: GpuTexelMethod> {
     kernels: KernelSets,
+    /// Whether strands are projected.
+    projected: bool,
     scratch: Buffer,
     maps: Vec<Map>,
     _method: PhantomData<M>,
@@ -173,6 +178,8 @@ struct Map {
     uniform: wgpu::Buffer,
     words: Buffer,
     list: Option<List>,
+    /// The slot of the map whose list this one uses.
+    list_of: usize,
     /// Words that the last build used.
     used: u64,
     frame: Option<TexelFrame>,
@@ -180,14 +187,16 @@ struct Map {
 }
 
 impl<M: GpuTexelMethod> TexelShadow<M> {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    /// For the strands themselves, or for projected ones.
+    pub(crate) fn new(gpu: &Gpu, projected: bool) -> Result<Self, GpuError> {
         Ok(Self {
             kernels: KernelSets::new(
                 gpu,
                 M::PASSES,
                 &Self::query(),
-                Self::constants(&M::new(&ShadowSettings::default())),
+                Self::constants(&M::new(&ShadowSettings::default()), projected),
             )?,
+            projected,
             scratch: Buffer::new(gpu, "shadow scratch"),
             maps: Vec::new(),
             _method: PhantomData,
@@ -201,13 +210,14 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
     }
 
     /// The constants of all shaders.
-    fn constants(method: &M) -> Vec<Constant> {
+    fn constants(method: &M, projected: bool) -> Vec<Constant> {
         let filter = match method.filter() {
             TexelFilter::Nearest => 0,
             TexelFilter::Bilinear => 1,
             TexelFilter::Jitter => 2,
         };
-        [("FILTER", f64::from(filter))].into_iter().chain(method.constants()).collect()
+        let own = [("FILTER", f64::from(filter)), projected_constant(projected)];
+        own.into_iter().chain(method.constants()).collect()
     }
 
     fn query() -> Vec<ShaderPart> {
@@ -216,15 +226,23 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
 
     fn map(&mut self, gpu: &Gpu, slot: usize) -> &mut Map {
         while self.maps.len() <= slot {
-            self.maps.push(Map::new(gpu, M::LISTS));
+            self.maps.push(Map::new(gpu, self.maps.len(), M::LISTS));
         }
         &mut self.maps[slot]
+    }
+
+    /// The bindings of a query.
+    fn resources<'a>(&'a self, map: &'a Map) -> Vec<(u32, wgpu::BindingResource<'a>)> {
+        let list = self.maps.get(map.list_of).and_then(|map| map.list.as_ref());
+        let list = list.map(|list| (5, list.raw().as_entire_binding()));
+        let own = [(0, map.uniform.as_entire_binding()), (3, map.words.raw().as_entire_binding())];
+        own.into_iter().chain(list).collect()
     }
 }
 
 impl Map {
     /// An empty map: everything is lit.
-    fn new(gpu: &Gpu, lists: bool) -> Self {
+    fn new(gpu: &Gpu, slot: usize, lists: bool) -> Self {
         Self {
             uniform: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("texels"),
@@ -234,17 +252,11 @@ impl Map {
             }),
             words: Buffer::new(gpu, "shadow map"),
             list: lists.then(|| List::new(gpu)),
+            list_of: slot,
             used: 0,
             frame: None,
             report: ShadowReport::default(),
         }
-    }
-
-    /// The bindings of a query.
-    fn resources(&self) -> Vec<(u32, wgpu::BindingResource<'_>)> {
-        let list = self.list.as_ref().map(|list| (5, list.raw().as_entire_binding()));
-        let map = [(0, self.uniform.as_entire_binding()), (3, self.words.raw().as_entire_binding())];
-        map.into_iter().chain(list).collect()
     }
 }
 
@@ -273,6 +285,9 @@ impl TexelUniform {
             merged: needs.merged,
             prefiltered,
             line_deviation,
+            plane: input.projected.map_or(0.0, |projected| projected.plane),
+            start: input.projected.map_or(0.0, |projected| projected.start),
+            unused: [0; 2],
             starts: needs.starts,
             per_depth: needs.per_depth,
         }
@@ -289,7 +304,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         settings: &ShadowSettings,
     ) -> Result<(), GpuShadowError> {
         // Frees the maps of lights that were removed.
-        self.maps.truncate(input.maps.max(1) as usize);
+        self.maps.truncate(input.slots());
         let method = M::new(settings);
         let frame = TexelFrame::place(
             (input.light, input.anchor),
@@ -310,15 +325,17 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             fits_device(gpu, M::METHOD, 4 * map_words.max(scratch_words))
         };
         if let Err(error) = fits {
-            *self.map(gpu, slot) = Map::new(gpu, M::LISTS);
+            *self.map(gpu, slot) = Map::new(gpu, slot, M::LISTS);
             return Err(error.into());
         }
-        self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method))?;
+        self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method, self.projected))?;
 
         self.scratch.fit(gpu, scratch_words);
         let segments = input.strands.segment_count;
         let uniform = TexelUniform::new(&frame, input, method.profile(), &needs);
+        let list_of = input.projected.map_or(slot, |projected| projected.list_of);
         let map = self.map(gpu, slot);
+        map.list_of = list_of;
         map.words.fit(gpu, map_words);
         map.used = map_words;
         map.frame = Some(frame);
@@ -331,7 +348,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         };
         gpu.upload(&map.uniform, 0, &[uniform]);
         let encoder = commands.encoder();
-        if let Some(list) = &mut map.list {
+        // A map that continues the list of another one adds its fragments to it.
+        if let Some(list) = map.list.as_mut().filter(|_| list_of == slot) {
             let maps = input.maps.max(1);
             let share = Share { method: M::METHOD, limit_bytes, other_bytes: needed_bytes, maps };
             list.begin(gpu, encoder, share, segments);
@@ -342,7 +360,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let map = &self.maps[slot];
         encoder.clear_buffer(map.words.raw(), 0, Some((4 * map_words).max(4)));
         encoder.clear_buffer(self.scratch.raw(), 0, Some((4 * scratch_words).max(4)));
-        let mut resources = map.resources();
+        let mut resources = self.resources(map);
         resources.extend([
             (1, input.strands.points.as_entire_binding()),
             (2, input.strands.segments.as_entire_binding()),
@@ -362,7 +380,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         let Some(map) = self.maps.get(slot) else { return };
-        self.kernels.chosen().lookup.run(gpu, commands, slot, &map.resources(), targets);
+        self.kernels.chosen().lookup.run(gpu, commands, slot, &self.resources(map), targets);
     }
 
     fn columns_size(&self, slot: usize) -> u32 {
@@ -371,14 +389,15 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn columns(
         &mut self,
-        slot: usize,
+        (slot, _): (usize, usize),
         gpu: &Gpu,
         commands: &mut Commands,
         into: &wgpu::TextureView,
     ) -> Option<GpuColumns> {
         let map = self.maps.get(slot)?;
         let frame = map.frame?;
-        self.kernels.chosen().lookup.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
+        let resources = self.resources(map);
+        self.kernels.chosen().lookup.write_columns(gpu, commands, &resources, frame.resolution, into);
         Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
     }
 
@@ -389,8 +408,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn settle(&mut self, gpu: &Gpu, heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {
         let mut again = false;
-        for (map, &head) in self.maps.iter_mut().zip(heads) {
-            let Some(list) = &mut map.list else { break };
+        for (slot, (map, &head)) in self.maps.iter_mut().zip(heads).enumerate() {
+            let Some(list) = map.list.as_mut().filter(|_| map.list_of == slot) else { continue };
             match list.settle(gpu, head) {
                 Ok(None) => {}
                 Ok(Some((needed_bytes, short))) => {
@@ -400,7 +419,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
                     map.report.memory_bytes = map.words.bytes() + list.memory_bytes();
                 }
                 Err(error) => {
-                    *map = Map::new(gpu, M::LISTS);
+                    *map = Map::new(gpu, slot, M::LISTS);
                     return Err(error.into());
                 }
             }

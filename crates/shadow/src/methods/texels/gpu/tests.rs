@@ -25,6 +25,8 @@ fn the_uniform_has_the_layout_of_every_shader() {
         offset_of!(TexelUniform, merged),
         offset_of!(TexelUniform, prefiltered),
         offset_of!(TexelUniform, line_deviation),
+        offset_of!(TexelUniform, plane),
+        offset_of!(TexelUniform, start),
         offset_of!(TexelUniform, starts),
         offset_of!(TexelUniform, per_depth),
         size_of::<TexelUniform>(),

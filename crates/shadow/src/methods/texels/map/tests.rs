@@ -34,6 +34,7 @@ fn same_bits<M: TexelMethod>(settings: &ShadowSettings) {
         light,
         anchor: Vec3::Y,
         maps: 1,
+        projected: None,
     };
     let mut map = TexelMap::<M>::default();
     map.build(&input, settings).expect("fits");

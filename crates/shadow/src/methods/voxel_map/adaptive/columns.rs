@@ -312,6 +312,7 @@ mod tests {
             light: crate::LightFrame::default(),
             anchor: glam::Vec3::ZERO,
             maps: 1,
+            projected: None,
         };
         TexelFrame::new(&input, 64, &crate::Bounds::EMPTY)
     }

@@ -49,8 +49,20 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let count = u32(2.0 * sqrt(d.x * d.x + across)) + 1u;
     let inverse = 1.0 / f32(count);
     // The length across the light, in cells, counts.
-    let counted = voxels.squares.x * (d.x * d.x) + voxels.squares.y * across;
-    let depth = u32(min(voxels.deposit * sqrt(counted) * inverse + 0.5, MAX_PER_SAMPLE));
+    let counted = vec2f(d.x * d.x, across) * voxels.squares;
+    if (PROJECTED) {
+        for (var sample_index = 0u; sample_index < count; sample_index++) {
+            let t = min((f32(sample_index) + 0.5) * inverse, 1.0);
+            let ray = on_ray(points[first], points[first + 1u], t, voxels.plane, voxels.start);
+            let along = window_from_world(vec3f(ray.x, 0.0, 0.0)).x;
+            let p = held(vec3f(along, (start + d * t).yz));
+            // Lengths on the plane are as much longer as widths; lengths along the light are not.
+            let each = voxels.deposit * sqrt(counted.x * (ray.y * ray.y) + counted.y) * inverse;
+            add(vec3u(p), u32(min(each * ray.y + 0.5, MAX_PER_SAMPLE)));
+        }
+        return;
+    }
+    let depth = u32(min(voxels.deposit * sqrt(counted.x + counted.y) * inverse + 0.5, MAX_PER_SAMPLE));
     if (depth == 0u) {
         return;
     }
@@ -68,6 +80,10 @@ fn deposit_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     }
     let p = window_from_world(points[i].xyz);
     if (holds(p)) {
-        add(vec3u(held(p)), u32(min(voxels.deposit + 0.5, MAX_PER_SAMPLE)));
+        var depth = voxels.deposit;
+        if (PROJECTED) {
+            depth *= min(points[i].w, MAX_WIDENING * MAX_WIDENING);
+        }
+        add(vec3u(held(p)), u32(min(depth + 0.5, MAX_PER_SAMPLE)));
     }
 }

@@ -20,12 +20,19 @@ struct VoxelUniform {
     reads: u32,
     // Factors on the squared lengths of a piece of strand along the light and across it.
     squares: vec2f,
+    // Of projected strands: distance of the plane, and distance from the light of depth 0, metres.
+    plane: f32,
+    start: f32,
 }
 
 // How points read cells. Twin of `VoxelFilter`.
 const CENTRED: u32 = 0u;
 const AS_PRINTED: u32 = 1u;
 const CLOSEST: u32 = 2u;
+
+// Whether strands are projected from a light: then the fourth coordinate of a point is a factor on the width of its strand, and points
+// are projected before they are looked up.
+override PROJECTED: bool = false;
 
 @group(0) @binding(0) var<uniform> voxels: VoxelUniform;
 

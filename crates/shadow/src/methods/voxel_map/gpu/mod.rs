@@ -9,7 +9,8 @@ use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, re
 use super::cpu::fixed_point_depth;
 use super::{Lattice, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 use crate::gpu::{
-    Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device, wgsl,
+    Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, RAY, fits_device,
+    projected_constant, wgsl,
 };
 use crate::{ShadowMethod, ShadowReport, ShadowSettings};
 
@@ -39,7 +40,8 @@ struct VoxelUniform {
     points: u32,
     reads: u32,
     squares: [f32; 2],
-    unused: [u32; 2],
+    plane: f32,
+    start: f32,
 }
 
 impl VoxelUniform {
@@ -64,7 +66,8 @@ impl VoxelUniform {
                 VoxelFilter::Closest => 2,
             },
             squares: settings.deposit.squares(),
-            unused: [0; 2],
+            plane: input.projected.map_or(0.0, |projected| projected.plane),
+            start: input.projected.map_or(0.0, |projected| projected.start),
         }
     }
 }
@@ -113,7 +116,7 @@ impl Map {
 }
 
 fn deposit_source() -> ShaderSource {
-    ShaderSource::new(&[FRAME, DEPOSIT])
+    ShaderSource::new(&[FRAME, RAY, DEPOSIT])
 }
 
 fn sum_source() -> ShaderSource {
@@ -121,12 +124,14 @@ fn sum_source() -> ShaderSource {
 }
 
 impl GpuVoxelMap {
-    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, projected: bool) -> Result<Self, GpuError> {
+        let constants = [projected_constant(projected)];
+        let deposit = |entry| Kernel::specialised(gpu, DENSITY_PASS, &deposit_source(), entry, &constants);
         Ok(Self {
-            segments: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_segments")?,
-            points: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_points")?,
+            segments: deposit("deposit_segments")?,
+            points: deposit("deposit_points")?,
             sum: Kernel::new(gpu, SUM_PASS, &sum_source(), "sum_columns")?,
-            lookup: PointLookup::new(gpu, &QUERY, true, &[])?,
+            lookup: PointLookup::new(gpu, &QUERY, true, &constants)?,
             full: Buffer::new(gpu, "full voxels"),
             maps: Vec::new(),
         })
@@ -153,7 +158,7 @@ impl GpuShadow for GpuVoxelMap {
         let lattice = Lattice::place(placed, || input.longest_strand, ours, &input.bounds);
         let cells = u64::from(lattice.resolution).pow(3);
         // Frees the maps of lights that were removed.
-        self.maps.truncate(input.maps.max(1) as usize);
+        self.maps.truncate(input.slots());
         while self.maps.len() <= slot {
             self.maps.push(Map::new(gpu));
         }
@@ -209,7 +214,7 @@ impl GpuShadow for GpuVoxelMap {
 
     fn columns(
         &mut self,
-        slot: usize,
+        (slot, _): (usize, usize),
         gpu: &Gpu,
         commands: &mut Commands,
         into: &wgpu::TextureView,
@@ -262,6 +267,8 @@ mod tests {
             offset_of!(VoxelUniform, points),
             offset_of!(VoxelUniform, reads),
             offset_of!(VoxelUniform, squares),
+            offset_of!(VoxelUniform, plane),
+            offset_of!(VoxelUniform, start),
             size_of::<VoxelUniform>(),
         ];
         for (label, source) in GpuVoxelMap::shaders() {
