@@ -39,15 +39,19 @@ pub(crate) fn edit(ui: &Ui, view: View, lights: &mut [Light], selected: &mut usi
         if let Some(pointer) = dragged_to(ui, &lamp, at) {
             light.position = view.at_depth_of(pointer, light.position);
         }
-        if lamp.hovered() || lamp.dragged() {
-            let scroll = ui.input(|input| input.smooth_scroll_delta.y);
+        let scroll = ui.input(|input| input.smooth_scroll_delta.y);
+        if scroll != 0.0 && (lamp.hovered() || lamp.dragged()) {
             light.position = view.eye + (light.position - view.eye) * (scroll * PER_POINT).exp();
         }
         let color = if chosen { theme::ACCENT } else { theme::BRIGHT };
         rays(&painter, at, color);
         dot(&painter, lamp, at, "Drag to move the light across the view. Turn the wheel to move it away.");
         if *light != before {
-            *light = if light.position.is_finite() && light.direction.is_finite() { light.clamped() } else { before };
+            *light = if light.position.is_finite() && light.direction.is_finite() {
+                light.clamped()
+            } else {
+                before
+            };
         }
     }
 }

@@ -57,12 +57,7 @@ impl Panel for LightPanel {
 
 /// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back, `head` is the place of the
 /// head.
-fn list(
-    ui: &mut Ui,
-    lights: &mut Vec<Light>,
-    selected: &mut usize,
-    (axes, head): ([Vec3; 3], Option<Vec3>),
-) {
+fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, (axes, head): ([Vec3; 3], Option<Vec3>)) {
     ui.horizontal_wrapped(|ui| {
         for (i, light) in lights.iter().enumerate() {
             ui.selectable_value(selected, i, &light.name).hover_tooltip("Shows the controls of this light.");
@@ -105,7 +100,12 @@ fn list(
         LightKind::Spot => {
             settings(ui, &["position"], light, &default);
             direction_of(ui, light, &default);
-            settings(ui, &["inner_angle", "outer_angle", "radius", "intensity", "color", "specular"], light, &default);
+            settings(
+                ui,
+                &["inner_angle", "outer_angle", "radius", "intensity", "color", "specular"],
+                light,
+                &default,
+            );
         }
         LightKind::Point => {
             settings(ui, &["position", "radius", "intensity", "color", "specular"], light, &default);

@@ -154,7 +154,10 @@ fn a_lamp_is_dragged_and_moved_away_and_its_cone_is_turned_and_widened() {
     let way = moved.position - lit.lights[0].position;
     assert!(way.length() > 0.005 && moved.direction == lit.lights[0].direction.normalize(), "{way}");
     let to_lamp = moved.position - view_before.eye;
-    assert!(way.dot(view_before.ray(view_before.place.center())).abs() < 0.05 * way.length(), "across the view");
+    assert!(
+        way.dot(view_before.ray(view_before.place.center())).abs() < 0.05 * way.length(),
+        "across the view"
+    );
     assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "one drag is one step");
     let camera = project(&harness).camera;
     let lamp = at(&harness, "Light 1 in the image");

@@ -54,6 +54,10 @@ fn numbers_vectors_and_integers_follow_tracks_and_nothing_else_changes() {
             keys: vec![lit(0.0, [1.0, -1.0, 0.0]), lit(2.0, [0.0, -1.0, 1.0])],
             ..Track::new("lights/0/direction")
         },
+        Track {
+            keys: vec![lit(0.0, [0.0, 2.0, 1.0]), lit(2.0, [1.0, 2.0, 0.0])],
+            ..Track::new("lights/1/position")
+        },
         track("lights/9/intensity", &[(0.0, 9.0)]),
         track("hair/groom/seed", &[(0.0, 9.0)]),
         Track { muted: true, ..track("camera/elevation", &[(0.0, 1.0)]) },
@@ -63,7 +67,10 @@ fn numbers_vectors_and_integers_follow_tracks_and_nothing_else_changes() {
     assert_eq!(at.shadow.occupancy_maps.resolution, 192);
     let way = Vec3::new(0.5, -1.0, 0.5);
     assert!((at.lights[0].direction - way).length() < 1e-6, "{}", at.lights[0].direction);
+    let place = Vec3::new(0.5, 2.0, 0.5);
+    assert!((at.lights[1].position - place).length() < 1e-6, "{}", at.lights[1].position);
     let mut back = at.clone();
+    back.lights[1].position = project.lights[1].position;
     back.camera.distance = project.camera.distance;
     back.shadow.occupancy_maps.resolution = project.shadow.occupancy_maps.resolution;
     back.lights[0].direction = project.lights[0].direction;

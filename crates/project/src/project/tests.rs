@@ -2,6 +2,7 @@ use std::path::Path;
 
 use glam::Vec3;
 use lovelock_groom::HairShading;
+use lovelock_picture::LightKind;
 use proptest::prelude::*;
 
 use super::*;
@@ -50,6 +51,29 @@ fn missing_fields_take_their_defaults() {
     assert_eq!(problems, []);
     assert_eq!(project.motion.speed, 0.5);
     assert_eq!(project.lights, Project::default().lights);
+}
+
+#[test]
+fn lights_of_files_before_lamps_are_directional_and_lamps_are_read_back() {
+    let text = "(version: 1, lights: [(name: \"Key\", direction: (0.0, -1.0, 0.5), intensity: 2.0)])";
+    let (mut project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!(problems, []);
+    let light = &project.lights[0];
+    assert_eq!((light.kind, light.intensity, light.stands()), (LightKind::Directional, 2.0, false));
+    for kind in [LightKind::Spot, LightKind::Point] {
+        let light = &mut project.lights[0];
+        (light.kind, light.position, light.radius) = (kind, Vec3::new(0.25, 1.75, -0.5), 0.02);
+        (light.inner_angle, light.outer_angle) = (0.25, 1.5);
+        assert_eq!(round_trip(&project), (project.clone(), Vec::new()));
+    }
+    // Out of range, and a cone whose inner part is wider than it.
+    let light = &mut project.lights[0];
+    (light.position, light.radius) = (Vec3::new(1e9, f32::NAN, 0.0), -1.0);
+    (light.inner_angle, light.outer_angle) = (2.0, 1.0);
+    let (clean, problems) = project.sanitised();
+    let light = &clean.lights[0];
+    assert_eq!((light.position.x, light.radius, light.inner_angle), (1000.0, 0.001, 1.0));
+    assert!(light.position.is_finite() && !problems.is_empty(), "{problems:?}");
 }
 
 #[test]

@@ -323,7 +323,9 @@ fn a_light_that_begins_to_stand_somewhere_shines_as_it_did() {
     assert!((light.way_to(head) - before.direction.normalize_or_zero()).length() < 1e-5);
     let brightness = light.intensity * light.share_at(head);
     assert!((brightness - before.intensity).abs() < 1e-3, "{brightness} for {}", before.intensity);
-    for label in ["Position x", "Position y", "Position z", "Azimuth", "Inner angle", "Outer angle", "Light radius"] {
+    for label in
+        ["Position x", "Position y", "Position z", "Azimuth", "Inner angle", "Outer angle", "Light radius"]
+    {
         assert!(labels(&harness).contains(&label.to_owned()), "{label} of {:?}", labels(&harness));
     }
     for (label, rect) in controls(&harness, Role::SpinButton) {
@@ -331,7 +333,10 @@ fn a_light_that_begins_to_stand_somewhere_shines_as_it_did() {
         assert!(rect.right() <= crate::window::testing::WIDTH, "{label} at {rect:?}");
     }
     choose(&mut harness, "Light from", "Point");
-    assert!(!labels(&harness).contains(&"Azimuth".to_owned()) && !labels(&harness).contains(&"Inner angle".to_owned()));
+    assert!(
+        !labels(&harness).contains(&"Azimuth".to_owned())
+            && !labels(&harness).contains(&"Inner angle".to_owned())
+    );
     let moved = harness.state().state.project.lights[0].position;
     assert_eq!(moved, light.position, "it stays where it stands");
     choose(&mut harness, "Light from", "Directional");

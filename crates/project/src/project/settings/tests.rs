@@ -131,6 +131,12 @@ fn settings_are_set_by_path() {
     project.set("simulation.wind.speed", "3").expect("a speed");
     project.set("lights.1.enabled", "off").expect("a switch");
     project.set("shadow.method", "exact").expect("a method");
+    project.set("lights.0.kind", "spot").expect("a kind");
+    project.set("lights.0.position", "0.5, 2, -1").expect("a place");
+    assert!(project.lights[0].stands());
+    assert_eq!(project.lights[0].position.to_array(), [0.5, 2.0, -1.0]);
+    let error = project.set("lights.0.kind", "candle").expect_err("no such kind").to_string();
+    assert!(error.contains("directional, spot, point"), "{error}");
     assert_eq!(project.simulation.wind.speed, 3.0);
     assert!(!project.lights[1].enabled);
     assert_eq!(project.setting("shadow.method").map(|(_, value)| value), Some(Value::Choice("exact")));
