@@ -10,7 +10,7 @@ use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
     Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, MapValue, RayStructure,
-    RenderError, ValueRenderer,
+    RenderError, ValueRenderer, light_frame,
 };
 use lovelock_session::render_thread::Adapter;
 use lovelock_session::snapshot::FrameSnapshot;

@@ -47,8 +47,15 @@ fn keeps(mut scene: Scene) {
         ("brightness of a light", |scene| scene.lights[0].intensity *= 0.7, [true, true]),
         ("another light", |scene| scene.lights.push(Light::default()), [false, false]),
         ("a light turns", |scene| scene.lights[0].direction.x += 0.3, [false, false]),
-        ("a lamp", |scene| scene.lights[0].kind = LightKind::Spot, [false, false]),
-        ("a lamp moves", |scene| scene.lights[0].position.x += 0.3, [false, false]),
+        (
+            "a lamp",
+            |scene| {
+                scene.lights[0].kind = LightKind::Spot;
+                scene.lights[0].stand_before(Vec3::ZERO, 0.7);
+            },
+            [false, false],
+        ),
+        ("a lamp moves", |scene| scene.lights[0].position.x += 0.1, [false, false]),
         ("a wider cone", |scene| scene.lights[0].outer_angle += 0.4, [false, false]),
         ("a softer cone", |scene| scene.lights[0].inner_angle *= 0.5, [true, true]),
         (

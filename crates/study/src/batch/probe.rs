@@ -4,7 +4,7 @@ use glam::Vec3;
 use lovelock_panes::probe::{ProbeCurve, ProbeMark};
 use lovelock_render::{FrameInput, RenderError, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
 use lovelock_shadow::{
-    CONVERGED_CHANGE, CpuShadow, LightFrame, RayMarkKind, ShadowError, ShadowInput, converged, cpu_shadow,
+    CONVERGED_CHANGE, LightFrame, RayMarkKind, ShadowError, ShadowInput, converged, cpu_shadow,
 };
 
 use super::truth::Points;
@@ -83,7 +83,8 @@ impl Probe {
         let margin = 0.05 * (high - low) + 1e-3;
         let depth = |i: usize| low - margin + (high - low + 2.0 * margin) * i as f32 / (PLACES - 1) as f32;
         let depths: Vec<f32> = (0..PLACES).map(depth).collect();
-        let places = depths.iter().map(|depth| hit.position + *depth * light.x).collect();
+        let way = light.way_at(hit.position);
+        let places = depths.iter().map(|depth| hit.position + *depth * way).collect();
         let first = input.style.strands.first_point.get(hit.strand).copied().unwrap_or(0);
         let report = ProbeReport {
             pixel,

@@ -8,7 +8,7 @@ use glam::Vec3;
 use lovelock_metrics::errors;
 use lovelock_render::{ShadowMethod, ShadowSettings, TexelFilter};
 use lovelock_shadow::{
-    CONVERGED_CHANGE, CpuShadow, MapKind, ShadowError, ShadowInput, ShadowReport, converged, cpu_shadow,
+    CONVERGED_CHANGE, CpuShadow, MapKind, ShadowError, ShadowInput, converged, cpu_shadow,
 };
 
 use super::hair::LitHair;
@@ -137,14 +137,22 @@ pub(super) fn converge_at(
 /// Texels along each edge of the ground truth at points, at most. Its difference from a map of half as many is reported.
 const FINEST: u32 = 2048;
 
+/// The map of any method.
+type AnyMap = Box<dyn CpuShadow + Send + Sync>;
+
 /// The ground truth at points.
-#[derive(Debug)]
 pub(super) struct Points {
-    report: ShadowReport,
+    pub map: AnyMap,
     pub transmittance: Vec<f32>,
     /// Points with few fragments before them.
     pub first: Vec<usize>,
     pub facts: PointTruth,
+}
+
+impl std::fmt::Debug for Points {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Points").field("facts", &self.facts).finish_non_exhaustive()
+    }
 }
 
 impl Points {
@@ -161,19 +169,15 @@ impl Points {
         let before = map.fragments_before(&all).unwrap_or_default();
         let first =
             before.iter().enumerate().filter(|(_, count)| **count < FIRST).map(|(at, _)| at).collect();
-        let report = map.report();
-        let facts = PointTruth { resolution: edge, memory_bytes: report.memory_bytes, change };
-        Ok(Self { report, transmittance, first, facts })
+        let facts = PointTruth { resolution: edge, memory_bytes: map.report().memory_bytes, change };
+        Ok(Self { map, transmittance, first, facts })
     }
 
     /// Whether `settings` give the map of this ground truth, which must not be compared with itself.
     pub(super) fn is_made_by(&self, settings: &ShadowSettings, cell_size: Option<f32>) -> bool {
-        settings.method == ShadowMethod::Exact && cell_size == Some(self.report.cell_size)
+        settings.method == ShadowMethod::Exact && cell_size == Some(self.map.report().cell_size)
     }
 }
-
-/// The map of any method.
-type AnyMap = Box<dyn CpuShadow + Send + Sync>;
 
 /// The exact method with at most that many texels along the edge: its map, the transmittance at every strand point, and the actual
 /// number of texels.

@@ -41,9 +41,9 @@ fn published_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     put_part(i, 0u, ambient(vec3f(0.0, 0.3, 0.0)) * color * 0.22);
     for (var k = 0u; k < LIGHTS; k++) {
         let light = frame.lights[k];
-        let from = arriving(k, p);
-        let l = from.toward;
-        let lit = f32((light_left[i] >> (8u * k)) & 255u) / 255.0 * (body_light_on_strand(k, p) * from.share);
+        let source = arriving(k, p);
+        let l = source.toward;
+        let lit = f32((light_left[i] >> (8u * k)) & 255u) / 255.0 * (body_light_on_strand(k, p) * source.share);
         let matt = clusters.matt * sine_of(dot(tangent, l));
         let first = clusters.primary
             * published_highlight(shifted_tangent(tangent, normal, PRIMARY_SHIFT), l, v, PRIMARY_EXPONENT);

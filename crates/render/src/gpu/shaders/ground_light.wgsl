@@ -4,8 +4,8 @@ const UP: vec3f = vec3f(0.0, 1.0, 0.0);
 
 // The unshadowed light `k` on the ground.
 fn share_of(k: u32, p: vec3f) -> vec3f {
-    let from = arriving(k, p);
-    return frame.lights[k].radiance * (max(from.toward.y, 0.0) * from.share);
+    let source = arriving(k, p);
+    return frame.lights[k].radiance * (max(source.toward.y, 0.0) * source.share);
 }
 
 // The fraction of it that arrives.

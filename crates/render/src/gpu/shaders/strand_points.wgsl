@@ -121,9 +121,9 @@ fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
 // The light that a point reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
-    let from = arriving(k, point.p);
-    let body = body_light_on_strand(k, point.p) * from.share;
-    let toward = from.toward;
+    let source = arriving(k, point.p);
+    let body = body_light_on_strand(k, point.p) * source.share;
+    let toward = source.toward;
     let specular = light.specular;
     if (SHADING == FIBRE) {
         return light.radiance * body * scattered(point.scatter, point.t, toward, point.v, lit, specular, point.turn);

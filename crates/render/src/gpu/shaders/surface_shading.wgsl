@@ -18,8 +18,8 @@ const WRAP: vec3f = vec3f(0.12, 0.09, 0.07);
 // The light that a position reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     let light = frame.lights[k];
-    let from = arriving(k, place.world);
-    let l = from.toward;
+    let source = arriving(k, place.world);
+    let l = source.toward;
     let facing = dot(place.n, l);
     // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
     let wrapped = clamp((facing + WRAP) / (1.0 + WRAP), vec3f(0.0), vec3f(1.0));
@@ -27,7 +27,7 @@ fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     if (wrapped.r > 0.0) {
         // At grazing angles the flat triangles of a round limb shadow each other.
         let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
-        let lit = past_body(k, above, place.n, 0.003, SURFACE_TAPS) * left * from.share;
+        let lit = past_body(k, above, place.n, 0.003, SURFACE_TAPS) * left * source.share;
         let h = normalize(l + place.v);
         let gloss = 0.014 * place.skin * light.specular
             * (pow(max(dot(place.n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(place.n, place.v), 0.0), 4.0));
