@@ -236,9 +236,10 @@ mod tests {
             let at = |i: usize| [0.001 + 1e-5 * (i % 100) as f32, -0.0045, 1e-5 * i as f32 - 0.002][axis];
             (0..400).map(at).collect::<Vec<f32>>()
         });
+        let sun = Light::default();
         let logarithm = |degrees: f32| {
             let direction = Quat::from_axis_angle(Vec3::Z, degrees.to_radians()) * first;
-            let (found, facts) = converge_at(&turned(&input, direction), &settings, [&x, &y, &z]);
+            let (found, facts) = converge_at(&turned(&input, &sun, direction), &settings, [&x, &y, &z]);
             assert!(facts.converged, "{facts:?}");
             let found = found.expect("fits");
             found.iter().map(|t| -f64::from(*t).ln()).sum::<f64>() / found.len() as f64

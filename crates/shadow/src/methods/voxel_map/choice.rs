@@ -136,12 +136,12 @@ impl GpuShadow for GpuVoxelShadow {
 
     fn columns(
         &mut self,
-        slot: usize,
+        map: (usize, usize),
         gpu: &Gpu,
         commands: &mut Commands,
         into: &wgpu::TextureView,
     ) -> Option<GpuColumns> {
-        self.map_mut().columns(slot, gpu, commands, into)
+        self.map_mut().columns(map, gpu, commands, into)
     }
 
     fn list(&self, slot: usize) -> Option<GpuList<'_>> {
