@@ -22,7 +22,7 @@ pub use comparison::{Comparison, SlowerStage};
 pub use locks::{LockFigures, LockReport, LockScene, Spread};
 pub use occupancy_order::{OrderReport, OrderTimes};
 pub use report::{BenchReport, SceneReport, StageReport};
-pub use scaling::{ScalingReport, ThreadRun};
+pub use report::{ScalingReport, ThreadRun};
 pub use scenes::BenchScene;
 pub use voxel_map::{VoxelMapReport, VoxelMapRow};
 pub use yardstick::{Bound, Yardstick};

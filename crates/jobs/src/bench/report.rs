@@ -12,7 +12,6 @@ use super::locks::LockReport;
 use super::memory::peak_memory_bytes;
 use super::occupancy_order::OrderReport;
 use super::published::{ANIMATION, Published};
-use super::scaling::ScalingReport;
 use super::scenes::BenchScene;
 use super::voxel_map::VoxelMapReport;
 use super::yardstick::{Bound, Yardstick};
@@ -38,6 +37,26 @@ pub struct BenchReport {
     pub comparison: Option<Comparison>,
     /// Notes, such as skipped backends, as sentences.
     pub notes: Vec<String>,
+}
+
+/// A scene with several numbers of threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ScalingReport {
+    /// Id of the scene.
+    pub scene: String,
+    /// The runs, in the order of the request. Speed-ups are relative to the first.
+    pub runs: Vec<ThreadRun>,
+}
+
+/// One scene with one number of threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ThreadRun {
+    /// How fast that many threads of the machine are.
+    pub yardstick: Yardstick,
+    /// The scene, with its number of threads.
+    pub scene: SceneReport,
+    /// The time of each stage of the first run divided by that of this one, in the order of the scene's stages; null where one of them is 0.
+    pub speed_up: Vec<Option<f64>>,
 }
 
 /// One scene on one backend.

@@ -7,31 +7,10 @@ use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_render::Renderer;
 use rayon::ThreadPoolBuilder;
-use serde::Serialize;
 
-use super::report::SceneReport;
+use super::report::{ScalingReport, ThreadRun};
 use super::yardstick::{Bound, Yardstick};
 use super::{BenchRequest, Prepared};
-
-/// A scene with several numbers of threads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ScalingReport {
-    /// Id of the scene.
-    pub scene: String,
-    /// The runs, in the order of the request. Speed-ups are relative to the first.
-    pub runs: Vec<ThreadRun>,
-}
-
-/// One scene with one number of threads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ThreadRun {
-    /// How fast that many threads of the machine are.
-    pub yardstick: Yardstick,
-    /// The scene, with its number of threads.
-    pub scene: SceneReport,
-    /// The time of each stage of the first run divided by that of this one, in the order of the scene's stages; null where one of them is 0.
-    pub speed_up: Vec<Option<f64>>,
-}
 
 /// Measures every scene of the request with every number of threads, on the CPU.
 ///

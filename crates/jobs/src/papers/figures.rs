@@ -1,9 +1,8 @@
-//! The list of figures.
+//! What a figure of a paper is.
 
 use lovelock_project::error::ProjectError;
 
 use super::studio::Studio;
-use super::{bertails, mertens, sintorn, xu};
 
 /// A paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,9 +48,4 @@ pub(super) struct Figure {
     /// What differs here; empty if nothing does.
     pub differs: &'static str,
     pub make: fn(&mut Studio<'_>) -> Result<(), ProjectError>,
-}
-
-/// Every figure, in the order of the page.
-pub(super) fn all() -> impl Iterator<Item = &'static Figure> {
-    [bertails::FIGURES, mertens::FIGURES, sintorn::FIGURES, xu::FIGURES].into_iter().flatten()
 }

@@ -1,44 +1,21 @@
 //! Makes the figures, one after the other.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 
 use lovelock_project::error::ProjectError;
-use lovelock_render::Backend;
 use lovelock_session::machine::machine;
 use lovelock_session::prepare::open_renderer;
 use lovelock_session::progress::{Progress, report_progress};
 
-use super::figures::{Figure, all};
+use super::figures::Figure;
 use super::folder::Folder;
 use super::report::{FigureReport, PapersReport};
-use super::studio::Studio;
+use super::studio::{PapersRequest, Studio};
+use super::{bertails, mertens, sintorn, xu};
 
-/// What to make.
-#[derive(Clone, Debug)]
-pub struct PapersRequest {
-    /// The folder of the gallery.
-    pub out: PathBuf,
-    /// Names of figures, or beginnings of names; all figures if empty.
-    pub figures: Vec<String>,
-    /// Width and height of each image, pixels.
-    pub size: (u32, u32),
-    /// Frames of each measured time.
-    pub frames: u32,
-    /// What draws.
-    pub backend: Backend,
-}
-
-impl Default for PapersRequest {
-    fn default() -> Self {
-        Self {
-            out: PathBuf::from("papers"),
-            figures: Vec::new(),
-            size: (480, 480),
-            frames: 9,
-            backend: Backend::Auto,
-        }
-    }
+/// Every figure, in the order of the page.
+fn all() -> impl Iterator<Item = &'static Figure> {
+    [bertails::FIGURES, mertens::FIGURES, sintorn::FIGURES, xu::FIGURES].into_iter().flatten()
 }
 
 /// The names of all figures, in order.

@@ -9,7 +9,7 @@ use lovelock_metrics::{Image, errors};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
-use lovelock_render::{FrameStats, Picture, Renderer, ShadowMethod, ShadowSettings};
+use lovelock_render::{Backend, FrameStats, Picture, Renderer, ShadowMethod, ShadowSettings};
 use lovelock_session::dance::Dance;
 use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::snapshot::FrameSnapshot;
@@ -18,7 +18,33 @@ use lovelock_study::batch::{Hair, lights};
 
 use super::folder::Folder;
 use super::report::{CheckReport, CurveReport, FigureReport, PictureReport, PlotReport, TableReport};
-use super::run::PapersRequest;
+
+/// What to make.
+#[derive(Clone, Debug)]
+pub struct PapersRequest {
+    /// The folder of the gallery.
+    pub out: PathBuf,
+    /// Names of figures, or beginnings of names; all figures if empty.
+    pub figures: Vec<String>,
+    /// Width and height of each image, pixels.
+    pub size: (u32, u32),
+    /// Frames of each measured time.
+    pub frames: u32,
+    /// What draws.
+    pub backend: Backend,
+}
+
+impl Default for PapersRequest {
+    fn default() -> Self {
+        Self {
+            out: PathBuf::from("papers"),
+            figures: Vec::new(),
+            size: (480, 480),
+            frames: 9,
+            backend: Backend::Auto,
+        }
+    }
+}
 
 /// Frames per second of the dances.
 pub(super) const FPS: f64 = 30.0;
