@@ -201,15 +201,16 @@ mod tests {
         let request = BenchRequest { frames: 2, size: Some((160, 120)), ..BenchRequest::default() };
         let report = measure(BenchScene::Smooth, &project, &loaded, &mut renderer, &request).expect("images");
         assert_eq!((report.frames, report.segments, report.width), (2, 6000, 160));
+        let once = BenchRequest { frames: 1, ..request };
         let mut flip_of = |modes| {
-            let of = compare(modes, BenchScene::Smooth, &project, &loaded, &mut renderer, &request);
+            let of = compare(modes, BenchScene::Smooth, &project, &loaded, &mut renderer, &once);
             of.expect("images").flip
         };
         let average = flip_of([Transparency::Exact, Transparency::WeightedAverage]);
         let same = flip_of([Transparency::Exact; 2]);
         println!("occupancy order {}, weighted average {average}, the same mode {same}", report.flip);
-        // Measured: 0.00 and 0.00.
-        assert!((0.0..0.0).contains(&report.flip), "{report:?}");
+        // Measured: 0.00168 and 0.00685.
+        assert!((0.0015..0.0019).contains(&report.flip), "{report:?}");
         assert!(average > 3.0 * report.flip, "control, a mode without order: {average}");
         assert_eq!(same, 0.0, "control: the images are of one frame");
         assert!(report.exact.picture_ms > report.exact.draw_ms, "{report:?}");
