@@ -62,14 +62,17 @@ impl StandingUniform {
         let [cone_scale, cone_offset] = if light.kind == LightKind::Spot { light.cone() } else { [0.0, 1.0] };
         let away = center - light.position;
         let far = 1.01 * (away.length() + radius);
-        let depth = [0.5 * light.radius.max(1e-3), far.max(1.0)];
+        let before = 0.5 * light.radius.max(1e-3);
+        let far = far.max(1.0);
         let mut shadow_from_world = [Mat4::ZERO; SIDES];
         let (tangent, body_sides) = if let Some((axis, tangent)) = one_view(light, away, radius) {
-            shadow_from_world[0] = view(light.position, looking(axis), tangent, depth);
+            // Depth has few digits far from a near end that is near the light.
+            let near = before.max(0.99 * (axis.dot(away) - radius));
+            shadow_from_world[0] = view(light.position, looking(axis), tangent, [near, far]);
             (tangent, 1)
         } else {
             for (side, matrix) in shadow_from_world.iter_mut().enumerate() {
-                *matrix = view(light.position, axes_of_side(axes, side), 1.0, depth);
+                *matrix = view(light.position, axes_of_side(axes, side), 1.0, [before, far]);
             }
             (1.0, SIDES as u32)
         };

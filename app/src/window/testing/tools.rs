@@ -152,7 +152,9 @@ fn a_lamp_is_dragged_and_moved_away_and_its_cone_is_turned_and_widened() {
     drag_over(&mut harness, lamp, lamp + egui::vec2(24.0, 0.0));
     let moved = light(&harness);
     let way = moved.position - lit.lights[0].position;
-    assert!(way.length() > 0.005 && moved.direction == lit.lights[0].direction.normalize_or_zero(), "{way}");
+    assert!(way.length() > 0.005, "{way}");
+    let turned = moved.direction.angle_between(lit.lights[0].direction);
+    assert!(turned < 1e-3, "its direction stays: {} {turned}", moved.direction);
     let to_lamp = moved.position - view_before.eye;
     assert!(
         way.dot(view_before.ray(view_before.place.center())).abs() < 0.05 * way.length(),

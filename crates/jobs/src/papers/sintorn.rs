@@ -249,8 +249,7 @@ const STRAY: f32 = 0.6;
 fn visibility(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let project = smooth();
     let moment = studio.moment(&project, 40)?;
-    let marks = studio.deepest_ray(&project, &moment)?;
-    let ray: Vec<(f32, f32)> = marks.iter().map(|mark| (mark.start, mark.optical_depth)).collect();
+    let ray = studio.rays(&project, &moment)?.into_iter().next().unwrap_or_default();
     let (near, far) =
         ray.iter().fold((f32::MAX, f32::MIN), |(near, far), (z, _)| (near.min(*z), far.max(*z)));
     let mut stray = ray.clone();

@@ -232,17 +232,22 @@ impl<'a> Studio<'a> {
         self.measure(project, &exact(project), moment)
     }
 
-    /// The fragments along the light through the strand point at which most of them lie behind each other, nearest to the light first.
-    pub(super) fn deepest_ray(
+    /// The fragments (depth, metres, and optical depth) along the light through every 197th strand point, nearest to the light first. The
+    /// ray with most fragments is first.
+    pub(super) fn rays(
         &mut self,
         project: &Project,
         moment: &Moment,
-    ) -> Result<Vec<RayMark>, ProjectError> {
-        report_progress(self.progress, Progress::Loading { what: format!("{}: a ray", self.figure) })?;
+    ) -> Result<Vec<Vec<(f32, f32)>>, ProjectError> {
+        report_progress(self.progress, Progress::Loading { what: format!("{}: rays", self.figure) })?;
         let map = built(project, &exact(project), moment)?;
         let strands = &moment.hair.strands;
-        let rays = (0..strands.points()).step_by(197).map(|at| map.along_ray(strands.point(at)).marks);
-        Ok(rays.max_by_key(Vec::len).unwrap_or_default())
+        let points = (0..strands.points()).step_by(197);
+        let fragment = |mark: &RayMark| (mark.start, mark.optical_depth);
+        let mut rays: Vec<Vec<_>> =
+            points.map(|at| map.along_ray(strands.point(at)).marks.iter().map(fragment).collect()).collect();
+        rays.sort_by_key(|ray| std::cmp::Reverse(ray.len()));
+        Ok(rays)
     }
 
     /// Puts curves into the figure; the first is the truth.

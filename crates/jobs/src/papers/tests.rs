@@ -70,7 +70,7 @@ fn wrong_requests_are_refused_before_anything_is_written() {
         assert!(!out.exists());
     };
     refuse(&request(&out, &["wig"]), "must be one of bertails-1");
-    refuse(&PapersRequest { size: (0, 48), ..request(&out, &["sintorn-5"]) }, "size");
+    refuse(&PapersRequest { size: (0, 48), ..request(&out, &["sintorn-5"]) }, "0x48");
     let file = dir.path().join("file");
     std::fs::write(&file, b"x").expect("a file");
     refuse(&request(&file, &["sintorn-5"]), "must be the folder of the gallery");

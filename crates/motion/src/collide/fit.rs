@@ -59,9 +59,9 @@ fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
     let (low, high) = (percentile(&part.points, 0.05), percentile(&part.points, 0.95));
     let fitted = if scalp.len() < 24 { None } else { skull(&scalp) };
     // Heads of animals and machines: an ellipsoid around everything.
-    let Some((centre, half)) =
-        fitted.filter(|(c, half)| half.cmpge(0.25 * (high - low)).all() && part.contains(*c))
-    else {
+    // A scalp that is a sheet, such as a lawn, lies on a ball that is larger than all of the part.
+    let fits = |half: Vec3| half.cmpge(0.25 * (high - low)).all() && half.cmple(high - low).all();
+    let Some((centre, half)) = fitted.filter(|(c, half)| fits(*half) && part.contains(*c)) else {
         return vec![("head".into(), ellipsoid(0.5 * (low + high), 0.5 * (high - low)), SKULL_INSET)];
     };
     let mut shapes = vec![(SKULL.into(), ellipsoid(centre, half), SKULL_INSET)];

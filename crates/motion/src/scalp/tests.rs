@@ -217,7 +217,7 @@ fn fur_grows_on_the_whole_skin_in_its_own_size() {
     let masked = fitted_scalp(&body, &rest, &fit);
     assert!(masked.head.scalp == body.mesh.scalp && masked.body_mask.is_empty());
     let mut painted = ScalpFit { size: 2.0, ..fit };
-    painted.paint(Vec3::Z, 0.5, 1.0, true);
+    painted.paint(Vec3::Z, 1.0, 1.0, true);
     let painted = fitted_scalp(&body, &rest, &painted);
     let mean = |fitted: &FittedScalp| fitted.head.scalp.iter().sum::<f32>() / fitted.head.scalp.len() as f32;
     assert!(painted.scale == 2.0 && mean(&painted) < 0.95 * mean(&masked), "{}", mean(&painted));
