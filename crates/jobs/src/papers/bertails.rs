@@ -99,6 +99,15 @@ pub(super) fn scene(preset: Preset) -> Project {
     project
 }
 
+/// The frame at which [`close_up`] sees the side of the hair.
+pub(super) const CLOSE_FRAME: u64 = 58;
+
+/// Moves the camera to the hair.
+pub(super) fn close_up(project: &mut Project) {
+    (project.camera.distance, project.camera.azimuth) = (0.75, 1.2);
+    project.camera.follow_offset.y = 0.05;
+}
+
 /// The same without shadows.
 pub(super) fn unshadowed(project: &Project) -> Project {
     let mut project = project.clone();
@@ -132,8 +141,8 @@ fn shadow_and_map(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
 fn filters(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let mut project = scene(Preset::Smooth);
     project.shadow.voxel_map.resolution = 64;
-    project.camera.distance = 0.8;
-    let moment = studio.moment(&project, 40)?;
+    close_up(&mut project);
+    let moment = studio.moment(&project, CLOSE_FRAME)?;
     let truth = studio.truth(&project, &moment)?;
     let (mut rows, mut errors) = (Vec::new(), Vec::new());
     for (filter, id, name) in [
@@ -185,8 +194,8 @@ fn captured(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
 
 fn resolutions(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let mut project = scene(Preset::Curly);
-    project.camera.distance = 0.95;
-    let moment = studio.moment(&project, 40)?;
+    close_up(&mut project);
+    let moment = studio.moment(&project, CLOSE_FRAME)?;
     let truth = studio.truth(&project, &moment)?;
     let mut rows = Vec::new();
     let (mut errors, mut means, mut bytes) = (Vec::new(), Vec::new(), Vec::new());

@@ -9,7 +9,7 @@ use lovelock_shadow::methods::deep_opacity_maps::Layers;
 use lovelock_shadow::methods::occupancy_maps::Occupancy;
 use lovelock_shadow::methods::texels::Fragment;
 
-use super::bertails::scene;
+use super::bertails::{CLOSE_FRAME, close_up, scene};
 use super::curves::{curve, named, rmse, spread, steps};
 use super::figures::{Figure, Paper};
 use super::studio::{Studio, flip};
@@ -155,8 +155,8 @@ fn woman_and_dog(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
 
 fn transparency(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let mut project = smooth();
-    project.camera.distance = 0.9;
-    let moment = studio.moment(&project, 40)?;
+    close_up(&mut project);
+    let moment = studio.moment(&project, CLOSE_FRAME)?;
     let modes = [
         (Transparency::Exact, "exact order", 4.01),
         (Transparency::OccupancyOrder, "occupancy order", 51.0),
@@ -206,9 +206,8 @@ fn layers(shadow: &ShadowSettings, layers: u32) -> ShadowSettings {
 
 fn beside_layers(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let mut project = smooth();
-    project.camera.distance = 0.85;
-    project.camera.azimuth = 1.2;
-    let moment = studio.moment(&project, 58)?;
+    close_up(&mut project);
+    let moment = studio.moment(&project, CLOSE_FRAME)?;
     let truth = studio.truth(&project, &moment)?;
     let (mut rows, mut errors) = (Vec::new(), Vec::new());
     for (id, name, shadow) in [
