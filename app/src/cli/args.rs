@@ -260,7 +260,7 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, far, middle, near and still (fine strands that scatter,
+    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, fur-400k (fur on a whole body), lawn (grass), far, middle, near and still (fine strands that scatter,
     /// from a whole figure to a head of 100,000 strands), clusters and clusters-far (40 locks drawn as clusters, near and with a head of 24
     /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), clusters-crowd and
     /// clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
@@ -347,7 +347,7 @@ pub(crate) struct Papers {
     /// Folder for the page papers.html, its data and its images. Other figures that it holds stay on the page.
     #[arg(short, long, value_name = "DIR", default_value = "papers")]
     pub(crate) out: PathBuf,
-    /// Replace files named papers.html and papers.json that this program did not make. Its own are always replaced.
+    /// Replace files named papers.html and papers.json that this program did not make. Its own, and the images and projects beside them, are always replaced.
     #[arg(long)]
     pub(crate) force: bool,
     /// Size of each image in pixels.

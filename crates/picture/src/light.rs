@@ -165,7 +165,7 @@ impl Light {
     pub fn cone(&self) -> [f32; 2] {
         let cosine = |angle: f32| (0.5 * angle).cos();
         let outer = cosine(self.outer_angle);
-        let scale = 1.0 / (cosine(self.inner_angle.min(self.outer_angle)) - outer).max(1e-4);
+        let scale = 1.0 / (cosine(self.inner_angle.min(self.outer_angle)) - outer).max(1e-6);
         [scale, -outer * scale]
     }
 
@@ -312,6 +312,8 @@ mod tests {
         assert!((half.outer_angle - std::f32::consts::PI).abs() < 1e-6);
         assert_eq!(half.share_at(half.position - Vec3::Y), 1.0);
         assert_eq!(half.share_at(half.position + Vec3::Y), 0.0);
+        let narrow = Light { inner_angle: 0.0, outer_angle: 0.01, ..spot() }.normalized();
+        assert!(narrow.share_at(narrow.position - Vec3::Y) > 0.97);
         let nothing = Light { inner_angle: 0.4, outer_angle: 0.0, ..spot() }.normalized();
         assert_eq!(nothing.inner_angle, 0.0);
         assert_eq!(nothing.share_at(nothing.position + Vec3::new(0.1, -1.0, 0.0)), 0.0);

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_base::settings::{Unit, Value};
+use lovelock_base::settings::{Settings, Unit, Value};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_render::{Light, LightKind, MAX_LIGHTS};
@@ -87,10 +87,17 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, (axes, head)
     setting(ui, "enabled", light, &default);
     let before = light.kind;
     setting(ui, "kind", light, &default);
-    if before == LightKind::Directional && light.stands() && light.position == default.position {
-        // It shines as it did.
-        light.stand_before(head.unwrap_or(Vec3::new(0.0, 1.6, 0.0)), FROM_HEAD);
-        light.intensity *= FROM_HEAD * FROM_HEAD;
+    let head = head.unwrap_or(Vec3::new(0.0, 1.6, 0.0));
+    // It goes on shining on the head as it did.
+    if before == LightKind::Directional && light.stands() {
+        if light.position == default.position {
+            light.stand_before(head, FROM_HEAD);
+        }
+        light.intensity *= light.position.distance_squared(head);
+        *light = light.clamped();
+    } else if before != LightKind::Directional && !light.stands() {
+        light.intensity /= light.position.distance_squared(head).max(light.radius * light.radius);
+        *light = light.clamped();
     }
     match light.kind {
         LightKind::Directional => {

@@ -116,8 +116,9 @@ pub(super) fn unshadowed(project: &Project) -> Project {
 }
 
 fn shadow_and_map(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
-    let project = scene(Preset::Smooth);
-    let moment = studio.moment(&project, 40)?;
+    let mut project = scene(Preset::Smooth);
+    close_up(&mut project);
+    let moment = studio.moment(&project, CLOSE_FRAME)?;
     let plain = studio.draw("without", "Without self-shadowing", &unshadowed(&project), &moment)?;
     let size = project.shadow.size_label();
     for (name, value, form) in [
@@ -250,7 +251,7 @@ fn dances(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let smooth = scene(Preset::Smooth);
     let mut red = scene(Preset::Curly);
     (red.look.eumelanin, red.look.pheomelanin) = (0.25, 1.6);
-    for (name, project, frames) in [("smooth", &smooth, [58, 172]), ("curly", &red, [120, 175])] {
+    for (name, project, frames) in [("smooth", &smooth, [CLOSE_FRAME, 118]), ("curly", &red, [120, 175])] {
         for frame in frames {
             let moment = studio.moment(project, frame)?;
             let segments = moment.hair.strands.segments();
@@ -353,7 +354,16 @@ fn parallel(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     let report = measured(studio, vec![BenchScene::Smooth], threads)?;
     let Some(scaling) = report.scaling.first() else { return Ok(()) };
     let mut heads = vec!["stage".to_owned()];
-    heads.extend(scaling.runs.iter().map(|run| format!("{} threads: ms (speed-up)", run.scene.threads)));
+    heads.extend(scaling.runs.iter().map(|run| {
+        format!(
+            "{}: ms (speed-up)",
+            if run.scene.threads == 1 {
+                "1 thread".to_owned()
+            } else {
+                format!("{} threads", run.scene.threads)
+            }
+        )
+    }));
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let wanted = ["animation", "shadow", "draw", "frame"];
     let rows = wanted.map(|name| {

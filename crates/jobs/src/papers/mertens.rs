@@ -9,7 +9,7 @@ use lovelock_shadow::methods::opacity_maps::Slices;
 use lovelock_shadow::methods::texels::Fragment;
 use lovelock_shadow::{ClusterSeeds, LineFilter, TexelFilter};
 
-use super::bertails::{scene, smooth, unshadowed};
+use super::bertails::{CLOSE_FRAME, scene, smooth, unshadowed};
 use super::curves::{SAMPLES, curve, gaussians, named, rmse, spread, steps};
 use super::figures::{Figure, Paper};
 use super::studio::Studio;
@@ -72,7 +72,7 @@ fn frames(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
     studio.draw("without", "Without self-shadows", &unshadowed(&project), &moment)?;
     let clustered = clustering(&project);
     studio.draw("40", "Density clustering, frame 40", &clustered, &moment)?;
-    for frame in [118, 172] {
+    for frame in [CLOSE_FRAME, 118] {
         let moment = studio.moment(&clustered, frame)?;
         studio.draw(&frame.to_string(), format!("Density clustering, frame {frame}"), &clustered, &moment)?;
     }

@@ -61,7 +61,7 @@ pub fn papers(
         };
         let made = report_progress(progress, what).and_then(|()| {
             let mut studio = Studio::new(request, &folder, &mut renderer, figure.id, progress);
-            (figure.make)(&mut studio).map(|()| studio.finish())
+            (figure.make)(&mut studio).and_then(|()| studio.finish())
         });
         let made = match made {
             Ok(made) => made,

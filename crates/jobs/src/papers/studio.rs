@@ -57,6 +57,8 @@ pub(super) struct Studio<'a> {
     figure: &'static str,
     progress: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     report: FigureReport,
+    /// Images and the projects that draw them, by name, written when the figure is finished.
+    images: Vec<(String, Picture, Project)>,
 }
 
 /// The hair of a project at one instant.
@@ -98,11 +100,28 @@ impl<'a> Studio<'a> {
         figure: &'static str,
         progress: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Self {
-        Self { request, folder, renderer, figure, progress, report: FigureReport::default() }
+        Self {
+            request,
+            folder,
+            renderer,
+            figure,
+            progress,
+            report: FigureReport::default(),
+            images: Vec::new(),
+        }
     }
 
-    pub(super) fn finish(self) -> FigureReport {
-        self.report
+    /// Writes the images, so that a figure that is stopped leaves those of an earlier run.
+    ///
+    /// # Errors
+    /// As [`Folder::picture`].
+    pub(super) fn finish(mut self) -> Result<FigureReport, ProjectError> {
+        let (width, height) = self.request.size;
+        for ((name, image, project), place) in self.images.iter().zip(&mut self.report.pictures) {
+            place.file = self.folder.picture(name, (width, height, &image.rgba))?;
+            place.project = Some(self.folder.project(name, project)?);
+        }
+        Ok(self.report)
     }
 
     /// Number of frames of each measured time.
@@ -157,18 +176,18 @@ impl<'a> Studio<'a> {
         let mut saved = project.clone();
         (saved.recording.width, saved.recording.height, saved.recording.fps) = (width, height, FPS);
         saved.recording.first_frame = moment.frame;
-        let file = self.folder.picture(&name, (width, height, &drawn.picture.rgba))?;
-        let project = self.folder.project(&name, &saved)?;
+        let project = Folder::project_name(&name);
         let (first, end) = (moment.frame, moment.frame + 1);
         let command = format!(
             "lovelock record {project} --frames {first}..{end} --fps {FPS:.0} --size {width}x{height} -o {name}"
         );
         self.report.pictures.push(PictureReport {
-            file,
+            file: String::new(),
             caption: caption.into(),
-            project: Some(project),
+            project: None,
             command: Some(command),
         });
+        self.images.push((name, drawn.picture.clone(), saved));
         Ok(drawn)
     }
 

@@ -186,7 +186,9 @@ fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 
     }
     for c in 0..3 {
         for lane in 0..N {
-            out[c][lane] = if out[3][lane] > 0.0 { lit[c][lane] / max(full[c][lane], 1e-4) } else { 1.0 };
+            // Without light there is no shadow.
+            let (lit, full) = (lit[c][lane] + max(1e-4 - full[c][lane], 0.0), max(full[c][lane], 1e-4));
+            out[c][lane] = if out[3][lane] > 0.0 { lit / full } else { 1.0 };
         }
     }
     out

@@ -149,8 +149,8 @@ impl ShadowSettings {
         (self.method.method().counts_points)(self)
     }
 
-    /// The settings of the maps on the sides of a cube around a light: they have half of the resolution, because six of them together
-    /// need the memory of one map otherwise, and hair is near.
+    /// The settings of the maps on the sides of a cube around a light: they have half of the resolution, because hair is near
+    /// and six maps otherwise need six times the memory: then three quarters of one map's with cells, and half as much again with texels.
     pub(crate) fn for_sides(&self) -> Self {
         let mut settings = *self;
         if let Some(section) = settings.of_method_mut(self.method)

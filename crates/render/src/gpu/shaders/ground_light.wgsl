@@ -41,7 +41,9 @@ fn ground_light(ndc: vec2f) -> vec4f {
         full += share_of(3u, p);
         lit += share_of(3u, p) * left_on_ground(3u, p);
     }
-    return vec4f(lit / max(full, vec3f(1e-4)), 1.0);
+    // Without light there is no shadow.
+    let least = vec3f(1e-4);
+    return vec4f((lit + max(least - full, vec3f(0.0))) / max(full, least), 1.0);
 }
 
 // Pixels along each edge of a cell: most of the ground is lit uniformly, so it is evaluated at the corners of cells first.
