@@ -156,7 +156,7 @@ fn woman_and_dog(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
 }
 
 fn transparency(studio: &mut Studio<'_>) -> Result<(), ProjectError> {
-    let mut project = smooth();
+    let mut project = many(20_000, 15);
     close_up(&mut project);
     let moment = studio.moment(&project, CLOSE_FRAME)?;
     let modes = [
