@@ -59,7 +59,6 @@ impl StandingUniform {
     /// A light with the axes of its shadow maps and its views of a body within a sphere, in maps of `texels` along each edge.
     pub fn new(light: &Light, frame: &LightFrame, (center, radius): (Vec3, f32), texels: u32) -> Self {
         let axes = [frame.x, frame.y, frame.z];
-        let [cone_scale, cone_offset] = if light.kind == LightKind::Spot { light.cone() } else { [0.0, 1.0] };
         let away = center - light.position;
         let far = 1.01 * (away.length() + radius);
         let before = 0.5 * light.radius.max(1e-3);
@@ -76,19 +75,26 @@ impl StandingUniform {
             }
             (1.0, SIDES as u32)
         };
-        Self {
+        let mut standing = Self {
             position: light.position,
             radius: light.radius.max(1e-3),
             axes: axes.map(|axis| axis.extend(0.0)),
-            cone_axis: light.direction.normalize_or(Vec3::NEG_Y),
-            cone_scale,
-            cone_offset,
             texel: 2.0 * tangent / texels as f32,
             body_sides,
             column_sides: 0,
             shadow_from_world,
             columns_from_world: [Mat4::ZERO; SIDES],
-        }
+            ..Self::default()
+        };
+        standing.shape_cone(light);
+        standing
+    }
+
+    /// Takes over the cone of a light, which no map of the body depends on within its outer angle.
+    pub fn shape_cone(&mut self, light: &Light) {
+        self.cone_axis = light.direction.normalize_or(Vec3::NEG_Y);
+        [self.cone_scale, self.cone_offset] =
+            if light.kind == LightKind::Spot { light.cone() } else { [0.0, 1.0] };
     }
 
     /// The view of the body in which `q`, a way from the light in the world, is.

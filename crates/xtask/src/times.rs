@@ -17,6 +17,7 @@ const MAY_BE_SLOW: [(&str, &[&str]); 4] = [
             "transmittance_is_that_of_the_definition_with_every_filter",
             "images_stay_on_the_device_and_nothing_waits_or_is_created",
             "every_shadow_method_looks_the_same_on_both",
+            "lamps_look_the_same_on_both",
             "the_same_by_both_backends",
             "a_list_that_was_too_short_grows_to_what_is_needed",
             "frames_reuse_their_memory",

@@ -302,6 +302,11 @@ impl CpuRenderer {
         if !unchanged.body {
             self.maps = self.draw_depth(input);
         }
+        for (maps, light) in self.maps.iter_mut().zip(Light::enabled(input.lights)) {
+            if light.stands() {
+                maps.standing.shape_cone(&light);
+            }
+        }
         let drawn = hair.drawn.portion();
         let uniform = FrameUniform::new(input, drawn, light, (width, height), &self.maps, DEPTH_TEXELS);
         let tables = &light.tables;

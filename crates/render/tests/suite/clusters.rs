@@ -197,7 +197,7 @@ fn every_way_to_read_records_and_to_shade_is_measured_against_strands() {
             ClusterSettings { local_shadow: LocalShadow::Directional, ..default },
             [0.0858, 0.0348, 0.0663],
         ),
-        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..default }, [0.0858, 0.5235, 0.5235]),
+        ("paper", ClusterSettings { shading: ClusterShading::Paper, ..default }, [0.0858, 0.524, 0.524]),
         ("no detail", ClusterSettings { detail: 0.0, ..default }, [0.0858, 0.0231, 0.0530]),
     ];
     let mut wrong = Vec::new();

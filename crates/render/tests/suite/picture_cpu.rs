@@ -56,8 +56,8 @@ fn keeps(mut scene: Scene) {
             [false, false],
         ),
         ("a lamp moves", |scene| scene.lights[0].position.x += 0.1, [false, false]),
-        ("a narrower cone", |scene| scene.lights[0].outer_angle *= 0.4, [false, false]),
         ("a softer cone", |scene| scene.lights[0].inner_angle *= 0.05, [true, true]),
+        ("a narrower cone", |scene| scene.lights[0].outer_angle *= 0.4, [false, false]),
         (
             "the body",
             |scene| {
