@@ -1,6 +1,6 @@
 //! `lovelock papers`: the figures and tables of the papers that this program implements, drawn and measured here, on one page.
 //!
-//! Every paper has a list of [`figures::Figure`]: an entry with what the paper shows and a function that makes ours. The page, the data and the
+//! Every paper has a list of figures: entries with what the paper shows and a function that makes ours. The page, the data and the
 //! pictures are written as figures are finished, so a run that is stopped keeps them.
 
 mod bertails;
