@@ -2,17 +2,19 @@
 
 use std::ops::Range;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use lovelock_groom::{HairFormat, Unit, UpAxis};
-use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::convert::written_extensions;
 use lovelock_jobs::papers::figure_ids;
-use lovelock_jobs::reference::ReferenceScene;
 use lovelock_project::project::{Assignment, RecordingSection};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
+
+use super::values::{
+    Backends, BenchTarget, Methods, assignment, backends, degrees, format, frames, methods, pixel, quality,
+    rate, size, unit, up_axis, up_axis_help,
+};
 
 /// Styles, simulates, shadows and compares hair interactively. Opens the window if no command is given.
 #[derive(Debug, Parser)]
@@ -250,20 +252,12 @@ pub(crate) struct Compare {
     pub(crate) force: bool,
 }
 
-/// Shadow methods; all of them if empty.
-#[derive(Clone, Debug)]
-pub(crate) struct Methods(pub(crate) Vec<ShadowMethod>);
-
-/// Backends, one after the other.
-#[derive(Clone, Debug)]
-pub(crate) struct Backends(pub(crate) Vec<Backend>);
-
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, fur-400k (fur on a whole body), lawn (grass), far, middle, near and still (fine strands that scatter,
-    /// from a whole figure to a head of 100,000 strands), clusters and clusters-far (40 locks drawn as clusters, near and with a head of 24
-    /// pixels), clusters-strands and clusters-far-strands (the same locks drawn as 21,000 strands), clusters-crowd and
-    /// clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
+    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, fur-400k (fur on a whole body), lawn (grass), far,
+    /// middle, near and still (fine strands that scatter, from a whole figure to a head of 100,000 strands), clusters and clusters-far (40
+    /// locks drawn as clusters, near and with a head of 24 pixels), clusters-strands and clusters-far-strands (the same locks drawn as
+    /// 21,000 strands), clusters-crowd and clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
     /// are simulated by each integrator and not rendered; all but crowds if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, measures only that
     /// style.
@@ -312,34 +306,6 @@ pub(crate) struct Bench {
     pub(crate) backend: Option<Backend>,
 }
 
-/// What `bench` measures by one of its arguments.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum BenchTarget {
-    Scene(BenchScene),
-    Locks(Vec<LockScene>),
-    VoxelMap,
-    OccupancyOrder,
-    Reference(Vec<ReferenceScene>),
-}
-
-impl FromStr for BenchTarget {
-    type Err = String;
-
-    fn from_str(id: &str) -> Result<Self, String> {
-        match id {
-            "locks" => Ok(Self::Locks(LockScene::ALL.to_vec())),
-            "voxel-map" => Ok(Self::VoxelMap),
-            "occupancy-order" => Ok(Self::OccupancyOrder),
-            _ if id.starts_with("reference") => ReferenceScene::named(id).map(Self::Reference),
-            _ if id.starts_with("locks-") => Ok(Self::Locks(vec![id.parse()?])),
-            _ => id
-                .parse()
-                .map(Self::Scene)
-                .map_err(|error: String| format!("{error}, locks, voxel-map, occupancy-order or reference")),
-        }
-    }
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct Papers {
     #[arg(help = format!("Figures, or the beginnings of their names before a dash, such as mertens; all if none is given: {}", figure_ids().join(", ")))]
@@ -347,7 +313,8 @@ pub(crate) struct Papers {
     /// Folder for the page papers.html, its data and its images. Other figures that it holds stay on the page.
     #[arg(short, long, value_name = "DIR", default_value = "papers")]
     pub(crate) out: PathBuf,
-    /// Replace files named papers.html and papers.json that this program did not make. Its own, and the images and projects beside them, are always replaced.
+    /// Replace files named papers.html and papers.json that this program did not make. Its own, and the images and projects beside them,
+    /// are always replaced.
     #[arg(long)]
     pub(crate) force: bool,
     /// Size of each image in pixels.
@@ -495,98 +462,6 @@ pub(crate) struct Assemble {
     pub(crate) force: bool,
 }
 
-/// `A..B`, half open and not empty.
-fn frames(text: &str) -> Result<Range<u64>, String> {
-    let wanted = || format!("found `{text}`; must be A..B with A below B, such as 0..240");
-    let (start, end) = text.split_once("..").ok_or_else(wanted)?;
-    let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());
-    let range = number(start)?..number(end)?;
-    if range.is_empty() { Err(wanted()) } else { Ok(range) }
-}
-
-/// `NAME=VALUE`.
-fn assignment(text: &str) -> Result<Assignment, String> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or_else(|| format!("found `{text}`; must be NAME=VALUE, such as simulation.wind.speed=3"))?;
-    Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
-}
-
-/// `WxH`, pixels.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let wanted = || format!("found `{text}`; must be WIDTHxHEIGHT in pixels, such as 1280x720");
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
-    let number = |text: &str| u32::from_str(text.trim()).ok().filter(|n| *n > 0).ok_or_else(wanted);
-    Ok((number(width)?, number(height)?))
-}
-
-/// Ids separated by commas, or `all`.
-fn methods(text: &str) -> Result<Methods, String> {
-    if text.trim() == "all" {
-        return Ok(Methods(Vec::new()));
-    }
-    let method = |id: &str| ShadowMethod::from_str(id.trim()).map_err(|error| format!("{error}, or all"));
-    text.split(',').map(method).collect::<Result<_, _>>().map(Methods)
-}
-
-fn backends(text: &str) -> Result<Backends, String> {
-    if text == "both" {
-        return Ok(Backends(vec![Backend::Cpu, Backend::Gpu]));
-    }
-    let backend = Backend::from_str(text).map_err(|error| format!("{error}, or both"))?;
-    Ok(Backends(vec![backend]))
-}
-
-/// `X,Y`, pixels from the upper left corner.
-fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let wanted = || format!("found `{text}`; must be X,Y from the upper left corner, such as 640,200");
-    let (x, y) = text.split_once(',').ok_or_else(wanted)?;
-    let number = |text: &str| u32::from_str(text.trim()).map_err(|_| wanted());
-    Ok([number(x)?, number(y)?])
-}
-
-fn unit(text: &str) -> Result<Unit, String> {
-    Unit::from_id(text).ok_or_else(|| format!("found `{text}`; must be auto, m, cm, mm or in"))
-}
-
-fn up_axis(text: &str) -> Result<UpAxis, String> {
-    UpAxis::from_id(text).ok_or_else(|| format!("found `{text}`; must be {}", UpAxis::IDS))
-}
-
-fn up_axis_help(file: &str) -> String {
-    format!("Axis of {file} that points up: {}", UpAxis::IDS)
-}
-
-/// The quality of a film with that id.
-fn quality(text: &str) -> Result<FilmQuality, String> {
-    FilmQuality::ALL.into_iter().find(|quality| quality.id() == text).ok_or_else(|| {
-        let known: Vec<_> = FilmQuality::ALL.iter().map(|quality| quality.id()).collect();
-        format!("must be one of {}", known.join(", "))
-    })
-}
-
-/// The file format of that id.
-fn format(text: &str) -> Result<SequenceFormat, String> {
-    SequenceFormat::ALL.into_iter().find(|format| format.id() == text).ok_or_else(|| {
-        let known: Vec<_> = SequenceFormat::ALL.iter().map(|format| format.id()).collect();
-        format!("must be one of {}", known.join(", "))
-    })
-}
-
-fn degrees(text: &str) -> Result<f32, String> {
-    f32::from_str(text)
-        .ok()
-        .filter(|degrees| (0.0..=360.0).contains(degrees))
-        .ok_or_else(|| format!("found `{text}`; must be 0 to 360 degrees"))
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    f64::from_str(text)
-        .ok()
-        .filter(|fps| (1.0..=240.0).contains(fps))
-        .ok_or_else(|| format!("found `{text}`; must be 1 to 240 frames per second"))
-}
-
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
@@ -596,22 +471,6 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn ranges_are_half_open() {
-        assert_eq!(frames("0..240"), Ok(0..240));
-        for wrong in ["", "5", "5..5", "9..3", "a..b", "-1..4", "0..99999999999999999999"] {
-            assert!(frames(wrong).is_err_and(|e| e.contains(wrong)), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn sizes_are_pixels() {
-        assert_eq!(size("1280x720"), Ok((1280, 720)));
-        for wrong in ["1280", "0x5", "x", "-1x2", "9999999999x1", "1.5x2"] {
-            assert!(size(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]

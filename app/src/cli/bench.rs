@@ -9,9 +9,10 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 use lovelock_render::Backend;
 
-use super::args::{Bench, BenchTarget};
+use super::args::Bench;
 use super::output::Output;
 use super::replace::{self, Holds, Replaced};
+use super::values::BenchTarget;
 
 /// Measures the scenes and prints the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {

@@ -16,6 +16,7 @@ mod satf;
 mod settings;
 mod source;
 mod style;
+mod values;
 
 use std::process::ExitCode;
 
