@@ -66,7 +66,7 @@ pub(super) fn measure(
 }
 
 /// `1 thread` or `N threads`.
-fn counted(threads: u64) -> String {
+pub(crate) fn counted(threads: u64) -> String {
     if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") }
 }
 

@@ -78,14 +78,9 @@ impl Folder {
     /// # Errors
     /// As [`Folder::picture`].
     pub(super) fn project(&self, name: &str, project: &Project) -> Result<String, ProjectError> {
-        let file = Self::project_name(name);
+        let file = format!("{PROJECTS}/{name}.lovelock");
         save_project(&self.path.join(&file), project)?;
         Ok(file)
-    }
-
-    /// The name of a project relative to the page.
-    pub(super) fn project_name(name: &str) -> String {
-        format!("{PROJECTS}/{name}.lovelock")
     }
 
     /// The path of a file that a project reads, in the folder of projects.

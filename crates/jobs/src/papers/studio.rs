@@ -57,8 +57,16 @@ pub(super) struct Studio<'a> {
     figure: &'static str,
     progress: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     report: FigureReport,
-    /// Images and the projects that draw them, by name, written when the figure is finished.
-    images: Vec<(String, Picture, Project)>,
+    images: Vec<Drawing>,
+}
+
+/// An image of a figure, written when the figure is finished.
+struct Drawing {
+    name: String,
+    caption: String,
+    picture: Picture,
+    /// What draws it.
+    project: Project,
 }
 
 /// The hair of a project at one instant.
@@ -117,9 +125,15 @@ impl<'a> Studio<'a> {
     /// As [`Folder::picture`].
     pub(super) fn finish(mut self) -> Result<FigureReport, ProjectError> {
         let (width, height) = self.request.size;
-        for ((name, image, project), place) in self.images.iter().zip(&mut self.report.pictures) {
-            place.file = self.folder.picture(name, (width, height, &image.rgba))?;
-            place.project = Some(self.folder.project(name, project)?);
+        for Drawing { name, caption, picture, project } in self.images {
+            let (first, end) = (project.recording.first_frame, project.recording.first_frame + 1);
+            let file = self.folder.picture(&name, (width, height, &picture.rgba))?;
+            let project = self.folder.project(&name, &project)?;
+            let command = format!(
+                "lovelock record {project} --frames {first}..{end} --fps {FPS:.0} --size {width}x{height} -o {name}"
+            );
+            let (project, command) = (Some(project), Some(command));
+            self.report.pictures.push(PictureReport { file, caption, project, command });
         }
         Ok(self.report)
     }
@@ -176,18 +190,12 @@ impl<'a> Studio<'a> {
         let mut saved = project.clone();
         (saved.recording.width, saved.recording.height, saved.recording.fps) = (width, height, FPS);
         saved.recording.first_frame = moment.frame;
-        let project = Folder::project_name(&name);
-        let (first, end) = (moment.frame, moment.frame + 1);
-        let command = format!(
-            "lovelock record {project} --frames {first}..{end} --fps {FPS:.0} --size {width}x{height} -o {name}"
-        );
-        self.report.pictures.push(PictureReport {
-            file: String::new(),
+        self.images.push(Drawing {
+            name,
             caption: caption.into(),
-            project: None,
-            command: Some(command),
+            picture: drawn.picture.clone(),
+            project: saved,
         });
-        self.images.push((name, drawn.picture.clone(), saved));
         Ok(drawn)
     }
 
