@@ -2,12 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
+use lovelock_shadow::cube::{SIDES, side_of, turned};
 use lovelock_shadow::{LightFrame, LightSource};
 
 use crate::{Light, LightKind, MAX_LIGHTS};
-
-/// Sides of a cube.
-pub(crate) const SIDES: usize = 6;
 
 /// The largest tangent of half the angle that one view of the body takes in: 60 degrees. Lights that see more have six.
 const WIDEST_VIEW: f32 = 1.732_050_8;
@@ -71,7 +69,7 @@ impl StandingUniform {
             (tangent, 1)
         } else {
             for (side, matrix) in shadow_from_world.iter_mut().enumerate() {
-                *matrix = view(light.position, axes_of_side(axes, side), 1.0, [before, far]);
+                *matrix = view(light.position, turned(axes, side), 1.0, [before, far]);
             }
             (1.0, SIDES as u32)
         };
@@ -146,26 +144,6 @@ fn view(position: Vec3, [forward, up, right]: [Vec3; 3], tangent: f32, [near, fa
 /// The layer of a side of light `light` in arrays of textures. Twin of `layer_of` in `frame.wgsl`.
 pub(crate) fn layer_of(light: usize, side: usize) -> usize {
     if side == 0 { light } else { MAX_LIGHTS + (SIDES - 1) * light + side - 1 }
-}
-
-/// The side of a cube that a vector along the axes points at: twice its longest axis, plus 1 if it points backward, as in the maps of
-/// the shadow methods. Twin of `side_of` in `frame.wgsl`.
-pub(crate) fn side_of(v: Vec3) -> usize {
-    let a = v.abs();
-    let axis = if a.x >= a.y && a.x >= a.z {
-        0
-    } else if a.y >= a.z {
-        1
-    } else {
-        2
-    };
-    2 * axis + usize::from(v[axis] < 0.0)
-}
-
-/// The axes of a side of a cube: outward, and two along it, whose cross product is the first one.
-fn axes_of_side(axes: [Vec3; 3], side: usize) -> [Vec3; 3] {
-    let at = |k: usize| axes[(side / 2 + k) % 3];
-    if side.is_multiple_of(2) { [at(0), at(1), at(2)] } else { [-at(0), at(2), at(1)] }
 }
 
 #[cfg(test)]

@@ -40,4 +40,5 @@ pub use methods::voxel_map::VoxelMapSettings;
 pub use methods::{
     MapKind, MapSize, ShadowMethod, ShadowSettings, UnknownShadowMethod, all_shaders, cpu_shadow, gpu_shadow,
 };
+pub use perspective::cube;
 pub use ray::{RayMark, RayMarkKind, RayStructure};

@@ -85,7 +85,7 @@ impl<'a> StandingLight<'a> {
         // Texels around a position are nearer by the slope of the plane over one texel; see `LightView::body_light`.
         let slope = 1.414 * max(1.0 - cosine * cosine, 0.0).sqrt() / max(cosine, 0.25);
         let start = p + l * (bias + texel * slope);
-        let (y, z) = across(normal);
+        let (y, z) = normal.any_orthonormal_pair();
         let soft = uniform.radius * Light::BLOCKER_METRES / max(distance, uniform.radius);
         let radius = max(min(soft, Light::MAX_SOFTNESS), texel);
         let mut sum = [0.0];
@@ -122,15 +122,6 @@ impl<'a> StandingLight<'a> {
         let nearest = places.filter(|(_, at)| at.w > 0.0).max_by(|(_, a), (_, b)| a.w.total_cmp(&b.w));
         nearest.map_or(1.0, |(map, at)| light_behind(map, [at.x / at.w, at.y / at.w]))
     }
-}
-
-/// Two unit vectors perpendicular to the unit vector `n` and to each other: Duff et al. 2017, "Building an Orthonormal Basis,
-/// Revisited". Twin of `across_of` in `frame.wgsl`.
-fn across(n: Vec3) -> (Vec3, Vec3) {
-    let sign = 1.0_f32.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
 /// The transmittance of a map at `u` and `v`; 1 beside it.

@@ -1,6 +1,7 @@
 //! Shaders, kernels and pipelines, created once per device.
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
+use lovelock_shadow::cube;
 
 use super::false_colors::FalseColorShaders;
 use super::layers::LayerShaders;
@@ -43,21 +44,38 @@ const SKIN_SHADOW: ShaderPart = part!("skin_shadow.wgsl");
 fn own_shaders() -> [(&'static str, ShaderSource); 10] {
     let [clusters, surface, rib_light, published] = clusters::RIB_PARTS;
     [
-        ("strand points", &[FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
-        ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
-        ("picture", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
-        ("surface", &[FRAME, SURFACE]),
+        ("strand points", &[cube::SHADER, FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
+        ("ground", &[cube::SHADER, FRAME, GROUND_LIGHT, GROUND]),
+        ("picture", &[cube::SHADER, FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
+        ("surface", &[cube::SHADER, FRAME, SURFACE]),
         ("depth", &[DEPTH]),
-        ("layers", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS]),
+        (
+            "layers",
+            &[cube::SHADER, FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS],
+        ),
         (
             "false colours",
-            &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS, FALSE_COLORS],
+            &[
+                cube::SHADER,
+                FRAME,
+                SURFACE_SHADING,
+                GROUND_LIGHT,
+                BACKDROP,
+                TONE_MAP,
+                PICTURE,
+                LAYERS,
+                FALSE_COLORS,
+            ],
         ),
-        ("values of points", &[FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS]),
+        (
+            "values of points",
+            &[cube::SHADER, FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS],
+        ),
         ("present", &[PRESENT]),
         (
             "light on ribs",
             &[
+                cube::SHADER,
                 FRAME,
                 TWO_HIGHLIGHTS,
                 KAJIYA_KAY,

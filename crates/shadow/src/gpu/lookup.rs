@@ -5,6 +5,7 @@ use glam::Vec3;
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
 
 use super::{EXP, GpuTargets, wgsl};
+use crate::cube;
 
 const LOOKUP: ShaderPart = wgsl!("gpu/", "lookup.wgsl");
 const COLUMNS: ShaderPart = wgsl!("gpu/", "columns.wgsl");
@@ -72,7 +73,7 @@ pub(crate) fn projected_constant(projected: bool) -> Constant {
 
 /// The source of a shader of [`PointLookup`], composed from the query of a method.
 fn source(query: &[ShaderPart], last: ShaderPart) -> ShaderSource {
-    let parts: Vec<_> = [EXP].iter().chain(query).copied().chain([last]).collect();
+    let parts: Vec<_> = [EXP, cube::SHADER].iter().chain(query).copied().chain([last]).collect();
     ShaderSource::new(&parts)
 }
 
@@ -191,7 +192,8 @@ mod tests {
         );
         let query =
             part("override PROJECTED: bool = false; fn hair_transmittance(p: vec3f) -> f32 { return 1.0; }");
-        let layout = |text| layout_in_shader(&ShaderSource::new(&[query, part(text)]), "Lookup");
+        let layout =
+            |text| layout_in_shader(&ShaderSource::new(&[cube::SHADER, query, part(text)]), "Lookup");
         assert_ne!(layout(Box::leak(wrong.into_boxed_str())), layout(right));
     }
 }

@@ -30,20 +30,7 @@ const SUM_WORDS: u32 = 256u;
 @group(0) @binding(12) var<storage, read_write> answers: array<u32>;
 @group(0) @binding(13) var<storage, read_write> sum: array<atomic<u32>>;
 
-// The side of a cube that a vector points at: twice its longest axis, plus 1 if it points backward. Twin of `side_of` in
-// perspective/face.rs.
-fn side_of(v: vec3f) -> u32 {
-    let a = abs(v);
-    if (a.x >= a.y && a.x >= a.z) {
-        return select(0u, 1u, v.x < 0.0);
-    }
-    if (a.y >= a.z) {
-        return select(2u, 3u, v.y < 0.0);
-    }
-    return select(4u, 5u, v.z < 0.0);
-}
-
-// Coordinates on a side of a cube, the first one outward. Twin of `turned` in perspective/face.rs.
+// Coordinates on a side of a cube, the first one outward. Twin of `turned` in perspective/cube.rs.
 fn turned(v: vec3f, side: u32) -> vec3f {
     let axis = side >> 1u;
     let cycled = select(select(v.zxy, v.yzx, axis == 1u), v, axis == 0u);

@@ -1,5 +1,5 @@
-// What a straight piece of strand is on the plane of a light. `wide` are the distance from the light less that of the anchor, the place
-// on the plane, and the factor on the width: the output of project.wgsl.
+// What a straight piece of strand is on the plane of a light. Its ends are the output of project.wgsl: the distance from the light less that
+// of the anchor, the place on the plane, and the factor on the width.
 
 // The largest factor on the width of a strand. Twin of `MAX_WIDENING` in perspective/mod.rs.
 const MAX_WIDENING: f32 = 32.0;

@@ -3,11 +3,9 @@
 use glam::{Mat4, Vec3, Vec3Swizzles, Vec4};
 
 use super::STEEPEST;
+use super::cube::{SIDES, side_of, turned};
 use crate::LightFrame;
 use crate::bounds::{Bounds, round_up_to_step};
-
-/// Sides of a cube.
-pub(crate) const SIDES: usize = 6;
 
 /// The cosine of the largest angle between a ray and the middle of its plane is larger than this: that of the corner of a cube is 0.577.
 const LEAST_COSINE: f32 = 0.5;
@@ -110,26 +108,6 @@ impl Perspective {
 pub(crate) fn margin(edge: u32) -> f32 {
     let edge = edge.max(12) as f32;
     3.2 / (edge - 6.2)
-}
-
-/// The side of a cube that a vector points at: twice its longest axis, plus 1 if it points backward. Twin of `side_of` in
-/// `perspective.wgsl`.
-pub(crate) fn side_of(v: Vec3) -> usize {
-    let a = v.abs();
-    let axis = if a.x >= a.y && a.x >= a.z {
-        0
-    } else if a.y >= a.z {
-        1
-    } else {
-        2
-    };
-    2 * axis + usize::from(v[axis] < 0.0)
-}
-
-/// Coordinates on a side of a cube, the first one outward, of coordinates along the axes.
-fn turned<T: Copy + std::ops::Neg<Output = T>>(v: [T; 3], side: usize) -> [T; 3] {
-    let at = |k: usize| v[(side / 2 + k) % 3];
-    if side.is_multiple_of(2) { [at(0), at(1), at(2)] } else { [-at(0), at(2), at(1)] }
 }
 
 impl Face {

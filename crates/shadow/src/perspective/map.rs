@@ -3,7 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::face::SIDES;
+use super::cube::SIDES;
 use super::{Face, Perspective, Projected};
 use crate::methods::voxel_map::longest_strand;
 use crate::{

@@ -7,6 +7,7 @@
 //!
 //! Light that has all hair before it, within [`STEEPEST`], needs one plane; otherwise there are six, the sides of a cube around it.
 
+pub mod cube;
 mod face;
 mod gpu;
 mod map;

@@ -171,18 +171,6 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     return sum / f32(taps);
 }
 
-// The side of a cube that a vector points at: twice its longest axis, plus 1 if it points backward. Twin of `side_of` in standing.rs.
-fn side_of(v: vec3f) -> u32 {
-    let a = abs(v);
-    if (a.x >= a.y && a.x >= a.z) {
-        return select(0u, 1u, v.x < 0.0);
-    }
-    if (a.y >= a.z) {
-        return select(2u, 3u, v.y < 0.0);
-    }
-    return select(4u, 5u, v.z < 0.0);
-}
-
 // The side of light `i` that a position belongs to, of `sides`.
 fn side_at(i: u32, p: vec3f, sides: u32) -> u32 {
     let q = p - frame.standing[i].position;
@@ -243,7 +231,7 @@ fn body_light_standing(i: u32, p: vec3f, n: vec3f, bias: f32, taps: u32) -> f32 
     // Texels around a position are nearer by the slope of the plane over one texel; see `body_light`.
     let slope = 1.414 * sqrt(max(1.0 - cosine * cosine, 0.0)) / max(cosine, 0.25);
     let start = p + l * (bias + texel * slope);
-    // Twin of `across` in cpu/standing.rs: Duff et al. 2017.
+    // Duff et al. 2017, "Building an Orthonormal Basis, Revisited", as `Vec3::any_orthonormal_pair`.
     let sign = select(-1.0, 1.0, n.z >= 0.0);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;

@@ -7,9 +7,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
 
-use super::face::SIDES;
+use super::cube::SIDES;
 use super::{Face, PARALLEL, Perspective};
-use crate::gpu::{Buffer, wgsl};
+use crate::gpu::{Buffer, fits_device, wgsl};
 use crate::{
     GpuColumns, GpuList, GpuProjected, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets,
     ProjectedTargets, ShadowReport, ShadowSettings,
@@ -137,6 +137,7 @@ impl Standing {
         let GpuStrands { point_count, segment_count, .. } = input.strands;
         let (count, points) =
             if only_points { (point_count, point_count) } else { (segment_count, 2 * segment_count) };
+        fits_device(gpu, settings.method, 16 * u64::from(points))?;
         self.projected.fit(gpu, 4 * u64::from(points));
         if self.starts.len() != segment_count as usize {
             let starts: Vec<u32> = (0..segment_count).map(|segment| 2 * segment).collect();
