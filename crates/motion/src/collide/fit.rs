@@ -16,6 +16,9 @@ const SKULL_INSET: f32 = 0.002;
 const SKULL: &str = "skull";
 /// Distance of other shapes below the skin, metres.
 const SKIN_INSET: f32 = 0.001;
+/// Share of the vertices with hair from which a part is no head but a whole skin with fur: any shape around it
+/// would hold roots of hair, and the distance field of the skin does without shapes.
+const FURRED: f32 = 0.8;
 /// Largest height of a slice of the trunk, metres.
 const SLICE: f32 = 0.13;
 /// Largest number of vertices used by the refinement.
@@ -56,6 +59,9 @@ pub fn fit_colliders(body: &Body) -> Vec<Collider> {
 fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
     let scalp: Vec<Vec3> =
         part.points.iter().zip(&part.scalp).filter(|(_, s)| **s > 0.5).map(|(p, _)| *p).collect();
+    if scalp.len() as f32 > FURRED * part.points.len() as f32 {
+        return Vec::new();
+    }
     let (low, high) = (percentile(&part.points, 0.05), percentile(&part.points, 0.95));
     let fitted = if scalp.len() < 24 { None } else { skull(&scalp) };
     // Heads of animals and machines: an ellipsoid around everything.

@@ -44,7 +44,8 @@ pub(crate) struct Nearest {
 }
 
 /// Newton iterations for the nearest point of an ellipsoid. They converge quadratically near the surface,
-/// where hair is; far away only the sign matters.
+/// where hair is; far outside and deep inside, a bound on the first step leaves an error of at most 2 % of
+/// the radius or the distance.
 const ELLIPSOID_ROUNDS: usize = 4;
 
 /// Tolerance of the conservative tests, metres, so that points on a surface never count as beyond it.
@@ -183,12 +184,16 @@ impl Shape {
             Self::Ellipsoid { centre, axes: [ax, ay, az], radii, .. } => {
                 let squared = radii * radii;
                 let inv_squared = 1.0 / squared;
-                let least = -0.98 * lesser(squared.x, lesser(squared.y, squared.z));
+                let edge = -0.98 * lesser(squared.x, lesser(squared.y, squared.z));
                 for k in 0..LANES {
                     let world = at(points, k) - centre;
                     let q = Vec3::new(world.dot(ax), world.dot(ay), world.dot(az));
-                    // The nearest point is s = r^2 q / (r^2 + t) with sum (s / r)^2 = 1.
-                    let mut t = 0.0;
+                    // The nearest point is s = r^2 q / (r^2 + t) with sum (s / r)^2 = 1. No term of the sum may
+                    // exceed 1, which bounds t from below; without the bound deep points leave the range in which
+                    // Newton's steps are of use.
+                    let least = q.abs() * radii - squared;
+                    let least = greater(edge, greater(least.x, greater(least.y, least.z)));
+                    let mut t = greater(least, 0.0);
                     for _ in 0..ELLIPSOID_ROUNDS {
                         let g = 1.0 / (squared + t);
                         let s = q * g;
@@ -362,6 +367,36 @@ mod tests {
         assert!(e.each_surely_beyond(&alone(at_end(1e-4), 5), &Lane::splat(0.004)));
         assert!(!capsule(0.1, 0.1).each_surely_beyond(&crate::lanes::splat3(Vec3::ONE), &ZERO));
         assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &ZERO), "NaN counts as far");
+    }
+
+    #[test]
+    fn ellipsoids_measure_deep_and_far_points() {
+        let sphere = Affine3A::from_scale(Vec3::splat(0.1));
+        let sphere = Shape::new(&ColliderShape::Ellipsoid { from_unit: sphere }).expect("a sphere");
+        for i in 0..200 {
+            for radius in [0.01_f32, 0.03, 0.05, 0.09, 0.3, 1.2, 40.0] {
+                let found = sphere.distance(direction(i) * radius);
+                let tolerance = if radius == 0.09 { 1e-5 } else { 0.01 * radius.max(0.1) };
+                assert!(
+                    (found - (radius - 0.1)).abs() < tolerance,
+                    "found {found} at {radius} from the centre"
+                );
+            }
+        }
+        // A flat one as fitted to an animal: points a metre away, and points as deep as half of its width.
+        let radii = Vec3::new(0.085, 0.43, 0.5);
+        let flat = Shape::new(&ColliderShape::Ellipsoid { from_unit: Affine3A::from_scale(radii) });
+        let flat = flat.expect("a flat ellipsoid");
+        for i in 0..200 {
+            let unit = direction(i);
+            let normal = (unit / radii).normalize_or_zero();
+            for distance in [0.2, 1.0, 2.0] {
+                let found = flat.distance(unit * radii + normal * distance);
+                assert!((found - distance).abs() < 0.02 * distance, "found {found}, expected {distance}");
+            }
+            let inside = flat.distance(unit * radii * 0.5);
+            assert!((-0.085..0.0).contains(&inside), "{inside} at half of the way to {unit}");
+        }
     }
 
     #[test]
