@@ -1,6 +1,7 @@
 //! Lovelock: interactive hair.
 
 mod cli;
+mod failure;
 mod window;
 
 use std::io::IsTerminal;
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         )
         .with(asked.unwrap_or_else(|| quiet.parse().expect("the levels are written above")))
         .init();
+    failure::install();
     lovelock_session::threads::name_workers();
     cli::run()
 }

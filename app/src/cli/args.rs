@@ -9,16 +9,16 @@ use lovelock_jobs::convert::written_extensions;
 use lovelock_jobs::papers::figure_ids;
 use lovelock_project::project::{Assignment, RecordingSection};
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, HairDrawing, ShadowMethod, Transparency};
+use lovelock_render::{Backend, HairDrawing, LightRig, ShadowMethod, Transparency, UserMethod};
 
 use super::values::{
     Backends, BenchTarget, Methods, assignment, backends, degrees, format, frames, methods, pixel, quality,
-    rate, size, unit, up_axis, up_axis_help,
+    rate, size, turn, unit, up_axis, up_axis_help, user_method,
 };
 
 /// Styles, simulates, shadows and compares hair interactively. Opens the window if no command is given.
 #[derive(Debug, Parser)]
-#[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
+#[command(name = "lovelock", version = env!("LOVELOCK_VERSION"), subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
     /// A project, take, hair, character, motion, surroundings or sound file to open in the window.
     pub(crate) project: Option<PathBuf>,
@@ -34,6 +34,9 @@ pub(crate) struct Arguments {
     /// Replace an existing file of the screenshot's name even if it is no image of this program.
     #[arg(long, requires = "screenshot")]
     pub(crate) force: bool,
+    /// Open the window with a shadow method of your own: a folder with method.toml and its shader. With --panes it is added to the panes.
+    #[arg(long, value_name = "FOLDER", value_parser = user_method)]
+    pub(crate) method: Option<UserMethod>,
     /// Open the window with the comparison of the project's panes, like key C.
     #[arg(long)]
     pub(crate) panes: bool,
@@ -73,6 +76,25 @@ pub(crate) enum Task {
     Satf(super::satf::Satf),
     /// Plays recorded brush strokes on the hair of a project and writes the result as a new project.
     Style(StyleTask),
+    /// Writes a shadow method of your own to begin with, or checks one.
+    Method(super::method::MethodCommand),
+    /// Prints the completions of a shell, for its folder of completions.
+    Completions(Completions),
+    /// Writes the pages of the manual for `man`; packages contain them.
+    #[command(hide = true)]
+    Man(Man),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// The folder to write to.
+    pub(crate) folder: PathBuf,
 }
 
 /// The project, with changes.
@@ -98,7 +120,7 @@ pub(crate) struct SourceArguments {
         help = up_axis_help("the hair file")
     )]
     pub(crate) up: Option<UpAxis>,
-    /// Character file to use instead of the project's body.
+    /// Character file to use instead of the project's body, or the name of a shipped one: dancer, man, woman, elder, animal, lawn.
     #[arg(long, value_name = "FILE")]
     pub(crate) body: Option<PathBuf>,
     /// Motion file (BVH, VRM animation, or another character with a clip) to use instead of the project's motion.
@@ -107,9 +129,20 @@ pub(crate) struct SourceArguments {
     /// Picture of the surroundings (Radiance .hdr or `OpenEXR` .exr) that lights the scene from all directions.
     #[arg(long, value_name = "FILE")]
     pub(crate) surroundings: Option<PathBuf>,
+    /// Picture behind the figure (PNG, JPEG, Radiance .hdr or `OpenEXR` .exr). `--set picture.background_fit=fit` shows all of it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) background: Option<PathBuf>,
+    /// Light rig to use instead of the project's lights: soft-beauty, three-point, rim-at-night or flat. It sets the ambient light, the
+    /// exposure and the background too.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) lights: Option<LightRig>,
     /// Sound file (WAV, MP3, Ogg Vorbis or FLAC) to play with the dance and in films. `--set sound.offset_secs=1.5` shifts it.
     #[arg(long, value_name = "FILE")]
     pub(crate) sound: Option<PathBuf>,
+    /// File outside the folder of the project or take that it may read; may be given several times. Files that were named when a take was
+    /// recorded on this machine are allowed already.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) allow: Vec<PathBuf>,
     /// Change a setting of the project, such as simulation.wind.speed=3; may be given several times. `lovelock settings` lists all.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<Assignment>,
@@ -154,6 +187,9 @@ pub(crate) struct Record {
     /// Shadow method.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
+    /// Shadow method of your own: a folder with method.toml and its shader, as `lovelock method new` writes it.
+    #[arg(long, value_name = "FOLDER", value_parser = user_method, conflicts_with = "shadow")]
+    pub(crate) method: Option<UserMethod>,
     /// What hair is drawn as: strands, clusters (lock by lock, from a database of rendered sectors) or auto (clusters where hair is small
     /// in the image); the project's choice if none is given.
     #[arg(long, value_name = "ID")]
@@ -165,12 +201,19 @@ pub(crate) struct Record {
     /// driver); the project's choice if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
+    /// What simulates the hair: cpu, gpu (any wgpu adapter, including a software one) or auto (the graphics card if there is a real one
+    /// and the hair has at least 2,000 guides); the project's choice if none is given.
+    #[arg(long, value_name = "BACKEND")]
+    pub(crate) simulate: Option<Backend>,
     /// Quality of a film: draft, good, high or best; the project's choice if none is given.
     #[arg(long, value_name = "ID", value_parser = quality)]
     pub(crate) quality: Option<FilmQuality>,
     /// Write the shadow method, the transparency and the frame number into each image.
     #[arg(long)]
     pub(crate) label: bool,
+    /// Move the camera once round the figure in this many seconds, 0.5 to 600. Without --frames the film is one turn.
+    #[arg(long, value_name = "SECONDS", value_parser = turn)]
+    pub(crate) turntable: Option<f32>,
     /// Blend the end of the loop into its start, so that a film of one cycle of a looping dance repeats without a jump.
     #[arg(long = "loop")]
     pub(crate) seamless: bool,
@@ -225,6 +268,10 @@ pub(crate) struct Compare {
     /// Shadow methods, separated by commas, or `all`.
     #[arg(long, value_name = "ID,ID|all", default_value = "all", value_parser = methods)]
     pub(crate) methods: Methods,
+    /// Shadow method of your own to compare with them: a folder with method.toml and its shader, as `lovelock method new` writes it; may
+    /// be given several times.
+    #[arg(long, value_name = "FOLDER", value_parser = user_method)]
+    pub(crate) method: Vec<UserMethod>,
     /// What hair is drawn as: strands, clusters or auto, separated by commas; the project's choice if none is given. Only strands have
     /// errors of transmittance.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
@@ -247,6 +294,9 @@ pub(crate) struct Compare {
     /// Leave out swim, banding, the turning light and the stray hair, and time fewer draws.
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Leave out the films of several frames (pictures.mp4, errors.mp4) and the error map of every frame.
+    #[arg(long)]
+    pub(crate) no_film: bool,
     /// Replace files named report.html, report.csv and report.json that this program did not make. Its own are always replaced.
     #[arg(long)]
     pub(crate) force: bool,
@@ -258,7 +308,8 @@ pub(crate) struct Bench {
     /// middle, near and still (fine strands that scatter, from a whole figure to a head of 100,000 strands), clusters and clusters-far (40
     /// locks drawn as clusters, near and with a head of 24 pixels), clusters-strands and clusters-far-strands (the same locks drawn as
     /// 21,000 strands), clusters-crowd and clusters-crowd-strands (20 such heads in one image), and simulate-402 and simulate-20k, which
-    /// are simulated by each integrator and not rendered; all but crowds if none is named. `locks` measures how well the locks of each
+    /// are simulated by each integrator and not rendered; simulate-1k, simulate-10k and simulate-100k, simulated by the default one; all
+    /// but crowds and simulate-100k if none is named. `locks` measures how well the locks of each
     /// shipped hairstyle and of hair of 10 to 90 cm hold together in the shipped dance; `locks-long`, for example, measures only that
     /// style.
     /// `voxel-map` times the voxel map against the loop as published, and `occupancy-order` times blending by occupancy order against
@@ -295,6 +346,9 @@ pub(crate) struct Bench {
     /// Shadow method; that of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
+    /// Shadow method of your own: a folder with method.toml and its shader.
+    #[arg(long, value_name = "FOLDER", value_parser = user_method, conflicts_with = "shadow")]
+    pub(crate) method: Option<UserMethod>,
     /// What hair is drawn as: strands, clusters or auto; the choice of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) draw: Option<HairDrawing>,
@@ -304,6 +358,10 @@ pub(crate) struct Bench {
     /// Backend to measure; both if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
+    /// What simulates the hair of scenes that are not rendered: cpu, gpu (any wgpu adapter, including a software one) or auto; that of
+    /// the setting picture.simulate if none is given, which is cpu.
+    #[arg(long, value_name = "BACKEND")]
+    pub(crate) simulate: Option<Backend>,
 }
 
 #[derive(Debug, Args)]

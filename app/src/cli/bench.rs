@@ -7,7 +7,7 @@ use lovelock_jobs::reference::{ReferenceRequest, ReferenceScene, write_reference
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
-use lovelock_render::Backend;
+use lovelock_render::{Backend, ShadowMethod};
 
 use super::args::Bench;
 use super::output::Output;
@@ -23,7 +23,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     let mut request = BenchRequest {
         frames: task.frames,
         size: task.size,
-        shadow: task.shadow,
+        shadow: task.method.map(ShadowMethod::User).or(task.shadow),
         draw: task.draw,
         transparency: task.transparency,
         threads: task.threads.iter().map(|threads| *threads as usize).collect(),
@@ -42,6 +42,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
             }
         }
     }
+    request.simulate = task.simulate;
     if let Some(backend) = task.backend {
         request.backends = vec![backend];
     }
@@ -144,7 +145,8 @@ fn write_references(task: &Bench, scenes: Vec<ReferenceScene>, output: Output) -
         backend: task.backend.unwrap_or(Backend::Cpu),
     };
     let change = |project: &mut Project| {
-        project.shadow.method = task.shadow.unwrap_or(project.shadow.method);
+        project.shadow.method =
+            task.method.map(ShadowMethod::User).or(task.shadow).unwrap_or(project.shadow.method);
         project.picture.draw = task.draw.unwrap_or(project.picture.draw);
         project.picture.transparency = task.transparency.unwrap_or(project.picture.transparency);
         project.assign(&task.set)

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::ops::Range;
 
 use lovelock_project::error::ProjectError;
+use lovelock_render::ShadowMethod;
 use lovelock_study::batch::CompareRequest;
 use lovelock_study::report::{CompareReport, MethodReport};
 
@@ -24,7 +25,7 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
         frames: task.frames.clone().or(one),
         fps: task.picture.fps,
         size: task.picture.size,
-        methods: task.methods.0.clone(),
+        methods: compared(task),
         draws_as: task.draw.clone(),
         transparencies: task.transparency.clone(),
         backends: task.backend.clone().map(|backends| backends.0).unwrap_or_default(),
@@ -36,6 +37,7 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
             CompareRequest::DEFAULT_DRAWS
         }),
         quick: task.quick,
+        film: !task.no_film,
         access: std::mem::take(&mut scene.access),
         gpu: None,
     };
@@ -43,6 +45,13 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
         scene.watched(|project, progress| lovelock_study::batch::compare(project, &request, progress))?;
     replaced.tell();
     output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
+}
+
+/// The methods that are named, and the user's own; none stands for all of the program.
+fn compared(task: &Compare) -> Vec<ShadowMethod> {
+    let named = &task.methods.0;
+    let named = if named.is_empty() && !task.method.is_empty() { ShadowMethod::ALL } else { named };
+    named.iter().copied().chain(task.method.iter().copied().map(ShadowMethod::User)).collect()
 }
 
 /// The range of one frame.
@@ -91,7 +100,7 @@ fn summary(report: &CompareReport, page: &str) -> String {
         }
     }
     for (backend, adapter) in adapters {
-        line(format_args!("\n{backend}: {adapter}; times are medians of {} draws", report.scene.draws));
+        line(format_args!("\n{backend}: {adapter}; times are medians of up to {} draws", report.scene.draws));
         line(format_args!(
             "{:<names$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
             "method", "rmse", "of one", "bias", "FLIP", "build ms", "query ms", "draw ms", "KiB"

@@ -7,6 +7,7 @@ mod compare;
 mod convert;
 mod farm;
 mod info;
+mod method;
 mod output;
 mod papers;
 mod presets;
@@ -14,6 +15,7 @@ mod record;
 mod replace;
 mod satf;
 mod settings;
+mod shell;
 mod source;
 mod style;
 mod values;
@@ -63,10 +65,21 @@ pub(crate) fn run() -> ExitCode {
         Some(Task::Assemble(task)) => farm::run_assemble(&task, output),
         Some(Task::Satf(task)) => satf::run(&task, output),
         Some(Task::Style(task)) => style::run(&task, output),
+        Some(Task::Method(task)) => method::run(&task, output),
+        Some(Task::Completions(task)) => {
+            shell::completions(&task);
+            Ok(())
+        }
+        Some(Task::Man(task)) => shell::man(&task),
     };
     // The window has shown it.
     if let Some(note) = lovelock_satf::cache::note().filter(|_| !opens_window) {
         eprintln!("lovelock: {note}");
+    }
+    if !opens_window && let Some(fonts) = lovelock_glyphs::Fonts::listed() {
+        for script in fonts.take_missing() {
+            eprintln!("lovelock: {}", script.missing_in_images());
+        }
     }
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -79,7 +92,8 @@ fn open_window(arguments: Arguments) -> Result<(), ProjectError> {
     let image = arguments.screenshot.as_deref();
     let replaced = image.map(|out| replace::check(out, Holds::IMAGE, arguments.force)).transpose()?;
     let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
-    let shows = crate::window::Shows { panes: arguments.panes, mask: arguments.mask };
+    let shows =
+        crate::window::Shows { panes: arguments.panes, mask: arguments.mask, method: arguments.method };
     crate::window::open(arguments.project.as_deref(), &arguments.set, shows, screenshot)?;
     replaced.iter().for_each(Replaced::tell);
     Ok(())

@@ -5,15 +5,18 @@ use lovelock_jobs::record::{
     record_take,
 };
 use lovelock_project::error::ProjectError;
+use lovelock_project::grants::Grants;
 use lovelock_project::project::CameraSection;
+use lovelock_project::unfinished::{Job, Recordings};
 use lovelock_record::OutputKind;
+use lovelock_render::ShadowMethod;
 use lovelock_session::health::{Gauge, HealthLevel};
 use lovelock_session::stats::Stage;
 
 use super::args::Record;
 use super::output::Output;
 use super::replace::{self, Holds};
-use super::source::Source;
+use super::source::{Source, shipped_body};
 
 /// Simulates and renders the dance of a project.
 pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
@@ -33,13 +36,19 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
 
 fn record(task: &Record, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
+    scene.project.picture.simulate = task.simulate.unwrap_or(scene.project.picture.simulate);
+    let command = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let mut job = Job::new(&task.out, &scene.project, false);
+    job.command = Some(command);
+    // A recording that is killed is offered by the window.
+    let _running = Recordings::of_user().begin(&job);
     let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
     let request = RecordRequest {
         out: task.out.clone(),
         frames: task.film.frames.clone(),
         fps: task.film.picture.fps,
         size: task.film.picture.size,
-        shadow: task.shadow,
+        shadow: task.method.map(ShadowMethod::User).or(task.shadow),
         draw: task.draw,
         transparency: task.transparency,
         quality: task.quality,
@@ -55,9 +64,10 @@ fn record(task: &Record, output: Output) -> Result<(), ProjectError> {
         no_body: task.no_body,
         backend: task.backend,
         // A camera that the project or an option states stays.
-        frame_body: task.source.body.is_some()
+        frame_body: task.source.body.as_deref().is_some_and(|body| shipped_body(body).is_none())
             && scene.project.camera == CameraSection::default()
             && !task.source.set.iter().any(|set| set.name.starts_with("camera.")),
+        turn_secs: task.turntable,
         panes,
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()
@@ -76,6 +86,8 @@ fn record(task: &Record, output: Output) -> Result<(), ProjectError> {
     }
     if is_take(&request.out) {
         let report = scene.watched(|project, progress| record_take(project, &request, progress))?;
+        let files = scene.project.files();
+        Grants::of_user().remember(&request.out, files.into_iter().map(|(_, file)| file), &request.access);
         return output.result(&report, || take_summary(&report));
     }
     let report =

@@ -10,7 +10,8 @@ use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::{Access, FileRef};
-use lovelock_project::project::{CompareSection, Contender, HairSource, load_project_with};
+use lovelock_project::grants::Grants;
+use lovelock_project::project::{BodySource, CompareSection, Contender, HairSource, load_project_with};
 use lovelock_project::styles::StyleParts;
 use lovelock_session::progress::Progress;
 use lovelock_session::take::{project_of_cache, project_of_take};
@@ -32,6 +33,12 @@ impl Source {
     /// Reads the project and applies the other options.
     pub(super) fn open(task: &SourceArguments) -> Result<Self, ProjectError> {
         let mut access = Access::of_command();
+        for path in &task.allow {
+            required(path, &mut access)?;
+        }
+        if let Some(path) = &task.project {
+            Grants::of_user().allow(path, &mut access);
+        }
         let (mut project, problems) = match &task.project {
             Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
                 access.pick(path);
@@ -57,14 +64,20 @@ impl Source {
             None => (Project::default(), Vec::new()),
         };
         print_problems(&problems);
+        let shipped = task.body.as_deref().and_then(shipped_body);
+        let body_file = task.body.clone().filter(|_| shipped.is_none());
         if let Some(take) = project.take.file.clone() {
+            Grants::of_user().allow(&take.path, &mut access);
             allow(task, &project, &take.path, &mut access)?;
             // Light and sound are not recorded, and curves have neither body nor motion.
             let mut named = Vec::new();
             if project.plays_curves() {
-                if let Some(path) = &task.body {
+                if let Some(path) = &body_file {
                     named.push((Place::Body, required(path, &mut access)?));
                     project.set_body_file(path);
+                }
+                if let Some(source) = shipped {
+                    project.show_shipped_body(source);
                 }
                 if let Some(path) = &task.motion {
                     named.push((Place::Motion, required(path, &mut access)?));
@@ -79,6 +92,10 @@ impl Source {
                 named.push((Place::Sound, required(path, &mut access)?));
                 project.set_sound_file(path);
             }
+            if let Some(path) = &task.background {
+                named.push((Place::Backdrop, required(path, &mut access)?));
+            }
+            set_light(task, &mut project);
             set_import(task, &mut project)?;
             project.assign(&task.set)?;
             let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
@@ -106,10 +123,11 @@ impl Source {
         }
         let places = [
             (Place::Hair, &task.hair),
-            (Place::Body, &task.body),
+            (Place::Body, &body_file),
             (Place::Motion, &task.motion),
             (Place::Surroundings, &task.surroundings),
             (Place::Sound, &task.sound),
+            (Place::Backdrop, &task.background),
         ];
         let mut named = Vec::new();
         for (place, path) in places {
@@ -120,8 +138,12 @@ impl Source {
         if let Some(path) = &task.hair {
             project.set_hair_file(path);
         }
-        if let Some(path) = &task.body {
+        if let Some(path) = &body_file {
             project.set_body_file(path);
+        }
+        if let Some(source) = shipped {
+            names.extend(source.name().map(ToOwned::to_owned));
+            project.show_shipped_body(source);
         }
         if let Some(path) = &task.motion {
             project.set_motion_file(path);
@@ -132,6 +154,7 @@ impl Source {
         if let Some(path) = &task.sound {
             project.set_sound_file(path);
         }
+        set_light(task, &mut project);
         set_import(task, &mut project)?;
         project.assign(&task.set)?;
         Ok(Self { project, access, name: names.join(", "), named })
@@ -261,6 +284,21 @@ fn allow(
         access.pick(named);
     }
     Ok(())
+}
+
+/// The shipped body that `--body` names. A file of that name comes first.
+pub(super) fn shipped_body(given: &Path) -> Option<BodySource> {
+    given.to_str().filter(|_| !given.exists()).and_then(BodySource::shipped)
+}
+
+/// Sets the lights and the background.
+fn set_light(task: &SourceArguments, project: &mut Project) {
+    if let Some(rig) = task.lights {
+        rig.apply(&mut project.lights, &mut project.picture);
+    }
+    if let Some(path) = &task.background {
+        project.set_backdrop_file(path);
+    }
 }
 
 /// Sets the unit and the up axis of the hair file that the project uses.

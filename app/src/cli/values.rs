@@ -1,6 +1,7 @@
 //! How values of options are read.
 
 use std::ops::Range;
+use std::path::Path;
 use std::str::FromStr;
 
 use lovelock_groom::{Unit, UpAxis};
@@ -8,7 +9,7 @@ use lovelock_jobs::bench::{BenchScene, LockScene};
 use lovelock_jobs::reference::ReferenceScene;
 use lovelock_project::project::Assignment;
 use lovelock_record::{FilmQuality, SequenceFormat};
-use lovelock_render::{Backend, ShadowMethod};
+use lovelock_render::{Backend, ShadowMethod, UserMethod};
 
 /// Shadow methods; all of them if empty.
 #[derive(Clone, Debug)]
@@ -71,6 +72,12 @@ pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
     Ok((number(width)?, number(height)?))
 }
 
+/// Seconds of one turn of the camera.
+pub(super) fn turn(text: &str) -> Result<f32, String> {
+    let secs = text.trim().parse::<f32>().ok().filter(|secs| (0.5..=600.0).contains(secs));
+    secs.ok_or_else(|| format!("found `{text}`; must be 0.5 to 600 seconds"))
+}
+
 /// Ids separated by commas, or `all`.
 pub(super) fn methods(text: &str) -> Result<Methods, String> {
     if text.trim() == "all" {
@@ -78,6 +85,11 @@ pub(super) fn methods(text: &str) -> Result<Methods, String> {
     }
     let method = |id: &str| ShadowMethod::from_str(id.trim()).map_err(|error| format!("{error}, or all"));
     text.split(',').map(method).collect::<Result<_, _>>().map(Methods)
+}
+
+/// A folder with a shadow method of the user's own, which is read.
+pub(super) fn user_method(folder: &str) -> Result<UserMethod, String> {
+    UserMethod::load(Path::new(folder))
 }
 
 pub(super) fn backends(text: &str) -> Result<Backends, String> {

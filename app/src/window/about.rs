@@ -2,8 +2,10 @@
 
 use egui::{Context, Grid, Id, Modal, RichText};
 use lovelock_base::settings::Info;
+use lovelock_project::project::changed_settings;
 
 use super::command::COMMANDS;
+use super::control::HoverTooltip;
 use super::manual::what::Asked;
 use super::manual::{place_of_control, place_of_setting};
 use super::notices::Kind;
@@ -15,6 +17,41 @@ impl Window {
         if !self.help.about_shown {
             return;
         }
+        let rows = self.versions();
+        let modal = Modal::new(Id::unique("about")).show(ctx, |ui| {
+            ui.set_width(380.0);
+            ui.heading("Lovelock");
+            ui.label(env!("CARGO_PKG_DESCRIPTION"));
+            ui.add_space(6.0);
+            Grid::new("about").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+                for (name, value) in &rows {
+                    ui.label(RichText::new(*name).color(theme::quiet()));
+                    ui.add(egui::Label::new(value.as_str()).wrap());
+                    ui.end_row();
+                }
+            });
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                if ui.button("Copy").hover_tooltip("Copies this and the changed settings.").clicked() {
+                    ui.copy_text(self.problem_report());
+                }
+                ui.button("Close").clicked()
+            })
+            .inner
+        });
+        self.help.about_shown = !(modal.inner || modal.should_close());
+    }
+
+    /// Copies what a report of a problem needs, and says so.
+    pub(super) fn report_problem(&mut self, ctx: &Context) {
+        ctx.copy_text(self.problem_report());
+        let text = "Version, graphics card and changed settings are copied. Paste them into your report and add what you did, what \
+                    happened and what you expected.";
+        self.notices.push(Kind::Done, text.to_owned());
+    }
+
+    /// Version, licence, what draws, and the system.
+    fn versions(&self) -> [(&'static str, String); 4] {
         let adapter = self.session.painter().adapter();
         let adapter = adapter.map_or_else(
             || "nothing yet".to_owned(),
@@ -23,28 +60,20 @@ impl Window {
                 format!("{} ({}{software})", adapter.name, adapter.backend_label())
             },
         );
-        let modal = Modal::new(Id::unique("about")).show(ctx, |ui| {
-            ui.set_width(380.0);
-            ui.heading("Lovelock");
-            ui.label(env!("CARGO_PKG_DESCRIPTION"));
-            ui.add_space(6.0);
-            Grid::new("about").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
-                let rows = [
-                    ("Version", env!("CARGO_PKG_VERSION").to_owned()),
-                    ("Licence", env!("CARGO_PKG_LICENSE").to_owned()),
-                    ("Rendered by", adapter),
-                    ("System", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
-                ];
-                for (name, value) in rows {
-                    ui.label(RichText::new(name).color(theme::QUIET));
-                    ui.add(egui::Label::new(value).wrap());
-                    ui.end_row();
-                }
-            });
-            ui.add_space(6.0);
-            ui.button("Close").clicked()
-        });
-        self.help.about_shown = !(modal.inner || modal.should_close());
+        [
+            ("Version", env!("LOVELOCK_VERSION").to_owned()),
+            ("Licence", env!("CARGO_PKG_LICENSE").to_owned()),
+            ("Rendered by", adapter),
+            ("System", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
+        ]
+    }
+
+    /// The versions and the settings that differ from the default project, as text. Names of files are left out.
+    fn problem_report(&self) -> String {
+        let versions = self.versions().map(|(name, value)| format!("{name}: {value}"));
+        let changed = changed_settings(self.document.project());
+        let changed = if changed.is_empty() { vec!["none".to_owned()] } else { changed };
+        format!("Lovelock\n{}\nChanged settings:\n{}\n", versions.join("\n"), changed.join("\n"))
     }
 
     /// Explains the control that has the focus, or the one that is clicked next.
@@ -61,8 +90,9 @@ impl Window {
         }
         // What has no place in the manual has a sentence of its own.
         let name = asked.name.trim();
+        let keymap = &self.layout.keys;
         let command = COMMANDS.iter().find(|info| {
-            name == info.label || info.shortcuts.iter().any(|key| name == format!("{} {key}", info.label))
+            name == info.label || keymap.keys(info).iter().any(|key| name == format!("{} {key}", info.label))
         });
         let text = match (asked.info, command) {
             (Some(info), _) => format!("{}: {}", info.label, info.tooltip()),

@@ -6,6 +6,7 @@ use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
+use lovelock_project::grants::Grants;
 use lovelock_project::project::{
     Assignment, CameraMode, CameraSection, Marker, TimelineSection, load_project_with,
 };
@@ -19,7 +20,7 @@ use super::opening::{Aim, Found};
 use super::page::Page;
 use super::pointer_tool::PointerTool;
 use super::purpose::Purpose;
-use super::{Window, notices};
+use super::{Window, notices, scale};
 
 /// Factor by which a key changes the radius of the brush.
 const BRUSH_STEP: f32 = 1.15;
@@ -74,7 +75,9 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
             opened.project.apply_style(&listed.style, StyleParts::ALL);
         }
         Found::Document(_) => {
-            (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
+            let mut access = Access::for_project(path);
+            Grants::of_user().allow(path, &mut access);
+            (opened.project, opened.problems) = load_project_with(path, &mut access)?;
             opened.project_path = Some(path.to_owned());
         }
         Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
@@ -88,6 +91,9 @@ impl Window {
         if let Some(why_not) = self.why_not(&command) {
             self.notices.push(notices::Kind::Warning, why_not);
             return;
+        }
+        if let Some(info) = command.info() {
+            crate::failure::note_command(info.id);
         }
         match command {
             Command::PlayPause => self.session.set_playing(!self.session.playing),
@@ -167,7 +173,7 @@ impl Window {
             Command::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => {
                     if let Err(error) = self.save_to(&path) {
-                        self.fail(error);
+                        self.save_elsewhere(error);
                     }
                 }
                 None => self.open_path_dialog(Purpose::SaveProject),
@@ -176,10 +182,19 @@ impl Window {
             Command::Palette => self.keyboard.palette.toggle(),
             Command::Show(page) => self.layout.page.toggle(page),
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
+            Command::ResetLayout => self.reset_layout(ctx),
             Command::Manual => self.help.manual.toggle(),
             Command::WhatIsThis => self.what_is_this(ctx),
             Command::About => self.help.about_shown = !self.help.about_shown,
+            Command::ReportProblem => self.report_problem(ctx),
             Command::ShowKeys => self.help.keys_shown = !self.help.keys_shown,
+            Command::StartPage => self.start.open(ctx, &self.layout),
+            Command::Tour => self.tour.begin(),
+            Command::Preferences => self.preferences.toggle(),
+            Command::ScaleUp => self.layout.scale = scale::larger(scale::clamped(self.layout.scale)),
+            Command::ScaleDown => self.layout.scale = scale::smaller(scale::clamped(self.layout.scale)),
+            Command::ScaleReset => self.layout.scale = 1.0,
+            Command::ShowUnsaved => self.show_unsaved(ctx),
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Seek(secs) => self.session.worker().seek(secs),
             Command::SetRate(rate) => self.session.set_rate(rate),
@@ -247,6 +262,7 @@ impl Window {
         match new_take(self.document.path()) {
             Ok(path) => {
                 self.session.set_playing(true);
+                self.note_take(&path);
                 self.session.worker().record_take(path);
             }
             Err(error) => self.fail(error),
@@ -256,6 +272,11 @@ impl Window {
     /// The current time of the timeline, seconds.
     pub(super) fn now_secs(&self) -> f64 {
         self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs)
+    }
+
+    /// The time of the scene in the image, seconds; keeps increasing when the clip loops.
+    pub(super) fn scene_secs(&self) -> f64 {
+        self.session.frame.as_ref().map_or(0.0, |frame| frame.time_secs)
     }
 
     fn add_marker(&mut self) {
@@ -343,8 +364,12 @@ impl Window {
                 let access = self.session.access().clone();
                 let panes =
                     (self.layout.page == Page::Compare && pictures).then(|| self.layout.compare.sheet());
-                let resume = purpose == Purpose::Resume;
-                self.media.recorder.start(self.document.project().clone(), access, path, panes, resume, ctx);
+                let (resume, project) = (purpose == Purpose::Resume, self.document.project().clone());
+                if !self.media.recorder.is_running() {
+                    let has_panes = panes.is_some();
+                    self.media.recorder.start(project.clone(), access, path, panes, resume, ctx);
+                    self.note_recording(path, &project, has_panes);
+                }
             }
             Purpose::ExportStyle => self.export_style(path)?,
             Purpose::SaveStrokes => self.save_strokes(path)?,
@@ -365,11 +390,17 @@ impl Window {
             | Purpose::Motion
             | Purpose::Surroundings
             | Purpose::Sound => {}
+            Purpose::Reference => {
+                self.open_part(Place::Reference, path, |project| project.set_reference_file(path));
+            }
+            Purpose::Backdrop => {
+                self.open_part(Place::Backdrop, path, |project| project.set_backdrop_file(path));
+            }
         }
         Ok(Used::Done)
     }
 
-    fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
+    pub(super) fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
         if self.document.is_modified() {
             self.files.pending = Some(pending);
         } else {
@@ -388,6 +419,8 @@ impl Window {
                 self.files.openings.cancel();
                 self.replace_document(Project::default(), None);
             }
+            Pending::Recover(journal) => self.recover(&journal),
+            Pending::Example(example) => self.begin_example(example, ctx),
             Pending::Open(path) => {
                 if let Err(error) = self.open_project(&path) {
                     self.fail(error);
@@ -419,7 +452,7 @@ impl Window {
             if let Some(path) = self.document.path().map(Path::to_owned) {
                 match self.save_to(&path) {
                     Ok(()) => self.go_on(pending, ctx),
-                    Err(error) => self.fail(error),
+                    Err(error) => self.save_elsewhere(error),
                 }
             } else {
                 self.open_path_dialog(Purpose::SaveProject);

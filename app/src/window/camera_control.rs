@@ -4,13 +4,17 @@ use egui::{PointerButton, Response};
 use glam::Vec3;
 use lovelock_project::project::{CameraMode, CameraSection};
 
+use super::keymap::{Keymap, Navigation};
+
 /// Angle by which a drag across the whole viewport turns the camera, radians.
 const TURN: f32 = 3.6;
+/// Logarithm of the factor by which a drag across the whole viewport changes the distance.
+const ZOOM: f32 = 3.0;
 
-/// Applies the pointer's input over the viewport. Returns whether the camera changed.
-pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
+/// Applies the pointer's input over the viewport, which shows the time `secs` of the scene. Returns whether the camera changed.
+pub(crate) fn apply(camera: &mut CameraSection, secs: f64, response: &Response) -> bool {
     let before = *camera;
-    steer(camera, response);
+    steer(camera, secs, response);
     if response.hovered() {
         zoom(camera, 1.0 / response.ctx.input(egui::InputState::zoom_delta));
     }
@@ -18,17 +22,18 @@ pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
 }
 
 /// Like [`apply`], without pinching and without the wheel with Ctrl.
-pub(crate) fn steer(camera: &mut CameraSection, response: &Response) {
+pub(crate) fn steer(camera: &mut CameraSection, secs: f64, response: &Response) {
     let size = response.rect.height().max(1.0);
     let drag = response.drag_delta() / size;
-    let shift = response.ctx.input(|input| input.modifiers.shift);
-    let pans = response.dragged_by(PointerButton::Middle)
-        || response.dragged_by(PointerButton::Secondary)
-        || (shift && response.dragged_by(PointerButton::Primary));
-    if pans {
-        pan(camera, drag.x, drag.y);
-    } else if response.dragged_by(PointerButton::Primary) {
-        orbit(camera, drag.x, drag.y);
+    let held = response.ctx.input(|input| input.modifiers);
+    let preset = Keymap::of(&response.ctx).preset();
+    let buttons = [PointerButton::Middle, PointerButton::Secondary, PointerButton::Primary];
+    let dragged = buttons.into_iter().find(|button| response.dragged_by(*button));
+    match dragged.and_then(|button| preset.navigation(button, held)) {
+        Some(Navigation::Pan) => pan(camera, secs, drag.x, drag.y),
+        Some(Navigation::Orbit) => orbit(camera, drag.x, drag.y),
+        Some(Navigation::Zoom) => zoom(camera, (ZOOM * (drag.y - drag.x)).exp()),
+        None => {}
     }
     if response.hovered() {
         let scroll = response.ctx.input(|input| input.smooth_scroll_delta.y);
@@ -44,8 +49,8 @@ fn orbit(camera: &mut CameraSection, dx: f32, dy: f32) {
 }
 
 /// Moves the target so that the point under the pointer stays under it.
-fn pan(camera: &mut CameraSection, dx: f32, dy: f32) {
-    let [right, up, _] = axes(camera);
+fn pan(camera: &mut CameraSection, secs: f64, dx: f32, dy: f32) {
+    let [right, up, _] = axes(&camera.turned(secs));
     let height = 2.0 * camera.distance * (camera.fov_y * 0.5).tan();
     let shift = (up * dy - right * dx) * height;
     let (target, limit) = match camera.mode {
@@ -87,9 +92,19 @@ mod tests {
         let mut camera = CameraSection { mode: CameraMode::Fixed, azimuth: 0.0, ..CameraSection::default() };
         camera.elevation = 0.0;
         let before = camera.fixed_target;
-        pan(&mut camera, 0.5, 0.0);
+        pan(&mut camera, 0.0, 0.5, 0.0);
         let shown = 2.0 * camera.distance * (camera.fov_y * 0.5).tan();
         assert!((before.x - camera.fixed_target.x - 0.5 * shown).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_turntable_turns_what_a_pan_moves_along() {
+        let mut camera = CameraSection { mode: CameraMode::Fixed, azimuth: 0.0, ..CameraSection::default() };
+        (camera.elevation, camera.turntable, camera.turn_secs) = (0.0, true, 8.0);
+        let before = camera.fixed_target;
+        pan(&mut camera, 2.0, 0.5, 0.0);
+        let moved = camera.fixed_target - before;
+        assert!(moved.x.abs() < 1e-4 && moved.z.abs() > 0.1, "a quarter of a turn: {moved}");
     }
 
     #[test]
@@ -98,7 +113,7 @@ mod tests {
         for _ in 0..100 {
             orbit(&mut camera, 3.7, 9.0);
             zoom(&mut camera, 0.2);
-            pan(&mut camera, 50.0, -50.0);
+            pan(&mut camera, 3.0, 50.0, -50.0);
         }
         zoom(&mut camera, f32::NAN);
         assert!(camera.azimuth.abs() <= std::f32::consts::PI + 1e-5);

@@ -41,6 +41,8 @@ pub(crate) enum Command {
     ShowColliders,
     /// Starts or ends the recording of a take.
     RecordTake,
+    /// Offers what earlier runs did not save.
+    ShowUnsaved,
     /// Starts or cancels the recording of a film or of images.
     Record,
     /// Plays the latest take.
@@ -83,14 +85,30 @@ pub(crate) enum Command {
     Show(Page),
     /// Hides or shows the panels.
     TogglePanels,
+    /// Returns every panel to its usual place and size.
+    ResetLayout,
     /// Opens or closes the manual.
     Manual,
     /// Starts or ends the mode in which a click on a control opens what the manual writes about it.
     WhatIsThis,
     /// Shows the list of keys.
     ShowKeys,
+    /// Shows recent projects and examples.
+    StartPage,
+    /// Begins the tour through the window.
+    Tour,
+    /// Opens or closes the dialog of theme, scale and keys.
+    Preferences,
+    /// Makes text and controls larger.
+    ScaleUp,
+    /// Makes text and controls smaller.
+    ScaleDown,
+    /// Restores the size of text and controls.
+    ScaleReset,
     /// Shows version, licence and graphics card.
     About,
+    /// Copies what a report of a problem needs.
+    ReportProblem,
     /// Quits the program.
     Quit,
     /// Seeks to a time of the timeline, seconds.

@@ -18,17 +18,30 @@ impl Window {
         self.files.dialog.is_some()
             || self.files.pending.is_some()
             || self.help.keys_shown
+            || self.preferences.is_open()
+            || self.start.is_open()
             || self.pages.compare.reporting.is_open()
             || self.keyboard.palette.is_open()
+            || self.safety.is_asking()
             || self.files.up_question.is_open()
             || key_press::are_held(ctx)
     }
 
-    /// Whether a command closes the dialog that is open.
+    /// Whether a command acts although a dialog is open: most of these close it.
     pub(super) fn closes(&self, command: &Command) -> bool {
+        if self.preferences.takes_key() {
+            return false;
+        }
+        if self.start.is_open() {
+            // Tab goes from control to control there.
+            return *command != Command::TogglePanels;
+        }
         match command {
             Command::Palette => self.keyboard.palette.is_open(),
             Command::ShowKeys => self.help.keys_shown,
+            Command::Preferences => self.preferences.is_open(),
+            // They show what they do in any dialog.
+            Command::ScaleUp | Command::ScaleDown | Command::ScaleReset => true,
             _ => false,
         }
     }
@@ -60,16 +73,29 @@ impl Window {
             },
         }
         if self.help.keys_shown {
+            let mut change = false;
             let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
-                ui.heading("Keys");
+                ui.horizontal(|ui| {
+                    ui.heading("Keys");
+                    if ui.small_button("Change…").clicked() {
+                        change = true;
+                    }
+                });
                 let most = ctx.content_rect().height() * 0.85;
                 ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
-            self.help.keys_shown = !modal.should_close();
+            self.help.keys_shown = !modal.should_close() && !change;
+            if change {
+                self.preferences.toggle();
+            }
         }
+        self.start_page(ctx);
+        self.preferences(ctx);
         self.about(ctx);
         self.report_dialog(ctx);
         self.ask_up_axis(ctx);
+        self.offer_unsaved(ctx);
+        self.offer_recordings(ctx);
         self.confirm_loss(ctx);
     }
 
@@ -86,6 +112,8 @@ impl Window {
             | Purpose::Body
             | Purpose::Motion
             | Purpose::Surroundings
+            | Purpose::Backdrop
+            | Purpose::Reference
             | Purpose::Sound => folder.join(""),
             Purpose::SaveProject => self.document.path().map_or_else(
                 || folder.join("hair").with_extension(PROJECT_EXTENSION),
@@ -123,6 +151,8 @@ impl Window {
             | Purpose::Body
             | Purpose::Motion
             | Purpose::Surroundings
+            | Purpose::Backdrop
+            | Purpose::Reference
             | Purpose::Sound
             | Purpose::SaveProject
             | Purpose::ExportStyle

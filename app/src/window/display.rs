@@ -10,6 +10,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::project::{PROJECT_EXTENSION, save_project};
 use lovelock_session::window_device::WindowDevice;
 
+use super::dock::SecondWindow;
 use super::images::{self, Textures};
 use super::screenshot::Screenshot;
 use super::{LAYOUT_KEY, Window, notices, theme};
@@ -26,6 +27,8 @@ pub(super) struct Display {
     pub(super) screenshot: Option<Screenshot>,
     /// The title that was set last.
     pub(super) title: String,
+    /// The second window.
+    pub(super) second: SecondWindow,
     /// The context of the window, and its place on the screen, points.
     ctx: Option<egui::Context>,
     place: Option<egui::Rect>,
@@ -46,6 +49,7 @@ impl Display {
             textures,
             screenshot: None,
             title: String::new(),
+            second: SecondWindow::default(),
             ctx: None,
             place: None,
             is_reopening: false,
@@ -88,6 +92,7 @@ pub(super) fn run(
                     (None, None) => return Err("the state of the window was lost".into()),
                 };
                 window.attach(creation.wgpu_render_state.as_ref(), &creation.egui_ctx);
+                window.tools.pen.listen(creation);
                 Ok(Box::new(Opened { window: Some(window), kept: kept_here }))
             }),
         );
@@ -120,6 +125,7 @@ fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
     let mut viewport = egui::ViewportBuilder::default()
         .with_title("Lovelock")
         .with_app_id("lovelock")
+        .with_icon(icon())
         .with_inner_size([1440.0, 900.0])
         // Both panels, and the width of another one for the image.
         .with_min_inner_size([960.0, 540.0])
@@ -139,6 +145,12 @@ fn native_options(place: Option<egui::Rect>) -> eframe::NativeOptions {
     }
 }
 
+/// The picture of the program in lists of windows.
+fn icon() -> egui::IconData {
+    eframe::icon_data::from_png_bytes(include_bytes!("../../../packaging/icons/256x256/lovelock.png"))
+        .unwrap_or_default()
+}
+
 /// The window while no graphics device shows it.
 type Kept = Rc<RefCell<Option<Window>>>;
 
@@ -150,8 +162,14 @@ struct Opened {
 
 impl Drop for Opened {
     fn drop(&mut self) {
-        if let Some(window) = self.window.take().filter(|window| window.display.is_reopening) {
-            self.kept.replace(Some(window));
+        if let Some(window) = &mut self.window {
+            window.tools.pen.close();
+        }
+        match self.window.take() {
+            Some(window) if window.display.is_reopening => drop(self.kept.replace(Some(window))),
+            // After a failure the journal stays.
+            Some(mut window) if !std::thread::panicking() => window.end_safety(),
+            _ => {}
         }
     }
 }
@@ -166,14 +184,20 @@ impl eframe::App for Opened {
                 window.session.set_display_hz(f64::from(millihertz) * 1e-3);
             }
         }
-        window.pass(ui);
+        window.pass_safely(ui);
         window.watch_device(ui.ctx());
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if let Some(window) = &mut self.window {
+            window.tools.pen.hook(ctx, input);
+        }
     }
 
     /// The panels' colour: cleared once instead of painted under each panel, because every pixel of the window costs time without a
     /// graphics card.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
+        theme::panel().to_normalized_gamma_f32()
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
@@ -187,8 +211,9 @@ impl Window {
     /// Shows the window with a painter and its graphics device, after a loss with another one than before.
     pub(super) fn attach(&mut self, painter: Option<&egui_wgpu::RenderState>, ctx: &egui::Context) {
         let display = &mut self.display;
-        display.device.set(painter.and_then(images::device_of));
-        display.textures.attach(painter.cloned());
+        let device = painter.and_then(images::device_of);
+        display.textures.attach(painter.cloned().zip(device.clone()));
+        display.device.set(device);
         display.ctx = Some(ctx.clone());
         if !std::mem::take(&mut display.is_reopening) {
             return;

@@ -26,6 +26,10 @@ pub(super) enum Pending {
     Quit,
     New,
     Open(PathBuf),
+    /// Makes an example and shows it.
+    Example(lovelock_jobs::examples::Example),
+    /// Recovers the unsaved project in a journal.
+    Recover(PathBuf),
 }
 
 /// Files that are opened and saved, and what waits for them.
@@ -35,6 +39,8 @@ pub(super) struct Files {
     /// The files that are being looked into, and the context that their threads wake.
     pub(super) openings: Openings,
     pub(super) ctx: egui::Context,
+    /// Shadow methods of the user's own.
+    pub(super) methods: super::methods::Methods,
     /// The question for the up axis of the hair file that was opened last.
     pub(super) up_question: UpQuestion,
     /// The body that was opened last, until it is loaded.
@@ -57,6 +63,7 @@ impl Files {
         Self {
             dialog: None,
             openings: Openings::default(),
+            methods: super::methods::Methods::default(),
             ctx: ctx.clone(),
             up_question: UpQuestion::default(),
             framing,
@@ -116,6 +123,9 @@ pub(super) fn set_part(project: &mut Project, kind: FileKind, path: &Path) {
 impl Window {
     /// Opens a file of any kind that the program reads. What it is, is found out on a thread.
     pub(super) fn open_any(&mut self, path: &Path) {
+        if self.open_method(path) {
+            return;
+        }
         self.look_into_or_tell(path, Aim::Open);
     }
 
@@ -259,6 +269,7 @@ impl Window {
     /// Plays a take or curves: `made` returns the project that does. One undo step restores the previous one.
     fn play(&mut self, path: &Path, made: impl FnOnce(&Project) -> Project) {
         self.session.pick(path);
+        self.allow_granted(path);
         self.document.try_file("take", Place::Take, path, |project| *project = made(project));
         let project = self.document.project().clone();
         self.session.reload(&project);
@@ -277,6 +288,7 @@ impl Window {
                     ));
                 }
                 self.session.pick(path);
+                self.allow_granted(path);
                 let file = FileRef::new(path);
                 self.change("compare", |project| {
                     let own = Contender::of(project);
@@ -296,10 +308,11 @@ impl Window {
     }
 
     pub(super) fn open_project(&mut self, path: &Path) -> Result<(), String> {
+        self.allow_granted(path);
         let mut access = self.session.access().clone();
-        access.set_project(Some(path));
         let (project, problems) = load_project_with(path, &mut access).map_err(|error| error.to_string())?;
         self.replace_document(project, Some(path.to_owned()));
+        self.safety.stamp(Some(path));
         remember(&mut self.layout.recent, path);
         self.warn(problems.into_iter().map(|problem| problem.message));
         Ok(())
@@ -307,16 +320,24 @@ impl Window {
 
     /// Puts another project in place of this one.
     pub(super) fn replace_document(&mut self, project: Project, path: Option<PathBuf>) {
-        self.cancel_strokes();
-        self.files.framing = None;
+        self.forget_document();
         self.document.replace(project, path);
         self.rest_all();
         self.follow_path();
     }
 
+    /// Ends what was begun in the project that another one replaces.
+    pub(super) fn forget_document(&mut self) {
+        self.cancel_strokes();
+        self.files.framing = None;
+    }
+
     pub(super) fn save_to(&mut self, path: &Path) -> Result<(), String> {
+        self.safety.check_stamp(path)?;
         save_project(path, self.document.project()).map_err(|error| error.to_string())?;
+        self.safety.stamp(Some(path));
         self.document.mark_saved(path);
+        self.forget_recent_picture();
         self.follow_path();
         remember(&mut self.layout.recent, path);
         self.notices.push(notices::Kind::Done, format!("Saved {}", path.display()));

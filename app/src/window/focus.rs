@@ -172,7 +172,7 @@ impl Focus {
         if !self.is_marked {
             return;
         }
-        let edge = Stroke::new(1.5, theme::ACCENT);
+        let edge = Stroke::new(1.5, theme::accent());
         let Some(id) = focused else {
             if let Some(rect) = self.image {
                 let painter = ctx.layer_painter(LayerId::background());

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, vec2};
 use lovelock_base::settings::Info;
+use lovelock_glyphs::Script;
 use lovelock_project::Project;
 use lovelock_project::document::Shown;
 use lovelock_project::tracks::Track;
@@ -15,8 +16,11 @@ use super::control::Keying;
 use super::focus::{Area, Focus};
 use super::page::Page;
 use super::recorder::State;
+use super::shelf::Panels;
 use super::viewport::{self, Viewport};
-use super::{Window, camera_control, control, copy, keys, notices, palette, panels, theme, timeline};
+use super::{
+    Window, camera_control, control, copy, dock, keys, notices, palette, panels, scale, theme, timeline,
+};
 use crate::window::control::HoverTooltip;
 
 /// Files and sounds that are read faster show no progress bar, seconds.
@@ -26,7 +30,14 @@ impl Window {
     /// One pass.
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        if !self.tools.gestures.continues(&ctx, self.document.overdub().writes().next().is_some()) {
+        theme::follow(&ctx, self.layout.theme);
+        self.layout.keys.begin(&ctx);
+        scale::apply(&ctx, self.layout.scale, self.layout.panels_hidden);
+        self.tools.pen.begin_pass();
+        let continues =
+            self.tools.gestures.continues(&ctx, self.document.overdub().writes().next().is_some());
+        let second = &self.display.second;
+        if !continues && !second.continues && !second.is_held {
             self.document.end_gesture();
         }
         let said = self.session.update();
@@ -54,6 +65,7 @@ impl Window {
             self.panels.picture.record.is_noted = true;
             self.warn(note.as_ref().map(ToString::to_string));
         }
+        self.warn(super::glyphs::missing().into_iter().map(Script::missing));
         if let Some(end) = self.media.recorder.update() {
             match end {
                 State::Done { what, out } => {
@@ -74,6 +86,9 @@ impl Window {
         for command in keys::pressed(&ctx, |command| !held || self.closes(command)) {
             // The dialog that one key opens takes those that follow it.
             if held || !self.holds_keys(&ctx) {
+                if !matches!(command, Command::ScaleUp | Command::ScaleDown | Command::ScaleReset) {
+                    self.start.close();
+                }
                 self.run(command, &ctx);
             }
         }
@@ -81,6 +96,7 @@ impl Window {
             self.open_any(file.path());
         }
         self.take_opened();
+        self.follow_methods(&ctx);
 
         let begin = Focus::begin_area(ui);
         self.menu_bar(ui);
@@ -94,15 +110,20 @@ impl Window {
         let mut commands: Vec<Command> = self.timeline(ui, &mut project).into_iter().collect();
         self.keyboard.focus.end_area(ui, Area::Timeline, begin);
         self.pages.image.film = None;
-        if !self.layout.panels_hidden {
+        if !self.layout.panels_hidden || self.layout.dock.has_second() {
             commands.extend(self.side_panels(ui, &mut project));
+        }
+        let writes = self.document.overdub().writes().next().is_some();
+        if self.layout.dock.has_second() && !continues && !writes && !self.display.second.continues {
+            // What was pressed in the second window begins a change of its own.
+            self.document.end_gesture();
         }
         control::keep_free_area(ui);
         let image = ui.available_rect_before_wrap();
         self.keyboard.focus.set_image(image);
         let begin = Focus::begin_area(ui);
         match self.layout.page {
-            Page::Image => self.picture(ui, &mut project),
+            Page::Image => theme::over_image(|| self.picture(ui, &mut project)),
             Page::Compare => commands.extend(self.comparison(ui, &mut project)),
             Page::Wall => commands.extend(self.wall_page(ui, &mut project)),
         }
@@ -129,6 +150,7 @@ impl Window {
             None => {}
         }
         self.windows(&ctx);
+        self.keep_safe(&ctx);
         // The single image is not visible while panes are shown.
         let page = self.layout.page;
         self.rest_hidden_pages();
@@ -168,6 +190,7 @@ impl Window {
         {
             self.warn([format!("{}: could not start a program to open it: {error}", path.display())]);
         }
+        self.tour(&ctx, image);
         if let Some(info) = control::end_reveal(&ctx) {
             self.explain_missing(info);
         }
@@ -203,7 +226,7 @@ impl Window {
                                 }
                             }
                             if self.layout.recent.is_empty() {
-                                ui.label(RichText::new("No project yet").color(theme::QUIET));
+                                ui.label(RichText::new("No project yet").color(theme::quiet()));
                             }
                         });
                         menu_keys.menu(ui, "Image size", 'I', |ui| {
@@ -223,9 +246,15 @@ impl Window {
                                 );
                             });
                         });
+                        let moved = menu_keys.menu(ui, "Panels", 'N', |ui| {
+                            dock::places(ui, &self.layout.dock, Panels::usual())
+                        });
+                        if let Some(moved) = moved.flatten() {
+                            moved.apply(&mut self.layout.dock, ui.ctx());
+                        }
                         if let Some(label) = self.document.history().undo_label() {
                             ui.label(
-                                RichText::new(format!("last change: {label}")).small().color(theme::QUIET),
+                                RichText::new(format!("last change: {label}")).small().color(theme::quiet()),
                             );
                         }
                         chosen
@@ -303,6 +332,8 @@ impl Window {
         let project = Arc::clone(self.document.project());
         let said = self.media.soundtrack.update(&project.sound, self.session.access(), ctx);
         self.judge_sound(said);
+        let message = self.media.reference.update(&project.reference, self.session.access(), ctx);
+        self.warn(message);
         let rate = if self.session.backwards { -self.session.rate } else { self.session.rate };
         let playing = self.session.playing && self.session.frame.is_some();
         self.media.soundtrack.follow(&project.sound, self.now_secs(), playing, rate);
@@ -318,11 +349,14 @@ impl Window {
                 ui.memory_mut(egui::Memory::stop_text_input);
             }
             if self.tools(ui, &response, project) {
-                camera_control::apply(&mut project.camera, &response);
+                camera_control::apply(&mut project.camera, self.scene_secs(), &response);
             }
             let rect = response.rect;
+            if let Some(place) = self.pages.image.place(rect) {
+                self.media.reference.show(ui, &project.reference, place);
+            }
             if let Some(error) = &self.session.draw_error {
-                Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::WRONG);
+                Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::wrong());
             }
             let ms = self.session.stages.median_total();
             let adapter = self.session.painter().adapter();
@@ -330,7 +364,7 @@ impl Window {
             let size = self.size_label();
             let is_covered = self.running(ui, rect) && rect.width() < ROOM_BESIDE_PROGRESS;
             if !is_covered {
-                Viewport::caption(ui, rect, Align2::RIGHT_TOP, &caption(ms, &size, &name), theme::QUIET);
+                Viewport::caption(ui, rect, Align2::RIGHT_TOP, &caption(ms, &size, &name), theme::quiet());
             }
         });
     }

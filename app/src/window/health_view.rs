@@ -80,6 +80,11 @@ impl Window {
 pub(super) fn facts(session: &Session) -> Vec<Fact> {
     let mut facts = Vec::new();
     let mut fact = |name, tip, value| facts.push(Fact { name, tip, value });
+    if let Some(frame) = &session.frame {
+        let by = if frame.on_device { "graphics card" } else { "CPU" };
+        let why = frame.device_refusal.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+        fact("Simulated by", "What simulated the last step of the hair.", format!("{by}{why}"));
+    }
     if let Some(RenderedImage { image, stats, .. }) = session.painted.as_deref() {
         let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
         let [width, height] = image.size();

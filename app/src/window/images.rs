@@ -14,7 +14,7 @@ pub(crate) struct Textures(Rc<RefCell<Known>>);
 
 #[derive(Default)]
 struct Known {
-    painter: Option<RenderState>,
+    painter: Option<(RenderState, Arc<Gpu>)>,
     entries: Vec<Entry>,
 }
 
@@ -26,15 +26,15 @@ struct Entry {
 }
 
 impl Textures {
-    /// Uses the painter of the window from now on, and forgets everything about the one before.
-    pub(crate) fn attach(&self, painter: Option<RenderState>) {
+    /// Uses the painter of the window and its device from now on, and forgets everything about the one before.
+    pub(crate) fn attach(&self, painter: Option<(RenderState, Arc<Gpu>)>) {
         *self.0.borrow_mut() = Known { painter, entries: Vec::new() };
     }
 
     /// Frees the textures of images that nobody holds any longer.
     pub(crate) fn sweep(&self) {
         let mut known = self.0.borrow_mut();
-        let Known { painter: Some(painter), entries } = &mut *known else { return };
+        let Known { painter: Some((painter, _)), entries } = &mut *known else { return };
         let mut renderer = painter.renderer.write();
         entries.retain(|entry| {
             let lives = entry.image.strong_count() > 0;
@@ -50,7 +50,7 @@ impl Textures {
         let is_it = |entry: &&Entry| entry.sharp == sharp && entry.image.as_ptr() == Arc::as_ptr(image);
         let known = {
             let Known { painter, entries } = &*self.0.borrow();
-            if image.gpu().device != painter.as_ref()?.device {
+            if !image.gpu().is_same_device(&painter.as_ref()?.1) {
                 return None;
             }
             entries.iter().find(is_it).map(|entry| entry.id)
@@ -60,7 +60,7 @@ impl Textures {
         }
         self.sweep();
         let Known { painter, entries } = &mut *self.0.borrow_mut();
-        let painter = painter.as_ref()?;
+        let (painter, _) = painter.as_ref()?;
         let mut renderer = painter.renderer.write();
         let filter = if sharp { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
         let id = renderer.register_native_texture(&painter.device, image.view(), filter);

@@ -9,7 +9,7 @@ pub(crate) fn are_held(ctx: &egui::Context) -> bool {
 
 /// Whether a key was pressed in this pass with these modifiers and no others; the key is consumed.
 ///
-/// `?`, `[` and `]` need Shift or `AltGr` on many keyboards, which are therefore no modifiers of these keys.
+/// `?`, `+`, `[` and `]` need Shift or `AltGr` on many keyboards, which are therefore no modifiers of these keys.
 pub(crate) fn consume(ctx: &egui::Context, modifiers: Modifiers, key: Key) -> bool {
     let is_symbol = matches!(key, Key::Questionmark | Key::OpenBracket | Key::CloseBracket);
     let fits = |pressed: Modifiers| {
@@ -17,7 +17,9 @@ pub(crate) fn consume(ctx: &egui::Context, modifiers: Modifiers, key: Key) -> bo
             // Control and Alt together are AltGr on some systems.
             return pressed.alt == pressed.ctrl && (pressed.alt || !pressed.command);
         }
-        pressed.matches_exact(modifiers)
+        // Shift makes a plus on many keyboards.
+        let shift = if key == Key::Plus { modifiers.shift } else { pressed.shift };
+        Modifiers { shift, ..pressed }.matches_exact(modifiers)
     };
     let mut found = false;
     ctx.input_mut(|input| {

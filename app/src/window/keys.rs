@@ -1,6 +1,6 @@
 //! Keys and menus, made from the table of commands.
 
-use super::command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
+use super::command::{COMMANDS, Command, CommandGroup, CommandInfo};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{
     Event, Id, Key, KeyboardShortcut, LayerId, Modifiers, Order, Popup, RichText, Stroke, TextStyle, Ui,
@@ -9,6 +9,7 @@ use egui::{
 use crate::window::control::HoverTooltip;
 
 use super::key_press::{are_held, consume};
+use super::keymap::{Keymap, shortcut};
 use super::page::Page;
 use super::purpose::Purpose;
 use super::theme;
@@ -19,10 +20,11 @@ pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(&Command) -> bool) -
     let typing = ctx.egui_wants_keyboard_input();
     let editing = ctx.text_edit_focused();
     let mut commands = Vec::new();
-    let bound = COMMANDS
-        .iter()
-        .filter(|info| allowed(&info.command))
-        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, &info.command))));
+    let keymap = Keymap::of(ctx);
+    let bound = COMMANDS.iter().filter(|info| allowed(&info.command)).flat_map(|info| {
+        let keys = keymap.keys(info);
+        keys.into_iter().filter_map(|text| Some((shortcut(text)?, &info.command))).collect::<Vec<_>>()
+    });
     for (shortcut, command) in bound {
         let KeyboardShortcut { modifiers, logical_key } = shortcut;
         // A control with the focus takes plain keys. Function keys are never its own.
@@ -131,34 +133,13 @@ fn underlined(ui: &Ui, name: &str, letter: char) -> egui::WidgetText {
         return RichText::new(name).into();
     };
     let plain = TextFormat::simple(TextStyle::Button.resolve(ui.style()), ui.visuals().text_color());
-    let line = TextFormat { underline: Stroke::new(1.0, theme::BRIGHT), ..plain.clone() };
+    let line = TextFormat { underline: Stroke::new(1.0, theme::bright()), ..plain.clone() };
     let end = at + found.len_utf8();
     let mut job = LayoutJob::default();
     for (text, format) in [(&name[..at], &plain), (&name[at..end], &line), (&name[end..], &plain)] {
         job.append(text, 0.0, format.clone());
     }
     job.into()
-}
-
-/// The key of that name in egui; `None` if egui has none.
-fn shortcut(text: &str) -> Option<KeyboardShortcut> {
-    let Shortcut { ctrl, shift, alt, key } = Shortcut::parse(text)?;
-    let logical = key_of(key)?;
-    let mut modifiers = Modifiers::NONE;
-    modifiers.command = ctrl;
-    modifiers.shift = shift;
-    modifiers.alt = alt;
-    Some(KeyboardShortcut::new(modifiers, logical))
-}
-
-/// The key of that name in the table of commands.
-pub(super) fn key_of(name: &str) -> Option<Key> {
-    match name {
-        "Left" => Some(Key::ArrowLeft),
-        "Right" => Some(Key::ArrowRight),
-        "?" => Some(Key::Questionmark),
-        name => Key::from_name(name),
-    }
 }
 
 /// Shows a menu per group of commands. Returns the command that was chosen.
@@ -194,12 +175,15 @@ fn part_of(command: &Command) -> u8 {
     match command {
         Command::Save
         | Command::PickFile(Purpose::SaveProject)
+        | Command::ShowUnsaved
         | Command::ToggleLoop
         | Command::PlayBackwards
         | Command::PlayTake
         | Command::LeaveTake
         | Command::Palette
         | Command::TogglePanels
+        | Command::ResetLayout
+        | Command::Preferences
         | Command::ShowKeys
         | Command::Show(Page::Compare) => 1,
         Command::RecordTake
@@ -208,6 +192,9 @@ fn part_of(command: &Command) -> u8 {
         | Command::ExportReport
         | Command::AddMarker
         | Command::MarkIn
+        | Command::ScaleUp
+        | Command::ScaleDown
+        | Command::ScaleReset
         | Command::About
         | Command::MarkOut => 2,
         Command::Quit => 3,
@@ -217,8 +204,8 @@ fn part_of(command: &Command) -> u8 {
 
 fn entry(ui: &mut Ui, info: &CommandInfo, enabled: bool) -> bool {
     let mut button = egui::Button::new(info.label);
-    if let Some(key) = info.shortcuts.first() {
-        button = button.shortcut_text(*key);
+    if let Some(key) = Keymap::of(ui.ctx()).first(info) {
+        button = button.shortcut_text(key);
     }
     ui.add_enabled(enabled, button).hover_tooltip(info.tooltip).clicked()
 }
@@ -247,13 +234,13 @@ const IN_PLACE: [(&str, &str); 15] = [
 
 /// The list of keys, in two columns by menu.
 pub(crate) fn list(ui: &mut Ui) {
+    let keymap = Keymap::of(ui.ctx());
     let mut groups: Vec<(&str, Vec<KeyRow>)> = Vec::new();
     for group in CommandGroup::ALL {
-        let rows = in_order(group).into_iter().filter(|info| !info.shortcuts.is_empty());
-        groups.push((
-            group.label(),
-            rows.map(|info| (info.shortcuts.join("  "), info.label, Some(info.tooltip))).collect(),
-        ));
+        let rows = in_order(group).into_iter().map(|info| (keymap.keys(info).join("  "), info));
+        let rows = rows.filter(|(keys, _)| !keys.is_empty());
+        groups
+            .push((group.label(), rows.map(|(keys, info)| (keys, info.label, Some(info.tooltip))).collect()));
     }
     groups.push(("In place", IN_PLACE.map(|(keys, what)| (keys.to_owned(), what, None)).to_vec()));
     let half = groups.iter().map(|(_, rows)| rows.len() + 1).sum::<usize>() / 2;
@@ -273,7 +260,7 @@ pub(crate) fn list(ui: &mut Ui) {
                     let grid = egui::Grid::new(("keys", title)).num_columns(2).spacing([16.0, 0.0]);
                     grid.min_row_height(0.0).show(ui, |ui| {
                         for (keys, what, tip) in rows {
-                            ui.label(RichText::new(keys).monospace().size(11.0).color(theme::ACCENT));
+                            ui.label(RichText::new(keys).monospace().size(11.0).color(theme::accent()));
                             let what = ui.label(what);
                             if let Some(tip) = tip {
                                 what.hover_tooltip(tip);
@@ -285,18 +272,4 @@ pub(crate) fn list(ui: &mut Ui) {
             });
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_key_of_the_table_exists() {
-        for info in COMMANDS {
-            for text in info.shortcuts {
-                assert!(shortcut(text).is_some(), "{}: {text}", info.id);
-            }
-        }
-    }
 }

@@ -48,12 +48,12 @@ pub(crate) fn sphere(
         let light = if seen.z > 0.0 { 1.0 - share } else { 0.25 * (1.0 - share) };
         painter.circle_filled(center + shift, radius * share, Color32::from_gray(34 + (light * 120.0) as u8));
     }
-    painter.circle_stroke(center, radius, Stroke::new(1.0, theme::QUIET));
+    painter.circle_stroke(center, radius, Stroke::new(1.0, theme::quiet()));
     let handle: Pos2 = center + Vec2::new(seen.x, -seen.y) * radius;
     if seen.z >= 0.0 {
-        painter.circle_filled(handle, 6.0, theme::ACCENT);
+        painter.circle_filled(handle, 6.0, theme::accent());
     } else {
-        painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::ACCENT));
+        painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::accent()));
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, of.name));
     response.hover_tooltip(format!(

@@ -110,6 +110,13 @@ pub(super) fn kept_in_memory(
         let tip = "Samples of the sound of the dance.";
         fact("Sound", tip, format!("{} MiB", mib(sound.sound.bytes())));
     }
+    if media.reference.bytes() > 0 {
+        fact(
+            "Reference picture",
+            "The picture over the image.",
+            format!("{} MiB", mib(media.reference.bytes())),
+        );
+    }
     if let Some((database, _)) = lovelock_satf::cache::ready() {
         let tip = "Database for hair drawn as clusters. Kept until the program ends.";
         fact("Database of clusters", tip, format!("{} MiB", mib(database.bytes())));

@@ -10,19 +10,23 @@ mod compare;
 mod control;
 mod dialogs;
 mod display;
+mod dock;
 mod files;
 mod focus;
 mod frame;
 mod gesture;
+mod glyphs;
 mod health_view;
 mod images;
 mod key_press;
 mod keying;
+mod keymap;
 mod keys;
 mod light_sphere;
 mod load_ends;
 mod manual;
 mod memory;
+mod methods;
 mod notices;
 mod opening;
 mod overlay;
@@ -31,17 +35,24 @@ mod palette;
 mod panel;
 mod panels;
 mod path_dialog;
+mod pen;
 mod picker;
 mod pointer_tool;
+mod preferences;
 mod purpose;
 mod ramp;
 mod readings;
 mod recorder;
+mod reference;
+mod safety;
+mod scale;
 mod screenshot;
 mod search;
 mod session;
+mod shelf;
 mod side_panels;
 mod soundtrack;
+mod start;
 mod styles;
 
 #[cfg(test)]
@@ -49,6 +60,7 @@ mod testing;
 mod theme;
 mod timeline;
 mod tools;
+mod tour;
 mod up_axis;
 mod viewport;
 mod wall;
@@ -69,6 +81,7 @@ use lovelock_project::animation::Moment;
 use lovelock_project::document::Document;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
+use lovelock_project::grants::Grants;
 use lovelock_project::project::Assignment;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::ShownMask;
@@ -84,7 +97,7 @@ use recorder::Recorder;
 use screenshot::Screenshot;
 use serde::{Deserialize, Serialize};
 use session::Session;
-use side_panels::Panels;
+use shelf::Panels;
 use viewport::Viewport;
 use wall::{WallLayout, WallPage};
 
@@ -114,6 +127,14 @@ struct Layout {
     tracks_height: Option<f32>,
     styles: styles::Kept,
     brushes: brushes::Kept,
+    /// Where the panels are.
+    dock: dock::Arrangement,
+    keys: keymap::Keymap,
+    theme: theme::Choice,
+    /// Whether the start page is shown when the program starts without a project.
+    starts_with_page: bool,
+    /// The scale of the interface beside that of the system, a factor.
+    scale: f32,
 }
 
 impl Default for Layout {
@@ -131,6 +152,11 @@ impl Default for Layout {
             tracks_height: None,
             styles: styles::Kept::default(),
             brushes: brushes::Kept::default(),
+            dock: dock::Arrangement::default(),
+            keys: keymap::Keymap::default(),
+            theme: theme::Choice::default(),
+            starts_with_page: true,
+            scale: 1.0,
         }
     }
 }
@@ -157,11 +183,14 @@ struct Tools {
     /// The gauge whose place is marked in the image, with its values when the mark was requested.
     marked_gauge: Option<Gauge>,
     gestures: Gestures,
+    pen: pen::Pen,
 }
 
 /// What is made and played beside the image: sound, recordings, and the thumbnails of the timeline.
 struct Media {
     soundtrack: soundtrack::Soundtrack,
+    /// The picture over the image.
+    reference: reference::Reference,
     recorder: Recorder,
     thumbnails: timeline::Thumbnails,
 }
@@ -196,6 +225,10 @@ pub(crate) struct Window {
     keyboard: Keyboard,
     help: Help,
     notices: Notices,
+    safety: safety::Safety,
+    preferences: preferences::Preferences,
+    start: start::StartPage,
+    tour: tour::Tour,
     display: Display,
 }
 
@@ -206,6 +239,8 @@ pub(crate) struct Shows {
     pub(crate) panes: bool,
     /// The mask of a layer, by its place in the list from 1.
     pub(crate) mask: Option<u32>,
+    /// A shadow method of the user's own.
+    pub(crate) method: Option<lovelock_render::UserMethod>,
 }
 
 /// Opens the window with the file at `path`, if there is one.
@@ -216,7 +251,10 @@ pub(crate) fn open(
     screenshot: Option<(PathBuf, f64)>,
 ) -> Result<(), ProjectError> {
     // A file that cannot be opened is an error of the command line, reported without opening the window.
-    let opened = actions::open_for_start(path, set)?;
+    let mut opened = actions::open_for_start(path, set)?;
+    if let Some(method) = shows.method {
+        methods::show(&mut opened.project, method, shows.panes);
+    }
     let layers = &opened.project.hair.stack.layers;
     let shown = shows.mask.map(|place| {
         let layer = layers.get(place as usize - 1);
@@ -228,6 +266,7 @@ pub(crate) fn open(
         })
     });
     let shown = shown.transpose()?;
+    let is_bare = path.is_none() && set.is_empty() && !shows.panes && shown.is_none() && screenshot.is_none();
     display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
         window.panels.layers.reveal(shown);
@@ -236,6 +275,10 @@ pub(crate) fn open(
         } else if window.layout.page == Page::Wall {
             // Nine simulations are not what a program should start with.
             window.layout.page = Page::Image;
+        }
+        // What the command line names is what the user wants to see; and what was lost comes first.
+        if is_bare && window.layout.starts_with_page && !window.safety.is_asking() {
+            window.start.open(&creation.egui_ctx, &window.layout);
         }
         Ok(window)
     })
@@ -250,6 +293,9 @@ impl Window {
         let ctx = &creation.egui_ctx;
         egui_material_icons::initialize(ctx);
         theme::apply(ctx);
+        glyphs::provide(ctx);
+        // The program has its own commands for it.
+        ctx.options_mut(|options| options.zoom_with_keyboard = false);
         ctx.add_plugin(control::MenuKey::default());
         let layout =
             creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
@@ -260,6 +306,10 @@ impl Window {
         window.panels.hair.styles = styles::Browser::new(own, cache, ctx);
         window.panels.hair.styles.kept = kept;
         window.ask_about_started_hair();
+        // Pictures for documents are taken without a user.
+        if picture.is_none() {
+            window.begin_safety(ctx)?;
+        }
         window.display.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
@@ -272,6 +322,12 @@ impl Window {
             access.pick(path);
         }
         access.set_project(project_path.as_deref());
+        let take = project.take.file.as_ref().map(|file| file.path.as_path());
+        for made in project_path.as_deref().into_iter().chain(take) {
+            Grants::of_user().allow(made, &mut access);
+        }
+        let mut layout = layout;
+        layout.dock.forget_unknown(Panels::usual());
         let framing = files::Framing::at_start(&project, project_path.as_ref());
         let mut document = Document::new(project, project_path);
         if let Some((place, file, before)) = part {
@@ -292,6 +348,7 @@ impl Window {
             panels,
             media: Media {
                 soundtrack: soundtrack::Soundtrack::default(),
+                reference: reference::Reference::default(),
                 recorder: Recorder::default(),
                 thumbnails,
             },
@@ -299,6 +356,10 @@ impl Window {
             keyboard: Keyboard::default(),
             help: Help::default(),
             notices: Notices::default(),
+            safety: safety::Safety::default(),
+            preferences: preferences::Preferences::default(),
+            start: start::StartPage::default(),
+            tour: tour::Tour::default(),
             display: Display::new(device, textures),
         };
         for problem in &problems {
@@ -342,7 +403,7 @@ impl Window {
         Moment {
             secs: self.now_secs(),
             playing: self.session.playing,
-            held: ctx.input(|input| input.pointer.any_down()),
+            held: ctx.input(|input| input.pointer.any_down()) || self.display.second.is_held,
             clock_secs: ctx.input(|input| input.time),
         }
     }

@@ -35,9 +35,9 @@ pub(crate) enum Kind {
 impl Kind {
     fn icon(self) -> (MaterialIcon, Color32) {
         match self {
-            Self::Done => (ICON_CHECK_CIRCLE, theme::QUIET),
-            Self::Warning => (ICON_WARNING, theme::ACCENT),
-            Self::Failed => (ICON_ERROR, theme::WRONG),
+            Self::Done => (ICON_CHECK_CIRCLE, theme::quiet()),
+            Self::Warning => (ICON_WARNING, theme::accent()),
+            Self::Failed => (ICON_ERROR, theme::wrong()),
         }
     }
 }
@@ -69,6 +69,11 @@ impl Notices {
     /// Adds the message that the file or folder at `path` was written, with buttons that open it.
     pub(crate) fn push_written(&mut self, text: impl Into<String>, path: PathBuf) {
         self.add(Kind::Done, text, Some(path));
+    }
+
+    /// Adds a message about a report, with buttons that open it.
+    pub(crate) fn push_report(&mut self, kind: Kind, text: impl Into<String>, report: PathBuf) {
+        self.add(kind, text, Some(report));
     }
 
     fn add(&mut self, kind: Kind, text: impl Into<String>, written: Option<PathBuf>) {

@@ -10,6 +10,7 @@ use lovelock_brush::BrushSettings;
 use lovelock_project::project::settings_of;
 use lovelock_style::{Kind, Operation};
 
+use super::keymap::Keymap;
 use super::picker::Picker;
 use super::search::{Fit, best_first, fit};
 use super::theme;
@@ -46,19 +47,16 @@ impl Found {
     }
 
     /// What stands at the right of its row.
-    fn aside(&self) -> &'static str {
+    fn aside(&self, keymap: &Keymap) -> String {
         match self {
-            Self::Command(info) => info.shortcuts.first().copied().unwrap_or(""),
-            Self::Layer(_) => "add layer",
-            Self::Setting(path, _) => path,
+            Self::Command(info) => keymap.first(info).unwrap_or_default(),
+            Self::Layer(_) => "add layer".to_owned(),
+            Self::Setting(path, _) => (*path).to_owned(),
         }
     }
 
-    fn fit(&self, typed: &str) -> Option<Fit> {
-        match self {
-            Self::Setting(path, info) => fit(typed, info.label, &[info.text, path]),
-            Self::Command(_) | Self::Layer(_) => fit(typed, self.name(), &[self.text(), self.aside()]),
-        }
+    fn fit(&self, typed: &str, keymap: &Keymap) -> Option<Fit> {
+        fit(typed, self.name(), &[self.text(), &self.aside(keymap)])
     }
 }
 
@@ -79,14 +77,14 @@ pub(crate) fn path_of(info: &Info) -> Option<&'static str> {
 }
 
 /// The matches, the best first.
-fn matches(typed: &str, enabled: impl Fn(&Command) -> bool) -> Vec<Found> {
+fn matches(typed: &str, keymap: &Keymap, enabled: impl Fn(&Command) -> bool) -> Vec<Found> {
     let commands =
         COMMANDS.iter().filter(|info| info.in_palette && enabled(&info.command)).map(Found::Command);
     // Without anything typed it is a list of commands.
     let others = !typed.trim().is_empty();
     let layers = Operation::KINDS.iter().filter(|kind| others && kind.id != "scissors").map(Found::Layer);
     let settings = SETTINGS.iter().filter(|_| others).map(|(path, info)| Found::Setting(path.as_str(), info));
-    best_first(typed, commands.chain(layers).chain(settings), |typed, found| found.fit(typed))
+    best_first(typed, commands.chain(layers).chain(settings), |typed, found| found.fit(typed, keymap))
 }
 
 /// The typed text and the selected match.
@@ -113,12 +111,13 @@ impl Palette {
             return None;
         }
         let mut result = None;
+        let keymap = Keymap::of(ctx);
         let response = Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
             ui.set_width(LIST.x);
             let name = "Find a command or a setting";
             let (field, picked) = self.picker.field(ui, name, f32::INFINITY, false);
             field.request_focus();
-            let found = matches(&self.picker.typed, enabled);
+            let found = matches(&self.picker.typed, &keymap, enabled);
             self.picker.among(found.len());
             let list = ScrollArea::vertical().min_scrolled_height(LIST.y).max_height(LIST.y);
             list.auto_shrink(false).show(ui, |ui| {
@@ -128,7 +127,8 @@ impl Palette {
                         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
                             // The scroll bar floats above the content.
                             ui.add_space(ui.spacing().scroll.bar_width);
-                            let aside = RichText::new(found.aside()).monospace().small().color(theme::QUIET);
+                            let aside =
+                                RichText::new(found.aside(&keymap)).monospace().small().color(theme::quiet());
                             ui.add(egui::Label::new(aside).truncate());
                         });
                         label.hover_tooltip(found.text())
@@ -139,7 +139,7 @@ impl Palette {
                     }
                 }
                 if found.is_empty() {
-                    ui.label(RichText::new("No command or setting matches.").color(theme::QUIET));
+                    ui.label(RichText::new("No command or setting matches.").color(theme::quiet()));
                 }
             });
         });
@@ -155,17 +155,19 @@ mod tests {
     use super::*;
 
     fn names(typed: &str) -> Vec<&'static str> {
-        matches(typed, |_| true).iter().map(Found::name).collect()
+        matches(typed, &Keymap::default(), |_| true).iter().map(Found::name).collect()
     }
 
     #[test]
     fn words_in_any_order_find_a_command() {
         assert!(
-            matches!(matches("hair frame", |_| true)[0], Found::Command(info) if info.command == Command::FrameHair)
+            matches!(matches("hair frame", &Keymap::default(), |_| true)[0], Found::Command(info) if info.command == Command::FrameHair)
         );
         assert_eq!(names("no such thing"), [""; 0]);
         assert!(names("").len() > 10);
-        assert!(matches("", |_| true).iter().all(|found| matches!(found, Found::Command(_))));
+        assert!(
+            matches("", &Keymap::default(), |_| true).iter().all(|found| matches!(found, Found::Command(_)))
+        );
     }
 
     #[test]
@@ -174,10 +176,10 @@ mod tests {
         assert_eq!(curl[0], "Curl", "{curl:?}");
         assert!(curl.contains(&"Curl radius"), "{curl:?}");
         // By its path, as the command line calls it.
-        let wind = matches("simulation.wind.speed", |_| true);
+        let wind = matches("simulation.wind.speed", &Keymap::default(), |_| true);
         assert!(matches!(wind[0], Found::Setting("simulation.wind.speed", _)));
         assert!(
-            matches("brush radius", |_| true)
+            matches("brush radius", &Keymap::default(), |_| true)
                 .iter()
                 .any(|found| matches!(found, Found::Setting("brush.radius", _)))
         );

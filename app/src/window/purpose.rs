@@ -21,6 +21,10 @@ pub(crate) enum Purpose {
     Motion,
     /// Light from a picture of the surroundings.
     Surroundings,
+    /// A picture behind the figure.
+    Backdrop,
+    /// A picture to compare with the image.
+    Reference,
     /// A sound for the dance.
     Sound,
     /// Saving the project.
@@ -64,6 +68,8 @@ impl Purpose {
             Self::Body => "Body from a character file",
             Self::Motion => "Motion from a motion file, or from a clip of another character",
             Self::Surroundings => "Light from a picture of the surroundings: .hdr or .exr",
+            Self::Backdrop => "Picture behind the figure: PNG, JPEG, .hdr or .exr",
+            Self::Reference => "Reference picture over the image: PNG, JPEG, .hdr or .exr",
             Self::Sound => "Sound for the dance: WAV, MP3, Ogg Vorbis or FLAC",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
@@ -80,7 +86,13 @@ impl Purpose {
 
     pub(super) fn button(self) -> &'static str {
         match self {
-            Self::Open | Self::Body | Self::Motion | Self::Surroundings | Self::Sound => "Open file",
+            Self::Open
+            | Self::Body
+            | Self::Motion
+            | Self::Surroundings
+            | Self::Backdrop
+            | Self::Reference
+            | Self::Sound => "Open file",
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture | Self::Curves | Self::ExportStyle | Self::SaveStrokes => {
                 "Save file"
@@ -95,7 +107,14 @@ impl Purpose {
     pub(super) fn opens(self) -> bool {
         matches!(
             self,
-            Self::Open | Self::Beside | Self::Body | Self::Motion | Self::Surroundings | Self::Sound
+            Self::Open
+                | Self::Beside
+                | Self::Body
+                | Self::Motion
+                | Self::Surroundings
+                | Self::Backdrop
+                | Self::Reference
+                | Self::Sound
         )
     }
 
@@ -112,6 +131,8 @@ impl Purpose {
             | Self::Body
             | Self::Motion
             | Self::Surroundings
+            | Self::Backdrop
+            | Self::Reference
             | Self::Sound
             | Self::Sequence
             | Self::Resume
@@ -141,6 +162,7 @@ impl Purpose {
                 ("Motion", kinds.into_iter().flat_map(FileKind::extensions).collect())
             }
             Self::Surroundings => ("Surroundings", FileKind::Surroundings.extensions()),
+            Self::Backdrop | Self::Reference => ("Picture", vec!["png", "jpg", "jpeg", "hdr", "exr"]),
             Self::Sound => ("Sound", FileKind::Sound.extensions()),
             Self::Sequence | Self::Resume | Self::Report => ("Folder", Vec::new()),
             Self::SaveProject => ("Project", vec![PROJECT_EXTENSION]),

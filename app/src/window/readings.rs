@@ -36,6 +36,8 @@ pub(crate) struct LoadedBody {
     pub(crate) joints: Vec<String>,
     /// Path of the joint that carries the hair.
     pub(crate) head: String,
+    /// Names of its expressions, otherwise of its morph targets.
+    pub(crate) face: Vec<String>,
     /// Notes of the loaders.
     pub(crate) notes: Vec<String>,
 }

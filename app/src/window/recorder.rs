@@ -8,6 +8,7 @@ use lovelock_jobs::record::{RecordRequest, Recorded, record_in_background};
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
+use lovelock_project::unfinished::Running;
 use lovelock_session::clock::Pace;
 use lovelock_session::job::BackgroundJob;
 use lovelock_session::progress::Progress;
@@ -72,11 +73,13 @@ pub(crate) struct Recorder {
     /// Where the recording that runs is written.
     out: PathBuf,
     state: State,
+    /// Says that it runs, so that a crash leaves an unfinished recording that is offered again.
+    noted: Option<Running>,
 }
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { running: None, cancelled: false, out: PathBuf::new(), state: State::Idle }
+        Self { running: None, cancelled: false, out: PathBuf::new(), state: State::Idle, noted: None }
     }
 }
 
@@ -106,6 +109,11 @@ impl Recorder {
             }
             Err(error) => self.state = State::Failed(error.to_string()),
         }
+    }
+
+    /// Keeps the note of the recording that was started, until it ends.
+    pub(crate) fn note(&mut self, noted: Option<Running>) {
+        self.noted = noted.filter(|_| self.running.is_some());
     }
 
     /// Cancels the recording.
@@ -151,6 +159,7 @@ impl Recorder {
             Err(_) if self.cancelled => State::Cancelled(left_by_cancel(&self.out)),
             Err(error) => State::Failed(error.to_string()),
         };
+        drop(self.noted.take());
         Some(&self.state)
     }
 

@@ -53,6 +53,8 @@ pub(crate) struct Session {
     access: Access,
     /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
+    /// Inputs of the user so far that an image shows: settings that it is drawn with, movements of a brush, and other hair.
+    inputs: u64,
     /// The last request to the render thread.
     pub(crate) drawn: Option<RenderRequest>,
     resolution: Resolution,
@@ -128,6 +130,7 @@ impl Session {
             live,
             access,
             simulated: Arc::clone(project),
+            inputs: 0,
             drawn: None,
             resolution: Resolution::default(),
             same_since: Stopwatch::start(),
@@ -182,6 +185,11 @@ impl Session {
     /// Grants access to a file that the user picked.
     pub(crate) fn pick(&mut self, path: &Path) {
         self.access.pick(path);
+    }
+
+    /// Grants access to what was picked on an earlier day.
+    pub(crate) fn allow(&mut self, grant: impl FnOnce(&mut Access)) {
+        grant(&mut self.access);
     }
 
     /// Sets the path of the open project file, if any.
@@ -261,7 +269,10 @@ impl Session {
                     self.playing = false;
                     self.failed.push(message);
                 }
-                Event::Brushed(brushed) => self.brushed.push(brushed),
+                Event::Brushed(brushed) => {
+                    self.inputs += 1;
+                    self.brushed.push(brushed);
+                }
                 Event::Panicked { thread, message } => {
                     self.failed.push(format!(
                         "The {thread} thread failed and was restarted. Save your project. ({message})"
@@ -304,6 +315,11 @@ impl Session {
         self.draw_again();
     }
 
+    /// Asks for the current frame again, because what draws it has changed. The last image stays until then.
+    pub(crate) fn ask_again(&mut self) {
+        self.drawn = None;
+    }
+
     /// Draws the current frame again, because its image was on a device that is lost.
     pub(crate) fn draw_again(&mut self) {
         (self.drawn, self.painted) = (None, None);
@@ -321,6 +337,7 @@ impl Session {
     ) -> Option<Duration> {
         let changed = !Arc::ptr_eq(project, &self.simulated);
         if changed {
+            self.inputs += u64::from(looks_other(&self.simulated, project));
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
             self.working.get_or_insert_with(Stopwatch::start);
@@ -351,6 +368,11 @@ impl Session {
         if !same {
             self.same_since = Stopwatch::start();
         }
+        let other_hair = self
+            .drawn
+            .as_ref()
+            .is_some_and(|drawn| !Arc::ptr_eq(&drawn.snapshot.scene.style, &frame.scene.style));
+        self.inputs += u64::from(other_hair);
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
         let automatic = self.view.rate.is_some();
         let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };
@@ -366,6 +388,7 @@ impl Session {
             },
             measured: self.view.measured,
             mask: mask.cloned(),
+            input: self.inputs,
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = same
@@ -441,12 +464,21 @@ impl Session {
             clip: scene.clip.as_ref().map_or_else(String::new, |clip| clip.name.clone()),
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
             joints,
+            face: lovelock_motion::face_names(&scene.body).into_iter().map(str::to_owned).collect(),
             notes: notes(&[Place::Body, Place::Motion]),
         };
-        self.surroundings =
-            LoadedSurroundings { picture: scene.surroundings.clone(), notes: notes(&[Place::Surroundings]) };
+        self.surroundings = LoadedSurroundings {
+            picture: scene.surroundings.light.clone(),
+            notes: notes(&[Place::Surroundings]),
+        };
         self.take_notes = notes(&[Place::Take]);
         self.problems = problems;
         self.scene = Some(scene);
     }
+}
+
+/// Whether an image of the same hair and body looks different with another project. Hair that must be loaded first is seen later.
+fn looks_other(before: &Project, after: &Project) -> bool {
+    (&before.look, &before.shadow, &before.lights, &before.camera, &before.picture)
+        != (&after.look, &after.shadow, &after.lights, &after.camera, &after.picture)
 }

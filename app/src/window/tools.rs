@@ -102,8 +102,8 @@ impl Window {
             world_from_head: &snapshot.guides.world_from_head,
             scalp: &snapshot.scene.style.scalp,
         };
-        let done =
-            self.tools.mask_stroke.paint(ui, place, (head, snapshot), &self.panels.layers.brush, layer);
+        let brush = (&self.panels.layers.brush, self.tools.pen.erases());
+        let done = self.tools.mask_stroke.paint(ui, place, (head, snapshot), brush, layer);
         if done.begins {
             // Each stroke is an undo step of its own, however soon it follows the last one.
             self.document.end_gesture();

@@ -57,7 +57,7 @@ impl Viewport {
         let place = self.place(rect);
         // No background is painted if the image fills the viewport.
         if place.is_none_or(|place| !place.expand(1.0).contains_rect(rect)) {
-            painter.rect_filled(rect, 0.0, theme::PAGE);
+            painter.rect_filled(rect, 0.0, theme::page());
         }
         if let (Some(texture), Some(place)) = (self.shown.texture(), place) {
             painter.image(texture, place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
@@ -67,7 +67,7 @@ impl Viewport {
                 Align2::CENTER_CENTER,
                 "Getting ready…",
                 FontId::proportional(15.0),
-                theme::QUIET,
+                theme::quiet(),
             );
         }
         if let (Some(film), Some(place)) = (self.film, place) {
@@ -100,7 +100,7 @@ impl Viewport {
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let galley = painter.layout(text.to_owned(), FontId::proportional(11.5), color, rect.width() - 24.0);
         let place = align.anchor_size(at, galley.size());
-        painter.rect_filled(place.expand(4.0), 4.0, theme::PAGE.gamma_multiply(0.6));
+        painter.rect_filled(place.expand(4.0), 4.0, theme::behind_text());
         painter.galley(place.min, galley, color);
         place
     }
@@ -127,12 +127,12 @@ fn frame(ui: &Ui, rect: Rect, film: Rect, [width, height]: [u32; 2]) {
     let above = Rect::from_min_max(pos2(film.left(), rect.top()), film.right_top());
     let below = Rect::from_min_max(film.left_bottom(), pos2(film.right(), rect.bottom()));
     for outside in [left_of(film.left()), right_of(film.right()), above, below] {
-        painter.rect_filled(outside, 0.0, theme::PAGE.gamma_multiply(0.7));
+        painter.rect_filled(outside, 0.0, theme::page().gamma_multiply(0.7));
     }
-    painter.rect_stroke(film, 0.0, Stroke::new(1.0, theme::RECORDING), StrokeKind::Inside);
+    painter.rect_stroke(film, 0.0, Stroke::new(1.0, theme::recording()), StrokeKind::Inside);
     let text = format!("Film {width} × {height}");
     let at = film.center_bottom() - vec2(0.0, 6.0);
-    painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(10.5), theme::RECORDING);
+    painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(10.5), theme::recording());
 }
 
 /// Pixels for a viewport of `size` points.

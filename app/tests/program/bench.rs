@@ -159,7 +159,7 @@ fn a_published_scene_uses_its_own_settings_and_has_published_figures_long_suite(
 #[test]
 fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
-    let wrong: [(&[&str], &str); 14] = [
+    let wrong: [(&[&str], &str); 15] = [
         (&["bench", "wig"], "smooth-2m"),
         (&["bench", "wig"], "voxel-map, occupancy-order or reference"),
         (&["bench", "--baseline", "none.json"], "none.json"),
@@ -169,6 +169,7 @@ fn wrong_requests_are_rejected_before_any_work() {
         (&["bench", "--transparency", "magic"], "occupancy-order"),
         (&["bench", "--draw", "magic"], "clusters"),
         (&["bench", "smooth", "--threads", "1,0"], "1..=256"),
+        (&["bench", "smooth", "--threads", "1,1024"], "1024 is not in 1..=256"),
         (&["bench", "smooth", "--threads", "1", "--backend", "gpu"], "must be used with cpu"),
         (&["bench", "locks", "--threads", "1"], "without a scene"),
         (&["bench", "smooth", "--threads", "1", "--baseline", "x.json"], "--baseline"),

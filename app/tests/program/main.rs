@@ -5,6 +5,8 @@ mod clusters;
 mod compare;
 mod films;
 mod info;
+mod methods;
+mod portraits;
 mod presets;
 mod projects;
 mod record;

@@ -371,13 +371,25 @@ fn a_take_reads_files_outside_its_folder_only_if_they_are_named() {
     std::fs::write(&other, tuft()).expect("a file");
     let run = |args: &[&str]| run(takes.path(), args);
     let (file, other) = (file.to_string_lossy().into_owned(), other.to_string_lossy().into_owned());
-    run(&["record", "--hair", &file, "--frames", "0..2", "-o", "d.take", "--json"]).done();
+    let set = "timeline.preroll_secs=0";
+    run(&["record", "--hair", &file, "--set", set, "--frames", "0..2", "-o", "d.take", "--json"]).done();
     let info = run(&["info", "d.take", "--json"]).done().json();
     assert_eq!((&info["kind"], &info["condition"]), (&Value::from("take"), &Value::from("whole")));
     assert_eq!(info["complete"], Value::from(true));
     let draw = ["record", "d.take", "--size", "32x32", "--backend", "cpu", "--json", "-o", "film.mp4"];
-    let refused = run(&draw);
+    // Without what this machine remembers, as on another one.
+    let elsewhere = |args: &[&str]| {
+        let state = hair.path().join("state");
+        run_command(lovelock().current_dir(takes.path()).args(args).env("LOVELOCK_STATE", state))
+    };
+    let refused = elsewhere(&draw);
     assert!(refused.refused(2).contains("tuft.hair"), "{refused:?}");
+    let drawn = elsewhere(&[&draw[..], &["--allow", &file]].concat()).done().json();
+    assert_eq!(drawn["strands"], Value::from(40));
+    assert!(elsewhere(&draw).code == Some(2), "what is allowed once for a film is not remembered");
+    // The take was recorded here, where the file was named.
+    let drawn = run(&draw).done().json();
+    assert_eq!(drawn["strands"], Value::from(40));
     let refused = run(&[&draw[..], &["--hair", &other]].concat());
     assert!(refused.refused(2).contains("--hair"), "{refused:?}");
     let refused = run(&[&draw[..], &["--preset", "curly"]].concat());

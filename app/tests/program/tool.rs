@@ -56,6 +56,8 @@ pub fn lovelock() -> Command {
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "NODEVICE_SELECT", "LOVELOCK_LOG"] {
         command.env_remove(name);
     }
+    // What the program remembers between runs stays out of the user's folder.
+    command.env("LOVELOCK_STATE", Path::new(env!("CARGO_TARGET_TMPDIR")).join("state"));
     command
 }
 

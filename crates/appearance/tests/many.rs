@@ -3,32 +3,35 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use lovelock_appearance::fibre::{
-    CosineStep, Directions, Fibre, FibreTables, LongitudinalLobe, PointLight, PointScatter, Quadrature,
-    azimuthal_distribution, backscattered, far_field, longitudinal, pigment::absorption_of_melanin,
-    variances,
+    CosineStep, Directions, Fibre, FibreTables, PointLight, PointScatter, Quadrature, azimuthal_distribution,
+    backscattered, far_field, longitudinal, pigment::absorption_of_melanin, variances,
 };
 
 const COLOURS: [(&str, f64, f64); 5] =
     [("white", 0.0, 0.0), ("blonde", 0.3, 0.05), ("brown", 1.3, 0.1), ("red", 0.3, 0.8), ("black", 8.0, 0.0)];
 
-fn light(theta_i: f64, phi: f64, fibres: f64) -> PointLight {
+fn light(theta_i: f64, phi: f64, fibres: f64) -> PointLight<1> {
     PointLight {
-        sin_theta: theta_i.sin() as f32,
-        cos_theta: theta_i.cos() as f32,
-        phi: phi as f32,
-        fibres: fibres as f32,
+        sin_theta: [theta_i.sin() as f32],
+        cos_theta: [theta_i.cos() as f32],
+        phi: [phi as f32],
+        fibres: [fibres as f32],
     }
 }
 
-fn point(tables: &FibreTables, theta_o: f64, sigma: [f64; 3]) -> PointScatter {
-    PointScatter::new(tables, theta_o.sin() as f32, theta_o.cos() as f32, sigma.map(|s| s as f32))
+fn point(tables: &FibreTables, theta_o: f64, sigma: [f64; 3]) -> PointScatter<1> {
+    let [sin, cos] = [[theta_o.sin() as f32], [theta_o.cos() as f32]];
+    PointScatter::new(tables, &sin, &cos, &sigma.map(|sigma| [sigma as f32]))
 }
 
 /// Radiance toward the eye, as a renderer computes it.
-fn radiance(tables: &FibreTables, scatter: &PointScatter, light: &PointLight, strength: f32) -> [f32; 3] {
-    let rows = [tables.direct.row(scatter.eye, light.phi), tables.forward.row(scatter.eye, light.phi)];
-    let lobes = tables.variances.map(LongitudinalLobe::quick);
-    scatter.radiance_of_rows(&rows, tables.variances, lobes, light, strength)
+fn radiance(
+    tables: &FibreTables,
+    scatter: &PointScatter<1>,
+    light: &PointLight<1>,
+    strength: f32,
+) -> [f32; 3] {
+    scatter.radiance(tables, &tables.variances.map(|v| [v]), light, strength).map(|[value]| value)
 }
 
 /// Dual scattering in double precision, without tables and with a variance per channel.
@@ -149,8 +152,8 @@ fn more_fibres_darken_coloured_hair_and_everything_is_finite() {
         for sigma in [0.0, 0.02, 0.5, 2.0, 12.0, 100.0, f64::INFINITY, f64::NAN] {
             for theta_o in [-FRAC_PI_2, -0.5, 0.0, 1.4] {
                 let scatter = point(&tables, theta_o, [sigma; 3]);
-                assert!((0.0..=1.001).contains(&scatter.albedo[0]), "{}", scatter.albedo[0]);
-                let rate = tables.many.row(scatter.eye, sigma as f32)[6];
+                assert!((0.0..=1.001).contains(&scatter.albedo[0][0]), "{}", scatter.albedo[0][0]);
+                let rate = tables.many.row(scatter.eye[0], sigma as f32)[6];
                 assert!((0.0..=1.0).contains(&rate));
                 for phi in [0.0, 1.5, PI, f64::NAN] {
                     // Light spreads from fibre to fibre, so one direction can become brighter: all of them together must not.
@@ -182,7 +185,7 @@ fn diffuse_light_is_lost_in_coloured_hair_and_not_in_white() {
     let tables = FibreTables::bake(&Fibre::default());
     let white = point(&tables, 0.0, [0.0; 3]);
     let rate = |sigma: f64| tables.many.row(CosineStep::new(1.0), sigma as f32)[6];
-    assert!(rate(0.0) < 1e-3 && (white.albedo[0] - 1.0).abs() < 1e-5, "{white:?}");
+    assert!(rate(0.0) < 1e-3 && (white.albedo[0][0] - 1.0).abs() < 1e-5, "{white:?}");
     let sigma = absorption_of_melanin(1.3, 0.1);
     let brown = point(&tables, 0.0, sigma);
     assert!(rate(sigma[0]) > 0.5 && rate(sigma[2]) > rate(sigma[0]));
@@ -201,4 +204,39 @@ fn only_a_change_around_the_fibre_or_of_the_index_bakes_again() {
     assert!(fresh.variances == tables.variances && fresh.tilts == tables.tilts);
     tables.update(&Fibre { index: 1.4, ..Fibre::default() });
     assert!(tables.direct != before.direct && tables.many != before.many);
+}
+
+#[test]
+fn points_that_are_computed_together_have_the_bits_of_single_ones() {
+    let tables = FibreTables::bake(&Fibre::default());
+    let at = |lane: usize, factor: f32| (lane as f32 * factor + 0.3).sin();
+    let sin: [f32; 16] = std::array::from_fn(|lane| at(lane, 0.7));
+    let cos = sin.map(|sin| (1.0 - sin * sin).sqrt());
+    let sigma = [0.1, 0.9, 2.5].map(|sigma| std::array::from_fn(|lane| sigma * (1.0 + at(lane, 0.4))));
+    let light = PointLight {
+        sin_theta: std::array::from_fn(|lane| at(lane, 1.1)),
+        cos_theta: std::array::from_fn(|lane| (1.0 - at(lane, 1.1) * at(lane, 1.1)).sqrt()),
+        phi: std::array::from_fn(|lane| lane as f32 * 0.2),
+        fibres: std::array::from_fn(|lane| lane as f32 * 1.5),
+    };
+    let variances = tables.variances.map(|v| std::array::from_fn(|lane| v + 0.01 * lane as f32));
+    let scatter = PointScatter::<16>::new(&tables, &sin, &cos, &sigma);
+    let all = scatter.radiance(&tables, &variances, &light, 0.8);
+    let mut seen = std::collections::BTreeSet::new();
+    for lane in 0..16 {
+        let one = PointScatter::new(&tables, &[sin[lane]], &[cos[lane]], &sigma.map(|s| [s[lane]]));
+        let light = PointLight {
+            sin_theta: [light.sin_theta[lane]],
+            cos_theta: [light.cos_theta[lane]],
+            phi: [light.phi[lane]],
+            fibres: [light.fibres[lane]],
+        };
+        let value = one.radiance(&tables, &variances.map(|v| [v[lane]]), &light, 0.8);
+        for c in 0..3 {
+            assert_eq!(value[c][0].to_bits(), all[c][lane].to_bits(), "{lane} {c}");
+            assert_eq!(one.albedo[c][0].to_bits(), scatter.albedo[c][lane].to_bits(), "{lane} {c}");
+            seen.insert(value[c][0].to_bits());
+        }
+    }
+    assert!(seen.len() > 40, "control: the points differ: {}", seen.len());
 }

@@ -8,6 +8,7 @@ pub mod numbers;
 pub mod random;
 pub mod settings;
 pub mod simd;
+pub mod speed;
 pub mod statistics;
 pub mod triangle;
 pub mod watch;

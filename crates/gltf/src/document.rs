@@ -1,7 +1,8 @@
 //! The part of a glTF 2.0 document that hair and moving bodies need.
 //!
-//! Everything else in a file (textures, cameras, lights) is not parsed, so errors there are harmless. Names
-//! are those of the specification. Indices are not checked here.
+//! Everything else in a file (cameras, lights) is not parsed, so errors there are harmless. What is wrong in a material, a texture or
+//! an image is read as if it were not there. Names are those of the specification. Indices are not
+//! checked here.
 #![expect(missing_docs, reason = "the specification describes the fields, whose names these are")]
 
 use std::collections::BTreeMap;
@@ -9,6 +10,10 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Quat, Vec3};
 use serde::Deserialize;
 use serde_json::Value;
+
+mod look;
+
+pub use look::{Image, Material, Pbr, Sampler as TextureSampler, Texture, TextureInfo};
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
@@ -24,8 +29,14 @@ pub struct Document {
     pub accessors: Vec<Accessor>,
     pub buffer_views: Vec<BufferView>,
     pub buffers: Vec<Buffer>,
+    #[serde(deserialize_with = "look::lenient_list")]
     pub materials: Vec<Material>,
-    pub textures: Vec<serde::de::IgnoredAny>,
+    #[serde(deserialize_with = "look::lenient_list")]
+    pub textures: Vec<Texture>,
+    #[serde(deserialize_with = "look::lenient_list")]
+    pub images: Vec<Image>,
+    #[serde(deserialize_with = "look::lenient_list")]
+    pub samplers: Vec<TextureSampler>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -202,18 +213,4 @@ pub struct BufferView {
 pub struct Buffer {
     pub byte_length: u64,
     pub uri: Option<String>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub struct Material {
-    pub name: Option<String>,
-    pub pbr_metallic_roughness: Pbr,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub struct Pbr {
-    pub base_color_factor: Option<[f32; 4]>,
-    pub base_color_texture: Option<serde::de::IgnoredAny>,
 }

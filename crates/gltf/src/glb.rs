@@ -59,6 +59,14 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
+    /// Appends bytes on a multiple of four, with a view of their own, such as those of an image. Returns the view's index.
+    pub fn add_bytes(&mut self, data: &[u8]) -> usize {
+        self.pad();
+        self.views.push(json!({ "buffer": 0, "byteOffset": self.len(), "byteLength": data.len() }));
+        self.bytes.extend_from_slice(data);
+        self.views.len() - 1
+    }
+
     /// Length of the whole buffer in bytes.
     #[expect(clippy::len_without_is_empty, reason = "nothing uses an empty buffer")]
     pub fn len(&self) -> u64 {

@@ -10,6 +10,7 @@ mod container;
 pub mod document;
 mod error;
 pub mod glb;
+mod images;
 
 use std::path::Path;
 
@@ -18,6 +19,7 @@ pub use buffers::{Buffers, gltf_reference};
 pub use container::{Container, MAGIC, without_mark};
 pub use document::Document;
 pub use error::{DRACO, GltfError};
+pub use images::ImageFiles;
 
 /// A file whose buffers are in memory.
 #[derive(Debug)]
@@ -29,6 +31,7 @@ pub struct Asset<'a> {
     /// What the file contains.
     pub document: Document,
     buffers: Buffers<'a>,
+    folder: Option<&'a Path>,
 }
 
 impl<'a> Asset<'a> {
@@ -36,7 +39,7 @@ impl<'a> Asset<'a> {
     ///
     /// # Errors
     /// If the file contradicts itself, lacks a buffer, refers to data outside its folder, or needs an extension that is not supported.
-    pub fn read(file: &'a str, bytes: &'a [u8], folder: Option<&Path>) -> Result<Self, GltfError> {
+    pub fn read(file: &'a str, bytes: &'a [u8], folder: Option<&'a Path>) -> Result<Self, GltfError> {
         let container = Container::open(file, bytes)?;
         let document: Document = serde_json::from_slice(container.json).map_err(|error| {
             let offset = (container.json.as_ptr() as usize - bytes.as_ptr() as usize) as u64;
@@ -47,12 +50,17 @@ impl<'a> Asset<'a> {
             return Err(GltfError::extension(file, extension));
         }
         let buffers = Buffers::load(file, &document, container.bin, folder)?;
-        Ok(Self { file, format: container.format, document, buffers })
+        Ok(Self { file, format: container.format, document, buffers, folder })
     }
 
     /// A reader of the accessors.
     pub fn accessors(&self) -> Accessors<'_> {
         Accessors::new(self.file, &self.document, &self.buffers)
+    }
+
+    /// A reader of the encoded images.
+    pub fn images(&self) -> ImageFiles<'_> {
+        ImageFiles { file: self.file, document: &self.document, buffers: &self.buffers, folder: self.folder }
     }
 }
 

@@ -166,6 +166,13 @@ impl Gpu {
         })
     }
 
+    /// Whether both are handles of one device.
+    ///
+    /// Devices themselves cannot be compared: those of two instances of wgpu have the same numbers, and so have their textures.
+    pub fn is_same_device(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.fault, &other.fault)
+    }
+
     /// Returns the error that occurred since the last call of any handle, if any.
     ///
     /// # Errors
@@ -236,6 +243,17 @@ impl Gpu {
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
         self.queue.write_texture(texture.as_image_copy(), rgba, layout, texture.size());
+    }
+
+    /// Writes all rows of a level of a texture of four bytes per pixel, before the next submitted commands.
+    pub fn upload_level(&self, texture: &wgpu::Texture, mip_level: u32, rgba: &[u8]) {
+        self.counters.up(rgba.len() as u64);
+        let [width, height] = [texture.width(), texture.height()].map(|side| (side >> mip_level).max(1));
+        let to = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        self.queue.write_texture(to, rgba, layout, size);
     }
 
     /// Counts bytes that come back to memory without [`Readback`](crate::Readback).

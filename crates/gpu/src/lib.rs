@@ -9,6 +9,7 @@ mod layout;
 mod readback;
 mod shader;
 mod traffic;
+mod translate;
 
 pub use buffer::GrowBuffer;
 pub use commands::{Commands, PassTime, PassTimer};
@@ -18,4 +19,5 @@ pub use layout::layout_in_shader;
 pub use readback::{Readback, read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
 pub use traffic::Traffic;
+pub use translate::to_hlsl;
 pub use wgpu;

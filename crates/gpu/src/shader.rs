@@ -33,7 +33,7 @@ impl ShaderSource {
     }
 
     /// Translates a line of the concatenated text into a part and its line; lines count from 1.
-    fn locate(&self, line: usize) -> (&'static str, usize) {
+    pub fn locate(&self, line: usize) -> (&'static str, usize) {
         let mut first = 1;
         for part in &self.parts {
             let lines = part.text.lines().count().max(1) + usize::from(part.text.ends_with('\n'));
@@ -56,8 +56,8 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
 
 /// A valid shader and the results of its validation.
 pub(crate) struct CheckedShader {
-    module: naga::Module,
-    info: naga::valid::ModuleInfo,
+    pub(crate) module: naga::Module,
+    pub(crate) info: naga::valid::ModuleInfo,
 }
 
 impl CheckedShader {

@@ -5,6 +5,7 @@
 //! The simulator moves its [`Guides`] to a [`GuideFrame`] in world space, from which [`interpolate()`] makes the
 //! [`Strands`] that are shadowed and drawn.
 
+pub mod carried;
 mod colours;
 pub mod fine;
 mod frame;

@@ -40,6 +40,17 @@ impl StrandMarks {
         self.groups.get(strand).copied().unwrap_or_default()
     }
 
+    /// Adds strands at the end, in a group of their own with a name. Marks without any list stay without.
+    pub fn add_group(&mut self, name: &str, strands: usize) {
+        if !self.groups.is_empty() {
+            let group = self.group_named(name);
+            self.groups.extend(std::iter::repeat_n(group, strands));
+        }
+        if !self.root_uvs.is_empty() {
+            self.root_uvs.extend(std::iter::repeat_n([0.0; 2], strands));
+        }
+    }
+
     /// The group with a name. A name that no group has yet gets the next number.
     pub(crate) fn group_named(&mut self, name: &str) -> i32 {
         if let Some((&group, _)) = self.group_names.iter().find(|(_, known)| *known == name) {

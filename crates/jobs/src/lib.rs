@@ -12,6 +12,7 @@
 
 pub mod bench;
 pub mod convert;
+pub mod examples;
 pub mod farm;
 pub mod info;
 pub mod papers;

@@ -143,7 +143,8 @@ mod tests {
 
     #[test]
     fn the_circle_lies_around_the_brush() {
-        let camera = Camera { eye: Vec3::new(0.0, 1.0, 2.0), target: Vec3::Y, fov_y: 0.5 };
+        let camera =
+            Camera { eye: Vec3::new(0.0, 1.0, 2.0), target: Vec3::Y, fov_y: 0.5, shear: glam::Vec2::ZERO };
         let mut picture = Picture { width: 200, height: 100, rgba: vec![0; 200 * 100 * 4] };
         draw_circle(&mut picture, &camera, PlayedBrush { position: Vec3::Y, radius: 0.1 });
         // A tenth of a metre at two metres: 0.05 of the 195.8 pixels per metre at one metre.

@@ -3,6 +3,7 @@
 use crate::color_map::ColorMap;
 use crate::image::Image;
 use crate::ticks::ticks;
+use lovelock_glyphs::{Fonts, Ink, Line, Piece, line, pieces, seen};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use std::ops::RangeInclusive;
 
@@ -50,7 +51,7 @@ impl Canvas {
 
     /// Width of [`text`](Self::text) in pixels.
     pub fn text_width(text: &str) -> usize {
-        text.chars().count() * get_raster_width(FontWeight::Regular, RasterHeight::Size16)
+        spans(text).iter().map(Span::width).sum()
     }
 
     /// Blends a colour over a pixel with `alpha` of 255.
@@ -89,12 +90,27 @@ impl Canvas {
         }
     }
 
-    /// Draws one line of text with its upper left corner at `x`, `y`, in Noto Sans Mono, [`LINE`](Self::LINE) pixels
-    /// high. Characters outside Latin 1 become question marks.
+    /// Draws one line of text with its upper left corner at `x`, `y`, in Noto Sans Mono, [`LINE`](Self::LINE) pixels high. Characters
+    /// outside Latin 1 have the glyphs of the system's fonts, in the order in which they are read; without such a font they become
+    /// question marks.
     pub fn text(&mut self, x: i32, y: i32, text: &str, color: [u8; 3]) {
         let mut pen = x;
-        for letter in text.chars() {
-            let raster = |letter| get_raster(letter, FontWeight::Regular, RasterHeight::Size16);
+        for span in spans(text) {
+            match &span {
+                Span::Latin(letters) => self.latin(pen, y, letters, color),
+                Span::Other(line) => self.line(pen, y, line, color),
+            }
+            pen = pen.saturating_add(span.width() as i32);
+            if pen > LARGEST as i32 {
+                break;
+            }
+        }
+    }
+
+    /// Draws letters of the font of this program.
+    fn latin(&mut self, x: i32, y: i32, letters: &str, color: [u8; 3]) {
+        let mut pen = x;
+        for letter in letters.chars() {
             let Some(glyph) = raster(letter).or_else(|| raster('?')) else { continue };
             for (row, line) in glyph.rows().enumerate() {
                 for (column, &ink) in line.iter().enumerate() {
@@ -107,6 +123,78 @@ impl Canvas {
             }
         }
     }
+
+    /// Draws glyphs of a font of the system.
+    fn line(&mut self, x: i32, y: i32, line: &Line, color: [u8; 3]) {
+        for glyph in &line.glyphs {
+            let left = x.saturating_add(glyph.left);
+            let top = y.saturating_add(BASE + glyph.top);
+            for at in 0..glyph.width * glyph.height {
+                let (column, row) = (at % glyph.width, at / glyph.width);
+                let place = (left.saturating_add(column as i32), top.saturating_add(row as i32));
+                match &glyph.ink {
+                    Ink::Coverage(alpha) => self.blend(place.0, place.1, color, alpha[at]),
+                    Ink::Color(rgba) => {
+                        let [r, g, b, alpha] = rgba[at];
+                        self.blend(place.0, place.1, [r, g, b], alpha);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The base line below the upper edge of a line, and the size of the system's fonts, pixels.
+const BASE: i32 = 12;
+const SIZE: f32 = 13.0;
+
+fn raster(letter: char) -> Option<noto_sans_mono_bitmap::RasterizedChar> {
+    get_raster(letter, FontWeight::Regular, RasterHeight::Size16)
+}
+
+/// A part of a line, from left to right.
+enum Span {
+    /// Letters of the font of this program, in the order in which they are seen.
+    Latin(String),
+    /// Glyphs of the system's fonts.
+    Other(Line),
+}
+
+impl Span {
+    fn width(&self) -> usize {
+        match self {
+            Self::Latin(letters) => {
+                letters.chars().count() * get_raster_width(FontWeight::Regular, RasterHeight::Size16)
+            }
+            Self::Other(line) => line.width.ceil().max(0.0) as usize,
+        }
+    }
+}
+
+/// The parts of a line from left to right. The system's fonts are only read for a character that the font of this program lacks.
+fn spans(text: &str) -> Vec<Span> {
+    if text.chars().all(|letter| raster(letter).is_some()) {
+        return vec![Span::Latin(text.to_owned())];
+    }
+    let mut spans = Vec::new();
+    for piece in pieces(text) {
+        let before = spans.len();
+        let mut rest = piece.text;
+        while let Some(first) = rest.chars().next() {
+            // A mark over a Latin letter stays in the font of this program, where it is a question mark.
+            let is_latin = raster(first).is_some();
+            let end = rest.char_indices().find(|(_, c)| raster(*c).is_some() != is_latin);
+            let (part, after) = rest.split_at(end.map_or(rest.len(), |(at, _)| at));
+            rest = after;
+            let part = Piece { text: part, ..piece };
+            let drawn = if is_latin { None } else { line(Fonts::of_system(), part, SIZE) };
+            spans.push(drawn.map_or_else(|| Span::Latin(seen(part)), Span::Other));
+        }
+        if piece.from_right {
+            spans[before..].reverse();
+        }
+    }
+    spans
 }
 
 /// The legend of a colour map: a bar with round numbers.
@@ -194,6 +282,27 @@ mod tests {
         let mut other = Canvas::new(80, 20, [255; 3]);
         other.text(4, 2, "Ab·2", [0; 3]);
         assert_ne!(canvas, other);
+    }
+
+    #[test]
+    fn other_scripts_have_their_own_glyphs() {
+        let draw = |text: &str| {
+            let mut canvas = Canvas::new(120, 20, [255; 3]);
+            canvas.text(4, 2, text, [0; 3]);
+            canvas
+        };
+        // Without a font for it, a character is a question mark.
+        for text in ["笑い", "한글", "שלום", "مرحبا"] {
+            let width = Canvas::text_width(text);
+            assert!(width > 10 && width < 100, "{text}: {width}");
+            if lovelock_glyphs::Fonts::of_system().face_for(text.chars().next().unwrap()).is_some() {
+                assert_ne!(draw(text), draw(&"?".repeat(text.chars().count())), "{text}");
+                let canvas = draw(text);
+                assert!((0..120).any(|x| (0..20).any(|y| pixel(&canvas, x, y)[0] < 100)), "{text}");
+            }
+        }
+        // The words of a right-to-left text stand from right to left; Latin letters do not.
+        assert_ne!(draw("שלום טוב"), draw("טוב שלום"));
     }
 
     #[test]

@@ -1,8 +1,12 @@
 //! A character: a skeleton and the meshes that it deforms.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Quat, Vec2, Vec3};
+
+use crate::expression::Expression;
+use crate::material::{Image, Material};
 
 /// One joint of a skeleton.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,16 +78,27 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Outward unit normals at rest.
     pub normals: Vec<Vec3>,
-    /// Colour, linear sRGB (base colour of the material times the vertex colour).
+    /// Colour, linear sRGB (base colour of the material times the vertex colour); textures multiply it.
     pub colors: Vec<Vec3>,
+    /// Opacity (of the material times that of the vertex); empty if all are 1.
+    pub opacity: Vec<f32>,
+    /// Two sets of texture coordinates, each empty or with one entry per vertex, all finite.
+    pub coordinates: [Vec<Vec2>; 2],
+    /// The share of light from all directions that creases let in, from the attribute `_OCCLUSION`; empty if all are 1.
+    pub occlusion: Vec<f32>,
     /// 1 where hair grows, from the attribute `_SCALP`; empty if the file has none.
     pub scalp: Vec<f32>,
+    /// Further masks from vertex attributes whose names begin with an underscore, such as `_BROW`, where other hair grows: one entry per
+    /// vertex, 0 to 1.
+    pub masks: BTreeMap<String, Vec<f32>>,
     /// Joints (indices into the skeleton) that move each vertex.
     pub joints: Vec<[u16; 8]>,
     /// Their weights, which sum to 1; unused ones are 0.
     pub weights: Vec<[f32; 8]>,
     /// Counter-clockwise triangles.
     pub triangles: Vec<[u32; 3]>,
+    /// Index into [`Body::materials`] for each triangle; empty if all have the default material.
+    pub materials: Vec<u16>,
 }
 
 /// A joint together with the transform from bind space to the joint.
@@ -136,8 +151,16 @@ pub struct Body {
     pub mesh: Mesh,
     /// The surface in bind space.
     pub skin: SkinData,
+    /// How parts of the surface look.
+    pub materials: Vec<Material>,
+    /// The images that materials use.
+    pub images: Arc<[Image]>,
+    /// The expressions that the file names, of its morph targets.
+    pub expressions: Vec<Expression>,
     /// The joint that carries the hair; guessed, and the user may change it.
     pub head_joint: usize,
+    /// Whether the file says nothing of a head and none was found by the shape, so that the figure is taken for a head alone.
+    pub is_without_head: bool,
 }
 
 impl Body {

@@ -59,6 +59,15 @@ pub struct MorphTrack {
     pub track: Track<f32>,
 }
 
+/// The track of one expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpressionTrack {
+    /// Index into [`crate::Body::expressions`].
+    pub expression: usize,
+    /// Its weight over time.
+    pub track: Track<f32>,
+}
+
 /// The keys of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Keys {
@@ -126,6 +135,8 @@ pub struct Clip {
     pub joints: Vec<JointTracks>,
     /// Tracks of morph targets.
     pub morphs: Vec<MorphTrack>,
+    /// Tracks of expressions, whose weights are added to those of the morph targets.
+    pub expressions: Vec<ExpressionTrack>,
 }
 
 impl Clip {
@@ -143,7 +154,8 @@ impl Clip {
                 j.scale.as_ref().map(|t| &t.times),
             ]
         });
-        joints.flatten().chain(self.morphs.iter().map(|m| &m.track.times))
+        let morphs = self.morphs.iter().map(|m| &m.track.times);
+        joints.flatten().chain(morphs).chain(self.expressions.iter().map(|of| &of.track.times))
     }
 
     /// The keys of the file.
@@ -199,6 +211,9 @@ impl Clip {
         }
         for morph in &mut self.morphs {
             kept.push(shift(&mut morph.track.times));
+        }
+        for expression in &mut self.expressions {
+            kept.push(shift(&mut expression.track.times));
         }
         drop(kept);
         self.duration_secs = self.keys_end_secs();

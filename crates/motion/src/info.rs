@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::surface_info::{self, ExpressionInfo, ImageInfo, MaterialInfo};
 use crate::{Character, MotionFile};
 
 /// One clip of a character.
@@ -40,6 +41,14 @@ pub struct CharacterInfo {
     pub triangles: usize,
     /// Number of morph targets.
     pub morph_targets: usize,
+    /// Names of the morph targets.
+    pub morph_target_names: Vec<String>,
+    /// Its expressions.
+    pub expressions: Vec<ExpressionInfo>,
+    /// Its materials; empty if all of it has the default one.
+    pub materials: Vec<MaterialInfo>,
+    /// The images that materials use.
+    pub textures: Vec<ImageInfo>,
     /// Height of the rest pose, metres.
     pub height_m: f32,
     /// Name of the joint that was chosen as the head.
@@ -61,6 +70,10 @@ impl Character {
             vertices: body.mesh.positions.len(),
             triangles: body.mesh.triangles.len(),
             morph_targets: body.skin.morphs.len(),
+            morph_target_names: body.skin.morphs.iter().map(|morph| morph.name.clone()).collect(),
+            expressions: surface_info::expressions(&body.expressions),
+            materials: surface_info::materials(body),
+            textures: surface_info::images(&body.images),
             height_m: body.height(),
             head: body.skeleton.joints.get(body.head_joint).map_or_else(String::new, |j| j.name.clone()),
             clips: self

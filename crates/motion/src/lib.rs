@@ -13,6 +13,8 @@ mod collider;
 mod content;
 mod distance;
 mod error;
+mod expression;
+mod face;
 mod fbx;
 mod field;
 mod gltf;
@@ -20,6 +22,8 @@ mod head;
 mod humanoid;
 mod info;
 mod load;
+mod look;
+mod material;
 mod pose;
 mod recorded;
 mod retarget;
@@ -29,14 +33,16 @@ mod seam;
 mod settings;
 mod skinning;
 mod surface;
+mod surface_info;
 mod usd;
 mod vmd;
+mod words;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
-pub use bvh::{MotionFile, MotionJoint};
+pub use bvh::{MotionFile, MotionJoint, write_bvh};
 pub use character::Character;
-pub use clip::{Clip, Interpolation, JointTracks, Keys, MorphTrack, Track};
+pub use clip::{Clip, ExpressionTrack, Interpolation, JointTracks, Keys, MorphTrack, Track};
 pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };
@@ -44,6 +50,8 @@ pub use collider::{Collider, ColliderShape, PlacedCollider};
 pub use content::FigureContent;
 pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
+pub use expression::{Expression, FaceTrack};
+pub use face::{Face, FaceWeight, FaceWeights, face_names, unknown_faces, unplaced_faces};
 pub use fbx::is_fbx;
 pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
@@ -53,6 +61,7 @@ pub use load::{
     load_character_with, load_motion, load_motion_bytes, load_motion_watched, load_motion_with,
 };
 pub use lovelock_gltf::{GltfError, gltf_reference};
+pub use material::{Alpha, Image, Material, Region, Shading, TextureUse, Toon, ToonRim, Wrap};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;
@@ -64,3 +73,4 @@ pub use settings::{
     BodySettings, Facing, LengthUnit, LoopBlend, MotionSettings, OwnHair, RootPosition, UpAxis,
 };
 pub use skinning::{Skin, skin};
+pub use surface_info::{ExpressionInfo, ImageInfo, MaterialInfo, TextureUseInfo};

@@ -105,10 +105,10 @@ fn read_figure(
 ) -> Result<Character, MotionError> {
     refuse_empty(name, bytes)?;
     if fbx::is_fbx(bytes) {
-        return fbx::read((name, watch), bytes, settings, needs_mesh);
+        return fbx::read((name, watch), bytes, base_dir, settings, needs_mesh);
     }
     if usd::is_usd(bytes) {
-        return usd::read(name, bytes, settings, needs_mesh);
+        return usd::read(name, bytes, base_dir, settings, needs_mesh);
     }
     if bytes.starts_with(b"HIERARCHY") {
         let problem = "is BVH, which holds motion but no body; open it as a motion file";

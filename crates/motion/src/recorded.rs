@@ -1,5 +1,7 @@
 //! Clips of character files as motion that any other figure can take over.
 
+use std::collections::BTreeMap;
+
 use glam::{Affine3A, Quat, Vec3};
 
 use lovelock_base::words::counted;
@@ -9,7 +11,9 @@ use crate::character::Character;
 use crate::clip::{Keys, LONGEST_SECS};
 use crate::gltf::UNTIMED;
 use crate::pose::rotation_of;
-use crate::{Clip, MotionError, MotionFile, MotionJoint, Pose, UpAxis, pose_at};
+use crate::{
+    Body, Clip, FaceTrack, MorphTrack, MotionError, MotionFile, MotionJoint, Pose, Track, UpAxis, pose_at,
+};
 
 /// Frames per second at which clips are sampled at least: twice as often as most clips have keys.
 const RATE: f64 = 60.0;
@@ -81,6 +85,7 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
         up: UpAxis::Y,
         format: figure.format,
         clips,
+        faces: faces_of(&figure.body, clip),
         ..MotionFile::default()
     };
     let at_rest: Vec<Quat> = skeleton.world_at_rest.iter().map(|w| rotation_of(&w.matrix3)).collect();
@@ -112,6 +117,27 @@ pub(crate) fn motion_of(file: &str, figure: Character, wanted: &str) -> Result<M
     motion.height_metres = height_of(&motion);
     motion.note_shape();
     Ok(motion)
+}
+
+/// The face of a clip, by the names of expressions and morph targets. Several tracks of one name are those of several meshes.
+fn faces_of(body: &Body, clip: &Clip) -> Vec<FaceTrack> {
+    let mut faces: BTreeMap<&str, Track<f32>> = BTreeMap::new();
+    for of in &clip.expressions {
+        if let Some(expression) = body.expressions.get(of.expression) {
+            faces.entry(&expression.name).or_insert_with(|| of.track.clone());
+        }
+    }
+    for MorphTrack { first, count, track } in &clip.morphs {
+        for lane in 0..*count {
+            let Some(morph) = body.skin.morphs.get(first + lane) else { break };
+            faces.entry(&morph.name).or_insert_with(|| Track {
+                times: track.times.clone(),
+                values: track.values.iter().skip(lane).step_by(*count).copied().collect(),
+                interpolation: track.interpolation,
+            });
+        }
+    }
+    faces.into_iter().map(|(name, track)| FaceTrack { name: name.to_owned(), track }).collect()
 }
 
 /// What an error about a file without a clip says about channels that were dropped for the times of their keys.

@@ -97,6 +97,13 @@ impl Track<Quat> {
     }
 }
 
+impl Track<f32> {
+    /// The value at a time. It is constant before the first key and after the last.
+    pub fn at(&self, time_secs: f64) -> f32 {
+        value(self, 1, 0, time_secs)
+    }
+}
+
 impl MorphTrack {
     /// Weight of target `lane` of the range at a time.
     pub fn at(&self, lane: usize, time_secs: f64) -> f32 {
@@ -197,6 +204,12 @@ pub fn pose_at(body: &Body, clip: Option<&Clip>, time_secs: f64, pose: &mut Pose
             *weight =
                 instant.fade.map_or(main, |(other, share)| f32::linear(morph.at(lane, other), main, share));
         }
+    }
+    for of in &clip.expressions {
+        let Some(expression) = body.expressions.get(of.expression) else { continue };
+        let main = of.track.at(instant.main);
+        let weight = instant.fade.map_or(main, |(other, share)| f32::linear(of.track.at(other), main, share));
+        expression.add(weight, &mut pose.morph_weights);
     }
     pose.world_from_head = rigid_head(body, &pose.world_from_joint);
 }

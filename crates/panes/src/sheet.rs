@@ -47,9 +47,18 @@ impl Default for Sheet {
 }
 
 impl Sheet {
-    /// Colours that colour-blind people can tell apart (Okabe and Ito, *Color universal design*, 2008), sRGB.
-    pub const COLORS: [[u8; 3]; CompareSection::MAX_PANES] =
-        [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [213, 94, 0], [204, 121, 167]];
+    /// Colours that colour-blind people can tell apart (Okabe and Ito, *Color universal design*, 2008), and three more, sRGB.
+    pub const COLORS: [[u8; 3]; CompareSection::MAX_PANES] = [
+        [230, 159, 0],
+        [86, 180, 233],
+        [0, 158, 115],
+        [240, 228, 66],
+        [213, 94, 0],
+        [204, 121, 167],
+        [120, 124, 240],
+        [187, 220, 160],
+        [190, 190, 190],
+    ];
 
     /// Numbers of the shown panes out of `panes`.
     pub fn panes(&self, panes: usize) -> Vec<usize> {
@@ -215,7 +224,13 @@ fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, f
 /// The start of a text that fits into `room` pixels.
 fn fitted(text: &str, room: usize) -> &str {
     let letter = Canvas::text_width("0").max(1);
-    text.char_indices().nth(room / letter).map_or(text, |(end, _)| &text[..end])
+    let mut fitting = text.char_indices().nth(room / letter).map_or(text, |(end, _)| &text[..end]);
+    // Letters of other scripts are wider.
+    while Canvas::text_width(fitting) > room {
+        let Some((end, _)) = fitting.char_indices().next_back() else { break };
+        fitting = &fitting[..end];
+    }
+    fitting
 }
 
 /// Preferred aspect ratio of a pane.
@@ -258,7 +273,12 @@ mod tests {
             })),
             problem: None,
             colors_problem: None,
-            camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
+            camera: Camera {
+                eye: glam::Vec3::ZERO,
+                target: glam::Vec3::Z,
+                fov_y: 0.5,
+                shear: glam::Vec2::ZERO,
+            },
             step: 0,
             time_secs: 0.0,
             times: LiveTimes::default(),
@@ -285,13 +305,22 @@ mod tests {
         [picture.rgba[first], picture.rgba[first + 1], picture.rgba[first + 2]]
     }
 
-    const COLORS: [[u8; 3]; 6] =
-        [[200, 0, 0], [0, 200, 0], [0, 0, 200], [200, 200, 0], [0, 200, 200], [200, 0, 200]];
+    const COLORS: [[u8; 3]; CompareSection::MAX_PANES] = [
+        [200, 0, 0],
+        [0, 200, 0],
+        [0, 0, 200],
+        [200, 200, 0],
+        [0, 200, 200],
+        [200, 0, 200],
+        [200, 100, 0],
+        [100, 200, 0],
+        [0, 100, 200],
+    ];
 
     #[test]
     fn each_pane_is_shown_whole_with_a_header() {
         let panes = COLORS.map(|color| pane(color, [200, 120]));
-        for count in 1..=6 {
+        for count in 1..=COLORS.len() {
             let shown: Vec<SheetPane> = panes[..count].iter().enumerate().map(|(i, p)| (i, p, 1.0)).collect();
             let sheet = sheet(None);
             let columns = pane_columns(count, [1280.0, 720.0], 26.0);

@@ -56,6 +56,10 @@ pub struct Light {
     pub outer_angle: f32,
     /// Radius of what shines in a spot or a point light, metres. Nearer than this it does not become brighter, and hair casts no shadow.
     pub radius: f32,
+    /// Angle between the middle and the edge of a directional light, radians, if shadows are soft.
+    pub angular_radius: f32,
+    /// Samples of the light's area, for each of which hair has a shadow map: 1 for hard shadows.
+    pub shadow_samples: u32,
     /// Colour, linear sRGB, of about unit brightness.
     pub color: Vec3,
     /// Brightness; of a spot or a point light at a distance of one metre.
@@ -78,6 +82,8 @@ impl Default for Light {
             inner_angle: 0.5,
             outer_angle: 0.7,
             radius: 0.1,
+            angular_radius: 0.05,
+            shadow_samples: 1,
             color: Vec3::ONE,
             intensity: 3.0,
             specular: 1.0,
@@ -173,10 +179,17 @@ impl Light {
     /// [`Light::BLOCKER_METRES`] before the edge.
     pub fn softness_at(&self, distance: f32) -> f32 {
         if !self.stands() {
-            return self.softness;
+            let penumbra =
+                if self.has_soft_shadows() { Self::BLOCKER_METRES * self.angular_radius.tan() } else { 0.0 };
+            return self.softness.max(penumbra);
         }
         let near = distance.max(self.radius.max(LEAST_RADIUS));
         (self.radius * Self::BLOCKER_METRES / near).clamp(0.0, Self::MAX_SOFTNESS)
+    }
+
+    /// Whether the shadows of hair are those of the light's area, and not of its middle.
+    pub fn has_soft_shadows(&self) -> bool {
+        self.shadow_samples > 1
     }
 
     /// The light with every value in its range and a direction of length 1.
@@ -235,6 +248,22 @@ impl Settings for Light {
         )
         .unit(Unit::METRES_AS_CM)
         .logarithmic(),
+        Setting::count(
+            field!(Self, shadow_samples),
+            [1, 64],
+            "Shadow samples",
+            "Points of the lamp from which hair casts shadows: 1 for hard edges, more for soft ones. Each has a map of its own, with its \
+             time and memory; 16 are smooth.",
+        )
+        .offered(&[1, 2, 4, 8, 16, 32, 64]),
+        Setting::number(
+            field!(Self, angular_radius),
+            [0.0, 0.5],
+            "Angular radius",
+            "How large a directional light looks from the hair, with more than one shadow sample: the sun has 0.27 degrees, a large lamp \
+             10. A larger one softens shadows more.",
+        )
+        .unit(Unit::RADIANS),
         Setting::number(
             field!(Self, intensity),
             [0.0, 1000.0],

@@ -6,7 +6,7 @@ use lovelock_base::settings::{Part, PartMut, Setting, Settings, Unit};
 use lovelock_satf::ClusterSettings;
 use serde::{Deserialize, Serialize};
 
-use crate::{Backend, HairDrawing, MapView, StrandCount, Transparency};
+use crate::{Backend, BackgroundForm, BodyLook, HairDrawing, MapView, PictureFit, StrandCount, Transparency};
 
 /// Settings of the picture as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,10 +18,18 @@ pub struct PictureSettings {
     pub ambient: f32,
     /// The angle about the vertical by which a picture of the surroundings is turned, radians.
     pub surroundings_turn: f32,
+    /// What is behind the figure.
+    pub background: BackgroundForm,
     /// Background at the upper edge, linear sRGB.
     pub background_top: Vec3,
     /// Background at the horizon, linear sRGB.
     pub background_bottom: Vec3,
+    /// How a picture behind the figure is laid into the image.
+    pub background_fit: PictureFit,
+    /// Brightness of a picture behind the figure, stops.
+    pub background_stops: f32,
+    /// Blur of a picture behind the figure: standard deviation as a fraction of the height of the image.
+    pub background_blur: f32,
     /// Whether the ground is drawn, with the shadows on it.
     pub ground: bool,
     /// What hair is drawn as.
@@ -42,8 +50,12 @@ pub struct PictureSettings {
     pub strand_number: f32,
     /// What draws.
     pub backend: Backend,
+    /// What simulates the hair.
+    pub simulate: Backend,
     /// The shadow map over the image.
     pub map_view: MapView,
+    /// The surface of the body.
+    pub body_look: BodyLook,
 }
 
 impl Default for PictureSettings {
@@ -52,8 +64,12 @@ impl Default for PictureSettings {
             exposure_stops: 0.0,
             ambient: 0.6,
             surroundings_turn: 0.0,
+            background: BackgroundForm::default(),
             background_top: Vec3::new(0.135, 0.145, 0.163),
             background_bottom: Vec3::new(0.25, 0.262, 0.282),
+            background_fit: PictureFit::default(),
+            background_stops: 0.0,
+            background_blur: 0.0,
             ground: true,
             draw: HairDrawing::default(),
             cluster_size: 60.0,
@@ -64,7 +80,10 @@ impl Default for PictureSettings {
             strand_detail: 1.0,
             strand_number: 25_000.0,
             backend: Backend::default(),
+            // Results on a card differ in their last bits, and no step has been timed on one.
+            simulate: Backend::Cpu,
             map_view: MapView::default(),
+            body_look: BodyLook::default(),
         }
     }
 }
@@ -117,6 +136,12 @@ impl Settings for PictureSettings {
             "What renders the image: the graphics card or the CPU alone. Automatic uses the graphics \
              card where there is a real one.",
         ),
+        Setting::choice::<Backend>(
+            field!(Self, simulate),
+            "Hair simulation",
+            "What simulates the hair: the CPU or the graphics card, whose results differ in their last bits. \
+             Automatic uses the graphics card where there is a real one and the hair has at least 2,000 guides.",
+        ),
         Setting::number(field!(Self, strand_opacity), [0.05, 1.0], "Strand opacity", "Opacity of a strand.")
             .unit(Unit::FRACTION),
         Setting::choice::<StrandCount>(
@@ -142,19 +167,57 @@ impl Settings for PictureSettings {
         .unit(Unit::THOUSANDS)
         .logarithmic(),
         Setting::switch(field!(Self, ground), "Ground", "Shows the ground with the dancer's shadow."),
-        Setting::color(field!(Self, background_top), "Top colour", "Colour of the background at the top."),
+        Setting::choice::<BackgroundForm>(
+            field!(Self, background),
+            "Background",
+            "What is behind the figure: a studio's wall with a pool of light, one colour, two colours from top to bottom or from \
+             the corners to the middle, or a picture.",
+        ),
+        Setting::color(
+            field!(Self, background_top),
+            "Top colour",
+            "Colour of the background at the top, in the corners of a radial gradient, and beside a picture.",
+        ),
         Setting::color(
             field!(Self, background_bottom),
             "Bottom colour",
-            "Colour of the background at the bottom, and of the ground.",
+            "Colour of the background at the bottom, and in the middle of a radial gradient.",
         ),
+        Setting::choice::<PictureFit>(
+            field!(Self, background_fit),
+            "Picture fit",
+            "How a background picture of another shape is laid into the image: cut off, with borders, or stretched.",
+        ),
+        Setting::number(
+            field!(Self, background_stops),
+            [-6.0, 6.0],
+            "Picture brightness",
+            "Brightness of the background picture. The exposure of the image changes only pictures of measured light (.hdr, .exr).",
+        )
+        .unit(Unit::STOPS),
+        Setting::number(
+            field!(Self, background_blur),
+            [0.0, 0.2],
+            "Picture blur",
+            "Blurs the background picture, by this fraction of the height of the image.",
+        )
+        .unit(Unit::FRACTION)
+        .soft([0.0, 0.05]),
     ];
 
     fn parts(&self) -> Vec<Part<'_>> {
-        vec![("clusters".into(), &self.clusters), ("map_view".into(), &self.map_view)]
+        vec![
+            ("clusters".into(), &self.clusters),
+            ("map_view".into(), &self.map_view),
+            ("body_look".into(), &self.body_look),
+        ]
     }
 
     fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
-        vec![("clusters".into(), &mut self.clusters), ("map_view".into(), &mut self.map_view)]
+        vec![
+            ("clusters".into(), &mut self.clusters),
+            ("map_view".into(), &mut self.map_view),
+            ("body_look".into(), &mut self.body_look),
+        ]
     }
 }

@@ -103,6 +103,10 @@ pub enum Place {
     Lights,
     /// The picture of the surroundings.
     Surroundings,
+    /// The picture behind the figure.
+    Backdrop,
+    /// The picture that is compared with the image.
+    Reference,
     /// The sound of the dance.
     Sound,
     /// The camera.
@@ -127,6 +131,7 @@ impl Place {
             Self::Motion => Some("--motion"),
             Self::Hair => Some("--hair"),
             Self::Surroundings => Some("--surroundings"),
+            Self::Backdrop => Some("--background"),
             Self::Sound => Some("--sound"),
             Self::Compare => Some("--beside"),
             _ => None,
@@ -145,6 +150,8 @@ impl Place {
             Self::Shadow => "shadow",
             Self::Lights => "lights",
             Self::Surroundings => "surroundings",
+            Self::Backdrop => "background picture",
+            Self::Reference => "reference picture",
             Self::Sound => "sound",
             Self::Camera => "camera",
             Self::Picture => "picture",

@@ -95,6 +95,11 @@ impl Access {
         self.picked.insert(canonical(path));
     }
 
+    /// Whether the user picked `path`.
+    pub fn is_picked(&self, path: &Path) -> bool {
+        self.picked.contains(&canonical(path))
+    }
+
     /// Whether the project may read `path`. Symbolic links are resolved first.
     pub fn allows(&self, path: &Path) -> bool {
         let path = canonical(path);
@@ -110,10 +115,11 @@ impl Access {
         let name = file.path.display();
         if !self.allows(&file.path) {
             let option = self.by_options.then(|| place.option()).flatten();
-            let how = option.map_or_else(
-                || "pick the file yourself to allow it".to_owned(),
-                |option| format!("name it by {option} to allow it"),
-            );
+            let how = match option {
+                Some(option) => format!("name it by {option} to allow it"),
+                None if self.by_options => "name it by --allow to allow it".to_owned(),
+                None => "pick the file yourself to allow it".to_owned(),
+            };
             return Err(Problem::new(
                 place,
                 ProblemKind::NeedsPermission(file.path.clone()),
@@ -138,7 +144,7 @@ pub(super) fn folder_of(path: &Path) -> PathBuf {
 }
 
 /// The path with symbolic links resolved as far as it exists, and the rest normalised.
-fn canonical(path: &Path) -> PathBuf {
+pub(crate) fn canonical(path: &Path) -> PathBuf {
     let path = normal(path);
     let mut missing = Vec::new();
     let mut at = path.as_path();

@@ -33,6 +33,19 @@ struct Step {
     bytes: u64,
 }
 
+/// A history as it is at one moment: all its projects, shared.
+#[derive(Clone, Debug)]
+pub struct HistoryMark {
+    /// The steps that can be undone, oldest first: their labels, and the projects before them.
+    pub past: Vec<(String, Arc<Project>)>,
+    /// The current project.
+    pub present: Arc<Project>,
+    /// The steps that can be redone, the next one last: their labels, and the projects after them.
+    pub future: Vec<(String, Arc<Project>)>,
+    /// The project that was saved or opened.
+    pub saved: Arc<Project>,
+}
+
 impl History {
     /// Number of steps kept by default. A project is a few kilobytes, and shares what brushes did with the step before.
     pub const LIMIT: usize = 1200;
@@ -56,6 +69,53 @@ impl History {
             discarded: Vec::new(),
             limit: limit.max(1),
             most_bytes: Self::MAX_BYTES,
+        }
+    }
+
+    /// The history as it is now.
+    pub fn mark(&self) -> HistoryMark {
+        let of = |step: &Step| (step.label.clone(), Arc::clone(&step.project));
+        HistoryMark {
+            past: self.past.iter().map(of).collect(),
+            present: Arc::clone(&self.present),
+            future: self.future.iter().map(of).collect(),
+            saved: Arc::clone(&self.saved),
+        }
+    }
+
+    /// Whether nothing has changed since `mark`. Compares allocations, so it costs nothing.
+    pub fn is_at(&self, mark: &HistoryMark) -> bool {
+        Arc::ptr_eq(&self.present, &mark.present)
+            && Arc::ptr_eq(&self.saved, &mark.saved)
+            && (self.past.len(), self.future.len()) == (mark.past.len(), mark.future.len())
+    }
+
+    /// The history that a mark was made of: the newest steps, as many as are kept by default.
+    pub fn of_mark(mark: HistoryMark) -> Self {
+        let HistoryMark { past, present, future, saved } = mark;
+        let mut history = Self { saved, ..Self::with_limit(Project::default(), Self::LIMIT) };
+        history.present = present;
+        let mut newer = Arc::clone(&history.present);
+        for (label, project) in past.into_iter().rev() {
+            let bytes = project.bytes_beside(&newer);
+            newer = Arc::clone(&project);
+            history.past.push_front(Step { label, project, bytes });
+        }
+        let mut older = Arc::clone(&history.present);
+        for (label, project) in future.into_iter().rev() {
+            let bytes = project.bytes_beside(&older);
+            older = Arc::clone(&project);
+            history.future.insert(0, Step { label, project, bytes });
+        }
+        history.drop_oldest();
+        history
+    }
+
+    /// Drops the oldest steps beyond the limits.
+    fn drop_oldest(&mut self) {
+        let mut bytes = self.bytes();
+        while self.past.len() > self.limit || (bytes > self.most_bytes && self.past.len() > 1) {
+            bytes -= self.past.pop_front().map_or(0, |step| step.bytes);
         }
     }
 
@@ -91,9 +151,7 @@ impl History {
             let bytes = before.bytes_beside(&self.present);
             self.past.push_back(Step { label: label.to_owned(), project: before, bytes });
             self.discarded = std::mem::take(&mut self.future);
-            while self.past.len() > self.limit || (self.bytes() > self.most_bytes && self.past.len() > 1) {
-                self.past.pop_front();
-            }
+            self.drop_oldest();
             self.gesture = gesture;
         }
         self.future.clear();

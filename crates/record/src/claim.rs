@@ -1,15 +1,14 @@
-//! Locks on files, so that only one recording at a time writes to them.
+//! Locks on files, so that only one program at a time writes to them.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;
 
-/// Opens the file of an unfinished recording, creates it if it is missing, and locks it for as long as it is open. What
-/// an earlier recording left in it stays.
+/// Opens a file, creates it if it is missing, and locks it for as long as it is open. What is in it stays.
 ///
 /// # Errors
-/// [`io::ErrorKind::ResourceBusy`] if another recording holds the lock.
-pub(crate) fn claim(path: &Path) -> io::Result<File> {
+/// [`io::ErrorKind::ResourceBusy`] if another program holds the lock, or another part of this one.
+pub fn claim(path: &Path) -> io::Result<File> {
     let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another recording is writing to it");
     match file.try_lock() {
@@ -24,7 +23,7 @@ pub(crate) fn claim(path: &Path) -> io::Result<File> {
 
 /// Whether `path` still names the open file.
 #[cfg(unix)]
-pub(crate) fn is_still(file: &File, path: &Path) -> bool {
+pub fn is_still(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     match (file.metadata(), fs::metadata(path)) {
         (Ok(open), Ok(named)) => (open.dev(), open.ino()) == (named.dev(), named.ino()),
@@ -34,7 +33,7 @@ pub(crate) fn is_still(file: &File, path: &Path) -> bool {
 
 /// On other systems a file that is open cannot be renamed.
 #[cfg(not(unix))]
-pub(crate) fn is_still(_: &File, _: &Path) -> bool {
+pub fn is_still(_: &File, _: &Path) -> bool {
     true
 }
 

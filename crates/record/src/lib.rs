@@ -39,8 +39,10 @@ mod sink;
 mod sound;
 mod still;
 mod take;
+mod unfinished;
 mod yuv;
 
+pub use claim::{claim, is_still};
 pub use curves::{BodyFrame, CurveBody, CurveFormat, CurveFrame, CurveReport, CurveScene, CurveWriter};
 pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
@@ -60,3 +62,4 @@ pub use take::{
     TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport,
     TakeWriter, hairstyle_fingerprint, mix_guides,
 };
+pub use unfinished::{Kept, UnfinishedKind, discard_unfinished, is_unfinished, keep_unfinished};

@@ -107,6 +107,25 @@ pub(crate) fn partial_path(target: &Path) -> PathBuf {
     target.with_file_name(name)
 }
 
+/// `target` if there is no such file, otherwise `NAME-1.EXTENSION` and so on.
+pub(crate) fn free_name(target: &Path) -> PathBuf {
+    let stem = target.file_stem().unwrap_or_default();
+    let numbered = |number: u32| {
+        let mut name = stem.to_owned();
+        name.push(format!("-{number}"));
+        target.extension().inspect(|extension| {
+            name.push(".");
+            name.push(extension);
+        });
+        target.with_file_name(name)
+    };
+    let free = |path: &PathBuf| !path.exists();
+    std::iter::once(target.to_owned())
+        .chain((1..u32::MAX).map(numbered))
+        .find(free)
+        .unwrap_or_else(|| target.to_owned())
+}
+
 /// Creates the folder of `target` if it is missing.
 pub(crate) fn create_parent(target: &Path) -> io::Result<()> {
     match target.parent() {

@@ -19,6 +19,8 @@ use crate::{FrameInput, HairPose};
 pub(crate) const CELLS: usize = 32;
 /// All cells.
 const ALL: usize = CELLS * CELLS * CELLS;
+/// From a cell to the one beside it on all three axes.
+const LAST_CORNER: usize = CELLS * CELLS + CELLS + 1;
 /// The smallest cell, metres.
 const SMALLEST_CELL: f32 = 0.012;
 /// Cells beside the hair on each side.
@@ -264,8 +266,9 @@ impl AmbientGrid {
         let (i, j, k) = (x as usize, y as usize, z as usize);
         let (fx, fy, fz) = (x - i as f32, y - j as f32, z - k as f32);
         let first = i + CELLS * (j + CELLS * k);
-        let cell = |offset: usize| self.cells[first + offset];
         let mut out = [0.0; 4];
+        // One comparison in place of eight.
+        let Some(cells) = self.cells.get(first..first + LAST_CORNER + 1) else { return out };
         for (offset, weight) in [
             (0, (1.0 - fx) * (1.0 - fy) * (1.0 - fz)),
             (1, fx * (1.0 - fy) * (1.0 - fz)),
@@ -274,9 +277,9 @@ impl AmbientGrid {
             (CELLS * CELLS, (1.0 - fx) * (1.0 - fy) * fz),
             (CELLS * CELLS + 1, fx * (1.0 - fy) * fz),
             (CELLS * CELLS + CELLS, (1.0 - fx) * fy * fz),
-            (CELLS * CELLS + CELLS + 1, fx * fy * fz),
+            (LAST_CORNER, fx * fy * fz),
         ] {
-            let cell = cell(offset);
+            let cell = &cells[offset];
             for c in 0..4 {
                 out[c] += weight * cell[c];
             }

@@ -12,6 +12,9 @@ pub enum RenderError {
     /// The size is out of range.
     #[error(transparent)]
     Size(#[from] lovelock_picture::SizeError),
+    /// An [`Interrupt`](crate::Interrupt) ended the picture.
+    #[error("the image was ended early")]
+    Interrupted,
     /// A picture was queried before one was rendered.
     #[error("no image has been rendered yet")]
     NoPicture,

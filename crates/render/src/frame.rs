@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_appearance::environment::Panorama;
+use lovelock_appearance::environment::{BackdropPicture, Panorama};
 use lovelock_gpu::{PassTime, Traffic};
 use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
@@ -40,8 +40,40 @@ pub struct FrameInput<'a> {
     pub is_draft: bool,
     /// A picture of the surroundings that gives light from all directions, in place of sky and ground.
     pub surroundings: Option<&'a Arc<Panorama>>,
+    /// The picture behind the figure, which [`BackgroundForm::Picture`](crate::BackgroundForm) shows.
+    pub backdrop: Option<&'a Arc<BackdropPicture>>,
     /// Transmittance that replaces the result of the shadow method; supported by the CPU backend only.
     pub known: Option<KnownTransmittance<'a>>,
+    /// Hair that the skin carries, beside the hairstyle: it is drawn as strands and shadowed by the hairstyle, but casts no shadow itself
+    /// and is part of no statistics. Pictures of given transmittance and of clusters alone are without it.
+    pub carried: Option<CarriedHair<'a>>,
+}
+
+/// Strands beside the hairstyle, with a look of their own, such as brows.
+#[derive(Clone, Copy, Debug)]
+pub struct CarriedHair<'a> {
+    /// Taper, shade and colours of its strands; its guides are not used.
+    pub style: &'a Arc<Hairstyle>,
+    /// Its strands, world space.
+    pub strands: &'a Strands,
+    /// Its colour and width. The fibres are shaded as those of the hairstyle.
+    pub look: HairLook,
+}
+
+impl<'a> FrameInput<'a> {
+    /// The input with the carried hair in place of the hairstyle; `None` without any. `picture` are the settings of its strands.
+    pub(crate) fn of_carried(&self, picture: &'a PictureSettings) -> Option<Self> {
+        let carried = self.carried.filter(|carried| self.known.is_none() && carried.strands.count() > 0)?;
+        Some(FrameInput {
+            style: carried.style,
+            hair: HairPose::Strands(carried.strands),
+            guides: None,
+            look: HairLook { shading: self.look.shading, ..carried.look },
+            picture,
+            carried: None,
+            ..*self
+        })
+    }
 }
 
 /// The positions of the strands of a hairstyle at one time, world space.
@@ -107,7 +139,7 @@ pub struct FrameStats {
     /// The times of the passes `shadow/…` and `draw/…` in their order, added up over lights, as far as the backend measures them.
     pub passes: Vec<PassTime>,
     /// The passes that were left out because nothing moved and their results were kept, with the times that they took when they last
-    /// ran.
+    /// ran. A pass that was left out for some lights only stands in both lists.
     pub kept: Vec<PassTime>,
     /// Segments that were drawn.
     pub segments: u64,
@@ -149,7 +181,11 @@ impl FrameStats {
             let stage =
                 if pass.name.starts_with("shadow/") { &mut anew.shadow_ms } else { &mut anew.draw_ms };
             *stage += pass.ms;
-            anew.passes.push(pass);
+            // Some lights may have been kept, and others not.
+            match anew.passes.iter_mut().find(|run| run.name == pass.name) {
+                Some(run) => run.ms += pass.ms,
+                None => anew.passes.push(pass),
+            }
         }
         anew
     }
@@ -179,12 +215,14 @@ mod tests {
                 pass("shadow/build", 2.0),
                 pass("shadow/ask", 1.0),
                 pass("draw/body-depth", 0.5),
+                pass("draw/tiles", 0.25),
                 pass(INTERPOLATE, 4.0),
             ],
             ..FrameStats::default()
         };
         let anew = stats.made_anew();
-        assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.query_ms()), (3.0, 5.5, 2.0, 1.0));
+        assert_eq!((anew.shadow_ms, anew.draw_ms, anew.build_ms(), anew.query_ms()), (3.0, 5.75, 2.0, 1.0));
+        assert_eq!(anew.passes[0], pass("draw/tiles", 5.25), "a part of it was kept");
         assert_eq!(anew.interpolate_ms, 4.0);
         assert!(anew.kept.is_empty() && anew.made_anew() == anew);
         assert!(anew.passes.iter().all(|pass| pass.name != INTERPOLATE), "a stage and no pass");

@@ -1,8 +1,10 @@
 //! A picture for compositing: linear light with alpha, depth, and transmittance.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
-use crate::Picture;
+use crate::{LaidBackdrop, Picture};
 
 /// A picture before tone mapping. Rows from the top; one item per pixel in each list.
 ///
@@ -16,7 +18,8 @@ pub struct Layers {
     pub height: u32,
     /// Red, green, blue and alpha: scene-linear light in the primaries of sRGB (Rec. 709), times the exposure
     /// ([`crate::PictureSettings::exposure_stops`]), before tone mapping and without an upper bound. Alpha is the fraction of the
-    /// pixel that hair and body cover, and colour is multiplied by it. Over a background alpha is 1.
+    /// pixel that hair and body cover, and colour is multiplied by it. Over a background alpha is 1, but a picture behind the figure is not
+    /// in the light: it is in `behind`, and shadows on it are in alpha, as black.
     pub light: Vec<[f32; 4]>,
     /// Distance along the camera's axis of the nearest surface in the pixel, metres: the body in any of the four samples, or a
     /// strand that covers at least [`Layers::LEAST_COVER`] of the pixel. [`Layers::NOTHING_METRES`] if there is none.
@@ -25,6 +28,8 @@ pub struct Layers {
     /// `1 - Σ w (1 - T)`, where `w` is the visible fraction of a strand in the pixel and `T` its transmittance in steps of 1/255.
     /// It is 1 where there is no hair.
     pub transmittance: Vec<f32>,
+    /// The picture behind the figure, which [`Layers::tone_map`] lays under the rest.
+    pub behind: Option<Arc<LaidBackdrop>>,
 }
 
 impl Layers {
@@ -48,22 +53,30 @@ impl Layers {
         self.light.fill([0.0; 4]);
         self.depth.fill(Self::NOTHING_METRES);
         self.transmittance.fill(0.0);
+        self.behind = None;
     }
 
     /// Adds another picture of the same size with a weight. The weights should add up to 1. Depth becomes the nearest one.
     pub fn add(&mut self, other: &Self, weight: f32) {
-        let light = self.light.par_iter_mut().zip(&other.light).with_min_len(4096);
-        light.for_each(|(sum, light)| {
-            for (sum, light) in sum.iter_mut().zip(light) {
-                *sum += weight * light;
-            }
-        });
+        self.add_light(other, weight);
+        self.add_values(other, weight);
+    }
+
+    /// As [`Layers::add`] for depth and transmittance alone.
+    pub fn add_values(&mut self, other: &Self, weight: f32) {
         for (depth, other) in self.depth.iter_mut().zip(&other.depth) {
             *depth = depth.min(*other);
         }
         for (sum, transmittance) in self.transmittance.iter_mut().zip(&other.transmittance) {
             *sum += weight * transmittance;
         }
+    }
+
+    /// As [`Layers::add`] for the light alone.
+    pub fn add_light(&mut self, other: &Self, weight: f32) {
+        let light = self.light.par_iter_mut().zip(&other.light).with_min_len(4096);
+        light.for_each(|(sum, light)| (0..4).for_each(|c| sum[c] += weight * light[c]));
+        self.behind.clone_from(&other.behind);
     }
 
     /// The tone-mapped picture, with straight (not premultiplied) alpha. Over a background its bytes are those of the picture,
@@ -73,7 +86,10 @@ impl Layers {
         let row = self.width as usize;
         picture.rgba.resize(self.light.len() * 4, 0);
         let rows = picture.rgba.par_chunks_mut(4 * row.max(1)).zip(self.light.par_chunks(row.max(1)));
-        rows.enumerate().for_each(|(y, (out, light))| crate::cpu::show_row(light, y as u32, out));
+        rows.enumerate().for_each(|(y, (out, light))| match &self.behind {
+            Some(behind) => crate::cpu::show_row_over(light, y as u32, behind, out),
+            None => crate::cpu::show_row(light, y as u32, out),
+        });
     }
 }
 
@@ -88,6 +104,7 @@ mod tests {
             light: vec![[light, light, light, alpha]; 2],
             depth: vec![depth; 2],
             transmittance: vec![alpha; 2],
+            behind: None,
         }
     }
 

@@ -4,6 +4,7 @@
 //! Shadow methods run here, between the strands and their shading.
 
 mod ambient;
+mod backdrop;
 mod camera;
 mod closed;
 mod clusters;
@@ -27,28 +28,34 @@ mod standing;
 mod strand_details;
 mod strand_portion;
 mod strand_values;
+mod surface_material;
+mod textures;
 mod uniform;
 
+pub use backdrop::LaidBackdrop;
 pub use camera::Camera;
 pub use color_scale::ColorScale;
-pub use cpu::{CpuRenderer, DrawnHair, HairHit, ValuePicture, ValueRenderer};
+pub use cpu::{CpuRenderer, DrawnHair, HairHit, Interrupt, ValuePicture, ValueRenderer};
 pub use error::RenderError;
-pub use frame::{ClusterStats, FrameInput, FrameStats, HairPose};
+pub use frame::{CarriedHair, ClusterStats, FrameInput, FrameStats, HairPose};
 pub use gpu::{Finished, GpuRenderer, MAX_IN_FLIGHT, PendingPicture, Shrinker, all_shaders};
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
 pub use lovelock_picture::{
-    Backend, HairDrawing, Light, LightKind, MAX_LIGHTS, MAX_PIXELS, MAX_SIDE, MapForm, MapValue, MapView,
-    PictureSettings, SizeError, StrandCount, Transparency, UnknownBackend, check_size,
+    Backend, BackgroundForm, BodyLook, HairDrawing, Light, LightKind, LightRig, MAX_LIGHTS, MAX_PIXELS,
+    MAX_SIDE, MapForm, MapValue, MapView, PictureFit, PictureSettings, SizeError, StrandCount, Transparency,
+    UnknownBackend, check_size,
 };
 pub use lovelock_satf::{ClusterSettings, ClusterShading, ClusterView, LocalShadow, RecordLookup};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings, VoxelSlices};
 pub use lovelock_shadow::{
-    ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,
-    LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind, RayStructure, ShadowError,
-    ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter,
+    AdaptiveSettings, ApproximateDeepSettings, ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings,
+    DeepShadowMapsSettings, DensityClusteringSettings, DepthRange, ExactSettings, FourierSettings,
+    LayerGrowth, MomentsSettings, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind,
+    RayStructure, RayTracedSettings, ShadowError, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS,
+    TexelFilter, UserMethod, VoxelMarchSettings, new_method,
 };
 pub use picture::Picture;
 pub use renderer::Renderer;

@@ -9,7 +9,7 @@ use lovelock_gpu::{Gpu, GpuError};
 use crate::map_view::MapStage;
 use crate::{
     Backend, ColorScale, CpuRenderer, DeviceImages, Finished, FrameInput, FrameStats, GpuRenderer, Image,
-    Layers, MAX_IN_FLIGHT, MapValue, PendingPicture, Picture, RayStructure, RenderError,
+    Interrupt, Layers, MAX_IN_FLIGHT, MapValue, PendingPicture, Picture, RayStructure, RenderError,
 };
 
 /// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
@@ -150,6 +150,13 @@ impl Renderer {
         }
     }
 
+    /// Sets what ends the following pictures early; see [`CpuRenderer::set_interrupt`]. The GPU ends none.
+    pub fn set_interrupt(&mut self, interrupt: Option<Interrupt>) {
+        if self.gpu.is_none() {
+            self.cpu.get_or_insert_default().set_interrupt(interrupt);
+        }
+    }
+
     /// Renders `input` at `width` by `height` pixels, with the shadow map over it if [`MapView`](crate::MapView) asks for it.
     ///
     /// # Errors
@@ -264,7 +271,7 @@ impl Renderer {
     /// The renderer on the GPU, if it draws into the textures of this window without a copy: if they are on one device.
     pub fn on_device_of(&mut self, window: Option<&DeviceImages>) -> Option<&mut GpuRenderer> {
         let gpu = self.gpu.as_mut()?;
-        (gpu.gpu().device == window?.gpu().device).then_some(gpu)
+        gpu.gpu().is_same_device(window?.gpu()).then_some(gpu)
     }
 
     /// Whether as many images of [`Renderer::image`] are in flight as may be.
@@ -311,6 +318,24 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.layers(input, width, height, over_background, layers),
             None => self.cpu.get_or_insert_default().layers(input, width, height, over_background, layers),
+        }
+    }
+
+    /// As [`Renderer::layers`] without depth and transmittance, which stay as they are: for the mean of many images.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn light(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
+        match &mut self.gpu {
+            Some(gpu) => gpu.light(input, width, height, over_background, layers),
+            None => self.cpu.get_or_insert_default().light(input, width, height, over_background, layers),
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
-use crate::{FrameInput, HairDrawing, Light, MAX_LIGHTS, ShadowSettings};
+use crate::{FrameInput, HairDrawing, Light, MAX_LIGHTS, ShadowMethod, ShadowSettings, UserMethod};
 
 /// What the shadows in an image depend on beside the positions of hair, body and lights.
 ///
@@ -17,6 +17,8 @@ pub(crate) struct ShadowLook {
     pub extinction_scale: f32,
     /// The method and its settings.
     pub settings: ShadowSettings,
+    /// The version of the user's method, if it is one; 0 otherwise.
+    pub version: u64,
     /// The head, at whose origin maps are anchored.
     pub world_from_head: Affine3A,
     /// How far apart fine strands look up shadows, metres: half of the softness of the first light at the head.
@@ -32,6 +34,10 @@ impl ShadowLook {
             strand_width: input.look.shadow_width(input.style.strands.count()),
             extinction_scale: input.look.extinction_scale,
             settings: *input.shadow,
+            version: match input.shadow.method {
+                ShadowMethod::User(_) => UserMethod::revision(),
+                _ => 0,
+            },
             world_from_head: input.world_from_head,
             reach: key.map_or(0.0, |light| 0.5 * light.softness_at(light.position.distance(head))),
         }

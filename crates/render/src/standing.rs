@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_shadow::cube::{SIDES, side_of, turned};
-use lovelock_shadow::{LightFrame, LightSource};
+use lovelock_shadow::{LightArea, LightFrame, LightSource};
 
 use crate::{Light, LightKind, MAX_LIGHTS};
 
@@ -14,6 +14,8 @@ const NARROWEST_VIEW: f32 = 1e-3;
 
 /// The axes of the shadow maps of a light around hair at `anchor`, and where the light stands. `base` are those of its direction.
 pub(crate) fn placed_frame(base: LightFrame, light: &Light, anchor: Vec3) -> LightFrame {
+    let area = LightArea { angle: light.angular_radius, samples: light.shadow_samples };
+    let base = LightFrame { area, ..base };
     if !light.stands() {
         return base;
     }

@@ -15,6 +15,11 @@ use crate::{FrameInput, MAX_LIGHTS};
 /// `strand_points.wgsl`.
 pub(crate) const MAX_LIGHT: f32 = 65_504.0;
 
+/// From where on the edge of the body's shadow counts as wide and gets more taps: blur of a directional light in texels of its map.
+pub(crate) const WIDE_BLUR: f32 = 12.0;
+/// As [`WIDE_BLUR`], for a light that stands somewhere: its radius, metres.
+pub(crate) const WIDE_LAMP: f32 = 0.25;
+
 /// Twin of `LightUniform` in `frame.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -71,7 +76,8 @@ pub(crate) struct FrameUniform {
     pub lightening: f32,
     pub many_scattering: f32,
     pub tip_lightening: f32,
-    unused: [f32; 3],
+    pub background_form: u32,
+    unused: [f32; 2],
     pub lobes: [LobeUniform; LOBES],
     pub grid_corner: Vec3,
     pub cells_per_metre: f32,
@@ -124,7 +130,9 @@ impl FrameUniform {
                 direction: lamp.direction,
                 specular: lamp.specular,
                 radiance: lamp.color * lamp.intensity,
-                blur: lamp.softness / map.metres_per_texel.max(1e-6),
+                // Lamps have a blur of their own: see `StandingUniform`.
+                blur: if lamp.stands() { lamp.softness } else { lamp.softness_at(0.0) }
+                    / map.metres_per_texel.max(1e-6),
                 shadow_from_world: map.shadow_from_world,
                 columns_from_world: map.columns_from_world,
             };
@@ -169,7 +177,8 @@ impl FrameUniform {
             lightening: look.highlight_lightening.clamp(0.0, 1.0),
             many_scattering: look.many_scattering.clamp(0.0, 1.0),
             tip_lightening: look.tip_lightening.clamp(0.0, 1.0),
-            unused: [0.0; 3],
+            background_form: background_form::of(input),
+            unused: [0.0; 2],
             lobes: std::array::from_fn(|p| {
                 let [sin_tilt, cos_tilt] = light.tables.tilts[p];
                 LobeUniform { sin_tilt, cos_tilt, variance: light.tables.variances[p], unused: 0.0 }
@@ -183,23 +192,59 @@ impl FrameUniform {
     }
 }
 
+/// What is behind the figure, as numbers. Twins of the constants in backdrop.wgsl and picture.wgsl.
+pub(crate) mod background_form {
+    use lovelock_picture::BackgroundForm;
+
+    use crate::FrameInput;
+
+    /// Two colours from top to bottom with a pool of light.
+    pub const STUDIO: u32 = 0;
+    /// One colour.
+    pub const PLAIN: u32 = 1;
+    /// Two colours from top to bottom.
+    pub const VERTICAL: u32 = 2;
+    /// Two colours from the corners to the middle.
+    pub const RADIAL: u32 = 3;
+    /// A picture.
+    pub const PICTURE: u32 = 4;
+
+    /// That of an image; while a picture is missing, its colour.
+    pub fn of(input: &FrameInput) -> u32 {
+        match input.picture.background {
+            BackgroundForm::Studio => STUDIO,
+            BackgroundForm::Vertical => VERTICAL,
+            BackgroundForm::Radial => RADIAL,
+            BackgroundForm::Picture if input.backdrop.is_some() => PICTURE,
+            BackgroundForm::Plain | BackgroundForm::Picture => PLAIN,
+        }
+    }
+}
+
 /// What the plain background of an image depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PlainBackground {
     size: Vec2,
     exposure: f32,
+    form: u32,
     top: Vec3,
     bottom: Vec3,
+    /// The picture behind the figure as it was laid into the image.
+    picture: u64,
 }
 
 impl PlainBackground {
     /// That of an image.
-    pub fn of(uniform: &FrameUniform) -> Self {
+    ///
+    /// `picture` is the number of the picture behind the figure, which changes with its pixels.
+    pub fn of(uniform: &FrameUniform, picture: u64) -> Self {
         Self {
             size: uniform.size,
             exposure: uniform.exposure,
+            form: uniform.background_form,
             top: uniform.background_top,
             bottom: uniform.background_bottom,
+            picture,
         }
     }
 }
@@ -301,6 +346,7 @@ mod tests {
                 offset_of!(FrameUniform, lightening),
                 offset_of!(FrameUniform, many_scattering),
                 offset_of!(FrameUniform, tip_lightening),
+                offset_of!(FrameUniform, background_form),
                 offset_of!(FrameUniform, lobes),
                 offset_of!(FrameUniform, grid_corner),
                 offset_of!(FrameUniform, cells_per_metre),

@@ -81,6 +81,8 @@ struct Threads {
     project: Arc<Project>,
     size: [u32; 2],
     drawn: Option<Arc<FrameSnapshot>>,
+    /// Changes so far that an image shows, as the window counts them.
+    inputs: u64,
     seen: u64,
     images: usize,
     /// Reports of brushes so far.
@@ -98,8 +100,18 @@ impl Threads {
         let project = Arc::new(project.clone());
         let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
         let worker = Worker::start(Arc::clone(&project), Access::new(), Arc::new(wake))?;
-        let mut threads =
-            Self { worker, painter, woken, project, size, drawn: None, seen: 0, images: 0, brushed: 0 };
+        let mut threads = Self {
+            worker,
+            painter,
+            woken,
+            project,
+            size,
+            drawn: None,
+            inputs: 0,
+            seen: 0,
+            images: 0,
+            brushed: 0,
+        };
         let watch = Stopwatch::start();
         let mut shown = loop {
             if let Some(shown) = threads.turn()? {
@@ -131,12 +143,16 @@ impl Threads {
                     layer.operation = Operation::Hand(Hand { edits: report.edits });
                 }
                 self.project = Arc::new(changed);
+                self.inputs += 1;
                 self.worker.set_project(Arc::clone(&self.project), Access::new());
             }
         }
         if let Some(frame) = self.worker.frame()
             && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
         {
+            let other_hair =
+                |drawn: &Arc<FrameSnapshot>| !Arc::ptr_eq(&drawn.scene.style, &frame.scene.style);
+            self.inputs += u64::from(self.drawn.as_ref().is_some_and(other_hair));
             self.painter.request(RenderRequest {
                 project: Arc::clone(&self.project),
                 snapshot: Arc::clone(&frame),
@@ -144,6 +160,7 @@ impl Threads {
                 quality: ImageQuality::Draft,
                 measured: false,
                 mask: None,
+                input: self.inputs,
             });
             self.drawn = Some(frame);
         }

@@ -5,6 +5,7 @@ mod combing;
 mod preroll;
 mod settle;
 mod shown;
+mod stepper;
 mod styled;
 
 pub use brushing::BrushLayers;
@@ -18,12 +19,14 @@ use glam::Affine3A;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Settings;
 use lovelock_groom::{GuideFrame, Guides};
-use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders, pose_at};
+use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders};
 use lovelock_project::Project;
 use lovelock_project::animation::Animation;
 use lovelock_project::project::TimelineSection;
 use lovelock_record::TakeFrame;
 use lovelock_simulation::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
+
+use stepper::Stepper;
 
 use crate::clock::STEP_SECS;
 use crate::scene::{Scene, Styling};
@@ -57,6 +60,7 @@ pub struct Engine {
     preroll_secs: f64,
     step_secs: f64,
     simulation: Simulation,
+    stepper: Stepper,
     /// The transition of strands to other ties, while it lasts.
     combing: Option<Combing>,
     /// Current step, counted from the scene's time zero.
@@ -115,6 +119,7 @@ impl Engine {
             preroll_secs: f64::from(TimelineSection::default().preroll_secs),
             step_secs,
             simulation,
+            stepper: Stepper::default(),
             combing: None,
             at_step: 0,
             taken: 0,
@@ -176,6 +181,7 @@ impl Engine {
         self.set_settings(&project.simulation);
         self.animation = Animation::of(project);
         self.preroll_secs = f64::from(project.timeline.preroll_secs);
+        self.stepper.choose(project.picture.simulate);
         self.styling = Styling::of(project, self.styling.take());
         self.restyle(f64::NEG_INFINITY);
     }
@@ -203,6 +209,11 @@ impl Engine {
     /// Simulation time since the last call, milliseconds, and the substeps of the last step. Resets the time.
     pub fn take_simulate_ms(&mut self) -> (f64, u32) {
         (std::mem::take(&mut self.times).simulate, self.report.substeps)
+    }
+
+    /// Whether a graphics device advanced the guides in the last step, and a sentence that says why it did not if it was to.
+    pub fn simulated_on_device(&self) -> (bool, Option<&Arc<str>>) {
+        self.stepper.state()
     }
 
     /// A hash of the simulated state.
@@ -346,7 +357,7 @@ impl Engine {
     /// Poses the body at the current step, or at `lead_in_secs` if that is later.
     fn place_body(&mut self, lead_in_secs: f64) {
         let clip_secs = self.scene.clip_secs(self.time_secs().max(lead_in_secs));
-        pose_at(&self.scene.body, self.scene.clip.as_deref(), clip_secs, &mut self.pose);
+        self.scene.pose_at(clip_secs, &mut self.pose);
         place_colliders(&self.scene.colliders, &self.scene.body, &self.pose, &mut self.colliders);
         place_colliders(&self.scene.sheltering, &self.scene.body, &self.pose, &mut self.sheltering);
         if let Some(field) = &self.scene.field {
@@ -361,7 +372,8 @@ impl Engine {
         self.simulated_secs += self.step_secs;
         let placed = [&self.colliders[..], &self.sheltering];
         let input = body_at(self.simulated_secs, &self.scene, &self.pose, placed, &self.field);
-        self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
+        let secs = self.step_secs as f32;
+        self.report = self.stepper.step(&mut self.simulation, &input, &self.settings, secs);
         if std::mem::take(&mut self.rest_is_new) {
             self.rest_inside = self.simulation.rest_inside();
         }

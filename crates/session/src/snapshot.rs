@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
+use lovelock_groom::carried::SkinHair;
 use lovelock_groom::{GuideFrame, HairLook, Strands, interpolate};
-use lovelock_motion::{Pose, Skin};
+use lovelock_motion::{Pose, Skin, skin};
 use lovelock_project::Project;
 use lovelock_project::project::CameraSection;
-use lovelock_render::{Camera, FrameInput, HairPose};
+use lovelock_render::{Camera, CarriedHair, FrameInput, HairPose};
 use lovelock_simulation::{InsidePoint, StepReport};
 
-use crate::scene::{Scene, camera_at};
+use crate::scene::{Figure, Lens, Scene, camera_at};
 use crate::stats::StageTimes;
 use crate::totals::Totals;
 
@@ -33,12 +34,18 @@ pub struct FrameSnapshot {
     pub skin: Skin,
     /// The guides, world space.
     pub guides: GuideFrame,
+    /// Brows and lashes, world space; empty if the scene has none.
+    pub skin_strands: Strands,
     /// The strands, world space, where they do not follow the guides: those of a cache of curves.
     pub strands: Option<Strands>,
     /// Measurements of the last step.
     pub report: StepReport,
     /// The deepest point of the style at rest inside the body, if any.
     pub rest_inside: Option<InsidePoint>,
+    /// Whether a graphics device simulated the last step.
+    pub on_device: bool,
+    /// Why the CPU simulates although a graphics device was chosen.
+    pub device_refusal: Option<Arc<str>>,
     /// Measurements since the hair was last settled.
     pub totals: Totals,
     /// Times of `motion` and `simulate` for this instant; the renderer measures the other stages.
@@ -57,12 +64,24 @@ impl FrameSnapshot {
             duration_secs: 0.0,
             pose: Pose::default(),
             skin: Skin::default(),
+            skin_strands: Strands::default(),
             guides: GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides },
             strands: None,
             report: StepReport::default(),
             rest_inside: None,
+            on_device: false,
+            device_refusal: None,
             totals: Totals::default(),
             times: StageTimes::default(),
+        }
+    }
+
+    /// Moves the surface of the body, and the hair that it carries, into the pose of the snapshot.
+    pub(crate) fn follow_pose(&mut self) {
+        skin(&self.scene.body, &self.pose, &mut self.skin);
+        match &self.scene.skin_hair {
+            Some(hair) => hair.place(&self.skin.positions, &mut self.skin_strands),
+            None => self.skin_strands = Strands::default(),
         }
     }
 
@@ -80,9 +99,25 @@ impl FrameSnapshot {
         camera_at(section, &self.scene, self.time_secs)
     }
 
+    /// The lens of a camera at this instant; `None` if it has no depth of field.
+    pub fn lens(&self, section: &CameraSection, camera: &Camera) -> Option<Lens> {
+        let figure = Figure {
+            body: &self.scene.body,
+            positions: &self.skin.positions,
+            world_from_head: self.guides.world_from_head,
+            skull: self.scene.skull,
+        };
+        Lens::of(section, camera, &figure)
+    }
+
     /// Colour and width of the hair on this head: settings are those on the shipped dancer's.
     pub fn look(&self, project: &Project) -> HairLook {
         HairLook { diameter: project.look.diameter * self.scene.hair_scale, ..project.look }
+    }
+
+    /// Colour and width of brows and lashes.
+    pub fn skin_look(&self, project: &Project, hair: &SkinHair) -> HairLook {
+        project.body.brows.look(&project.look, hair.width, hair.count())
     }
 
     /// The input of a renderer for this instant, with the settings of `project`.
@@ -99,9 +134,20 @@ impl FrameSnapshot {
             camera,
             picture: &project.picture,
             is_draft: false,
-            surroundings: self.scene.surroundings.as_ref(),
+            surroundings: self.scene.surroundings.light.as_ref(),
+            backdrop: self.scene.surroundings.backdrop.as_ref(),
             known: None,
+            carried: self.scene.skin_hair.as_ref().map(|hair| CarriedHair {
+                style: &hair.style,
+                strands: &self.skin_strands,
+                look: self.skin_look(project, hair),
+            }),
         }
+    }
+
+    /// The input of a renderer for measurements of the hairstyle: without brows and lashes.
+    pub fn measured_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
+        FrameInput { carried: None, ..self.frame_input(project, camera) }
     }
 }
 

@@ -24,7 +24,7 @@ impl WindowDevice {
     /// while it is lost.
     pub fn images<'a>(&self, images: &'a mut Option<DeviceImages>) -> Option<&'a mut DeviceImages> {
         let gpu = self.get().filter(|gpu| !gpu.is_lost());
-        let same = |images: &DeviceImages| gpu.as_ref().is_some_and(|gpu| gpu.device == images.gpu().device);
+        let same = |images: &DeviceImages| gpu.as_ref().is_some_and(|gpu| gpu.is_same_device(images.gpu()));
         if !images.as_ref().is_some_and(same) {
             *images = gpu.as_ref().map(DeviceImages::new);
         }

@@ -90,6 +90,9 @@ fn draw_all(name: &str, mut project: Project) {
             let picture = draw(method, transparency);
             let difference = flip(&truth, &picture, SIZE.0, SIZE.1).mean;
             println!("{name}, {method}, {transparency}: {difference:.4}; without shadow {shadow:.4}");
+            // It takes the density of the hair for known, and has to be nearer than no shadow only.
+            let is_approximate = method == ShadowMethod::ApproximateDeep;
+            let bound = if is_approximate { BELOW_CONTROL * unshadowed } else { bound };
             assert!(difference < bound, "{name}, {method}, {transparency}: {difference}");
         }
     }
@@ -129,6 +132,10 @@ fn the_same_by_both_backends() {
     let snapshot = instant("default", &project);
     let mut pictures = Vec::new();
     for (i, &method) in ShadowMethod::ALL.iter().enumerate() {
+        // Rays take seconds on a software adapter; `agreement.rs` of the renderer has them in the short suite.
+        if method == ShadowMethod::RayTraced && !is_long() {
+            continue;
+        }
         // Every transparency without shadow and with the exact one, which are each other's controls; with the others one in the short suite.
         let is_control = [ShadowMethod::None, ShadowMethod::Exact].contains(&method);
         let (first, every) =

@@ -80,6 +80,9 @@ pub struct ShadowReport {
     /// The most memory that the map and its build may need, bytes: computed before any is allocated, and compared with the limit.
     /// 0 if the method has no limit.
     pub needed_bytes: u64,
+    /// Records of the map that cannot be read as the method is defined, and are read in a simpler way: moments of which no distribution
+    /// can be computed. Only the CPU counts them.
+    pub fallbacks: u64,
 }
 
 impl ShadowReport {
@@ -95,6 +98,7 @@ impl ShadowReport {
             points_ignored: self.points_ignored.max(other.points_ignored),
             scratch_bytes: self.scratch_bytes.max(other.scratch_bytes),
             needed_bytes: self.needed_bytes + other.needed_bytes,
+            fallbacks: self.fallbacks + other.fallbacks,
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use crate::ShadowMethod;
+use crate::{ShadowMethod, UserMethod};
 
 /// Why a shadow could not be built. The previous map is freed: everything is lit until the next build.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShadowError {
     /// The map of this hair would exceed the memory limit of the method.
     #[error(
@@ -35,6 +35,14 @@ pub enum ShadowError {
         needed_bytes: u64,
         /// The device's limit.
         limit_bytes: u64,
+    },
+    /// A method of the user's own cannot be used.
+    #[error("{problem}")]
+    User {
+        /// The method.
+        method: UserMethod,
+        /// What is wrong, with file and line where it has one.
+        problem: String,
     },
 }
 

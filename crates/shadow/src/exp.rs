@@ -23,7 +23,8 @@ pub(crate) fn exp_of_minus_steps(depth: f32) -> f32 {
     let p = p * g + -0.693_143_7;
     let p = p * g + 1.0;
     // Decreasing the exponent bits divides by 2^whole, which is at most 24 here, far from the smallest float.
-    f32::from_bits((p.to_bits() as i32 - (whole << 23)) as u32)
+    // A check for overflow would be a branch in loops of vectors.
+    f32::from_bits(p.to_bits().wrapping_sub((whole as u32) << 23))
 }
 
 /// `e^(−depth)` for any optical depth: 1 at 0 and for NaN, 10⁻²⁸ from 64 on, always between 0 and 1.

@@ -2,6 +2,8 @@
 
 use glam::{Quat, Vec3};
 
+use crate::LightArea;
+
 /// The place from which light spreads in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSource {
@@ -37,9 +39,14 @@ pub struct LightFrame {
     pub z: Vec3,
     /// Where the light stands; `None` for a directional light, which is infinitely far away.
     pub source: Option<LightSource>,
+    /// The area from which light comes.
+    pub area: LightArea,
 }
 
 impl LightFrame {
+    /// The axes of the world.
+    pub const WORLD: Self = Self { x: Vec3::X, y: Vec3::Y, z: Vec3::Z, source: None, area: LightArea::HARD };
+
     /// Axes for light that travels along `direction` (of any length; a zero vector becomes straight down).
     ///
     /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
@@ -50,7 +57,7 @@ impl LightFrame {
         let b = x.x * x.y * a;
         let y = Vec3::new(1.0 + sign * x.x * x.x * a, sign * b, -sign * x.x);
         let z = Vec3::new(b, sign + x.y * x.y * a, -x.y);
-        Self { x, y, z, source: None }
+        Self { x, y, z, source: None, area: LightArea::HARD }
     }
 
     /// The axes of a light at `source`: these axes rotated by the smallest rotation so that the first one points at `anchor`.
@@ -72,14 +79,20 @@ impl LightFrame {
         let y = Quat::from_rotation_arc(self.x, x) * self.y;
         // Orthonormalise, because rounding errors would accumulate over a long drag.
         match (y - y.dot(x) * x).try_normalize() {
-            Some(y) => Self { x, y, z: x.cross(y), source: self.source },
-            None => Self { source: self.source, ..Self::new(x) },
+            Some(y) => Self { x, y, z: x.cross(y), ..*self },
+            None => Self { source: self.source, area: self.area, ..Self::new(x) },
         }
     }
 
     /// The direction in which the light travels at `p`, unit length.
     pub fn way_at(&self, p: Vec3) -> Vec3 {
         self.source.map_or(self.x, |source| (p - source.position).normalize_or(self.x))
+    }
+
+    /// The same light in coordinates whose origin is `anchor`.
+    pub(crate) fn seen_from(&self, anchor: Vec3) -> Self {
+        let moved = |source: LightSource| LightSource { position: source.position - anchor, ..source };
+        Self { source: self.source.map(moved), ..*self }
     }
 
     /// Transforms a vector from world space into the axes of the light.

@@ -10,7 +10,8 @@ use lovelock_base::simd::Width;
 use lovelock_base::simd_versions;
 
 use crate::block::{Block, Work};
-use crate::solver::{Plan, advance};
+use crate::lanes::Lane;
+use crate::solver::{Plan, advance, measure};
 
 thread_local! {
     /// Working memory that this thread lends to the block it is stepping.
@@ -22,6 +23,23 @@ pub(crate) fn step_block(block: &mut Block, plan: &Plan) {
     WORK.with_borrow_mut(|work| {
         std::mem::swap(work, &mut block.work);
         step(if plan.wide { Width::widest() } else { Width::Baseline }, block, plan);
+        std::mem::swap(work, &mut block.work);
+    });
+}
+
+/// Lets `read` write the state that another device computed into `block`, then measures it as after a step.
+pub(crate) fn accept_block(block: &mut Block, plan: &Plan, read: impl FnOnce(&mut Block)) {
+    WORK.with_borrow_mut(|work| {
+        std::mem::swap(work, &mut block.work);
+        block.work.fit(block.position.len());
+        let Block { position, work: own, .. } = &mut *block;
+        for (start, row) in own.start_pose.iter_mut().zip(position.iter()) {
+            for (axis, (to, from)) in start.iter_mut().zip(row).enumerate() {
+                *to = from.plus(Lane::splat(plan.rebase[axis]));
+            }
+        }
+        read(block);
+        measure(block, plan);
         std::mem::swap(work, &mut block.work);
     });
 }

@@ -27,7 +27,7 @@ use crate::lanes::{Map, at};
 use crate::settings::{Repulsion, RepulsionMode};
 
 /// Cells along each axis: the grid is higher than wide, because hair hangs.
-const SIDES: IVec3 = IVec3::new(44, 60, 42);
+pub(crate) const SIDES: IVec3 = IVec3::new(44, 60, 42);
 
 /// The cell size is chosen such that hair that swings to all sides spans this many cells.
 const SWING_CELLS: f32 = 48.0;
@@ -58,6 +58,20 @@ const MAX_SHARE_OF_A_CELL: f32 = 0.25;
 
 /// Largest number of tasks that deposit hair in parallel; each has its own cells, 7 MB.
 const TASKS: usize = 4;
+
+/// The constants of the grid by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 10] = [
+    ("FULL", FULL as f64),
+    ("MOMENTUM", MOMENTUM as f64),
+    ("FASTEST_HAIR", FASTEST as f64),
+    ("MAX_SHARE_OF_A_CELL", MAX_SHARE_OF_A_CELL as f64),
+    ("NEAR_CENTRE", sample::NEAR_CENTRE as f64),
+    ("LOST_ALONG", direction::LOST_ALONG as f64),
+    ("UNIT", pieces::UNIT as f64),
+    ("CELLS_X", SIDES.x as f64),
+    ("CELLS_Y", SIDES.y as f64),
+    ("CELLS_Z", SIDES.z as f64),
+];
 
 /// Placement of the cells, and how guides are deposited.
 #[derive(Clone, Copy, Debug)]
@@ -217,6 +231,31 @@ impl DensityGrid {
     /// The volume that the hair fills at rest, cubic metres.
     pub(crate) fn volume_at_rest(&self) -> f32 {
         self.rest[self.counting as usize].volume
+    }
+
+    /// The lowest corner, the cell size, the spacing of deposited points along a guide, and the units per metre.
+    pub(crate) fn lattice_numbers(&self) -> (Vec3, f32, usize, f32) {
+        let Lattice { min, cell, stride, units } = self.lattice;
+        (min, cell, stride, units)
+    }
+
+    /// The mass of a full cell by the counting of `mode`.
+    pub(crate) fn full_by(&self, mode: RepulsionMode) -> f32 {
+        self.rest[Counting::of(mode) as usize].full
+    }
+
+    /// Writes the inverse rest density of each cell by the counting of `mode`.
+    pub(crate) fn write_rest_density(&self, mode: RepulsionMode, out: &mut Vec<f32>) {
+        out.clear();
+        out.extend(self.cells().iter().map(|cell| cell.inv_rest(Counting::of(mode))));
+    }
+
+    /// The volume of hair whose cells sum up to `fullness` by the counting of `mode`, and that at rest, cubic metres.
+    pub(crate) fn volumes(&self, mode: RepulsionMode, fullness: u32) -> (f32, f32) {
+        let rest = self.rest[Counting::of(mode) as usize];
+        let full = f64::from(rest.full.clamp(1.0, 2e9) as i32);
+        let cell = f64::from(self.lattice.cell);
+        ((f64::from(fullness) / full * cell.powi(3)) as f32, rest.volume)
     }
 
     /// Mass of a cell as dense as a piece of hair at rest typically finds its surroundings.

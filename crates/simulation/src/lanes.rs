@@ -198,6 +198,11 @@ impl Turn {
         Self { v: Vec3::new(q.x, q.y, q.z), w: q.w }
     }
 
+    /// The quaternion: x, y, z, w.
+    pub(crate) fn numbers(self) -> [f32; 4] {
+        [self.v.x, self.v.y, self.v.z, self.w]
+    }
+
     /// Rotates `a` (by q a q*).
     #[inline(always)]
     pub(crate) fn apply(self, a: Vec3) -> Vec3 {
@@ -215,6 +220,16 @@ impl Turn {
         let turned_v = w * self.v + self.w * v + v.cross(self.v);
         let scale = inv_sqrt(turned_w * turned_w + turned_v.length_squared());
         Self { v: turned_v * scale, w: turned_w * scale }
+    }
+
+    /// As [`Turn::then_smallest`], exact for opposite vectors too: about some axis square to them.
+    pub(crate) fn then_exact(self, from: Vec3, to: Vec3) -> Self {
+        if from.dot(to) > -0.99 {
+            return self.then_smallest(from, to);
+        }
+        let axis = from.any_orthonormal_vector();
+        let half = Self { v: self.w * axis + axis.cross(self.v), w: -axis.dot(self.v) };
+        half.then_smallest(-from, to)
     }
 }
 
@@ -315,6 +330,22 @@ mod tests {
     fn opposite_directions_give_a_finite_rotation() {
         let turn = Turn::new(Quat::IDENTITY).then_smallest(Vec3::X, Vec3::NEG_X);
         assert!(turn.apply(Vec3::new(1.0, 2.0, 3.0)).is_finite());
+    }
+
+    #[test]
+    fn opposite_directions_are_carried_exactly() {
+        let q = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.1);
+        for off in [0.0, 1e-6, 1e-4, 1e-3, 0.05] {
+            let from = q * Vec3::new(0.0, 0.6, -0.8);
+            let to = (-from + off * from.any_orthonormal_vector()).normalize_or(from);
+            let turn = Turn::new(q).then_exact(from, to);
+            assert!((turn.apply(Vec3::new(0.0, 0.6, -0.8)) - to).length() < 1e-6, "{off}");
+        }
+        let smallest = Turn::new(Quat::IDENTITY).then_smallest(Vec3::X, Vec3::NEG_X);
+        assert!(
+            (smallest.apply(Vec3::X) - Vec3::NEG_X).length() > 1.0,
+            "control: the quick one is not exact"
+        );
     }
 
     #[test]

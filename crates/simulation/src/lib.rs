@@ -14,6 +14,8 @@
 
 mod block;
 mod colliders;
+mod contents;
+pub mod device;
 mod dispatch;
 mod factors;
 mod grid;

@@ -37,6 +37,9 @@ impl RowRates {
 /// second.
 const CREEP: f32 = 0.03;
 
+/// The constants of friction by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 1] = [("CREEP", CREEP as f64)];
+
 /// The fraction of a `relative` velocity that friction removes which can change it by `most`, metres per second
 /// (Coulomb's law): `most` of a fast one, and in proportion to it of a slow one.
 #[inline(always)]

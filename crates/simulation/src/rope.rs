@@ -33,6 +33,9 @@ const FASTEST: f32 = 2.0;
 /// A point of a middle line with less has received nothing but rounding errors.
 const LEAST_WEIGHT: f32 = 1e-3;
 
+/// The constants of ropes by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 2] = [("ROPE_FREE", FREE as f64), ("ROPE_FASTEST", FASTEST as f64)];
+
 /// A point of a middle line.
 #[derive(Clone, Copy, Debug, Default)]
 struct LinePoint {
@@ -62,6 +65,19 @@ impl MiddleLine {
         let (a, b) = (self.points[i], self.points[(i + 1).min(last)]);
         let t = place - i as f32;
         (a.position + (b.position - a.position) * t, a.velocity + (b.velocity - a.velocity) * t)
+    }
+
+    /// The number of points, and cohesion, friction and least radius.
+    pub(crate) fn numbers(&self) -> (usize, [f32; 3]) {
+        (self.points.len(), [self.cohesion, self.friction, self.least_radius])
+    }
+
+    /// Appends position and velocity of each point.
+    pub(crate) fn write_points(&self, out: &mut Vec<f32>) {
+        for point in &self.points {
+            out.extend(point.position.to_array());
+            out.extend(point.velocity.to_array());
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::colliders::contact::ContactRules;
 use crate::colliders::field::MovingField;
 use crate::colliders::shape::Shape;
 use crate::colliders::{MovingShape, RestColliders, place, transformed};
+use crate::device::{self, DeviceStep, Stamp, Stamps, StepDevice};
 use crate::dispatch::step_block;
 use crate::factors::FactorRows;
 use crate::grid::DensityGrid;
@@ -70,6 +71,7 @@ pub struct Simulation {
     substeps: Vec<Substep>,
     shapes: Vec<MovingShape>,
     rows: Vec<RowRates>,
+    stamps: Stamps,
 }
 
 impl Simulation {
@@ -129,6 +131,7 @@ impl Simulation {
             substeps: Vec::new(),
             shapes: Vec::new(),
             rows: Vec::new(),
+            stamps: Stamps::new(),
         }
     }
 
@@ -150,6 +153,7 @@ impl Simulation {
         self.reset_field(input);
         let from_head = self.head.map_from_head(self.head.place);
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
+        self.stamps.state = Stamp::new();
     }
 
     /// Treats the colliders of the next step as new ones even if their number is unchanged, so that their
@@ -175,6 +179,28 @@ impl Simulation {
     /// The same happens if `dt_secs` is not a number or below a microsecond; values above 0.1 s count as 0.1
     /// s.
     pub fn step(&mut self, input: &StepInput, settings: &SimulationSettings, dt_secs: f32) -> StepReport {
+        self.step_with(None, input, settings, dt_secs).0
+    }
+
+    /// As [`Simulation::step`], with the guides advanced by `device`. If it cannot, the CPU does the whole step; the second
+    /// value then says why. Jumps, and hair without guides, need no device.
+    pub fn step_on(
+        &mut self,
+        device: &mut dyn StepDevice,
+        input: &StepInput,
+        settings: &SimulationSettings,
+        dt_secs: f32,
+    ) -> (StepReport, Option<String>) {
+        self.step_with(Some(device), input, settings, dt_secs)
+    }
+
+    fn step_with(
+        &mut self,
+        device: Option<&mut dyn StepDevice>,
+        input: &StepInput,
+        settings: &SimulationSettings,
+        dt_secs: f32,
+    ) -> (StepReport, Option<String>) {
         let settings = settings.clamped();
         let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         let jumped = self.head.jumps_to(&head, self.time_secs, input.time_secs, dt_secs);
@@ -193,27 +219,32 @@ impl Simulation {
         if jumped || !(dt_secs >= SHORTEST_SECS && dt_secs.is_finite()) {
             let report = self.move_with_head(head, input.colliders, jumped);
             self.reset_field(input);
-            return report;
+            return (report, None);
         }
         let dt_secs = dt_secs.min(0.1);
         self.advance_ties(dt_secs);
-        // The whole step runs inside the thread pool, so that its threads are woken only once.
-        let report = rayon::scope(|_| self.simulate(&head, input, &settings, dt_secs, field_changed));
+        let report = match device.filter(|_| !self.blocks.is_empty()) {
+            Some(device) => self.simulate(Some(device), &head, input, &settings, dt_secs, field_changed),
+            // The whole step runs inside the thread pool, so that its threads are woken only once.
+            None => rayon::scope(|_| self.simulate(None, &head, input, &settings, dt_secs, field_changed)),
+        };
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
         report
     }
 
-    /// Simulates the step to `head` and `input`; `field_changed` says whether the field is a new one.
+    /// Simulates the step to `head` and `input`; `field_changed` says whether the field is a new one. The second value says why
+    /// `device` did not do it.
     fn simulate(
         &mut self,
+        device: Option<&mut dyn StepDevice>,
         head: &HeadPose,
         input: &StepInput,
         settings: &SimulationSettings,
         dt_secs: f32,
         field_changed: bool,
-    ) -> StepReport {
+    ) -> (StepReport, Option<String>) {
         let colliders = input.colliders;
         let origin = head.place;
         let rebase = self.head.place - origin;
@@ -240,9 +271,10 @@ impl Simulation {
         }
         let head_from_last = head_from(&self.head, self.head.place);
         let (grid, blocks, culling) = (&mut self.grid, &self.blocks, self.culling);
+        let deposits = device.is_none();
         let (field, placed) = (self.field.as_mut(), input.field);
         // The longer task comes first, because the other thread may have to be woken.
-        let ((), over_dense_cells) = rayon::join(
+        let ((), mut over_dense_cells) = rayon::join(
             || {
                 let (Some(field), Some(placed)) = (field, placed) else { return };
                 if field_changed {
@@ -251,7 +283,7 @@ impl Simulation {
                 }
                 field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, culling);
             },
-            || grid.update(blocks, &head_from_last, settings.repulsion),
+            || if deposits { grid.update(blocks, &head_from_last, settings.repulsion) } else { 0 },
         );
         let mean_wind = mean_of(&settings.wind).as_dvec3();
         let air_travel = self.air_travel.unwrap_or(mean_wind * self.elapsed_secs);
@@ -291,14 +323,50 @@ impl Simulation {
             field: self.field.as_ref(),
             rules: ContactRules { h, ..ContactRules::of(settings) },
             bending: BendingKey::new(settings, h, first_free),
-            grid: &self.grid,
+            grid: None,
             wind: &wind,
             wakes: &wakes,
         };
+        let (before, after) = (self.stamps, Stamp::new());
+        self.stamps.state = after;
+        let mut refusal = None;
+        if let Some(device) = device {
+            let step =
+                DeviceStep { plan: &plan, blocks: &self.blocks, grid: &self.grid, stamps: before, after };
+            let advanced = device.advance(&step);
+            match advanced.and_then(|out| Ok((device::accept(&mut self.blocks, &plan, out)?, out))) {
+                Ok((is_whole, out)) => {
+                    if !is_whole {
+                        self.stamps.state = Stamp::new();
+                    }
+                    let (hair_volume, hair_volume_at_rest) =
+                        self.grid.volumes(settings.repulsion.mode, out.fullness);
+                    let over_dense_cells = out.over_dense_cells;
+                    let all = self.outcome(first_free);
+                    let report = StepReport {
+                        substeps: count,
+                        over_dense_cells,
+                        hair_volume,
+                        hair_volume_at_rest,
+                        ..all
+                    };
+                    return (report, None);
+                }
+                Err(reason) => {
+                    // The device may hold a state under the last stamp that was not accepted.
+                    self.stamps.state = Stamp::new();
+                    refusal = Some(reason);
+                }
+            }
+            over_dense_cells = self.grid.update(&self.blocks, &head_from_last, settings.repulsion);
+        }
+        let plan = Plan { grid: Some(&self.grid), ..plan };
         self.blocks.par_iter_mut().with_max_len(1).for_each(|block| step_block(block, &plan));
         let (hair_volume, hair_volume_at_rest) = (self.grid.volume(), self.grid.volume_at_rest());
         let all = self.outcome(first_free);
-        StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all }
+        let report =
+            StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all };
+        (report, refusal)
     }
 
     /// Sums the results of the blocks, always in the same order.
@@ -346,6 +414,7 @@ impl Simulation {
         // Both working spaces have their origin at the head.
         let by = Map { turn, shift: Vec3::ZERO };
         self.blocks.par_iter_mut().for_each(|block| block.move_rigidly(&by));
+        self.stamps.state = Stamp::new();
         self.head = head;
         self.colliders.copy_from_slice(colliders);
         StepReport { jumped, ..StepReport::default() }
@@ -377,6 +446,7 @@ impl Simulation {
     /// Measures the rest distance of every point to every collider.
     fn measure_rest_distances(&mut self) {
         let shapes: Vec<Option<Shape>> = self.rest_colliders.shapes.iter().map(Shape::new).collect();
+        self.stamps.distances = Stamp::new();
         self.blocks.par_iter_mut().for_each(|block| {
             let points = block.points();
             block.rest_distance.clear();

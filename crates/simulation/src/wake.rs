@@ -18,6 +18,9 @@ use crate::lanes::{LANES, Lane, Lane3, at, greater, lesser};
 /// Length of a wake, in radii of the collider.
 const LENGTH: f32 = 10.0;
 
+/// The constants of wakes by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 1] = [("WAKE_LENGTH", LENGTH as f64)];
+
 /// The wakes of all colliders at one instant, in working space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wakes {
@@ -55,6 +58,17 @@ impl Wakes {
             Solid { shape, centre: 0.5 * (min + max), reach: 0.5 * (max - min).length() }
         };
         Self { upwind: -along, strength, solids: shapes.map(solid).collect() }
+    }
+
+    /// Appends the direction against the wind and the strength, then each solid by `put` with its centre and reach. Returns the
+    /// number of solids.
+    pub(crate) fn write(&self, out: &mut Vec<f32>, put: impl Fn(&mut Vec<f32>, Vec3, f32, &Shape)) -> u32 {
+        out.extend(self.upwind.to_array());
+        out.push(self.strength);
+        for solid in &self.solids {
+            put(out, solid.centre, solid.reach, &solid.shape);
+        }
+        self.solids.len() as u32
     }
 
     /// The fraction of the wind that reaches each lane of a row of points.

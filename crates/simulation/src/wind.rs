@@ -74,6 +74,16 @@ impl WindField {
         self.blows
     }
 
+    /// Appends the mean wind, and amplitude, wave vector and phase of each wave.
+    pub(crate) fn write(&self, out: &mut Vec<f32>) {
+        out.extend(self.mean.to_array());
+        for wave in &self.waves {
+            out.extend(wave.amplitude.to_array());
+            out.extend(wave.turns.to_array());
+            out.push(wave.phase);
+        }
+    }
+
     /// Velocity of the air at a row of points, metres per second.
     #[inline(always)]
     pub(crate) fn velocity(&self, points: &Lane3) -> Lane3 {

@@ -17,6 +17,9 @@ pub struct StabilityReport {
     pub pop_p99: Option<f64>,
     /// Root mean square difference between the frame-to-frame changes of the method and of the reference; null for a single frame.
     pub flicker: Option<f64>,
+    /// Root mean square error of transmittance over all frames and points, against the method's own texels; null for a single frame.
+    #[serde(default)]
+    pub film_rmse: Option<f64>,
 }
 
 /// Changes from frame to frame in a test where little or nothing should change.

@@ -8,6 +8,7 @@
 //! The module `html` writes the report as one page.
 
 pub mod batch;
+mod budget;
 pub mod changes;
 mod html;
 pub mod report;

@@ -27,6 +27,15 @@ pub struct CompareReport {
     pub reference: Reference,
     /// One entry per method, backend and value of a sweep, in the requested order.
     pub methods: Vec<MethodReport>,
+    /// The most accurate method for budgets of time and memory.
+    #[serde(default)]
+    pub budgets: Vec<BudgetReport>,
+    /// Methods that another one equals or beats in time, memory and error, each with the most accurate of those.
+    #[serde(default)]
+    pub beaten: Vec<(String, String)>,
+    /// Films of the compared frames.
+    #[serde(default)]
+    pub films: Vec<FilmFile>,
     /// Rays of light through chosen strand points.
     pub probes: Vec<ProbeReport>,
     /// The scales of the error maps.
@@ -236,6 +245,9 @@ pub struct MethodReport {
     pub memory_bytes: Option<u64>,
     /// Bytes of pixel buffers and rendered strands.
     pub draw_bytes: Option<u64>,
+    /// Errors of transmittance of every frame against the method's own texels; empty for a single frame.
+    #[serde(default)]
+    pub frame_errors: Vec<FrameError>,
     /// Temporal stability.
     pub stability: Option<StabilityReport>,
     /// Changes while the first light turns by 0.1 degrees per frame and nothing else moves.
@@ -262,6 +274,25 @@ impl MethodReport {
     }
 }
 
+/// The most accurate method within a budget, among those with the same backend, drawing and transparency.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BudgetReport {
+    /// Milliseconds to build and look up the maps; null if time does not matter.
+    pub ms: Option<f64>,
+    /// Bytes of the maps; null if memory does not matter.
+    pub memory_bytes: Option<u64>,
+    /// [`MethodReport::name`] of the method.
+    pub method: String,
+    /// Its [`MethodReport::front_error`].
+    pub rmse: f64,
+    /// The runner-up within the budget; null if there is none.
+    pub next: Option<String>,
+    /// The error of the runner-up.
+    pub next_rmse: Option<f64>,
+    /// Whether the difference of the errors exceeds twice the last change of the ground truth, and 9 of 10 times are within the budget.
+    pub certain: bool,
+}
+
 /// Error of transmittance over points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TransmittanceError {
@@ -277,6 +308,26 @@ pub struct TransmittanceError {
     pub max: f64,
     /// Root mean square over points with fewer than ten hair fragments before them, where light enters.
     pub first10_rmse: Option<f64>,
+}
+
+/// Errors of transmittance in one frame of several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameError {
+    /// Root mean square.
+    pub rmse: f64,
+    /// Signed mean; positive if the method is too bright.
+    pub bias: f64,
+}
+
+/// A film of panes beside each other, with the errors of every frame below.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FilmFile {
+    /// Its file.
+    pub file: String,
+    /// What the panes show: `picture` or `transmittance-error`.
+    pub shows: String,
+    /// [`MethodReport::name`]s of the panes, at most nine.
+    pub methods: Vec<String>,
 }
 
 /// FLIP of an image.
@@ -355,6 +406,9 @@ pub struct MethodFiles {
     pub pop: Option<String>,
     /// Flicker in colour.
     pub flicker: Option<String>,
+    /// Folder with the error of transmittance of every frame in colour, `error.NNNN.png`.
+    #[serde(default)]
+    pub error_frames: Option<String>,
 }
 
 /// The transmittance of each method along a ray of light through a strand point.

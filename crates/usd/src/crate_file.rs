@@ -395,6 +395,7 @@ impl Layer for CrateLayer<'_> {
 
     fn targets(&mut self, prim: usize, relationship: &str) -> Result<Vec<String>, UsdError> {
         let list = self.field_of_property(prim, relationship, "targetPaths");
+        let list = list.or_else(|| self.field_of_property(prim, relationship, "connectionPaths"));
         let Some(list) = list else { return Ok(Vec::new()) };
         let paths = self.values.paths(list)?;
         let known = paths.into_iter().filter(|&path| (path as usize) < self.nodes.len());

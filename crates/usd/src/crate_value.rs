@@ -23,6 +23,7 @@ mod kind {
     pub(crate) const FLOAT: u64 = 8;
     pub(crate) const DOUBLE: u64 = 9;
     pub(crate) const TOKEN: u64 = 11;
+    pub(crate) const ASSET_PATH: u64 = 12;
     pub(crate) const MATRIX4D: u64 = 15;
     pub(crate) const QUATD: u64 = 16;
     pub(crate) const QUATF: u64 = 17;
@@ -33,6 +34,8 @@ mod kind {
     pub(crate) const VEC3D: u64 = 23;
     pub(crate) const VEC3F: u64 = 24;
     pub(crate) const VEC3H: u64 = 25;
+    pub(crate) const VEC4D: u64 = 27;
+    pub(crate) const VEC4F: u64 = 28;
     pub(crate) const PATH_LIST: u64 = 34;
     pub(crate) const TOKEN_VECTOR: u64 = 41;
     pub(crate) const TIME_SAMPLES: u64 = 46;
@@ -157,6 +160,9 @@ impl CrateValues<'_> {
         Ok(Some(match kind {
             kind::BOOL => Value::Bool(inlined != 0),
             kind::TOKEN => Value::Token(self.tokens.get(inlined).unwrap_or_default().to_owned()),
+            kind::ASSET_PATH if is_inlined => {
+                Value::Token(self.tokens.get(inlined).unwrap_or_default().to_owned())
+            }
             kind::INT => Value::Numbers(vec![f64::from(inlined as i32)]),
             kind::INT64 if is_inlined => Value::Numbers(vec![f64::from(inlined as i32)]),
             kind::INT64 => Value::Numbers(vec![self.file.u64(at)? as i64 as f64]),
@@ -168,6 +174,12 @@ impl CrateValues<'_> {
             kind::VEC3D | kind::VEC3F | kind::VEC3H if is_inlined => {
                 Value::Numbers(inlined.to_le_bytes()[..3].iter().map(|&b| f64::from(b as i8)).collect())
             }
+            kind::VEC2F if is_inlined => {
+                Value::Numbers(inlined.to_le_bytes()[..2].iter().map(|&b| f64::from(b as i8)).collect())
+            }
+            kind::VEC4D | kind::VEC4F if is_inlined => {
+                Value::Numbers(inlined.to_le_bytes().map(|b| f64::from(b as i8)).to_vec())
+            }
             kind::MATRIX4D if is_inlined => {
                 let mut rows = vec![0.0; 16];
                 for (i, byte) in inlined.to_le_bytes().into_iter().enumerate() {
@@ -177,9 +189,12 @@ impl CrateValues<'_> {
             }
             kind::FLOAT => self.numbers(at, Number::Float, 1)?,
             kind::DOUBLE => self.numbers(at, Number::Double, 1)?,
+            kind::VEC2F => self.numbers(at, Number::Float, 2)?,
             kind::VEC3H => self.numbers(at, Number::Half, 3)?,
             kind::VEC3F => self.numbers(at, Number::Float, 3)?,
             kind::VEC3D => self.numbers(at, Number::Double, 3)?,
+            kind::VEC4F => self.numbers(at, Number::Float, 4)?,
+            kind::VEC4D => self.numbers(at, Number::Double, 4)?,
             kind::MATRIX4D => self.numbers(at, Number::Double, 16)?,
             kind::QUATH => self.quaternion(at, Number::Half)?,
             kind::QUATF => self.quaternion(at, Number::Float)?,

@@ -111,7 +111,7 @@ pub trait Layer {
     /// See [`Layer::prims`].
     fn field(&mut self, prim: usize, attribute: &str, field: &str) -> Result<Option<Value>, UsdError>;
 
-    /// The paths that a relationship of a prim points at.
+    /// The paths that a relationship of a prim points at, or those of the outputs from which an attribute takes its value.
     ///
     /// # Errors
     /// See [`Layer::prims`].

@@ -193,7 +193,13 @@ impl Layer for TextLayer {
         let Ok(path) = self.prims[prim].append_property(relationship.to_owned()) else {
             return Ok(Vec::new());
         };
-        let Some(Sdf::PathListOp(list)) = self.field_of(&path, "targetPaths") else { return Ok(Vec::new()) };
+        let lists = ["targetPaths", "connectionPaths"].map(|field| self.field_of(&path, field));
+        let Some(list) = lists.into_iter().flatten().find_map(|value| match value {
+            Sdf::PathListOp(list) => Some(list),
+            _ => None,
+        }) else {
+            return Ok(Vec::new());
+        };
         Ok(items(list).map(|path| path.as_str().to_owned()).collect())
     }
 
@@ -220,6 +226,7 @@ fn value_of(value: &Sdf) -> Option<Value> {
     let vector = |x: f64, y: f64, z: f64| Vec3::new(x as f32, y as f32, z as f32);
     Some(match value {
         Sdf::Token(token) => Value::Token(token.as_str().to_owned()),
+        Sdf::AssetPath(path) => Value::Token(path.authored_path.clone()),
         // Metadata without a type is a string.
         Sdf::String(text) => Value::Token(text.clone()),
         Sdf::TokenVec(tokens) => {
@@ -233,11 +240,14 @@ fn value_of(value: &Sdf) -> Option<Value> {
         Sdf::Half(v) => Value::Numbers(vec![f64::from(half(v.to_bits()))]),
         Sdf::Float(v) => Value::Numbers(vec![f64::from(*v)]),
         Sdf::Double(v) => Value::Numbers(vec![*v]),
+        Sdf::Vec2f(v) => Value::Numbers([v.x, v.y].map(f64::from).to_vec()),
         Sdf::Vec3h(v) => {
             Value::Numbers([v.x, v.y, v.z].iter().map(|v| f64::from(half(v.to_bits()))).collect())
         }
         Sdf::Vec3f(v) => Value::Numbers([v.x, v.y, v.z].map(f64::from).to_vec()),
         Sdf::Vec3d(v) => Value::Numbers(vec![v.x, v.y, v.z]),
+        Sdf::Vec4f(v) => Value::Numbers([v.x, v.y, v.z, v.w].map(f64::from).to_vec()),
+        Sdf::Vec4d(v) => Value::Numbers(vec![v.x, v.y, v.z, v.w]),
         Sdf::Quath(q) => {
             Value::Numbers([q.w, q.x, q.y, q.z].iter().map(|v| f64::from(half(v.to_bits()))).collect())
         }

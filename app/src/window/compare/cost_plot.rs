@@ -250,8 +250,8 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
     let titles = ["build", "query", "draw", "whole", "memory", "error"];
     row(
         ui,
-        (RichText::new("ms").color(theme::QUIET), "Milliseconds on the device named in each line."),
-        titles.map(|title| RichText::new(title).color(theme::QUIET)),
+        (RichText::new("ms").color(theme::quiet()), "Milliseconds on the device named in each line."),
+        titles.map(|title| RichText::new(title).color(theme::quiet())),
     );
     for (index, way) in shown(costs, project, panes) {
         let color = theme::PLOT[index % theme::PLOT.len()];

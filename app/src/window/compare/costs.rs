@@ -154,7 +154,12 @@ pub(super) mod tests {
         contender.shadow.voxel_map.resolution = resolution;
         LivePane {
             adapter: Adapter { name: String::new(), backend: Backend::Cpu, software: true },
-            camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
+            camera: Camera {
+                eye: glam::Vec3::ZERO,
+                target: glam::Vec3::Z,
+                fov_y: 0.5,
+                shear: glam::Vec2::ZERO,
+            },
             contender,
             project: Arc::default(),
             asked_size: [640, 360],

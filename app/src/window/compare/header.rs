@@ -2,6 +2,7 @@
 
 use egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::{MaterialIcon, icons};
+use lovelock_base::settings::Choices;
 use lovelock_panes::request::LivePane;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
@@ -81,7 +82,7 @@ pub(super) fn ui(
         part(row(0.0), left + width + 8.0, end - 4.0 * BUTTON - 2.0)
     };
     if room.width() > 36.0 {
-        let text = egui::Label::new(RichText::new(&said).small().color(theme::QUIET)).truncate();
+        let text = egui::Label::new(RichText::new(&said).small().color(theme::quiet())).truncate();
         ui.scope_builder(
             UiBuilder::new().max_rect(room).layout(egui::Layout::left_to_right(egui::Align::Center)),
             |ui| ui.add(text).hover_tooltip(&tip),
@@ -125,7 +126,7 @@ fn method(ui: &mut Ui, index: usize, pane: &mut Contender, width: f32) {
         .height(320.0)
         .truncate()
         .show_ui(ui, |ui| {
-            for &method in ShadowMethod::ALL {
+            for method in ShadowMethod::offered() {
                 ui.selectable_value(&mut pane.shadow.method, method, method.label())
                     .hover_tooltip(method.description());
             }

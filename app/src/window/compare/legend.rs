@@ -21,11 +21,11 @@ pub(super) fn ui(ui: &mut Ui, shows: LiveShows, largest: f32) {
     });
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(11.0);
-    let title = painter.layout_no_wrap(shows.quantity().replace('-', "−"), font.clone(), theme::QUIET);
+    let title = painter.layout_no_wrap(shows.quantity().replace('-', "−"), font.clone(), theme::quiet());
     let width = (rect.width() - title.size().x - 60.0).clamp(80.0, 420.0);
     let left = rect.center().x - 0.5 * (width - title.size().x - 12.0);
     let bar = Rect::from_min_size(pos2(left, rect.top() + 4.0), vec2(width, 9.0));
-    painter.galley(pos2(bar.left() - title.size().x - 12.0, rect.top() + 1.0), title, theme::QUIET);
+    painter.galley(pos2(bar.left() - title.size().x - 12.0, rect.top() + 1.0), title, theme::quiet());
     let steps = 96_u16;
     for i in 0..steps {
         let x = |i: u16| bar.left() + bar.width() * f32::from(i) / f32::from(steps);
@@ -39,13 +39,13 @@ pub(super) fn ui(ui: &mut Ui, shows: LiveShows, largest: f32) {
     for &value in &marks.values {
         let x = bar.left() + bar.width() * ((value - low) / (high - low)) as f32;
         let top = pos2(x, bar.bottom());
-        painter.line_segment([top, top + vec2(0.0, 3.0)], Stroke::new(1.0, theme::QUIET));
+        painter.line_segment([top, top + vec2(0.0, 3.0)], Stroke::new(1.0, theme::quiet()));
         painter.text(
             top + vec2(0.0, 3.0),
             Align2::CENTER_TOP,
             marks.label(value),
             FontId::proportional(10.0),
-            theme::QUIET,
+            theme::quiet(),
         );
     }
 }

@@ -142,6 +142,11 @@ impl Compare {
         self.sent = None;
     }
 
+    /// Asks for all panes again, because what draws them has changed. The last images stay until then.
+    pub(crate) fn ask_again(&mut self) {
+        self.sent = None;
+    }
+
     /// Forgets the costs and the probe of a project that is closed.
     pub(crate) fn forget_project(&mut self) {
         (self.costs, self.place, self.probed) = (Costs::default(), None, None);
@@ -246,7 +251,7 @@ impl Window {
                     .show(ui, |ui| legend::ui(ui, layout.shows, layout.largest));
             }
             let page = ui.available_rect_before_wrap();
-            ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
+            ui.painter().rect_filled(page, 0.0, super::theme::page());
             self.pages.compare.page = page.size();
             self.panes(ui, page, project);
             // Below the title bars of the panes, whose buttons stay clickable.

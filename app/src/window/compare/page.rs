@@ -6,6 +6,7 @@ use egui::{
 };
 use lovelock_panes::request::LivePane;
 use lovelock_project::Project;
+use lovelock_render::ShadowMethod;
 
 use super::costs::Way;
 use super::{Window, grid, header};
@@ -48,7 +49,7 @@ impl Window {
                 self.name(ui, place, shown, project, Align2::LEFT_TOP);
             }
             let shape = ui.painter();
-            let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
+            let edge = if shown == index { theme::line() } else { theme::PLOT[shown % theme::PLOT.len()] };
             shape.rect_stroke(place, 0.0, Stroke::new(1.0, edge), StrokeKind::Inside);
             if index == self.pages.compare.edited_pane(&self.layout.compare, project) {
                 frame(ui, cell);
@@ -141,10 +142,10 @@ impl Window {
             });
         }
         let painter = ui.painter_at(place.expand(1.0));
-        let strong = if near || self.pages.compare.splitting { theme::ACCENT } else { Color32::WHITE };
+        let strong = if near || self.pages.compare.splitting { theme::accent() } else { Color32::WHITE };
         painter.line_segment([pos2(x, place.top()), pos2(x, place.bottom())], Stroke::new(1.5, strong));
         let knob = pos2(x, place.bottom() - 46.0);
-        painter.circle(knob, 10.0, theme::PAGE.gamma_multiply(0.8), Stroke::new(1.5, strong));
+        painter.circle(knob, 10.0, theme::page().gamma_multiply(0.8), Stroke::new(1.5, strong));
         for (side, tip) in [(-1.0, 6.0), (1.0, 6.0)] {
             let arrow =
                 [knob + vec2(side * 2.5, -3.5), knob + vec2(side * tip, 0.0), knob + vec2(side * 2.5, 3.5)];
@@ -164,7 +165,7 @@ impl Window {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
         let line = Rect::from_min_size(cell.min, vec2(cell.width(), self.pages.compare.bar));
-        ui.painter().rect_filled(line, 0.0, theme::PANEL);
+        ui.painter().rect_filled(line, 0.0, theme::panel());
         let drawn = self.pages.compare.panes.get(index).and_then(Option::as_deref);
         header::ui(ui, line, (index, panes), pane, drawn)
     }
@@ -186,7 +187,7 @@ impl Window {
         let name = format!("Pane {}", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
         if !self.pages.compare.zoom.apply(&response, place) {
-            camera_control::steer(&mut project.camera, &response);
+            camera_control::steer(&mut project.camera, self.scene_secs(), &response);
         }
         if response.clicked()
             && !self.pages.compare.menu_open
@@ -205,7 +206,7 @@ impl Window {
         let compare = &mut self.pages.compare;
         let Some(pane) = compare.panes.get(index).cloned().flatten() else {
             let font = FontId::proportional(14.0);
-            painter.text(place.center(), Align2::CENTER_CENTER, "Getting ready…", font, theme::QUIET);
+            painter.text(place.center(), Align2::CENTER_CENTER, "Getting ready…", font, theme::quiet());
             return;
         };
         let zoom = compare.zoom;
@@ -224,12 +225,10 @@ impl Window {
             self.mark(ui, whole, &pane, project);
         }
         if let Some(problem) = pane.problem.as_ref().or(pane.colors_problem.as_ref()) {
-            let room = place.shrink(14.0);
-            let galley =
-                painter.layout(problem.clone(), FontId::proportional(12.5), theme::WRONG, room.width());
-            let at = Align2::CENTER_CENTER.anchor_size(place.center(), galley.size());
-            painter.rect_filled(at.expand(8.0), 5.0, theme::PAGE.gamma_multiply(0.85));
-            painter.galley(at.min, galley, theme::WRONG);
+            tell(&painter, place, problem.clone(), Align2::CENTER_CENTER);
+        } else if let Some(problem) = problem_of_method(project, index) {
+            let text = format!("{problem}\nThe last version that worked is shown.");
+            tell(&painter, place, text, Align2::LEFT_TOP);
         }
         if pane.problem.is_some() {
             return;
@@ -240,7 +239,7 @@ impl Window {
         if let Some(age) = age_label(newest - pane.time_secs) {
             said = format!("{said} · {age}");
         }
-        let line = Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
+        let line = Viewport::caption(ui, place, corner, &said, theme::bright());
         let response = ui.interact(
             line,
             Id::unique(("figures", index, place.min.x.to_bits(), place.min.y.to_bits())),
@@ -273,17 +272,34 @@ impl Window {
         let at = pos2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
         let at: Pos2 = self.pages.compare.zoom.to_screen(place, at);
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
-        painter.circle_stroke(at, 7.0, Stroke::new(3.0, theme::PAGE.gamma_multiply(0.7)));
-        painter.circle_stroke(at, 7.0, Stroke::new(1.5, theme::ACCENT));
+        painter.circle_stroke(at, 7.0, Stroke::new(3.0, theme::page().gamma_multiply(0.7)));
+        painter.circle_stroke(at, 7.0, Stroke::new(1.5, theme::accent()));
         for side in [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y] {
-            painter.line_segment([at + side * 7.0, at + side * 11.0], Stroke::new(1.5, theme::ACCENT));
+            painter.line_segment([at + side * 7.0, at + side * 11.0], Stroke::new(1.5, theme::accent()));
         }
     }
 }
 
+/// What is wrong with the files of a pane's method, if it is one of the user's own.
+fn problem_of_method(project: &Project, index: usize) -> Option<String> {
+    match project.compare.panes.get(index)?.shadow.method {
+        ShadowMethod::User(method) => method.problem(),
+        _ => None,
+    }
+}
+
+/// Writes a problem over a pane.
+fn tell(painter: &egui::Painter, place: Rect, text: String, corner: Align2) {
+    let room = place.shrink(14.0);
+    let galley = painter.layout(text, FontId::proportional(12.5), theme::wrong(), room.width());
+    let at = corner.align_size_within_rect(galley.size(), room);
+    painter.rect_filled(at.expand(8.0), 5.0, theme::page().gamma_multiply(0.85));
+    painter.galley(at.min, galley, theme::wrong());
+}
+
 /// The frame of the pane that the panels edit.
 fn frame(ui: &Ui, cell: Rect) {
-    ui.painter().rect_stroke(cell, 0.0, Stroke::new(2.0, theme::ACCENT), StrokeKind::Inside);
+    ui.painter().rect_stroke(cell, 0.0, Stroke::new(2.0, theme::accent()), StrokeKind::Inside);
 }
 
 /// The age of a pane as text.

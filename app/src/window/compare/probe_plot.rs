@@ -42,7 +42,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let title = format!("Strand {}, point {}: transmittance there", hair.strand, hair.point);
-        ui.label(RichText::new(title).small().color(theme::QUIET));
+        ui.label(RichText::new(title).small().color(theme::quiet()));
         for (index, curve) in &curves {
             let method = project.compare.panes.get(*index).map_or("", |pane| pane.shadow.method.label());
             let color = theme::PLOT[index % theme::PLOT.len()];
@@ -51,7 +51,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         }
         if let Some(value) = exact_at_the_point(hair) {
             let text = format!("{UNFILTERED} {value:.3}");
-            ui.label(RichText::new(text).small().color(theme::BRIGHT)).hover_tooltip(OF_TEXEL);
+            ui.label(RichText::new(text).small().color(theme::bright())).hover_tooltip(OF_TEXEL);
         }
     });
     let rows = curves.iter().filter(|(_, curve)| !curve.marks.is_empty()).count();
@@ -86,11 +86,11 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         })
         .show(ui, |plot| {
             plot.vline(
-                VLine::new("the hair", 0.0).color(theme::ACCENT.gamma_multiply(0.7)).allow_hover(false),
+                VLine::new("the hair", 0.0).color(theme::accent().gamma_multiply(0.7)).allow_hover(false),
             );
             let steps = staircase(&hair.steps, hair.range);
             if !steps.is_empty() {
-                let line = Line::new(UNFILTERED, steps).color(theme::BRIGHT).width(1.2);
+                let line = Line::new(UNFILTERED, steps).color(theme::bright()).width(1.2);
                 // Steps are drawn as edges, not as the two sides of a band.
                 plot.line(line.style(LineStyle::Solid).allow_band(false));
             }

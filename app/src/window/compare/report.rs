@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{DragValue, Modal, RichText, ScrollArea, Ui};
+use lovelock_base::settings::Choices;
 use lovelock_render::{Backend, ShadowMethod};
 use lovelock_session::clock::Pace;
 use lovelock_session::job::BackgroundJob;
@@ -42,6 +43,7 @@ impl ReportOptions {
             backends: self.backends.clone(),
             draws: if self.quick { CompareRequest::QUICK_DRAWS } else { CompareRequest::DEFAULT_DRAWS },
             quick: self.quick,
+            film: true,
             ..CompareRequest::default()
         }
     }
@@ -138,13 +140,13 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
         }
     });
     ScrollArea::vertical().max_height(200.0).show(ui, |ui| {
-        for &method in ShadowMethod::ALL {
+        for method in ShadowMethod::offered() {
             let mut on = options.methods.contains(&method);
             if ui.checkbox(&mut on, method.label()).hover_tooltip(method.description()).changed() {
-                let chosen = |known: &&ShadowMethod| {
-                    if **known == method { on } else { options.methods.contains(known) }
+                let chosen = |known: &ShadowMethod| {
+                    if *known == method { on } else { options.methods.contains(known) }
                 };
-                options.methods = ShadowMethod::ALL.iter().filter(chosen).copied().collect();
+                options.methods = ShadowMethod::offered().into_iter().filter(chosen).collect();
             }
         }
     });
@@ -187,7 +189,8 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
         let most = (clip - (*first).min(last)).min(240);
         let drag = ui.add(DragValue::new(count).range(1..=most.max(1)).speed(0.2));
         drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Frames"));
-        drag.hover_tooltip("With more than one, also measures popping and flicker from frame to frame.");
+        drag.hover_tooltip("With more than one, also measures popping and flicker from frame to frame, and makes films of all methods and the error map \
+             of every frame.");
         ui.end_row();
         ui.label("Quick");
         let quick = ui.checkbox(&mut options.quick, "");
@@ -198,7 +201,7 @@ pub(crate) fn options_ui(ui: &mut Ui, options: &mut ReportOptions, clip: u64) ->
         ui.end_row();
     });
     if options.methods.is_empty() {
-        ui.label(RichText::new("Choose a method.").color(theme::WRONG));
+        ui.label(RichText::new("Choose a method.").color(theme::wrong()));
     }
     ui.horizontal(|ui| {
         if ui.add_enabled(!options.methods.is_empty(), egui::Button::new("Choose folder…")).clicked() {

@@ -150,11 +150,18 @@ pub(crate) fn of_setting<R>(
     shown
 }
 
-/// Adds the diamond and the menu of the right button to the row at `whole`, whose label is `name`. Returns whether the default shall
+/// Adds the diamond and the menu of the right button to the row at `whole`, whose label is `name`; a row with a name of a file's own has
+/// no keys. Returns whether the default shall
 /// be restored.
-pub(super) fn row(ui: &mut Ui, whole: Rect, name: &Response, label: &'static str, differs: bool) -> bool {
+pub(super) fn row(
+    ui: &mut Ui,
+    whole: Rect,
+    name: &Response,
+    label: Option<&'static str>,
+    differs: bool,
+) -> bool {
     let setting: Option<RowSetting> = ui.data(|data| data.get_temp(keying()));
-    let row = setting.and_then(|setting| KeyedRow::of(ui, setting, label));
+    let row = setting.zip(label).and_then(|(setting, label)| KeyedRow::of(ui, setting, label));
     if let Some(row) = row.as_ref().filter(|row| row.numbers().is_some()) {
         row.diamond(ui, whole);
     }
@@ -232,15 +239,15 @@ impl KeyedRow {
             .widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("{what} {}", self.label)));
         let hot = response.hovered();
         let color = match (self.writes, self.has_track) {
-            (true, _) => theme::RECORDING,
-            (_, true) => theme::ACCENT,
-            _ if hot => theme::BRIGHT,
-            _ => theme::QUIET.gamma_multiply(0.6),
+            (true, _) => theme::recording(),
+            (_, true) => theme::accent(),
+            _ if hot => theme::bright(),
+            _ => theme::quiet().gamma_multiply(0.6),
         };
         let half = if hot { HALF + 0.5 } else { HALF };
         let corners: [Pos2; 4] =
             [(0.0, -half), (half, 0.0), (0.0, half), (-half, 0.0)].map(|(x, y)| middle + vec2(x, y));
-        let fill = if self.has_key { color } else { theme::PANEL };
+        let fill = if self.has_key { color } else { theme::panel() };
         ui.painter().add(Shape::convex_polygon(corners.to_vec(), fill, Stroke::new(1.2, color)));
         let response = response.hover_tooltip(match (self.has_key, self.has_track) {
             (true, _) => "Removes the key at this time.",

@@ -5,12 +5,15 @@ mod keying;
 mod menu_key;
 mod number;
 mod plot_axis;
+pub(crate) mod point;
 mod popup;
 mod reveal;
 pub(crate) mod rows;
 mod setting;
 mod stops;
 mod tooltip;
+
+use std::borrow::Cow;
 
 use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
@@ -22,7 +25,9 @@ pub(crate) use menu_key::MenuKey;
 pub(crate) use number::{Limits, Number, is_escaped, typed};
 pub(crate) use plot_axis::{axis_number, axis_of_short_numbers};
 pub(crate) use popup::{close_all as close_popups, context_popup, is_any_open, popup};
-pub(crate) use reveal::{end_pass as end_reveal, reveal, shown as revealed};
+pub(crate) use reveal::{
+    end_pass as end_reveal, is_looking, reveal, section as revealed_section, shown as revealed,
+};
 pub(crate) use setting::{all_settings, any_setting, entry, setting, settings};
 pub(crate) use tooltip::{HoverTooltip, keep_free_area};
 
@@ -118,21 +123,23 @@ fn color(ui: &mut Ui, label: &'static str, tip: &str, value: &mut [f32; 3], defa
 /// One row: the label with its mark, then the control of `add`, which is tied to the label for screen readers and tests.
 pub(crate) fn row<T>(
     ui: &mut Ui,
-    label: &'static str,
+    label: impl Into<Cow<'static, str>>,
     tip: &str,
     differs: bool,
     value: &mut T,
     default: T,
     add: impl FnOnce(&mut Ui, &mut T) -> Response,
 ) -> Response {
+    let label = label.into();
     ui.horizontal(|ui| {
         // A longer name is written smaller, so that none is cut off.
-        let plain = egui::WidgetText::from(label);
+        let shown = lovelock_glyphs::visual_words(&label);
+        let plain = egui::WidgetText::from(&*shown);
         let galley = plain.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);
         let size = TextStyle::Body.resolve(ui.style()).size;
         let fitting = size * (LABEL_WIDTH / galley.size().x.max(1.0)).clamp(SMALLEST, 1.0);
-        let text = RichText::new(label).size((2.0 * fitting).floor() / 2.0);
-        let text = if differs { text.color(theme::ACCENT) } else { text };
+        let text = RichText::new(&*shown).size((2.0 * fitting).floor() / 2.0);
+        let text = if differs { text.color(theme::accent()) } else { text };
         let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
         let name = ui
             .allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -159,7 +166,11 @@ pub(crate) fn row<T>(
         let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
         let twice = twice && ui.is_enabled() && (name.contains_pointer() || response.contains_pointer());
         let whole = (name.rect | response.rect).with_max_x(ui.max_rect().right());
-        let reset = keying::row(ui, whole, &name, label, differs);
+        let fixed = match label {
+            Cow::Borrowed(label) => Some(label),
+            Cow::Owned(_) => None,
+        };
+        let reset = keying::row(ui, whole, &name, fixed, differs);
         if differs && (twice || reset) {
             *value = default;
             response.mark_changed();
@@ -184,33 +195,69 @@ pub(crate) fn restore_all<T: Clone>(ui: &mut Ui, label: &'static str, tip: &str,
 ///
 /// Returns what `add` returned if the part is unfolded.
 pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    headed(ui, title, open, add).0
+}
+
+/// As [`section`]; also returns the header, which is not shown while a control is looked for.
+fn headed<R>(
+    ui: &mut Ui,
+    title: &str,
+    open: bool,
+    add: impl FnOnce(&mut Ui) -> R,
+) -> (Option<R>, Option<Response>) {
     let header = egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open);
     let shown = match reveal::enter(ui.ctx(), title) {
-        reveal::Section::Usual => header.show(ui, add).body_returned,
+        reveal::Section::Usual => {
+            let unfolds = point::unfolds(ui.ctx(), title);
+            let shown = header.open(unfolds.then_some(true)).show(ui, add);
+            point::heading(title, &shown.header_response);
+            Some(shown)
+        }
         reveal::Section::Through => {
             ui.ctx().allow_widget_id_changes_in(egui::Rect::EVERYTHING);
-            Some(ui.push_id(title, add).inner)
+            let shown = ui.push_id(title, add).inner;
+            reveal::leave(ui.ctx());
+            return (Some(shown), None);
         }
-        reveal::Section::Unfolded => header.open(Some(true)).show(ui, add).body_returned,
+        reveal::Section::Unfolded => Some(header.open(Some(true)).show(ui, add)),
     };
     reveal::leave(ui.ctx());
-    shown
+    shown.map_or((None, None), |shown| (shown.body_returned, Some(shown.header_response)))
+}
+
+/// A titled part whose title stands elsewhere, such as on a window or a tab, so that it is always unfolded.
+pub(crate) fn untitled_section<R>(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    reveal::enter(ui.ctx(), title);
+    let shown = ui.push_id(title, add);
+    point::heading(title, &shown.response);
+    reveal::leave(ui.ctx());
+    shown.inner
+}
+
+/// What [`section_with`] has shown.
+pub(crate) struct Headed<R> {
+    /// What the contents returned, if they are unfolded.
+    pub(crate) inner: Option<R>,
+    /// The header; `None` while a control is looked for.
+    pub(crate) header: Option<Response>,
+    /// Whether the mark of problems was clicked.
+    pub(crate) is_mark_clicked: bool,
 }
 
 /// As [`section`], with a mark in the heading while there are `problems`. It takes no place from the controls: its tooltip says what is
-/// wrong. Returns also whether it was clicked.
+/// wrong.
 pub(crate) fn section_with<R>(
     ui: &mut Ui,
     title: &str,
     open: bool,
     problems: &[String],
     add: impl FnOnce(&mut Ui) -> R,
-) -> (Option<R>, bool) {
+) -> Headed<R> {
     let (top, right, side) = (ui.cursor().top(), ui.max_rect().right(), ui.spacing().interact_size.y);
     let id = ui.make_persistent_id((title, "problems"));
-    let shown = section(ui, title, open, add);
+    let (inner, header) = headed(ui, title, open, add);
     if problems.is_empty() {
-        return (shown, false);
+        return Headed { inner, header, is_mark_clicked: false };
     }
     let rect = egui::Rect::from_min_size(egui::pos2(right - side, top), Vec2::splat(side));
     let said = problems.join("\n");
@@ -218,11 +265,11 @@ pub(crate) fn section_with<R>(
     mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Problem: {said}")));
     let icon: &str = egui_material_icons::icons::ICON_ERROR.into();
     let font = egui::TextStyle::Button.resolve(ui.style());
-    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, icon, font, theme::WRONG);
-    (shown, mark.hover_tooltip(said).clicked())
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, icon, font, theme::wrong());
+    Headed { inner, header, is_mark_clicked: mark.hover_tooltip(said).clicked() }
 }
 
 /// A line of quiet text.
 pub(crate) fn note(ui: &mut Ui, text: impl Into<String>) {
-    ui.label(RichText::new(text.into()).small().color(theme::QUIET));
+    ui.label(RichText::new(text.into()).small().color(theme::quiet()));
 }

@@ -1,5 +1,6 @@
 //! Numbers that a slider changes.
 
+use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use egui::{Id, Key, Response, Slider, SliderClamping, Ui, Widget};
@@ -13,7 +14,7 @@ pub(super) const NUMBER_WIDTH: f32 = 78.0;
 /// A number that a slider changes.
 #[derive(Clone, Debug)]
 pub(crate) struct Number {
-    label: &'static str,
+    label: Cow<'static, str>,
     tip: String,
     /// What the slider offers.
     range: RangeInclusive<f64>,
@@ -25,9 +26,14 @@ pub(crate) struct Number {
 
 impl Number {
     /// A number in `range`; `tip` says what it changes in the image.
-    pub(crate) fn new(label: &'static str, range: RangeInclusive<f64>, unit: Unit, tip: &str) -> Self {
+    pub(crate) fn new(
+        label: impl Into<Cow<'static, str>>,
+        range: RangeInclusive<f64>,
+        unit: Unit,
+        tip: &str,
+    ) -> Self {
         let typed = [*range.start(), *range.end()];
-        Self { label, tip: tip.to_owned(), range, typed, unit, logarithmic: false }
+        Self { label: label.into(), tip: tip.to_owned(), range, typed, unit, logarithmic: false }
     }
 
     /// The number of a setting, called `label`.
@@ -54,8 +60,8 @@ impl Number {
         let range = self.range.start() * factor..=self.range.end() * factor;
         // Angles come and go through sines: less than a millionth of the range is no difference.
         let differs = (*value - default).abs() > 1e-6 * (self.range.end() - self.range.start());
-        row(ui, self.label, &self.tip, differs, value, default, |ui, value| {
-            let limits = Limits::of(ui, self.label, self.typed.map(|v| v * factor), (suffix, decimals));
+        row(ui, self.label.clone(), &self.tip, differs, value, default, |ui, value| {
+            let limits = Limits::of(ui, &self.label, self.typed.map(|v| v * factor), (suffix, decimals));
             let dragged = ui.input(|input| input.pointer.any_down());
             let opens_menu = is_secondary(ui);
             ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);

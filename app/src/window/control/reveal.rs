@@ -58,6 +58,19 @@ pub(crate) fn reveal(ctx: &Context, info: &'static Info) {
     ctx.request_repaint();
 }
 
+/// Whether this pass walks through all sections, also those that are not visible, to find a control.
+pub(crate) fn is_looking(ctx: &Context) -> bool {
+    get(ctx).is_some_and(|reveal| matches!(reveal.stage, Stage::Looking { .. }))
+}
+
+/// The title of the outermost section that holds the control to be shown, once it is known and until the control is shown.
+pub(crate) fn section(ctx: &Context) -> Option<String> {
+    match get(ctx)?.stage {
+        Stage::Unfolding { sections, .. } => sections.first().cloned(),
+        Stage::Asked | Stage::Looking { .. } | Stage::Shown { .. } => None,
+    }
+}
+
 /// How a section is shown while a control is looked for.
 pub(super) enum Section {
     /// As the user left it.
@@ -119,7 +132,7 @@ pub(crate) fn shown(ui: &Ui, info: &Info, response: &Response) {
             let strength = (1.0 - age / FLASH_SECS).clamp(0.0, 1.0) as f32;
             let columns = ui.max_rect().x_range();
             let rect = Rect::from_x_y_ranges(columns, response.rect.y_range()).expand2([0.0, 3.0].into());
-            let color = theme::ACCENT.gamma_multiply(strength);
+            let color = theme::accent().gamma_multiply(strength);
             let painter = ui.painter();
             painter.rect_filled(rect, CornerRadius::same(4), color.gamma_multiply(0.25));
             painter.rect_stroke(rect, CornerRadius::same(4), Stroke::new(1.5, color), StrokeKind::Inside);

@@ -30,12 +30,15 @@ macro_rules! pages {
 }
 
 /// The pages for users, in the order of the contents.
-pub(super) static PAGES: [Source; 14] = pages![
+pub(super) static PAGES: [Source; 17] = pages![
     "user_guide.md",
     "styling.md",
+    "portraits.md",
     "takes.md",
+    "which_method.md",
     "comparing.md",
     "shadow_methods.md",
+    "own_method.md",
     "papers.md",
     "simulation.md",
     "appearance.md",
@@ -61,6 +64,25 @@ static PICTURES: &[(&str, &[u8])] = pictures![
     "pictures/hair_without_grid.png",
     "pictures/layers.jpg",
     "pictures/locks.jpg",
+    "pictures/method_adaptive.jpg",
+    "pictures/method_approximate_deep.jpg",
+    "pictures/method_deep_opacity_maps.jpg",
+    "pictures/method_deep_shadow_maps.jpg",
+    "pictures/method_density_clustering.jpg",
+    "pictures/method_fourier.jpg",
+    "pictures/method_moments.jpg",
+    "pictures/method_none.jpg",
+    "pictures/method_occupancy_maps.jpg",
+    "pictures/method_opacity_maps.jpg",
+    "pictures/method_ray_traced.jpg",
+    "pictures/method_voxel_map.jpg",
+    "pictures/method_voxel_march.jpg",
+    "pictures/portraits_dance.jpg",
+    "pictures/portraits_dancer.jpg",
+    "pictures/portraits_elder.jpg",
+    "pictures/portraits_man.jpg",
+    "pictures/portraits_rigs.jpg",
+    "pictures/portraits_woman.jpg",
     "pictures/reference.jpg",
     "pictures/satf.jpg",
     "pictures/satf_curls.jpg",
@@ -76,7 +98,6 @@ static PICTURES: &[(&str, &[u8])] = pictures![
     "pictures/styling_fade.jpg",
     "pictures/styling_masks.jpg",
     "pictures/styling_morph.jpg",
-    "pictures/window.jpg",
 ];
 
 /// The number of the page with that file name.

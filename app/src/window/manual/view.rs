@@ -190,7 +190,7 @@ impl Manual {
         }
         let strength = (1.0 - age / MARK_SECS) as f32;
         let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), height));
-        ui.painter().rect_filled(rect, 3.0, theme::ACCENT.gamma_multiply(0.3 * strength));
+        ui.painter().rect_filled(rect, 3.0, theme::accent().gamma_multiply(0.3 * strength));
         ui.ctx().request_repaint();
     }
 
@@ -217,7 +217,7 @@ impl Manual {
                 .inner
             }
             Block::Code(text) => {
-                egui::Frame::new().fill(theme::PAGE).inner_margin(6.0).corner_radius(3.0).show(ui, |ui| {
+                egui::Frame::new().fill(theme::page()).inner_margin(6.0).corner_radius(3.0).show(ui, |ui| {
                     ui.set_width(width - 14.0);
                     ui.add(Label::new(RichText::new(text).monospace().size(11.5)).wrap());
                 });
@@ -252,10 +252,10 @@ impl Manual {
                 let scale = (width / size.x).min(1.0);
                 let response = ui.add(egui::Image::new((texture.id(), size * scale)));
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, text));
-                ui.label(RichText::new(text).small().color(theme::QUIET));
+                ui.label(RichText::new(text).small().color(theme::quiet()));
             }
             None => {
-                ui.label(RichText::new(format!("Picture: {text}")).color(theme::QUIET));
+                ui.label(RichText::new(format!("Picture: {text}")).color(theme::quiet()));
             }
         }
     }
@@ -282,7 +282,7 @@ fn row(ui: &mut Ui, is_head: bool, widths: &[f32], cells: &[Vec<Span>], width: f
         }
     });
     let y = shown.response.rect.bottom() + 1.0;
-    ui.painter().hline(shown.response.rect.x_range(), y, egui::Stroke::new(1.0, theme::LINE));
+    ui.painter().hline(shown.response.rect.x_range(), y, egui::Stroke::new(1.0, theme::line()));
     link
 }
 
@@ -301,7 +301,7 @@ fn line(ui: &mut Ui, spans: &[Span], size: Option<f32>) -> Option<String> {
         for span in spans {
             if let Some(to) = span.link.as_ref().filter(|link| pages::leads(link)) {
                 flush(ui, &mut job);
-                let text = RichText::new(&span.text).size(size).color(theme::ACCENT);
+                let text = RichText::new(&span.text).size(size).color(theme::accent());
                 let response = ui.add(Label::new(text).wrap().sense(Sense::click()));
                 let name = span.text.clone();
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Link, true, &name));
@@ -313,7 +313,7 @@ fn line(ui: &mut Ui, spans: &[Span], size: Option<f32>) -> Option<String> {
                 let family = if span.is_code { FontFamily::Monospace } else { FontFamily::Proportional };
                 let font = FontId::new(if span.is_code { size - 1.0 } else { size }, family);
                 let color = if span.is_strong || span.is_emphasis || size > 13.0 {
-                    theme::BRIGHT
+                    theme::bright()
                 } else {
                     ui.visuals().text_color()
                 };

@@ -91,7 +91,7 @@ impl WhatIsThis {
                     egui::Align2::CENTER_TOP,
                     "Click a control to read about it. Escape cancels.",
                     egui::FontId::proportional(14.0),
-                    theme::ACCENT,
+                    theme::accent(),
                 );
                 response.on_hover_cursor(egui::CursorIcon::Help)
             });
@@ -102,7 +102,7 @@ impl WhatIsThis {
         let found = under(ctx, at, &rows);
         if let Some((rect, _)) = &found {
             let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, key()));
-            let edge = Stroke::new(1.5, theme::ACCENT);
+            let edge = Stroke::new(1.5, theme::accent());
             painter.rect_stroke(rect.expand(2.0), CornerRadius::same(4), edge, StrokeKind::Middle);
         }
         if !cover.clicked() {

@@ -83,13 +83,14 @@ pub(crate) fn spot(view: View, head: Head<'_>, snapshot: &FrameSnapshot, at: Pos
 }
 
 impl Stroke {
-    /// Shows the circle of the brush and paints the mask of `layer` while the primary button is down.
+    /// Shows the circle of the brush and paints the mask of `layer` while the primary button is down. `erases` inverts adding and erasing: it is
+    /// the eraser end of a pen that paints.
     pub(crate) fn paint(
         &mut self,
         ui: &Ui,
         (view, response): (View, &Response),
         (head, snapshot): (Head<'_>, &FrameSnapshot),
-        brush: &MaskBrush,
+        (brush, erases): (&MaskBrush, bool),
         layer: &mut Layer,
     ) -> Painted {
         let (pointer, modifiers, pressed, down) = ui.input(|input| {
@@ -97,7 +98,7 @@ impl Stroke {
             let pressed = pointer.button_pressed(PointerButton::Primary);
             (pointer.interact_pos(), input.modifiers, pressed, pointer.primary_down())
         });
-        let mode = match (modifiers.command, modifiers.shift) {
+        let mode = match (modifiers.command != erases, modifiers.shift) {
             (true, _) => BrushMode::Erase,
             (_, true) => BrushMode::Smooth,
             _ => BrushMode::Add,
@@ -206,8 +207,8 @@ fn differ(style: &Hairstyle, masks: [&Mask; 2], place: Vec3) -> bool {
 fn show(ui: &Ui, view: View, head: Head<'_>, brush: &MaskBrush, (at, spot): (Pos2, &Spot), mode: BrushMode) {
     let painter = ui.painter_at(view.place);
     let color = match mode {
-        BrushMode::Add => theme::ACCENT,
-        BrushMode::Erase => theme::WRONG,
+        BrushMode::Add => theme::accent(),
+        BrushMode::Erase => theme::wrong(),
         BrushMode::Smooth => theme::PLOT[1],
     };
     let circle = |place: Vec3, normal: Vec3, radius: f32, color: Color32, width: f32| {
@@ -219,7 +220,7 @@ fn show(ui: &Ui, view: View, head: Head<'_>, brush: &MaskBrush, (at, spot): (Pos
         });
         painter.line(points.collect(), Line::new(width, color));
     };
-    let dark = theme::PAGE.gamma_multiply(0.6);
+    let dark = theme::page().gamma_multiply(0.6);
     circle(spot.place, spot.normal, brush.radius, dark, 3.5);
     circle(spot.place, spot.normal, brush.radius, color, 1.5);
     circle(spot.place, spot.normal, brush.radius * (1.0 - brush.falloff), color.gamma_multiply(0.5), 1.0);

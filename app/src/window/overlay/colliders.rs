@@ -46,18 +46,18 @@ pub(crate) fn paint(ui: &Ui, view: View, shapes: &[Wires], chosen: Option<usize>
         return;
     }
     let middle = ends.iter().fold(egui::Vec2::ZERO, |sum, end| sum + end.to_vec2()) / ends.len() as f32;
-    let galley = painter.layout_no_wrap(shape.name.clone(), FontId::proportional(12.0), theme::ACCENT);
+    let galley = painter.layout_no_wrap(shape.name.clone(), FontId::proportional(12.0), theme::accent());
     // Below the handle of the middle.
     let under = middle.to_pos2() + egui::vec2(0.0, 18.0);
     let rect = Align2::CENTER_CENTER.anchor_size(under, galley.size());
-    painter.rect_filled(rect.expand(3.0), 3.0, theme::PAGE.gamma_multiply(0.7));
-    painter.galley(rect.min, galley, theme::ACCENT);
+    painter.rect_filled(rect.expand(3.0), 3.0, theme::page().gamma_multiply(0.7));
+    painter.galley(rect.min, galley, theme::accent());
 }
 
 fn color(shape: &Wires, chosen: bool) -> Color32 {
     match (chosen, shape.met, shape.index) {
-        (true, ..) => theme::ACCENT,
-        (_, false, _) => theme::QUIET.gamma_multiply(0.45),
+        (true, ..) => theme::accent(),
+        (_, false, _) => theme::quiet().gamma_multiply(0.45),
         (_, _, None) => theme::PLOT[2].gamma_multiply(0.7),
         _ => theme::PLOT[1].gamma_multiply(0.85),
     }
@@ -162,7 +162,7 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
     if chosen.edit != before {
         chosen.edit = chosen.edit.clamped();
     }
-    painter.line_segment([at, rim], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
+    painter.line_segment([at, rim], Stroke::new(1.0, theme::accent().gamma_multiply(0.6)));
     dot(&painter, size, rim, "Drag to scale the shape.");
     dot(&painter, place, at, "Drag to move the shape.");
 }

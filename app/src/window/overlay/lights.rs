@@ -43,7 +43,7 @@ pub(crate) fn edit(ui: &Ui, view: View, lights: &mut [Light], selected: &mut usi
         if scroll != 0.0 && (lamp.hovered() || lamp.dragged()) {
             light.position = view.eye + (light.position - view.eye) * (scroll * PER_POINT).exp();
         }
-        let color = if chosen { theme::ACCENT } else { theme::BRIGHT };
+        let color = if chosen { theme::accent() } else { theme::bright() };
         rays(&painter, at, color);
         dot(&painter, lamp, at, "Drag to move the light across the view. Turn the wheel to move it away.");
         if *light != before {
@@ -74,7 +74,7 @@ fn cone(ui: &Ui, painter: &Painter, view: View, light: &mut Light, (i, chosen): 
     let end = light.position + way * REACH;
     let tangent = |angle: f32| (0.5 * angle).tan().clamp(0.0, WIDEST);
     let across = way.any_orthonormal_vector();
-    let color = if chosen { theme::ACCENT } else { theme::BRIGHT };
+    let color = if chosen { theme::accent() } else { theme::bright() };
     let outer = ring(end, (across, way.cross(across)), REACH * tangent(light.outer_angle));
     let inner = ring(end, (across, way.cross(across)), REACH * tangent(light.inner_angle));
     let on_screen = |points: &[Vec3]| points.iter().filter_map(|p| view.to_screen(*p)).collect::<Vec<_>>();

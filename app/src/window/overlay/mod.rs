@@ -53,8 +53,8 @@ fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
 /// Paints a handle as a dot that grows under the pointer, with a tooltip.
 fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
     let over = handle.hovered() || handle.dragged();
-    painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
-    painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
+    painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::page().gamma_multiply(0.7));
+    painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::accent());
     handle.on_hover_cursor(CursorIcon::Grab).hover_tooltip(words);
 }
 
@@ -131,7 +131,12 @@ mod tests {
     use egui::vec2;
 
     fn view() -> View {
-        let camera = Camera { eye: Vec3::new(0.4, 1.6, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov_y: 0.5 };
+        let camera = Camera {
+            eye: Vec3::new(0.4, 1.6, 2.0),
+            target: Vec3::new(0.0, 1.5, 0.0),
+            fov_y: 0.5,
+            shear: glam::Vec2::ZERO,
+        };
         let place = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 450.0));
         View::of_camera(&camera, place).expect("a view")
     }

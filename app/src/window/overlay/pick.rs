@@ -316,8 +316,8 @@ mod tests {
             off.len()
         );
         // The image may show another strand than the front one.
-        assert!(off.len() > 12 && missed == 0 && median < 5.0 && worst < 30.0);
-        assert!(below.len() > 3 && other > 2.0 * median, "control: the head is not the hair");
+        assert!(off.len() > 12 && missed == 0 && median < 7.0 && worst < 30.0);
+        assert!(below.len() > 3 && other > 1.5 * median, "control: the head is not the hair");
         // Beside the hair and beside the image there is none.
         assert_eq!(seen.at(view, head, &snapshot, place.min + vec2(4.0, 4.0)), None);
         assert_eq!(seen.at(view, head, &snapshot, place.min - vec2(4.0, 4.0)), None);
@@ -336,7 +336,12 @@ mod tests {
 
     #[test]
     fn a_body_before_the_hair_hides_it() {
-        let camera = lovelock_render::Camera { eye: Vec3::Z * 2.0, target: Vec3::ZERO, fov_y: 0.5 };
+        let camera = lovelock_render::Camera {
+            eye: Vec3::Z * 2.0,
+            target: Vec3::ZERO,
+            fov_y: 0.5,
+            shear: glam::Vec2::ZERO,
+        };
         let place = Rect::from_min_size(pos2(0.0, 0.0), vec2(300.0, 300.0));
         let view = View::of_camera(&camera, place).expect("a view");
         let grid = Grid::over(view);

@@ -115,7 +115,7 @@ fn paint(
         (view.to_screen(world), view.to_screen(world).and_then(|at| view.right_of(at, world)))
         && let Some(rim) = view.to_screen(world + right * edge)
     {
-        let color = if removes { theme::WRONG } else { theme::GOOD };
+        let color = if removes { theme::wrong() } else { theme::good() };
         ui.painter_at(view.place).circle_stroke(at, at.distance(rim).max(2.0), Stroke::new(1.5, color));
     }
     let presses = response.drag_started_by(PointerButton::Primary) || response.clicked();
@@ -149,7 +149,7 @@ fn area(painter: &Painter, view: View, head: Head<'_>) {
     let scalp = head.scalp;
     let screen: Vec<Option<Pos2>> = scalp.positions.iter().map(|p| view.to_screen(head.world(*p))).collect();
     let mut mesh = Mesh::default();
-    let fill = theme::ACCENT.gamma_multiply(0.35);
+    let fill = theme::accent().gamma_multiply(0.35);
     let mut lines = Vec::new();
     for t in &scalp.triangles {
         let corners = t.map(|v| v as usize);
@@ -179,6 +179,6 @@ fn area(painter: &Painter, view: View, head: Head<'_>) {
     }
     painter.add(Shape::mesh(mesh));
     for line in lines {
-        painter.line_segment(line, Stroke::new(2.0, theme::ACCENT));
+        painter.line_segment(line, Stroke::new(2.0, theme::accent()));
     }
 }

@@ -28,8 +28,8 @@ impl Scissors {
         }
         let (from, to) = (self.from?, ui.input(|input| input.pointer.latest_pos())?);
         let painter = ui.painter_at(view.place);
-        painter.line_segment([from, to], Stroke::new(4.0, theme::PAGE.gamma_multiply(0.6)));
-        painter.line_segment([from, to], Stroke::new(1.5, theme::WRONG));
+        painter.line_segment([from, to], Stroke::new(4.0, theme::page().gamma_multiply(0.6)));
+        painter.line_segment([from, to], Stroke::new(1.5, theme::wrong()));
         if response.drag_stopped() {
             self.from = None;
             return Some([from, to]);

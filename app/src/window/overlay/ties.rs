@@ -58,9 +58,9 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
             drag(ui, view, head, tie, (id, pointer));
         }
         let over = ring_handle.hovered() || ring_handle.dragged();
-        let color = if *selected == i || over { theme::ACCENT } else { theme::BRIGHT };
+        let color = if *selected == i || over { theme::accent() } else { theme::bright() };
         let ring = ring(view, centre, axis, tie.radius.max(0.012) * head.scale());
-        painter.add(Shape::closed_line(ring.clone(), Stroke::new(4.0, theme::PAGE.gamma_multiply(0.6))));
+        painter.add(Shape::closed_line(ring.clone(), Stroke::new(4.0, theme::page().gamma_multiply(0.6))));
         painter.add(Shape::closed_line(ring, Stroke::new(2.0, color)));
         if let Some(end) = end {
             painter.arrow(at, end - at, Stroke::new(2.0, color));
@@ -100,7 +100,7 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
     }
     let outline =
         ring(view, middle, (view.eye - middle).normalize_or(Vec3::Z), tie.sphere_radius * head.scale());
-    painter.extend(Shape::dashed_line(&closed(outline), Stroke::new(1.5, theme::ACCENT), 6.0, 4.0));
+    painter.extend(Shape::dashed_line(&closed(outline), Stroke::new(1.5, theme::accent()), 6.0, 4.0));
     dot(painter, rim, rim_at, "Drag to gather more or less hair.");
     if !tie.sphere_at_ring {
         let id = ui.scope_id().with("patch");
@@ -115,7 +115,7 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
         {
             tie.sphere_centre = to;
         }
-        painter.line_segment([at, handle_at], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
+        painter.line_segment([at, handle_at], Stroke::new(1.0, theme::accent().gamma_multiply(0.6)));
         dot(painter, place, handle_at, "Drag to move the patch over the head.");
     }
 }

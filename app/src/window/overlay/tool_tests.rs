@@ -109,7 +109,8 @@ fn scissors_return_the_line_that_was_drawn_and_cut_the_hair_across_it() {
 fn the_brush_of_masks_paints_where_it_is_dragged_over_the_head() {
     let state = (Stroke::default(), Layer::of(Lift::default()), 0_u32);
     let mut harness = image(state, |ui, response, view, (stroke, layer, begun)| {
-        let done = stroke.paint(ui, (view, response), (head(), &*STAGE.0), &MaskBrush::default(), layer);
+        let brush = (&MaskBrush::default(), false);
+        let done = stroke.paint(ui, (view, response), (head(), &*STAGE.0), brush, layer);
         *begun += u32::from(done.begins);
     });
     let (before, middle) = (harness.state().state.0.1.mask.clone(), hairy(&harness));

@@ -1,6 +1,7 @@
 //! The body and its motion.
 
 use egui::Ui;
+use lovelock_base::settings::Choices as _;
 use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
@@ -35,7 +36,9 @@ impl Panel for BodyPanel {
     }
 
     fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
-        controls(ui, project, readings.body)
+        let asked = controls(ui, project, readings.body);
+        super::brows::ui(ui, &mut project.body.brows, readings);
+        asked
     }
 }
 
@@ -43,15 +46,8 @@ impl Panel for BodyPanel {
 fn controls(ui: &mut Ui, project: &mut Project, loaded: &LoadedBody) -> Option<Command> {
     let mut picked = None;
     ui.horizontal_wrapped(|ui| {
-        for (source, name, says) in [
-            (BodySource::Dancer, "Dancer", "Loads the shipped dancer."),
-            (
-                BodySource::Animal,
-                "Animal",
-                "Loads the shipped animal at rest, with hair on its whole skin, as fur.",
-            ),
-            (BodySource::Lawn, "Lawn", "Loads the shipped piece of ground, with hair on it, as grass."),
-        ] {
+        for (source, _, says) in BodySource::SHIPPED {
+            let name = source.names().1;
             let on = project.body.source == source;
             if ui.selectable_label(on, name).hover_tooltip(says).clicked() {
                 project.show_shipped_body(source);

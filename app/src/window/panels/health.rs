@@ -15,9 +15,9 @@ use crate::window::theme;
 /// The colour of a level.
 pub(crate) fn color(level: HealthLevel) -> Color32 {
     match level {
-        HealthLevel::Good => theme::GOOD,
-        HealthLevel::Watch => theme::WATCH,
-        HealthLevel::Wrong => theme::WRONG,
+        HealthLevel::Good => theme::good(),
+        HealthLevel::Watch => theme::watch(),
+        HealthLevel::Wrong => theme::wrong(),
     }
 }
 
@@ -106,7 +106,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
         });
     });
     let (bar, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 3.0), Sense::hover());
-    ui.painter().rect_filled(bar, 1.5, theme::LINE);
+    ui.painter().rect_filled(bar, 1.5, theme::line());
     let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
     ui.painter().rect_filled(full, 1.5, color);
     if let Some(within) = &gauge.within {

@@ -7,7 +7,7 @@ use glam::Vec3;
 use lovelock_base::settings::{Settings, Unit, Value};
 use lovelock_project::Project;
 use lovelock_project::error::Place;
-use lovelock_render::{Light, LightKind, MAX_LIGHTS};
+use lovelock_render::{Light, LightKind, LightRig, MAX_LIGHTS};
 
 use crate::window::camera_control;
 use crate::window::command::Command;
@@ -43,8 +43,11 @@ impl Panel for LightPanel {
     }
 
     fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
-        let axes = camera_control::axes(&project.camera);
+        let secs = readings.frame.map_or(0.0, |frame| frame.time_secs);
+        let axes = camera_control::axes(&project.camera.turned(secs));
         let head = readings.frame.map(|frame| frame.guides.world_from_head.translation.into());
+        rigs(ui, project);
+        ui.separator();
         list(ui, &mut project.lights, &mut self.selected, (axes, head));
         ui.separator();
         super::surroundings::ui(ui, project, readings.surroundings)
@@ -53,6 +56,22 @@ impl Panel for LightPanel {
     fn end_pass(&mut self, unfolded: bool) {
         self.unfolded = unfolded;
     }
+}
+
+/// The light rigs, by name.
+fn rigs(ui: &mut Ui, project: &mut Project) {
+    let worn = LightRig::of(&project.lights, &project.picture);
+    ui.horizontal_wrapped(|ui| {
+        for rig in LightRig::ALL {
+            let tip = format!(
+                "{} Replaces the lights, the ambient light, the exposure and the background's colours.",
+                rig.description()
+            );
+            if ui.selectable_label(worn == Some(rig), rig.label()).hover_tooltip(tip).clicked() {
+                rig.apply(&mut project.lights, &mut project.picture);
+            }
+        }
+    });
 }
 
 /// The controls of `lights`. `selected` is the one that is edited; `axes` are the camera's right, up and back, `head` is the place of the
@@ -103,19 +122,25 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, (axes, head)
         LightKind::Directional => {
             direction_of(ui, light, &default);
             settings(ui, &["intensity", "color", "specular", "softness"], light, &default);
+            settings(ui, &["shadow_samples", "angular_radius"], light, &default);
         }
         LightKind::Spot => {
             settings(ui, &["position"], light, &default);
             direction_of(ui, light, &default);
             settings(
                 ui,
-                &["inner_angle", "outer_angle", "radius", "intensity", "color", "specular"],
+                &["inner_angle", "outer_angle", "radius", "shadow_samples", "intensity", "color", "specular"],
                 light,
                 &default,
             );
         }
         LightKind::Point => {
-            settings(ui, &["position", "radius", "intensity", "color", "specular"], light, &default);
+            settings(
+                ui,
+                &["position", "radius", "shadow_samples", "intensity", "color", "specular"],
+                light,
+                &default,
+            );
         }
     }
     if removed {

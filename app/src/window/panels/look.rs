@@ -3,6 +3,7 @@
 use egui::Ui;
 use lovelock_groom::{HAIR_COLOURS, HairColour, HairLook, HairShading};
 use lovelock_project::Project;
+use lovelock_project::error::Place;
 use lovelock_render::{ClusterShading, HairDrawing, LocalShadow, PictureSettings, StrandCount};
 
 use super::records::RecordView;
@@ -26,7 +27,8 @@ const HIGHLIGHTS: [&str; 2] = ["primary_strength", "secondary_strength"];
 
 const WIDTH: [&str; 3] = ["width_scale", "diameter", "real_hairs"];
 
-const PICTURE: [&str; 5] = ["exposure_stops", "ambient", "transparency", "backend", "strand_opacity"];
+const PICTURE: [&str; 6] =
+    ["exposure_stops", "ambient", "transparency", "backend", "simulate", "strand_opacity"];
 
 /// The settings that each pane of a comparison has separately, besides how hair is drawn.
 const OF_PANE: [&str; 2] = ["transparency", "backend"];
@@ -36,8 +38,6 @@ const DIVISION: [&str; 6] = ["layers", "core", "around", "along", "macro_toleran
 
 /// What only the published lighting of clusters uses.
 const PUBLISHED: [&str; 3] = ["diffuse", "primary", "secondary"];
-
-const BACKGROUND: [&str; 3] = ["ground", "background_top", "background_bottom"];
 
 /// Colour and width of the hair.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,12 +67,20 @@ impl Panel for PicturePanel {
         "Picture"
     }
 
+    fn places(&self) -> &'static [Place] {
+        &[Place::Backdrop, Place::Reference]
+    }
+
     fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
         picture(ui, &mut project.picture, readings.pane.is_some());
+        let asked = section(ui, "Background", false, |ui| super::background::ui(ui, project)).flatten();
+        let reference =
+            section(ui, "Reference picture", false, |ui| super::background::reference(ui, project));
+        let asked = asked.or(reference.flatten());
         if project.picture.draw != HairDrawing::Strands {
             section(ui, "Record of the database", false, |ui| super::records::ui(ui, &mut self.record));
         }
-        None
+        asked
     }
 }
 
@@ -156,7 +164,6 @@ fn picture(ui: &mut Ui, picture: &mut PictureSettings, compares: bool) {
     if picture.draw != HairDrawing::Strands {
         section(ui, "Clusters", true, |ui| clusters(ui, picture));
     }
-    section(ui, "Background", false, |ui| settings(ui, &BACKGROUND, picture, &default));
 }
 
 /// The controls of hair that is drawn as clusters.

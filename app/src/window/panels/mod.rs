@@ -1,7 +1,12 @@
 //! The panels beside the image.
 
+mod background;
 pub(crate) mod body;
+pub(crate) mod body_look;
+mod brows;
+pub(crate) mod camera;
 pub(crate) mod colliders;
+pub(crate) mod face;
 pub(crate) mod hair;
 pub(crate) mod health;
 pub(crate) mod layers;

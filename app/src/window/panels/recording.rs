@@ -128,7 +128,7 @@ impl Panel for RecordingPanel {
     }
 
     fn ui(&mut self, ui: &mut Ui, project: &mut Project, readings: &Readings<'_>) -> Option<Command> {
-        controls(ui, &mut project.recording, readings.recording, readings.film_frames)
+        controls(ui, project, readings.recording, readings.film_frames)
     }
 
     fn end_pass(&mut self, unfolded: bool) {
@@ -136,8 +136,26 @@ impl Panel for RecordingPanel {
     }
 }
 
-/// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
-fn controls(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_frames: u64) -> Option<Command> {
+/// The turntable, and the frames of one turn.
+fn turntable(ui: &mut Ui, project: &mut Project) {
+    super::camera::turntable(ui, &mut project.camera);
+    if !project.camera.turntable {
+        return;
+    }
+    let section = &mut project.recording;
+    let turn = (f64::from(project.camera.turn_secs) * section.fps).round().max(1.0) as u64;
+    let end = section.first_frame + turn;
+    let tip = "Sets the last frame so that the film is one turn: played in a loop it goes on without a jump of the camera.";
+    let button = ui.add_enabled(section.end_frame != Some(end), egui::Button::new("Record one turn"));
+    if button.hover_tooltip(tip).disabled_hover_tooltip(tip).clicked() {
+        section.end_frame = Some(end);
+    }
+}
+
+/// The controls of `project`'s recordings; `clip_frames` is the number of frames of the whole clip.
+fn controls(ui: &mut Ui, project: &mut Project, state: &State, clip_frames: u64) -> Option<Command> {
+    turntable(ui, project);
+    let section = &mut project.recording;
     let default = RecordingSection::default();
     let mut request = None;
     size(ui, section, &default);
@@ -158,7 +176,7 @@ fn controls(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_fra
         }
     } else {
         ui.horizontal(|ui| {
-            let dot = RichText::new("Record film…").color(theme::RECORDING);
+            let dot = RichText::new("Record film…").color(theme::recording());
             if ui.button(dot).hover_tooltip("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
                 request = Some(Command::PickFile(Purpose::Film));
             }
@@ -186,7 +204,7 @@ fn controls(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_fra
     match state {
         State::Done { what, .. } | State::Cancelled(what) => note(ui, what.as_str()),
         State::Failed(why) => {
-            ui.label(RichText::new(why).color(theme::WRONG));
+            ui.label(RichText::new(why).color(theme::wrong()));
         }
         State::Idle | State::Running { .. } => {}
     }

@@ -71,7 +71,16 @@ fn controls(
             .hover_tooltip("Paints the same on the other side of the head.");
     }
     let default = ScalpFit::default();
-    settings(ui, &["area", "forward", "up", "nod", "width", "size"], fit, &default);
+    settings(ui, &["area"], fit, &default);
+    let was_by_hand = fit.by_hand;
+    settings(ui, &["by_hand"], fit, &default);
+    if fit.by_hand && !was_by_hand {
+        begin_at_skull(fit, readings);
+    }
+    if fit.by_hand {
+        settings(ui, &["middle", "skull_height"], fit, &default);
+    }
+    settings(ui, &["forward", "up", "nod", "width", "size"], fit, &default);
     settings(
         ui,
         &[
@@ -100,4 +109,17 @@ fn controls(
         }
     });
     (paints != is_used).then_some(Command::Use(PointerTool::Scalp))
+}
+
+/// Begins to place the scalp by hand at the skull that was found.
+fn begin_at_skull(fit: &mut ScalpFit, readings: &Readings<'_>) {
+    let Some((scene, skull)) = readings.frame.and_then(|frame| Some((&frame.scene, frame.scene.skull?)))
+    else {
+        return;
+    };
+    let skeleton = &scene.body.skeleton;
+    if skeleton.joints.get(scene.body.head_joint).is_some() {
+        fit.middle = skeleton.rest_position(scene.body.head_joint) + skull.middle;
+        fit.skull_height = 2.0 * skull.half.y;
+    }
 }

@@ -99,6 +99,13 @@ pub(super) fn shared(ui: &mut Ui) {
 pub(crate) fn of_method(ui: &mut Ui, shadow: &mut ShadowSettings) {
     let default = ShadowSettings::default();
     let method = shadow.method;
+    if let ShadowMethod::User(user) = method {
+        note(ui, user.folder().display().to_string());
+        if let Some(problem) = user.problem() {
+            let last = if user.works() { " The last version that worked is used." } else { "" };
+            ui.label(RichText::new(format!("{problem}{last}")).color(theme::wrong()));
+        }
+    }
     if method == ShadowMethod::VoxelMap {
         setting(ui, "resolution", &mut shadow.voxel_map, &default.voxel_map);
         memory_of_map(ui, shadow);

@@ -87,7 +87,7 @@ fn facts(ui: &mut Ui, loaded: &Loaded) {
     });
     note(ui, format!("{source}{}:{:04.1}, {tempo}", (secs / 60.0) as u64, secs % 60.0));
     for text in loaded.source.iter().flat_map(|source| &source.notes) {
-        ui.label(RichText::new(text).small().color(theme::WATCH));
+        ui.label(RichText::new(text).small().color(theme::watch()));
     }
 }
 

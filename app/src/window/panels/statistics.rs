@@ -102,7 +102,7 @@ fn times(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, [facts, kept
 fn list(ui: &mut Ui, id: &str, facts: &[Fact]) {
     egui::Grid::new(id).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for Fact { name, tip, value } in facts {
-            ui.label(RichText::new(*name).small().color(theme::QUIET)).hover_tooltip(*tip);
+            ui.label(RichText::new(*name).small().color(theme::quiet())).hover_tooltip(*tip);
             ui.label(RichText::new(value).small());
             ui.end_row();
         }
@@ -128,7 +128,7 @@ fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
             ui.label(RichText::new(format!("{sum:.2} ms")).small().strong());
             ui.end_row();
             for (name, ms) in of_group {
-                ui.label(RichText::new(in_words(name)).small().color(theme::QUIET));
+                ui.label(RichText::new(in_words(name)).small().color(theme::quiet()));
                 ui.label(RichText::new(format!("{ms:.2} ms")).small());
                 ui.end_row();
             }

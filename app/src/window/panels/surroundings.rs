@@ -43,7 +43,7 @@ pub(super) fn ui(ui: &mut Ui, project: &mut Project, loaded: &LoadedSurroundings
     setting(ui, "surroundings_turn", &mut project.picture, &PictureSettings::default());
     key_light(ui, project, picture.strongest());
     for text in &loaded.notes {
-        ui.label(RichText::new(text).small().color(theme::WATCH));
+        ui.label(RichText::new(text).small().color(theme::watch()));
     }
     request
 }
@@ -86,8 +86,8 @@ fn thumbnail(ui: &mut Ui, picture: &Panorama, turn: &mut f32) -> Response {
         painter.add(mesh(picture, rect, *turn));
         if let Some(strongest) = picture.strongest() {
             let at = place(strongest.turned(*turn).direction, rect);
-            painter.circle_stroke(at, 6.0, Stroke::new(3.0, theme::PAGE));
-            painter.circle_stroke(at, 6.0, Stroke::new(1.5, theme::ACCENT));
+            painter.circle_stroke(at, 6.0, Stroke::new(3.0, theme::page()));
+            painter.circle_stroke(at, 6.0, Stroke::new(1.5, theme::accent()));
         }
     }
     response

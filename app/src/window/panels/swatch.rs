@@ -21,14 +21,14 @@ pub(super) fn swatch(ui: &mut Ui, name: &str, look: &HairLook, selected: bool) -
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, selected, name));
     if ui.is_rect_visible(rect) {
         let painter = ui.painter();
-        painter.rect_filled(rect, 3.0, theme::PAGE);
+        painter.rect_filled(rect, 3.0, theme::page());
         painter.add(strands(look, rect.shrink(2.0)));
         let edge = if selected {
-            Stroke::new(2.0, theme::ACCENT)
+            Stroke::new(2.0, theme::accent())
         } else if response.hovered() || response.has_focus() {
-            Stroke::new(1.0, theme::BRIGHT)
+            Stroke::new(1.0, theme::bright())
         } else {
-            Stroke::new(1.0, theme::LINE)
+            Stroke::new(1.0, theme::line())
         };
         painter.rect_stroke(rect, 3.0, edge, StrokeKind::Inside);
     }

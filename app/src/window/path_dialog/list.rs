@@ -56,7 +56,7 @@ pub(super) fn show(ui: &mut Ui, rows: &[Row], chosen: Option<usize>, folder: &Fo
         ui.set_min_size(vec2(ui.available_width(), TALL));
         if rows.is_empty() {
             let text = if folder.is_reading() { "Reading the folder" } else { "No matching files" };
-            ui.label(RichText::new(text).color(theme::QUIET));
+            ui.label(RichText::new(text).color(theme::quiet()));
             return;
         }
         let mut area = ScrollArea::vertical().max_height(TALL).auto_shrink(false);
@@ -71,7 +71,11 @@ pub(super) fn show(ui: &mut Ui, rows: &[Row], chosen: Option<usize>, folder: &Fo
         area.show_rows(ui, height, rows.len(), |ui, range| {
             for at in range {
                 let Some(row) = rows.get(at) else { break };
-                let text = RichText::new(format!("{}  {}", row.icon.codepoint, row.label));
+                let text = RichText::new(format!(
+                    "{}  {}",
+                    row.icon.codepoint,
+                    lovelock_glyphs::visual_words(&row.label)
+                ));
                 let button = Button::selectable(chosen == Some(at), text).truncate();
                 // As wide as the list, with the name at its left.
                 let response = ui.add(button.min_size(vec2(ui.available_width(), height)));

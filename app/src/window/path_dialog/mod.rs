@@ -178,7 +178,7 @@ impl PathDialog {
             ui.set_width(WIDTH);
             ui.heading(self.purpose.title());
             if let Some(about) = &self.about {
-                ui.label(RichText::new(about).color(theme::QUIET));
+                ui.label(RichText::new(about).color(theme::quiet()));
             }
             let types = self.stage == Stage::Types;
             let rows = self.rows(&prefix);
@@ -300,7 +300,7 @@ impl PathDialog {
             Some(surplus) if surplus > 0 => format!("…{}", whole.chars().skip(surplus).collect::<String>()),
             _ => whole.clone(),
         };
-        ui.add(egui::Label::new(RichText::new(shown).small().color(theme::QUIET)).truncate())
+        ui.add(egui::Label::new(RichText::new(shown).small().color(theme::quiet())).truncate())
             .hover_tooltip(whole);
     }
 
@@ -312,23 +312,23 @@ impl PathDialog {
             ui.add(label);
         };
         match &self.stage {
-            Stage::Waits(path) => return say(format!("Opening {}", name(path)), theme::QUIET),
+            Stage::Waits(path) => return say(format!("Opening {}", name(path)), theme::quiet()),
             Stage::Asks(path) => {
                 let what = match self.purpose {
                     Purpose::SaveStrokes => "contains other strokes. Replace them?".to_owned(),
                     purpose => format!("is another {}. Replace it?", purpose.replaced()),
                 };
-                return say(format!("{} {what}", name(path)), theme::ACCENT);
+                return say(format!("{} {what}", name(path)), theme::accent());
             }
             Stage::Types => {}
         }
         if let Some(error) = &self.error {
-            return say(error.clone(), theme::WRONG);
+            return say(error.clone(), theme::wrong());
         }
         if self.no_dialog {
             return say(
                 "The system has no file dialog. Type the path, or choose it in the list.".to_owned(),
-                theme::WRONG,
+                theme::wrong(),
             );
         }
         let Some(path) = self.path() else { return };
@@ -339,7 +339,7 @@ impl PathDialog {
                 Purpose::SaveStrokes => "The strokes with this name will be replaced.".to_owned(),
                 _ => format!("The {kind} with this name will be replaced."),
             };
-            say(text, theme::ACCENT);
+            say(text, theme::accent());
         }
     }
 

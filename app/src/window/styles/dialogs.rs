@@ -66,7 +66,7 @@ pub(super) fn show(ctx: &Context, project: &mut Project, browser: &mut Browser) 
             ui.allocate_ui(egui::vec2(360.0, SAID), |ui| {
                 ui.set_min_height(SAID);
                 let said = browser.dialog_error.as_deref().unwrap_or_default();
-                ui.add(egui::Label::new(RichText::new(said).color(theme::WRONG)).wrap());
+                ui.add(egui::Label::new(RichText::new(said).color(theme::wrong())).wrap());
             });
         }
         ui.horizontal(|ui| {

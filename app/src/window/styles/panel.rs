@@ -163,7 +163,7 @@ fn grid(ui: &mut Ui, project: &mut Project, browser: &mut Browser, picked: Picke
         }
         // Within the grid, because they are found later than it is shown and must not move what is below.
         for why in &browser.broken {
-            ui.add(egui::Label::new(egui::RichText::new(why).small().color(theme::WRONG)).wrap());
+            ui.add(egui::Label::new(egui::RichText::new(why).small().color(theme::wrong())).wrap());
         }
     });
     preview(ui, browser, hovered);

@@ -48,20 +48,20 @@ pub(super) fn tile(ui: &mut Ui, width: f32, tile: &Tile<'_>) -> (Response, bool)
                 painter.image(texture.id(), picture, whole, Color32::WHITE);
             }
             None => {
-                painter.rect_filled(picture, CornerRadius::same(3), theme::PAGE);
+                painter.rect_filled(picture, CornerRadius::same(3), theme::page());
             }
         }
         let edge = if current {
-            Some(Stroke::new(2.0, theme::ACCENT))
+            Some(Stroke::new(2.0, theme::accent()))
         } else if response.hovered() || response.has_focus() {
-            Some(Stroke::new(1.0, theme::BRIGHT))
+            Some(Stroke::new(1.0, theme::bright()))
         } else {
             None
         };
         if let Some(edge) = edge {
             painter.rect_stroke(picture, CornerRadius::same(3), edge, StrokeKind::Inside);
         }
-        let color = if current { theme::ACCENT } else { ui.visuals().text_color() };
+        let color = if current { theme::accent() } else { ui.visuals().text_color() };
         let text = egui::RichText::new(tile.name).small().color(color);
         let galley = egui::WidgetText::from(text).into_galley(
             ui,
@@ -89,11 +89,11 @@ fn star(ui: &Ui, tile_response: &Response, picture: Rect, tile: &Tile<'_>) -> bo
     let name = format!("Favourite {}", tile.name);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, favourite, &name));
     let color = if favourite {
-        theme::ACCENT
+        theme::accent()
     } else if response.hovered() {
-        theme::BRIGHT
+        theme::bright()
     } else {
-        theme::QUIET
+        theme::quiet()
     };
     let icon: &str = ICON_STAR.into();
     let text = egui::RichText::new(icon).color(color);

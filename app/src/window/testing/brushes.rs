@@ -39,8 +39,8 @@ fn brushing() -> Option<(Whole, Pos2)> {
 /// The ends of a line over the top of the head, beside the parting that the hair has.
 fn beside_the_parting(harness: &Whole) -> [Pos2; 2] {
     let painted = of(harness).session.painted.clone().expect("an image");
-    [0.07, 0.0].map(|z| {
-        let place = painted.snapshot.guides.world_from_head.transform_point3(Vec3::new(0.05, 0.16, z));
+    [(0.13, 0.07), (0.15, 0.0)].map(|(y, z)| {
+        let place = painted.snapshot.guides.world_from_head.transform_point3(Vec3::new(0.05, y, z));
         view(harness).to_screen(place).expect("before the camera")
     })
 }
@@ -99,7 +99,8 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
             harness.state_mut().state.as_mut().expect("a window").session.worker().thaw();
             continue;
         }
-        assert!(!edits(&harness).expect("a layer").is_empty(), "{name} did nothing");
+        let hand = edits(&harness).unwrap_or_else(|| panic!("{name} made no layer"));
+        assert!(!hand.is_empty(), "{name} did nothing");
         assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "{name}: one step");
         key(&mut harness, CTRL, Key::Z);
         assert_eq!(project(&harness), before, "{name}");
@@ -193,4 +194,35 @@ fn b_and_the_brackets_change_the_radius_and_shift_b_the_strength() {
     }
     go(&mut harness);
     assert!(harness.query_all_by_label("Brush radius").count() > 0);
+}
+
+#[test]
+fn a_pen_presses_with_its_force_and_its_eraser_inverts() {
+    use crate::window::pen::PenEnd;
+    let Some((mut harness, at)) = brushing() else { return };
+    let stroke = |harness: &mut Whole, end: Option<(PenEnd, f32)>| {
+        let hear = |harness: &Whole, force: f32| {
+            if let Some((end, _)) = end {
+                of(harness).tools.pen.hear_for_tests(&[(end, force)]);
+            }
+        };
+        hear(harness, end.map_or(0.0, |(_, force)| force));
+        drag_over(harness, at, at + vec2(40.0, 14.0));
+        hear(harness, 0.0);
+        done(harness);
+        of(harness).panels.brushes.last_stroke().expect("a stroke").clone()
+    };
+    for (pen, pressure, inverted) in [
+        (None, 1.0, false),
+        (Some((PenEnd::Tip, 0.25)), 0.25, false),
+        (Some((PenEnd::Eraser, 0.5)), 0.5, true),
+    ] {
+        // A tool that has an inverse.
+        let tool = Tool::ALL.iter().find(|tool| tool.inverse_text().is_some()).expect("one has");
+        control(&harness, egui::accesskit::Role::RadioButton, tool.names().1).click();
+        go(&mut harness);
+        let stroke = stroke(&mut harness, pen);
+        assert_eq!(stroke.inverted, inverted, "{pen:?}");
+        assert!(stroke.samples.iter().all(|sample| sample.pressure == pressure), "{pen:?}");
+    }
 }

@@ -1,14 +1,16 @@
 //! The comparison in the whole window: adding, changing, swapping, using and removing panes, each as one undo step.
 
+use std::sync::Arc;
+
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use lovelock_panes::request::LiveError;
 use lovelock_panes::view::LiveShows;
 use lovelock_project::project::CompareSection;
-use lovelock_render::ShadowMethod;
+use lovelock_render::{Gpu, ShadowMethod, new_method};
 
-use super::whole::{CTRL, Whole, go, key, of, press_button, project, wait, window};
+use super::whole::{CTRL, Dropped, Whole, go, key, of, press_button, project, wait, window};
 use super::{control, drag};
 use crate::window::Window;
 
@@ -80,12 +82,12 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     assert!(!methods(&harness)[..3].contains(&added), "a method that no pane shows");
     wait(&mut harness, "the new pane", |window| drawn(window, 4));
     assert_eq!(of(&harness).document.history().undo_len(), 3);
-    for _ in 0..2 {
+    for _ in 4..CompareSection::MAX_PANES {
         press_button(&mut harness, "Add pane");
     }
     assert_eq!(methods(&harness).len(), CompareSection::MAX_PANES);
-    wait(&mut harness, "six panes", |window| drawn(window, 6));
-    for _ in 0..5 {
+    wait(&mut harness, "all panes", |window| drawn(window, CompareSection::MAX_PANES));
+    for _ in 0..3 + CompareSection::MAX_PANES - 4 {
         key(&mut harness, CTRL, Key::Z);
     }
     assert_eq!(methods(&harness), before);
@@ -100,6 +102,45 @@ fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     assert_eq!(of(&harness).document.history().undo_len(), 1);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).shadow, shadow);
+}
+
+#[test]
+fn a_dropped_method_is_a_pane_that_follows_its_files_long_suite() {
+    if let Err(error) = Gpu::open() {
+        lovelock_testkit::skip_without_adapter(&error);
+        return;
+    }
+    let mut harness = comparing();
+    let dir = tempfile::tempdir().expect("a folder");
+    let folder = dir.path().join("my fog");
+    new_method(&folder).expect("the template");
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(folder.clone())));
+    go(&mut harness);
+    wait(&mut harness, "its pane", |window| drawn(window, 5));
+    let [user] = project(&harness).user_methods()[..] else { panic!("one method") };
+    assert_eq!((user.id(), user.problem()), ("my-fog", None));
+    let pixels = |window: &Window| {
+        let pane = window.pages.compare.pane(4).expect("a pane");
+        pane.image.picture().map(|picture| picture.rgba.clone()).unwrap_or_default()
+    };
+    let first = pixels(of(&harness));
+
+    // Broken: the last version stays, with the problem.
+    let shader = folder.join("method.wgsl");
+    let text = std::fs::read_to_string(&shader).expect("the shader");
+    std::fs::write(&shader, text.replace("sum += record_load", "sum += record_lode")).expect("written");
+    wait(&mut harness, "the problem", |window| {
+        window.document.project().user_methods()[0].problem().is_some()
+    });
+    assert!(user.works() && user.problem().expect("a problem").contains("method.wgsl, line 26"));
+
+    // Mended, and another one: it is drawn anew.
+    std::fs::write(&shader, text.replace("weight);", "weight / 8u);")).expect("written");
+    wait(&mut harness, "the mended method", |window| {
+        window.document.project().user_methods()[0].problem().is_none() && pixels(window) != first
+    });
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness).compare.panes.len(), 4, "one undo step");
 }
 
 #[test]

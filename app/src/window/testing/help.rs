@@ -37,9 +37,18 @@ fn help_opens_the_manual_and_about_and_explains_a_control() {
     let ctx = harness.ctx.clone();
     harness.state_mut().state.as_mut().expect("a window").run(Command::About, &ctx);
     go(&mut harness);
-    assert!(harness.query_by_label(env!("CARGO_PKG_VERSION")).is_some());
+    assert!(harness.query_by_label(env!("LOVELOCK_VERSION")).is_some());
     assert!(harness.query_by_label(env!("CARGO_PKG_LICENSE")).is_some());
     press_button(&mut harness, "Close");
+    harness.state_mut().state.as_mut().expect("a window").run(Command::ReportProblem, &ctx);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.expect("a report");
+    assert!(copied.contains(env!("LOVELOCK_VERSION")) && copied.contains("Changed settings:"), "{copied}");
+    go(&mut harness);
 
     // A click on a control in this mode changes nothing and opens the entry of the control.
     let before = project(&harness);

@@ -3,17 +3,22 @@
 mod brushes;
 mod compare;
 mod dialogs;
+mod docking;
 mod focus;
 mod health;
 mod help;
 mod keyboard;
 mod keying;
 mod memory;
+mod monkey;
 mod notices;
 mod opening;
 mod painting;
 mod playback;
+mod preferences;
+mod recovery;
 mod rows;
+mod start;
 mod styles;
 mod takes;
 mod timeline_height;
@@ -241,5 +246,5 @@ pub(crate) fn cut_texts<S>(harness: &Harness<'_, S>) -> Vec<String> {
 
 /// Whether a text on the screen has the colour that marks a changed value.
 pub(crate) fn is_marked<S>(harness: &Harness<'_, S>, name: &str) -> bool {
-    texts(harness).iter().any(|(text, _, color)| text == name && *color == theme::ACCENT)
+    texts(harness).iter().any(|(text, _, color)| text == name && *color == theme::accent())
 }

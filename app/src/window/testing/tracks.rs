@@ -150,7 +150,7 @@ fn commands_that_move_the_camera_are_edits_like_any_other() {
     key(&mut harness, Modifiers::NONE, Key::F);
     let keyed = project(&harness);
     let [track] = keyed.timeline.tracks.as_slice() else { panic!("{:?}", keyed.timeline.tracks) };
-    let [there] = track.keys.iter().filter(|key| (key.secs - at).abs() < 0.05).collect::<Vec<_>>()[..] else {
+    let [there] = track.keys.iter().filter(|key| (key.secs - at).abs() < 0.02).collect::<Vec<_>>()[..] else {
         panic!("{track:?} at {at}")
     };
     assert!(there.value[0] < 7.0, "near enough to fill the picture: {there:?}");

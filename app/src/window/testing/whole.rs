@@ -125,7 +125,7 @@ pub(super) fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Pa
 
 /// Drops a file on the window.
 #[derive(Debug)]
-struct Dropped(PathBuf);
+pub(super) struct Dropped(pub(super) PathBuf);
 
 impl egui::DroppedFile for Dropped {
     fn path(&self) -> &Path {

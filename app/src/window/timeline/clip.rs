@@ -14,7 +14,7 @@ use crate::window::theme;
 /// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
 pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Command> {
     let mut request = None;
-    let text = |text: &str| RichText::new(text).size(10.5).color(theme::QUIET);
+    let text = |text: &str| RichText::new(text).size(10.5).color(theme::quiet());
     let button = egui::Button::new((text("Clip"), text(ICON_EXPAND_MORE.codepoint))).frame(false);
     let middle = egui::Layout::left_to_right(egui::Align::Center);
     // A child of its own leaves the cursor of the panel below the lanes, where the tracks begin.
@@ -62,7 +62,7 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Command
     }
     if trimmed {
         let end = motion.end_secs.map_or_else(|| "its end".to_owned(), |end| format!("{end:.2} s"));
-        ui.label(RichText::new(format!("From {:.2} s to {end}", motion.start_secs)).color(theme::QUIET));
+        ui.label(RichText::new(format!("From {:.2} s to {end}", motion.start_secs)).color(theme::quiet()));
     }
     ui.separator();
     settings(ui, &["speed", "looping", "loop_blend_secs", "loop_blend"], motion, &d);

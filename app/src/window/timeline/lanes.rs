@@ -55,14 +55,14 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
         super::clip::menu(ui, head, view, edited)
     };
     let clip = if view.clip.is_empty() { "rest" } else { &view.clip };
-    bar(ui, lane(0.0), scale, [0.0, duration], theme::LINE, clip);
+    bar(ui, lane(0.0), scale, [0.0, duration], theme::line(), clip);
     if let Some(take) = &view.take {
         name(ui, whole, lane(1.0), "Take");
-        bar(ui, lane(1.0), scale, [0.0, duration], theme::ACCENT.gamma_multiply(0.45), &take.name);
+        bar(ui, lane(1.0), scale, [0.0, duration], theme::accent().gamma_multiply(0.45), &take.name);
     } else if let Some(Recorded { from_secs, secs, kept_secs }) = view.recording {
         name(ui, whole, lane(1.0), "Take");
         for (secs, strength, text) in [(secs, 0.35, ""), (kept_secs, 0.6, "recording")] {
-            let color = theme::RECORDING.gamma_multiply(strength);
+            let color = theme::recording().gamma_multiply(strength);
             // The text stands where the recording began.
             let mut text = text;
             for part in recorded_parts(from_secs, secs, duration) {
@@ -75,8 +75,9 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     let painter = ui.painter_at(rect);
     if (from..=to).contains(&now) {
         let x = scale.x(now);
-        painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::ACCENT));
-        painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
+        painter
+            .line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::accent()));
+        painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::bright());
     }
     let response = response.hover_tooltip(
         "Drag to scrub. The wheel zooms, right-drag pans, and a double-click shows the whole timeline.",
@@ -128,7 +129,7 @@ fn magnify(ui: &Ui, response: &Response, rect: Rect, zoom: &mut Zoom, duration: 
 fn ruler(ui: &Ui, rect: Rect, scale: Scale, fps: f64) {
     let painter = ui.painter_at(rect);
     let ground = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + RULER));
-    painter.rect_filled(ground, 2.0, theme::PAGE);
+    painter.rect_filled(ground, 2.0, theme::page());
     let every = tick_secs(f64::from(scale.width) / (scale.to - scale.from).max(1e-9), 44.0, fps);
     let first = (scale.from / every).floor() as i64;
     // The number of labels is bounded by the width.
@@ -138,24 +139,24 @@ fn ruler(ui: &Ui, rect: Rect, scale: Scale, fps: f64) {
         let secs = i as f64 * every;
         let x = scale.x(secs);
         let ends = [pos2(x, ground.bottom() - 6.0), pos2(x, ground.bottom())];
-        painter.line_segment(ends, Stroke::new(1.0, theme::QUIET));
+        painter.line_segment(ends, Stroke::new(1.0, theme::quiet()));
         let text = match every {
             e if e < FRAMES_BELOW_SECS => format!("f{}", (secs * fps).round()),
             e if e < 0.99 => format!("{secs:.1}"),
             e if e < 60.0 => format!("{secs:.0}"),
             _ => format!("{}:{:02}", secs as i64 / 60, secs as i64 % 60),
         };
-        let text = painter.layout_no_wrap(text, font.clone(), theme::QUIET);
+        let text = painter.layout_no_wrap(text, font.clone(), theme::quiet());
         // A number that the edge would cut is left out.
         if x + 3.0 + text.size().x <= ground.right() {
-            painter.galley(pos2(x + 3.0, ground.top() + 2.0), text, theme::QUIET);
+            painter.galley(pos2(x + 3.0, ground.top() + 2.0), text, theme::quiet());
         }
     }
 }
 
 fn name(ui: &Ui, whole: Rect, lane: Rect, text: &str) {
     let at = pos2(whole.left() + 2.0, lane.center().y);
-    ui.painter().text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::QUIET);
+    ui.painter().text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::quiet());
 }
 
 fn bar(ui: &Ui, lane: Rect, scale: Scale, [from, to]: [f64; 2], color: egui::Color32, text: &str) {
@@ -163,7 +164,7 @@ fn bar(ui: &Ui, lane: Rect, scale: Scale, [from, to]: [f64; 2], color: egui::Col
     let rect = Rect::from_x_y_ranges(scale.x(from)..=scale.x(to), lane.y_range());
     painter.rect_filled(rect, 3.0, color);
     let at = pos2(rect.left().max(lane.left()) + 5.0, lane.center().y);
-    painter.text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::BRIGHT);
+    painter.text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::bright());
 }
 
 /// In and out points: the frames of a recording, as brackets that can be dragged.
@@ -187,7 +188,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
         let tip = format!("{label}: the {which} frame of recordings is {frame}, at {fps} a second.");
         let response = response.hover_tooltip(tip);
         let hot = response.hovered() || response.dragged();
-        let color = if hot { theme::BRIGHT } else { theme::ACCENT };
+        let color = if hot { theme::bright() } else { theme::accent() };
         let (x, inward) = (scale.x(ends[i] as f64 / fps), if i == 0 { 4.0 } else { -4.0 });
         let painter = ui.painter_at(rect.expand2(Vec2::new(5.0, 0.0)));
         let (top, bottom) = (rect.top() + 1.0, rect.top() + RULER - 1.0);
@@ -208,7 +209,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
         [[0.0, ends[0] as f64 / fps], [ends[1] as f64 / fps, duration.max(ends[1] as f64 / fps)]]
     {
         let dim = Rect::from_x_y_ranges(scale.x(from)..=scale.x(to), rect.top() + RULER..=rect.bottom());
-        painter.rect_filled(dim, 0.0, theme::PANEL.gamma_multiply(0.6));
+        painter.rect_filled(dim, 0.0, theme::panel().gamma_multiply(0.6));
     }
 }
 
@@ -244,7 +245,7 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>, beats: &[
             marker.name, marker.secs
         ));
         let painter = ui.painter_at(rect);
-        let color = if hot { theme::BRIGHT } else { theme::PLOT[1] };
+        let color = if hot { theme::bright() } else { theme::PLOT[1] };
         painter.line_segment([pos2(x, rect.top() + 2.0), pos2(x, rect.bottom())], Stroke::new(1.0, color));
         let corners: Vec<Pos2> =
             [(0.0, 0.0), (9.0, 3.5), (0.0, 7.0)].map(|(dx, dy)| flag.min + vec2(dx, dy)).to_vec();

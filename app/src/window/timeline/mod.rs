@@ -77,7 +77,7 @@ fn edge(ui: &Ui, room: f32, tracks_height: &mut Option<f32>) {
         *tracks_height = None;
     }
     if response.hovered() || response.dragged() {
-        ui.painter().with_clip_rect(handle).hline(panel.x_range(), y, Stroke::new(2.0, theme::ACCENT));
+        ui.painter().with_clip_rect(handle).hline(panel.x_range(), y, Stroke::new(2.0, theme::accent()));
     }
 }
 

@@ -29,12 +29,12 @@ pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section
         sound.name, section.offset_secs
     ));
     let painter = ui.painter_at(lane);
-    painter.rect_filled(lane, 2.0, theme::PAGE);
+    painter.rect_filled(lane, 2.0, theme::page());
     let dim = if section.muted { 0.35 } else { 1.0 };
     let columns = lane.width().ceil().clamp(1.0, 8000.0) as usize;
     let shown = [scale.from - section.offset_secs, scale.to - section.offset_secs];
     let outline = sound.loaded.waveform.columns(shown, columns);
-    let color = if hot { theme::BRIGHT } else { theme::PLOT[0] }.gamma_multiply(0.7 * dim);
+    let color = if hot { theme::bright() } else { theme::PLOT[0] }.gamma_multiply(0.7 * dim);
     let half = 0.5 * lane.height() - 2.0;
     let width = lane.width() / columns as f32;
     for (i, part) in outline.into_iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section
     }
     for secs in &sound.loaded.beats.secs {
         if let Some(x) = scale.x_of(secs + section.offset_secs) {
-            let stroke = Stroke::new(1.0, theme::ACCENT.gamma_multiply(dim));
+            let stroke = Stroke::new(1.0, theme::accent().gamma_multiply(dim));
             painter.line_segment([pos2(x, lane.top()), pos2(x, lane.top() + 6.0)], stroke);
         }
     }

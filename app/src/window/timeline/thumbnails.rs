@@ -197,7 +197,7 @@ impl Thumbnails {
         match image {
             Image::Memory(picture) => small(picture).map(|small| Image::Memory(Arc::new(small))),
             Image::Device(image) => {
-                if self.shrinker.as_ref().is_none_or(|known| known.gpu().device != image.gpu().device) {
+                if self.shrinker.as_ref().is_none_or(|known| !known.gpu().is_same_device(image.gpu())) {
                     self.shrinker = Shrinker::new(image.gpu()).ok();
                 }
                 Some(Image::Device(self.shrinker.as_mut()?.shrink(image, SIZE)))
@@ -292,7 +292,7 @@ pub(super) fn lane(
     thumbs: &[(f64, TextureId)],
 ) {
     let painter = ui.painter_at(lane);
-    painter.rect_filled(lane, 2.0, theme::PAGE);
+    painter.rect_filled(lane, 2.0, theme::page());
     let each = slot_secs(zoom, duration, lane.width());
     for middle in slots(zoom, duration, lane.width()) {
         let off = |thumb: &&(f64, TextureId)| (thumb.0 - middle).abs();

@@ -71,7 +71,7 @@ pub(super) fn ui(
             sought = lane_ui(ui, lane, (scale, beats), i, (track, &label), writes).or(sought);
             if let Some(x) = scale.x_of(view.time_secs) {
                 let line = [pos2(x, lane.top() - 1.0), pos2(x, lane.bottom() + 1.0)];
-                ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::ACCENT));
+                ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::accent()));
             }
         }
     });
@@ -127,11 +127,11 @@ fn head_ui(
             }
         }
         let color = if writes {
-            theme::RECORDING
+            theme::recording()
         } else if track.muted {
-            theme::QUIET
+            theme::quiet()
         } else {
-            theme::BRIGHT
+            theme::bright()
         };
         let text = egui::Label::new(RichText::new(label).size(10.5).color(color)).truncate();
         let room = vec2(ui.available_width(), head.height());
@@ -251,7 +251,7 @@ fn paint(
     y: impl Fn(f64) -> f32,
 ) {
     let painter = ui.painter_at(lane.expand(1.0));
-    let ground = if writes { theme::RECORDING.gamma_multiply(0.18) } else { theme::PAGE };
+    let ground = if writes { theme::recording().gamma_multiply(0.18) } else { theme::page() };
     painter.rect_filled(lane, 2.0, ground);
     let dim = if track.muted { 0.35 } else { 1.0 };
     let numbers = track.keys.first().map_or(0, |key| key.value.len());
@@ -259,7 +259,7 @@ fn paint(
     let at = |i: usize| lane.left() + lane.width() * (i as f32 / steps as f32);
     let values: Vec<_> = (0..=steps).map(|i| (at(i), track.value_at(scale.secs(at(i))))).collect();
     for number in 0..numbers {
-        let color = if numbers == 1 { theme::ACCENT } else { theme::AXES[number % theme::AXES.len()] };
+        let color = if numbers == 1 { theme::accent() } else { theme::AXES[number % theme::AXES.len()] };
         let color = color.gamma_multiply(dim);
         let point = |(x, value): &(f32, Option<Vec<f64>>)| {
             value.as_ref().and_then(|value| Some(pos2(*x, y(*value.get(number)?))))
@@ -274,7 +274,7 @@ fn paint(
             let Some(x) = scale.x_of(key.secs) else { continue };
             let Some(&value) = key.value.get(number) else { continue };
             let is_hot = hot == Some((i, number));
-            let (radius, color) = if is_hot { (4.0, theme::BRIGHT) } else { (2.5, color) };
+            let (radius, color) = if is_hot { (4.0, theme::bright()) } else { (2.5, color) };
             painter.circle_filled(pos2(x, y(value)), radius, color);
         }
     }

@@ -5,7 +5,8 @@ use egui::{RichText, Ui, Vec2};
 use egui_material_icons::icons;
 
 use super::{Recorded, View};
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, point};
+use crate::window::keymap::Keymap;
 use crate::window::theme;
 
 /// The rates on offer, with their labels.
@@ -42,12 +43,12 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<Command> {
     }
     if let Some(only) = &view.writing.only {
         let name: String = only.chars().take(LONGEST_NAME).collect();
-        ui.label(RichText::new(name).small().color(theme::RECORDING))
+        ui.label(RichText::new(name).small().color(theme::recording()))
             .hover_tooltip(format!("Recording only {only}. Press W to stop."));
     }
     request = rate(ui, view.rate).or(request);
     ui.monospace(format!("{:6.2} s", view.time_secs));
-    ui.label(RichText::new(format!("frame {}", frame(view.time_secs, fps))).small().color(theme::QUIET)).hover_tooltip(
+    ui.label(RichText::new(format!("frame {}", frame(view.time_secs, fps))).small().color(theme::quiet())).hover_tooltip(
         format!(
             "Frame of the film at {fps} per second, as counted by the Recording panel and the in and out points. An arrow \
              key moves by one step of the simulation, 1/60 s."
@@ -56,7 +57,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<Command> {
     ui.add_space(12.0);
     match (&view.take, view.recording) {
         (Some(take), _) => {
-            ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
+            ui.label(RichText::new(format!("Take {}", take.name)).color(theme::accent()))
                 .hover_tooltip("Body and hair move as recorded. Lights, look and camera can be changed.");
             if button(ui, icons::ICON_CLOSE.into(), &Command::LeaveTake) {
                 request = Some(Command::LeaveTake);
@@ -65,14 +66,14 @@ pub(super) fn ui(ui: &mut Ui, view: &View, fps: f64) -> Option<Command> {
         (None, recording) => {
             let running = recording.is_some();
             let icon = if running { icons::ICON_STOP } else { icons::ICON_FIBER_MANUAL_RECORD };
-            if button(ui, RichText::from(icon).color(theme::RECORDING), &Command::RecordTake) {
+            if button(ui, RichText::from(icon).color(theme::recording()), &Command::RecordTake) {
                 request = Some(Command::RecordTake);
             }
             if !running && view.can_play_take && button(ui, "Play the take".into(), &Command::PlayTake) {
                 request = Some(Command::PlayTake);
             }
             if let Some(Recorded { secs, kept_secs, .. }) = recording {
-                ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
+                ui.label(RichText::new(format!("{secs:.1} s")).color(theme::recording()))
                     .hover_tooltip(format!("{kept_secs:.1} s of the take are already saved to disk."));
             }
         }
@@ -89,13 +90,16 @@ fn frame(secs: f64, fps: f64) -> String {
 
 /// A button for a command, which screen readers announce by the command's name.
 fn button(ui: &mut Ui, icon: RichText, command: &Command) -> bool {
-    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).hover_tooltip(tip(command));
+    let tip = tip(ui, command);
+    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).hover_tooltip(tip);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label(command)));
+    point::note_command(&response, command);
     response.clicked()
 }
 
 fn toggle(ui: &mut Ui, on: bool, icon: egui_material_icons::MaterialIcon, command: &Command) -> bool {
-    let response = ui.selectable_label(on, icon).hover_tooltip(tip(command));
+    let tip = tip(ui, command);
+    let response = ui.selectable_label(on, icon).hover_tooltip(tip);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, label(command)));
     response.clicked()
 }
@@ -104,13 +108,11 @@ fn label(command: &Command) -> &'static str {
     command.info().map_or("", |info| info.label)
 }
 
-fn tip(command: &Command) -> String {
+fn tip(ui: &Ui, command: &Command) -> String {
     let Some(info) = command.info() else { return String::new() };
-    if info.shortcuts.is_empty() {
-        info.tooltip.to_owned()
-    } else {
-        format!("{} ({})", info.tooltip, info.shortcuts.join(", "))
-    }
+    let keymap = Keymap::of(ui.ctx());
+    let keys = keymap.keys(info);
+    if keys.is_empty() { info.tooltip.to_owned() } else { format!("{} ({})", info.tooltip, keys.join(", ")) }
 }
 
 fn rate(ui: &mut Ui, rate: f64) -> Option<Command> {

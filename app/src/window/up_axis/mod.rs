@@ -157,7 +157,7 @@ impl Window {
                         };
                         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
                         let text = RichText::new(&label);
-                        ui.label(if is_guess { text.color(theme::ACCENT) } else { text });
+                        ui.label(if is_guess { text.color(theme::accent()) } else { text });
                         if is_guess && *is_new {
                             response.request_focus();
                         }

@@ -53,7 +53,7 @@ pub(super) fn draw(hair: &HairFile, side: usize) -> ColorImage {
     let scale = (1.0 - 2.0 * MARGIN) * side as f32 / size;
     let middle = 0.5 * side as f32;
     let shift = [middle - scale * seen.centre().x, middle + scale * seen.centre().y];
-    let empty = theme::to_linear(theme::PAGE);
+    let empty = theme::to_linear(theme::page());
     let mut sketch = Sketch {
         side,
         colors: vec![empty; side * side],

@@ -72,7 +72,7 @@ pub(super) fn ui(
         ui.separator();
         if let Some(ms) = ms {
             let rate =
-                RichText::new(format!("{:.1} images/s", 1e3 / ms.max(1.0))).small().color(theme::QUIET);
+                RichText::new(format!("{:.1} images/s", 1e3 / ms.max(1.0))).small().color(theme::quiet());
             ui.add(egui::Label::new(rate).extend())
                 .hover_tooltip("Rounds of nine images per second, each with its own simulation.");
         }
@@ -84,7 +84,7 @@ pub(super) fn ui(
         ui.label(
             RichText::new("Click a variant to adopt it, Shift+click two to make a child of both.")
                 .small()
-                .color(theme::QUIET),
+                .color(theme::quiet()),
         );
     });
     action

@@ -147,7 +147,7 @@ impl Window {
                 None => {}
             }
             let page = ui.available_rect_before_wrap();
-            ui.painter().rect_filled(page, 0.0, theme::PAGE);
+            ui.painter().rect_filled(page, 0.0, theme::page());
             let choice = self.cells(ui, page, project);
             self.choose(choice.as_ref(), project);
             self.running(ui, page);
@@ -185,7 +185,7 @@ impl Window {
             let response =
                 ui.interact(place, egui::Id::unique(("wall cell", index)), Sense::click_and_drag());
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-            camera_control::steer(&mut project.camera, &response);
+            camera_control::steer(&mut project.camera, self.scene_secs(), &response);
             self.cell(ui, place, index, &response);
             if response.clicked() {
                 let shift = ui.input(|input| input.modifiers.shift);
@@ -224,7 +224,7 @@ impl Window {
                         egui::Id::unique(("wall problem", index)),
                         UiBuilder::new().max_rect(place.shrink(10.0)),
                     );
-                    ui.colored_label(theme::WRONG, why);
+                    ui.colored_label(theme::wrong(), why);
                 }
             }
             None => {
@@ -233,23 +233,23 @@ impl Window {
                     Align2::CENTER_CENTER,
                     "Getting ready…",
                     font.clone(),
-                    theme::QUIET,
+                    theme::quiet(),
                 );
             }
         }
         if index == PRESENT {
             let at = place.left_bottom() + egui::vec2(8.0, -6.0);
-            painter.text(at, Align2::LEFT_BOTTOM, "Present", font.clone(), theme::QUIET);
+            painter.text(at, Align2::LEFT_BOTTOM, "Present", font.clone(), theme::quiet());
         }
         let marked = wall.marked == Some(index);
         if marked {
             let at = place.right_bottom() + egui::vec2(-8.0, -6.0);
-            painter.text(at, Align2::RIGHT_BOTTOM, "Parent: Shift+click another", font, theme::ACCENT);
+            painter.text(at, Align2::RIGHT_BOTTOM, "Parent: Shift+click another", font, theme::accent());
         }
         let edge = match (marked || response.hovered(), index == PRESENT) {
-            (true, _) => Stroke::new(2.0, theme::ACCENT),
-            (false, true) => Stroke::new(1.0, theme::QUIET),
-            (false, false) => Stroke::new(1.0, theme::LINE),
+            (true, _) => Stroke::new(2.0, theme::accent()),
+            (false, true) => Stroke::new(1.0, theme::quiet()),
+            (false, false) => Stroke::new(1.0, theme::line()),
         };
         painter.rect_stroke(place, 0.0, edge, StrokeKind::Inside);
     }

@@ -19,6 +19,7 @@
 //! file are ignored, and so is the `EXPOSURE` of a Radiance file, as most tools do.
 
 mod axes;
+mod backdrop;
 mod error;
 mod panorama;
 mod picture;
@@ -32,6 +33,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+pub use self::backdrop::{
+    BackdropError, BackdropPicture, BackdropPixels, BackdropProblem, MAX_BACKDROP_PIXELS, MAX_BACKDROP_SIDE,
+};
 pub use self::error::{EnvironmentError, MAX_FILE_BYTES, MAX_HEIGHT, MAX_WIDTH, Problem};
 pub use self::panorama::{Panorama, Thumbnail};
 pub use self::picture::{LARGEST_RADIANCE, Notes};

@@ -6,11 +6,10 @@
 // Inlined into the loops of a renderer; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
-use super::arithmetic::{clamp, exp, three};
+use super::arithmetic::{clamp, exp};
 use super::scattering::TILTS;
-use super::{
-    CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterRow, ScatterTable, distributions, variances,
-};
+use super::table::Columns;
+use super::{CosineStep, Fibre, LOBES, LongitudinalLobe, ManyTable, ScatterTable, distributions, variances};
 
 /// Most fibres that are told apart between a point and a light.
 pub const MAX_FIBRES: f32 = 40.0;
@@ -72,186 +71,233 @@ impl FibreTables {
     }
 }
 
-/// A light, relative to a point of a strand.
+/// A light, relative to `N` points of strands.
 #[derive(Clone, Copy, Debug)]
-pub struct PointLight {
+pub struct PointLight<const N: usize> {
     /// Sine and cosine of the inclination to the normal plane; the cosine is not negative.
-    pub sin_theta: f32,
+    pub sin_theta: [f32; N],
     /// See `sin_theta`.
-    pub cos_theta: f32,
+    pub cos_theta: [f32; N],
     /// Azimuth between light and eye, 0 to pi: the arc cosine of the dot product of both directions in the normal plane.
-    pub phi: f32,
+    pub phi: [f32; N],
     /// Mean count of fibres between the point and the light, `-ln(transmittance) / (extinction per fibre)`.
-    pub fibres: f32,
+    pub fibres: [f32; N],
 }
 
-/// What a point of a strand scatters toward the eye. It depends on the eye and the absorption, and on no light.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PointScatter {
+/// What `N` points of strands scatter toward the eye. It depends on the eye and the absorption, and on no light.
+///
+/// Each number is an array over the points, and each function is a few loops over them, which the compiler turns into vectors: a loop over
+/// single points that calls all of this would be too long for it.
+#[derive(Clone, Copy, Debug)]
+pub struct PointScatter<const N: usize> {
     /// Rows of the tables for the eye's cosine.
-    pub eye: CosineStep,
-    /// Sine and cosine of the eye's inclination.
-    pub sin_theta: f32,
-    /// See `sin_theta`.
-    pub cos_theta: f32,
+    pub eye: [CosineStep; N],
     /// Sine and cosine of the eye's inclination, tilted for every lobe.
-    pub tilted: [[f32; 2]; LOBES],
+    pub tilted: [[[f32; N]; 2]; LOBES],
     /// Per channel: absorption per radius.
-    pub sigma: [f32; 3],
+    pub sigma: [[f32; N]; 3],
     /// Per channel: share that a fibre scatters forward. Symbol: `a_f`.
-    pub forward: [f32; 3],
+    pub forward: [[f32; N]; 3],
     /// Per channel: variance of the forward scattering. Symbol: `b_f`.
-    pub spread: [f32; 3],
+    pub spread: [[f32; N]; 3],
     /// Per channel: backscattered light times `2 / pi`. Symbol: `A_b`.
-    pub backscatter: [f32; 3],
+    pub backscatter: [[f32; N]; 3],
     /// Variance of the backscattered light, the mean over the channels weighted by that light. Symbol: `v_b`.
-    pub backscatter_variance: f32,
-    /// Its longitudinal lobe.
-    pub backscatter_lobe: LongitudinalLobe,
+    pub backscatter_variance: [f32; N],
     /// Per channel: distribution of the paths longer than TRT.
-    pub rest: [f32; 3],
+    pub rest: [[f32; N]; 3],
     /// Per channel: share of diffuse light that the strand scatters, `a_f + a_b`.
-    pub albedo: [f32; 3],
+    pub albedo: [[f32; N]; 3],
 }
 
-impl PointScatter {
+impl<const N: usize> PointScatter<N> {
     /// Scattering toward an eye at an inclination, for an absorption per channel. Values that are not numbers count as zero.
     #[inline(always)]
-    pub fn new(tables: &FibreTables, sin_theta: f32, cos_theta: f32, sigma: [f32; 3]) -> Self {
-        let sin_theta = clamp(sin_theta, -1.0, 1.0);
-        let cos_theta = clamp(cos_theta, 0.0, 1.0);
-        let eye = CosineStep::new(cos_theta);
-        let sigma = sigma.map(|sigma| clamp(sigma, 0.0, 1e6));
-        let rows = sigma.map(|sigma| tables.many.row(eye, sigma));
-        let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k]];
-        let v = tables.variances[0];
-        let (mut variance, mut weight) = (0.0, 0.0);
-        for row in &rows {
-            variance += (row[4] + 1e-9) * row[5];
-            weight += row[4] + 1e-9;
+    pub fn new(
+        tables: &FibreTables,
+        sin_theta: &[f32; N],
+        cos_theta: &[f32; N],
+        absorption: &[[f32; N]; 3],
+    ) -> Self {
+        let mut eye = [CosineStep::default(); N];
+        let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            sin[lane] = clamp(sin_theta[lane], -1.0, 1.0);
+            cos[lane] = clamp(cos_theta[lane], 0.0, 1.0);
         }
-        let backscatter_variance = clamp(v * variance / weight, 0.0, WIDEST);
-        Self {
+        for lane in 0..N {
+            eye[lane] = CosineStep::new(cos[lane]);
+        }
+        let mut scatter = Self {
             eye,
-            sin_theta,
-            cos_theta,
-            tilted: tables.tilts.map(|[sin, cos]| {
-                [sin_theta * cos + cos_theta * sin, (cos_theta * cos - sin_theta * sin).abs()]
-            }),
-            sigma,
-            forward: column(0),
-            spread: column(2).map(|ratio| v * ratio),
-            backscatter: column(4).map(|share| BACKSCATTER * share),
-            backscatter_variance,
-            backscatter_lobe: LongitudinalLobe::quick(backscatter_variance),
-            rest: column(7),
-            albedo: [0, 1, 2].map(|c| rows[c][0] + rows[c][1]),
+            tilted: [[[0.0; N]; 2]; LOBES],
+            sigma: [[0.0; N]; 3],
+            forward: [[0.0; N]; 3],
+            spread: [[0.0; N]; 3],
+            backscatter: [[0.0; N]; 3],
+            backscatter_variance: [0.0; N],
+            rest: [[0.0; N]; 3],
+            albedo: [[0.0; N]; 3],
+        };
+        for (tilted, [tilt_sin, tilt_cos]) in scatter.tilted.iter_mut().zip(tables.tilts) {
+            for lane in 0..N {
+                tilted[0][lane] = sin[lane] * tilt_cos + cos[lane] * tilt_sin;
+                tilted[1][lane] = (cos[lane] * tilt_cos - sin[lane] * tilt_sin).abs();
+            }
         }
+        let v = tables.variances[0];
+        let (mut variance, mut weight) = ([0.0; N], [0.0; N]);
+        for (sigma, absorption) in scatter.sigma.as_flattened_mut().iter_mut().zip(absorption.as_flattened())
+        {
+            *sigma = clamp(*absorption, 0.0, 1e6);
+        }
+        for c in 0..3 {
+            let rows = tables.many.columns(&eye, &scatter.sigma[c]);
+            for lane in 0..N {
+                let returned = rows[4][lane];
+                variance[lane] += (returned + 1e-9) * rows[5][lane];
+                weight[lane] += returned + 1e-9;
+                scatter.forward[c][lane] = rows[0][lane];
+                scatter.spread[c][lane] = v * rows[2][lane];
+                scatter.backscatter[c][lane] = BACKSCATTER * returned;
+                scatter.rest[c][lane] = rows[7][lane];
+                scatter.albedo[c][lane] = rows[0][lane] + rows[1][lane];
+            }
+        }
+        for lane in 0..N {
+            scatter.backscatter_variance[lane] = clamp(v * variance[lane] / weight[lane], 0.0, WIDEST);
+        }
+        scatter
     }
 
     /// Radiance toward the eye per unit of irradiance (on a surface perpendicular to the light), per channel.
     ///
-    /// `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0 the strand only shows the light that
-    /// reaches it directly, `exp(-fibres)` times the scattering of one fibre.
+    /// `variances` are those of the lobes at each point. `strength`, 0 to 1, is the share of light that was scattered by other fibres: at 0
+    /// the strand only shows the light that reaches it directly, `exp(-fibres)` times the scattering of one fibre.
     ///
     /// With n fibres, `e = exp(-n)` of the light hits none of them and `psi = exp(-n (1 - a_f)) - e` is scattered forward by all
     /// that it hits, which follows from a Poisson distribution of the hits. The radiance is `e (f_s + f_b(0)) + psi (f_G +
     /// f_b(x))`, where x is the variance that the hits add, `b_f` each (Zinke et al. 2008, global and local multiple
     /// scattering). TT has an x per channel. The other lobes share its mean over the channels, weighted by psi, which halves the
     /// time.
-    ///
-    /// `rows` are those of both tables at the eye and the light's azimuth, first of direct light and then of light that was scattered
-    /// forward; `lobes` are those of `variances`. It is arithmetic alone, so that a loop over several points vectorises after their rows
-    /// are read.
     #[inline(always)]
-    pub fn radiance_of_rows(
+    pub fn radiance(
         &self,
-        rows: &[ScatterRow; 2],
-        variances: [f32; LOBES],
-        lobes: [LongitudinalLobe; LOBES],
-        light: &PointLight,
+        tables: &FibreTables,
+        variances: &[[f32; N]; LOBES],
+        light: &PointLight<N>,
         strength: f32,
-    ) -> [f32; 3] {
-        let n = clamp(light.fibres, 0.0, MAX_FIBRES);
-        let unhit = exp(-n);
-
-        let reached = three(|c| exp(-n * (1.0 - self.forward[c])));
-        let psi = three(|c| clamp(reached[c] - unhit, 0.0, 1.0));
-        let added = [
-            self.added(0, n, unhit, reached[0]),
-            self.added(1, n, unhit, reached[1]),
-            self.added(2, n, unhit, reached[2]),
-        ];
-        let share = three(|c| psi[c] + 1e-6);
-        let x = (share[0] * added[0] + share[1] * added[1] + share[2] * added[2])
-            / (share[0] + share[1] + share[2]);
+    ) -> [[f32; N]; 3] {
+        let rows =
+            [tables.direct.columns(&self.eye, &light.phi), tables.forward.columns(&self.eye, &light.phi)];
+        let (mut n, mut unhit) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            n[lane] = clamp(light.fibres[lane], 0.0, MAX_FIBRES);
+            unhit[lane] = exp(-n[lane]);
+        }
+        let (mut psi, mut added) = ([[0.0; N]; 3], [[0.0; N]; 3]);
+        let (mut sum, mut weight) = ([0.0; N], [0.0; N]);
+        for c in 0..3 {
+            for lane in 0..N {
+                let forward = self.forward[c][lane];
+                let reached = exp(-n[lane] * (1.0 - forward));
+                psi[c][lane] = clamp(reached - unhit[lane], 0.0, 1.0);
+                // Variance that the hits add to light of a channel which was hit. Mean hits are n a_f / (1 - exp(-n a_f)), which is 1 for
+                // n = 0. The small number makes it so.
+                let hit = clamp(1.0 - unhit[lane] / reached, 0.0, 1.0);
+                let hits = (n[lane] * forward + 1e-4) / (hit + 1e-4);
+                added[c][lane] = clamp(self.spread[c][lane] * hits, 0.0, WIDEST);
+                let share = psi[c][lane] + 1e-6;
+                sum[lane] += share * added[c][lane];
+                weight[lane] += share;
+            }
+        }
+        let mut x = [0.0; N];
+        for lane in 0..N {
+            x[lane] = sum[lane] / weight[lane];
+        }
 
         let once = [
-            self.lobe_at(lobes[0], 0, light),
-            self.lobe_at(lobes[1], 1, light),
-            self.lobe_at(lobes[2], 2, light),
-            self.lobe_at(lobes[3], 3, light),
+            self.lobe(&variances[0], 0, light),
+            self.lobe(&variances[1], 1, light),
+            self.lobe(&variances[2], 2, light),
+            self.lobe(&variances[3], 3, light),
         ];
         // TT carries most of the light of fair hair and is the narrowest, so each channel has its own. The longer paths are few;
         // after scattering they count to TRT, whose variance they have.
-        let after_r = self.lobe_at(LongitudinalLobe::quick(variances[0] + x), 0, light);
-        let after_tt = [
-            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[0]), 1, light),
-            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[1]), 1, light),
-            self.lobe_at(LongitudinalLobe::quick(variances[1] + added[2]), 1, light),
-        ];
-        let after_trt = self.lobe_at(LongitudinalLobe::quick(variances[2] + x), 2, light);
+        let after_r = self.lobe(&plus(&variances[0], &x), 0, light);
+        let after_trt = self.lobe(&plus(&variances[2], &x), 2, light);
 
         // Backscattered light leaves on the side of the light. Lobe 3 has no tilt.
-        let same_side =
-            clamp(0.5 + (std::f32::consts::FRAC_PI_2 - light.phi) * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
-        let back_once = same_side * self.lobe_at(self.backscatter_lobe, 3, light);
-        let back_after =
-            same_side * self.lobe_at(LongitudinalLobe::quick(self.backscatter_variance + x), 3, light);
-
-        let direct = [unhit, strength * back_once, once[0], once[1], once[2], once[3]];
-        let scattered = [strength, back_after, after_r, after_trt];
-        [
-            self.channel(0, rows, &direct, &scattered, psi[0], after_tt[0]),
-            self.channel(1, rows, &direct, &scattered, psi[1], after_tt[1]),
-            self.channel(2, rows, &direct, &scattered, psi[2], after_tt[2]),
-        ]
+        let mut back_once = self.lobe(&self.backscatter_variance, 3, light);
+        let mut back_after = self.lobe(&plus(&self.backscatter_variance, &x), 3, light);
+        for lane in 0..N {
+            let from_side = std::f32::consts::FRAC_PI_2 - light.phi[lane];
+            let same_side = clamp(0.5 + from_side * (0.5 / BACKSCATTER_EDGE), 0.0, 1.0);
+            back_once[lane] *= same_side;
+            back_after[lane] *= same_side;
+        }
+        let mut radiance = [[0.0; N]; 3];
+        for c in 0..3 {
+            let after_tt = self.lobe(&plus(&variances[1], &added[c]), 1, light);
+            let (d, g) = (self.around(c, &rows[0]), self.around(c, &rows[1]));
+            for lane in 0..N {
+                let (rest, local) = (self.rest[c][lane], self.backscatter[c][lane]);
+                let single = once[0][lane] * d[0][lane]
+                    + once[1][lane] * d[1][lane]
+                    + once[2][lane] * d[2][lane]
+                    + once[3][lane] * rest;
+                let global = after_r[lane] * g[0][lane]
+                    + after_tt[lane] * g[1][lane]
+                    + after_trt[lane] * (g[2][lane] + rest);
+                radiance[c][lane] = unhit[lane] * (single + local * (strength * back_once[lane]))
+                    + strength * psi[c][lane] * (global + local * back_after[lane]);
+            }
+        }
+        radiance
     }
 
-    /// Variance that the hits add to light of a channel which was hit.
+    /// The distributions of R, TT and TRT around the strand in a channel.
     #[inline(always)]
-    fn added(&self, c: usize, n: f32, unhit: f32, reached: f32) -> f32 {
-        // Mean hits are n a_f / (1 - exp(-n a_f)), which is 1 for n = 0. The small number makes it so.
-        let hit = clamp(1.0 - unhit / reached, 0.0, 1.0);
-        let hits = (n * self.forward[c] + 1e-4) / (hit + 1e-4);
-        clamp(self.spread[c] * hits, 0.0, WIDEST)
+    fn around(&self, c: usize, rows: &Columns<N>) -> [[f32; N]; 3] {
+        let mut lobes = [[0.0; N]; 3];
+        for lane in 0..N {
+            let row = [
+                rows[0][lane],
+                rows[1][lane],
+                rows[2][lane],
+                rows[3][lane],
+                rows[4][lane],
+                rows[5][lane],
+                rows[6][lane],
+                0.0,
+            ];
+            let [r, tt, trt] = distributions(&row, self.sigma[c][lane]);
+            lobes[0][lane] = r;
+            lobes[1][lane] = tt;
+            lobes[2][lane] = trt;
+        }
+        lobes
     }
 
-    /// Radiance of a channel. `direct` is the light that no fibre hit, its backscattering and its four lobes; `scattered` is the
-    /// strength, the backscattering and the lobes R and TRT of light that was hit, whose amount is `psi` and whose lobe TT
-    /// `after_tt`.
+    /// Longitudinal lobes of `variance` at the light, with the tilt of lobe `p`.
     #[inline(always)]
-    fn channel(
-        &self,
-        c: usize,
-        rows: &[ScatterRow; 2],
-        direct: &[f32; 6],
-        scattered: &[f32; 4],
-        psi: f32,
-        after_tt: f32,
-    ) -> f32 {
-        let [unhit, back_once, once @ ..] = direct;
-        let [strength, back_after, after_r, after_trt] = scattered;
-        let (d, g) = (distributions(&rows[0], self.sigma[c]), distributions(&rows[1], self.sigma[c]));
-        let single = once[0] * d[0] + once[1] * d[1] + once[2] * d[2] + once[3] * self.rest[c];
-        let global = after_r * g[0] + after_tt * g[1] + after_trt * (g[2] + self.rest[c]);
-        let local = self.backscatter[c];
-        unhit * (single + local * back_once) + strength * psi * (global + local * back_after)
+    fn lobe(&self, variance: &[f32; N], p: usize, light: &PointLight<N>) -> [f32; N] {
+        let mut lobe = [0.0; N];
+        let [sin, cos] = &self.tilted[p];
+        for lane in 0..N {
+            let quick = LongitudinalLobe::quick(variance[lane]);
+            lobe[lane] = quick.at(light.sin_theta[lane], light.cos_theta[lane], sin[lane], cos[lane]);
+        }
+        lobe
     }
+}
 
-    /// A longitudinal lobe at the light, with the tilt of lobe `p`.
-    #[inline(always)]
-    fn lobe_at(&self, lobe: LongitudinalLobe, p: usize, light: &PointLight) -> f32 {
-        lobe.at(light.sin_theta, light.cos_theta, self.tilted[p][0], self.tilted[p][1])
+#[inline(always)]
+fn plus<const N: usize>(a: &[f32; N], b: &[f32; N]) -> [f32; N] {
+    let mut sum = [0.0; N];
+    for lane in 0..N {
+        sum[lane] = a[lane] + b[lane];
     }
+    sum
 }

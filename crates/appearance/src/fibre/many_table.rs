@@ -5,7 +5,9 @@
 use rayon::prelude::*;
 
 use super::longitudinal::VARIANCE_RATIOS;
-use super::table::{COSINES, CosineStep, SMOOTHEST_AROUND, WIDTH_POINTS, bilinear, cosine, step};
+use super::table::{
+    Between, COSINES, Columns, CosineStep, SMOOTHEST_AROUND, WIDTH_POINTS, cosine, row_of, step,
+};
 use super::{Fibre, FibrePath, LOBES, Quadrature, TrimmedLogistic};
 
 /// Steps of the absorption.
@@ -86,12 +88,20 @@ impl ManyTable {
     }
 
     /// The row of an inclination and an absorption.
-    #[inline(always)]
     pub fn row(&self, eye: CosineStep, sigma: f32) -> ManyRow {
-        let (k, x) = step(position(sigma), ABSORPTIONS);
-        let first = eye.index * ABSORPTIONS + k;
-        let [a, b] = [first, first + ABSORPTIONS].map(|row| [&self.rows[row], &self.rows[row + 1]]);
-        bilinear([a[0], a[1], b[0], b[1]], x, eye.fraction)
+        row_of(self.columns(&[eye], &[sigma]))
+    }
+
+    /// The rows of several inclinations and absorptions, by value.
+    #[inline(always)]
+    pub(super) fn columns<const N: usize>(&self, eye: &[CosineStep; N], sigma: &[f32; N]) -> Columns<N> {
+        let mut at = Between { first: [0; N], next: [0.0; N], later: [0.0; N], stride: ABSORPTIONS };
+        for lane in 0..N {
+            let (k, x) = step(position(sigma[lane]), ABSORPTIONS);
+            at.first[lane] = eye[lane].index * ABSORPTIONS + k;
+            (at.next[lane], at.later[lane]) = (x, eye[lane].fraction);
+        }
+        at.columns(&self.rows)
     }
 }
 

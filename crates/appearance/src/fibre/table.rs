@@ -79,13 +79,44 @@ pub(super) fn cosine(j: usize) -> f64 {
     (low + (1.0 - low) * j as f64 / (COSINES - 1) as f64).powi(2).min(1.0)
 }
 
-/// Bilinear mean of four rows.
+/// Values of the rows of a table at `N` points, one array per value.
+pub(super) type Columns<const N: usize> = [[f32; N]; 8];
+
+/// Places between four rows of a table: the first of them, and the weights of the next one and of the one `stride` rows later.
+pub(super) struct Between<const N: usize> {
+    pub first: [usize; N],
+    pub next: [f32; N],
+    pub later: [f32; N],
+    pub stride: usize,
+}
+
+impl<const N: usize> Between<N> {
+    /// Bilinear means of the rows around each place; zero beyond the end.
+    #[inline(always)]
+    pub fn columns(&self, rows: &[[f32; 8]]) -> Columns<N> {
+        let mut columns = [[0.0; N]; 8];
+        for (lane, &first) in self.first.iter().enumerate() {
+            let (x, y) = (self.next[lane], self.later[lane]);
+            let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
+            // One comparison in place of four.
+            let Some(rows) = rows.get(first..first + self.stride + 2) else { continue };
+            let (a, b, c, d) = (&rows[0], &rows[1], &rows[self.stride], &rows[self.stride + 1]);
+            let mut mean = [0.0; 8];
+            for k in 0..8 {
+                mean[k] = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k] + weights[3] * d[k];
+            }
+            for k in 0..8 {
+                columns[k][lane] = mean[k];
+            }
+        }
+        columns
+    }
+}
+
+/// The values of one point.
 #[inline(always)]
-pub(super) fn bilinear(rows: [&[f32; 8]; 4], x: f32, y: f32) -> [f32; 8] {
-    let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
-    std::array::from_fn(|k| {
-        weights[0] * rows[0][k] + weights[1] * rows[1][k] + weights[2] * rows[2][k] + weights[3] * rows[3][k]
-    })
+pub(super) fn row_of(columns: Columns<1>) -> [f32; 8] {
+    columns.map(|[value]| value)
 }
 
 impl ScatterTable {
@@ -110,12 +141,21 @@ impl ScatterTable {
     }
 
     /// The row at an eye and an azimuth; the sign of the azimuth has no effect.
-    #[inline(always)]
     pub fn row(&self, eye: CosineStep, phi: f32) -> ScatterRow {
-        let (i, x) = step(phi.abs() * ((AZIMUTHS - 1) as f32 / std::f32::consts::PI), AZIMUTHS);
-        let first = eye.index * AZIMUTHS + i;
-        let [a, b] = [first, first + AZIMUTHS].map(|row| [&self.rows[row], &self.rows[row + 1]]);
-        bilinear([a[0], a[1], b[0], b[1]], x, eye.fraction)
+        row_of(self.columns(&[eye], &[phi]))
+    }
+
+    /// The rows of several eyes and azimuths, by value.
+    #[inline(always)]
+    pub(super) fn columns<const N: usize>(&self, eye: &[CosineStep; N], phi: &[f32; N]) -> Columns<N> {
+        let mut at = Between { first: [0; N], next: [0.0; N], later: [0.0; N], stride: AZIMUTHS };
+        for lane in 0..N {
+            let position = phi[lane].abs() * ((AZIMUTHS - 1) as f32 / std::f32::consts::PI);
+            let (i, x) = step(position, AZIMUTHS);
+            at.first[lane] = eye[lane].index * AZIMUTHS + i;
+            (at.next[lane], at.later[lane]) = (x, eye[lane].fraction);
+        }
+        at.columns(&self.rows)
     }
 }
 

@@ -159,17 +159,21 @@ fn nearest(choices: &[u64], value: u64) -> u64 {
 pub struct Options {
     count: usize,
     names: fn(usize) -> (&'static str, &'static str),
+    more: fn() -> Vec<(&'static str, &'static str)>,
 }
 
 impl Options {
     pub(super) const fn of<T: Choices>() -> Self {
-        Self { count: T::ALL.len(), names: |i| T::ALL[i].names() }
+        Self {
+            count: T::ALL.len(),
+            names: |i| T::ALL[i].names(),
+            more: || T::more().into_iter().map(T::names).collect(),
+        }
     }
 
     /// Id and label of each choice, in the order of menus.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        let names = self.names;
-        (0..self.count).map(names)
+        (0..self.count).map(self.names).chain((self.more)())
     }
 }
 

@@ -167,6 +167,16 @@ pub trait Choices: Copy + PartialEq + 'static {
     /// Every value, in the order of menus.
     const ALL: &'static [Self];
 
+    /// Values that became known while the program runs, after the others in menus.
+    fn more() -> Vec<Self> {
+        Vec::new()
+    }
+
+    /// The values that menus offer: all, and those that became known.
+    fn offered() -> Vec<Self> {
+        Self::ALL.iter().copied().chain(Self::more()).collect()
+    }
+
     /// Its id in project files and on the command line, and its label in menus.
     fn names(self) -> (&'static str, &'static str);
 }
@@ -178,10 +188,11 @@ impl<T: Choices> SettingValue for T {
 
     fn assign(&mut self, value: Value) {
         if let Value::Choice(id) = value
-            && let Some(chosen) = T::ALL.iter().find(|choice| choice.names().0 == id)
+            && let Some(chosen) =
+                T::ALL.iter().copied().chain(T::more()).find(|choice| choice.names().0 == id)
             && chosen.names() != self.names()
         {
-            *self = *chosen;
+            *self = chosen;
         }
     }
 }

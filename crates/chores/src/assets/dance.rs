@@ -8,7 +8,7 @@ use lovelock_base::numbers::smoothstep;
 
 use super::glb::SampledClip;
 use super::ik::{align, angle_about, reach, twist_about};
-use super::rig::{self, RigJoint, rest};
+use super::rig::{self, Rig, RigJoint};
 use super::score::{ArmPose, Score, Step};
 
 /// Keys per second in the file.
@@ -98,12 +98,12 @@ impl Score {
             }
             from = step.to;
         }
-        (Vec3::new(from[0], rest::TOE.y, from[1]), 0.0)
+        (Vec3::new(from[0], self.ball_y, from[1]), 0.0)
     }
 
     fn swing(&self, from: [f32; 2], step: &Step, secs: f32, under_hips: Vec2) -> (Vec3, f32) {
         let beat = secs / self.beat_secs;
-        let on_ground = |p: [f32; 2]| Vec3::new(p[0], rest::TOE.y, p[1]);
+        let on_ground = |p: [f32; 2]| Vec3::new(p[0], self.ball_y, p[1]);
         let whole = [step.lift, step.land];
         let t = ((beat - step.lift) / (step.land - step.lift)).clamp(0.0, 1.0);
         let Some(held) = step.held else {
@@ -119,7 +119,7 @@ impl Score {
         let ground = if t < 0.5 { from } else { step.to };
         // A foot brushes along the floor before it rises: the height is proportional to the square of the distance.
         let mut at = on_ground(ground).lerp(place, in_air);
-        at.y = rest::TOE.y + (place.y - rest::TOE.y) * in_air.powf(1.4);
+        at.y = self.ball_y + (place.y - self.ball_y) * in_air.powf(1.4);
         (at, in_air)
     }
 
@@ -151,7 +151,8 @@ impl Score {
     }
 
     /// The pose at a time.
-    fn pose(&self, joints: &[RigJoint], secs: f32, heel_radians: [f32; 2]) -> LocalPose {
+    fn pose(&self, rig: &Rig, secs: f32, heel_radians: [f32; 2]) -> LocalPose {
+        let joints = &rig.joints;
         let mut world = vec![Quat::IDENTITY; joints.len()];
         let mut place: Vec<Vec3> = joints.iter().map(|joint| joint.rest).collect();
         let [x, y, z] = self.curve(&self.hips, secs);
@@ -172,7 +173,7 @@ impl Score {
         follow(&mut world, &mut place, rig::NECK, bend(head, 0.45));
         follow(&mut world, &mut place, rig::HEAD, bend(head, 0.55));
         for (side, heel) in heel_radians.into_iter().enumerate() {
-            self.arm(joints, secs, side, &mut world, &mut place);
+            self.arm(rig, secs, side, &mut world, &mut place);
             self.leg(joints, secs, side, heel, &mut world, &mut place);
         }
         let rotations = (0..joints.len())
@@ -181,7 +182,8 @@ impl Score {
         LocalPose { rotations, hips: place[rig::HIPS] }
     }
 
-    fn arm(&self, joints: &[RigJoint], secs: f32, side: usize, world: &mut [Quat], place: &mut [Vec3]) {
+    fn arm(&self, rig: &Rig, secs: f32, side: usize, world: &mut [Quat], place: &mut [Vec3]) {
+        let joints = &rig.joints;
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let first = rig::CLAVICLE + side * rig::ARM_JOINTS;
         let joint = |offset: usize| first + offset;
@@ -217,11 +219,12 @@ impl Score {
         world[joint(rig::UPPER_ARM_TWIST)] = upper * Quat::from_axis_angle(upper_rest, -0.6 * roll);
         world[joint(rig::FOREARM)] = fore;
         // The palm turns as requested, within the range of a forearm.
-        let palm_rest = Vec3::new(fore_rest.y * sign, -fore_rest.x * sign, 0.0).normalize_or(-Vec3::Y);
+        let palm = rig.palm * Vec3::new(sign, 1.0, 1.0);
+        let palm_rest = (palm - fore_rest * palm.dot(fore_rest)).normalize_or(-Vec3::Y);
         let wanted = chest * mirrored(pose.palm);
         let turn = 1.4 * (angle_about(bent.second, fore * palm_rest, wanted) / 1.4).tanh();
         let twisted = |share: f32| fore * Quat::from_axis_angle(fore_rest, share * turn);
-        world[joint(rig::FOREARM_TWIST)] = twisted(0.5);
+        world[joint(rig::FOREARM_TWIST)] = twisted(rig.forearm_twist());
         // The hand trails the wrist's motion.
         let hand = twisted(1.0);
         let drag = (hand.inverse() * (chest * mirrored(speed.to_array()))).clamp_length_max(3.0);
@@ -274,7 +277,7 @@ impl Score {
             Vec3::Y.cross(Vec3::new(-ankle_from_ball.x, 0.0, -ankle_from_ball.z)).normalize_or(Vec3::X);
         let foot = flat * Quat::from_axis_angle(across, heel + 0.75 * up);
         // A lifted foot is pointed to the toes' ends; a standing one keeps them flat.
-        let clearance = ((ball.y - rest::TOE.y) / TOE_LENGTH).clamp(0.0, 1.0).asin();
+        let clearance = ((ball.y - self.ball_y) / TOE_LENGTH).clamp(0.0, 1.0).asin();
         let toes = flat * Quat::from_axis_angle(across, (up * (heel + 1.05 * up)).min(clearance));
         (foot, toes, ball + foot * ankle_from_ball)
     }
@@ -305,7 +308,27 @@ impl Score {
     }
 
     /// Every pose of the clip at [`RATE`] keys per second, with the first one repeated at the end.
-    pub(super) fn sample(&self, joints: &[RigJoint]) -> SampledClip {
+    pub(super) fn sample(&self, rig: &Rig) -> SampledClip {
+        self.fitted(rig).sample_fitted(rig)
+    }
+
+    /// The score with its lengths scaled to a figure.
+    fn fitted(&self, rig: &Rig) -> Self {
+        let k = rig.scale();
+        let mut score = self.clone();
+        score.hips.iter_mut().for_each(|(_, place)| *place = place.map(|v| v * k));
+        score.stance = score.stance.map(|p| p.map(|v| v * k));
+        for step in score.steps.iter_mut().flatten() {
+            step.to = step.to.map(|v| v * k);
+            step.height *= k;
+            step.held = step.held.map(|p| p * k);
+        }
+        score.ball_y = rig.joints[rig::THIGH + rig::TOES].rest.y;
+        score
+    }
+
+    fn sample_fitted(&self, rig: &Rig) -> SampledClip {
+        let joints = &rig.joints;
         let frames = (self.beats * self.beat_secs * RATE).round() as usize;
         let secs = |frame: usize| frame as f32 / RATE;
         let heels: [Vec<f32>; 2] = std::array::from_fn(|side| {
@@ -313,13 +336,14 @@ impl Score {
             smooth_above(&needed, 5)
         });
         let poses: Vec<LocalPose> =
-            (0..frames).map(|f| self.pose(joints, secs(f), [heels[0][f], heels[1][f]])).collect();
+            (0..frames).map(|f| self.pose(rig, secs(f), [heels[0][f], heels[1][f]])).collect();
         let closed = || (0..=frames).map(|f| &poses[f % frames]);
         SampledClip {
             name: self.name,
             times: (0..=frames).map(secs).collect(),
             rotations: (0..joints.len()).map(|j| closed().map(|pose| pose.rotations[j]).collect()).collect(),
             hips: closed().map(|pose| pose.hips).collect(),
+            weights: Vec::new(),
         }
     }
 }
@@ -371,4 +395,10 @@ pub(super) fn world_of(joints: &[RigJoint], pose: &LocalPose) -> Vec<(Quat, Vec3
         });
     }
     out
+}
+
+/// Turn to the left and bend forward of the head relative to the ribs at a time of a score, degrees.
+pub(super) fn head_turn(score: &Score, secs: f32) -> [f32; 2] {
+    let [forward, _, left] = score.curve(&score.head, secs - HEAD_LAG_SECS);
+    [left, forward]
 }

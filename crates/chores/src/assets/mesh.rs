@@ -1,9 +1,8 @@
-//! Surface nets (Gibson 1998) over a curvilinear grid, and the projection of vertices onto the surface.
+//! Surface nets (Gibson 1998) over a grid, and the projection of vertices onto the surface.
 
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use lovelock_base::numbers::smoothstep;
 use rayon::prelude::*;
 
 /// A closed triangle mesh; triangles are counter-clockwise seen from outside.
@@ -20,8 +19,6 @@ pub(super) struct Grid {
     xs: Vec<f32>,
     ys: Vec<f32>,
     zs: Vec<f32>,
-    /// Whether the lines along x and z converge toward a head at the height of the dancer's.
-    converges: bool,
 }
 
 /// Lines from `low` to `high` with the spacing given at each place.
@@ -39,30 +36,11 @@ impl Grid {
     /// A box from `low` to `high` with lines `spacing` metres apart.
     pub(super) fn even(low: Vec3, high: Vec3, spacing: f32) -> Self {
         let [xs, ys, zs] = [0, 1, 2].map(|axis| lines(low[axis], high[axis], |_| spacing));
-        Self { xs, ys, zs, converges: false }
-    }
-
-    /// Lines around the dancer whose spacing shrinks toward the head and the hands. The lines along x and z converge above the
-    /// shoulders, so that the head gets fine cells without the torso paying for them.
-    pub(super) fn dancer() -> Self {
-        let half = lines(0.0, 0.74, |x| 0.0100 - 0.0050 * smoothstep(0.46, 0.52, x));
-        let xs = half.iter().skip(1).rev().map(|x| -x).chain(half.iter().copied()).collect();
-        let ys = lines(-0.03, 1.74, |y| {
-            let hands = smoothstep(0.82, 0.86, y) * smoothstep(1.06, 1.02, y);
-            let head = smoothstep(1.42, 1.47, y);
-            0.0095 - 0.0042 * hands - 0.0065 * head
-        });
-        Self { xs, ys, zs: lines(-0.41, 0.41, |_| 0.0095), converges: true }
+        Self { xs, ys, zs }
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> Vec3 {
-        let y = self.ys[j];
-        if !self.converges {
-            return Vec3::new(self.xs[i], y, self.zs[k]);
-        }
-        let head = smoothstep(1.39, 1.48, y);
-        let scale = 1.0 - 0.70 * head;
-        Vec3::new(self.xs[i] * scale, y, self.zs[k] * scale + 0.02)
+        Vec3::new(self.xs[i], self.ys[j], self.zs[k])
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
+use image::RgbImage;
 
 /// What to draw: a mesh with colours, as one surface.
 #[derive(Clone, Copy)]
@@ -13,8 +14,23 @@ pub(super) struct View<'a> {
     pub(super) normals: &'a [Vec3],
     /// Linear sRGB.
     pub(super) colours: &'a [Vec3],
-    /// Vertex indices.
-    pub(super) triangles: &'a [[u32; 3]],
+    /// Texture coordinates.
+    pub(super) uv: &'a [Vec2],
+    /// Vertex indices, and the index of the texture.
+    pub(super) triangles: &'a [([u32; 3], Option<usize>)],
+    /// The textures.
+    pub(super) textures: &'a [RgbImage],
+}
+
+impl View<'_> {
+    /// The colour of a texture, linear sRGB.
+    fn texel(&self, texture: Option<usize>, uv: Vec2) -> Vec3 {
+        let Some(image) = texture.map(|t| &self.textures[t]) else { return Vec3::ONE };
+        let (w, h) = image.dimensions();
+        let at = (uv * Vec2::new(w as f32, h as f32)).max(Vec2::ZERO).as_uvec2();
+        let pixel = image.get_pixel(at.x.min(w - 1), at.y.min(h - 1)).0;
+        Vec3::from(pixel.map(|v| (f32::from(v) / 255.0).powf(2.2)))
+    }
 }
 
 /// Position and target of the camera in metres, and its vertical field of view in radians.
@@ -59,7 +75,7 @@ impl Canvas {
             .collect();
         let mut depth = vec![f32::INFINITY; w * h];
         let mut colour = vec![None; w * h];
-        for triangle in view.triangles {
+        for (triangle, texture) in view.triangles {
             let [a, b, c] = triangle.map(|i| projected[i as usize]);
             let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
             if area >= 0.0 {
@@ -86,7 +102,10 @@ impl Canvas {
                         (0..3).map(|i| of[triangle[i] as usize] * (weights[i] * inverse[i] * z)).sum()
                     };
                     let normal = mix(view.normals).normalize_or(Vec3::Y);
-                    colour[y * w + x] = Some(mix(view.colours) * light(normal, eye - mix(view.positions)));
+                    let uv: Vec2 =
+                        (0..3).map(|i| view.uv[triangle[i] as usize] * (weights[i] * inverse[i] * z)).sum();
+                    let surface = mix(view.colours) * view.texel(*texture, uv);
+                    colour[y * w + x] = Some(surface * light(normal, eye - mix(view.positions)));
                 }
             }
         }

@@ -283,26 +283,3 @@ fn relax(mesh: &mut TriMesh, distance: Field<f32>, edge_length: Field<f32>) {
         .collect();
     mesh.positions = moved;
 }
-
-/// Moves the vertices near the zero set of `line` along the surface onto it, so that changes of colour there follow edges.
-pub(super) fn snap(mesh: &mut TriMesh, distance: Field<f32>, line: Field<f32>, edge_length: Field<f32>) {
-    mesh.positions.par_iter_mut().for_each(|p| {
-        let start = *p;
-        if line(start).abs() > 0.55 * edge_length(start) {
-            return;
-        }
-        let mut at = start;
-        for _ in 0..3 {
-            let normal = gradient(distance, at, 0.0006).normalize_or_zero();
-            let slope = gradient(line, at, 0.0004);
-            let along = slope - normal * slope.dot(normal);
-            if along.length_squared() < 0.05 {
-                return;
-            }
-            at = project(distance, at - along * (line(at) / along.length_squared()));
-        }
-        if at.distance(start) < 0.7 * edge_length(start) {
-            *p = at;
-        }
-    });
-}

@@ -4,41 +4,35 @@
 
 use glam::Vec3;
 
-/// Landmarks of the rest pose that the figure and the skeleton share, metres, left side.
-pub(super) mod rest {
-    use glam::Vec3;
-
-    /// Centre of the shoulder joint.
-    pub(crate) const SHOULDER: Vec3 = Vec3::new(0.1560, 1.3640, -0.0200);
-    /// Centre of the elbow: 0.285 m from the shoulder, 42 degrees below the horizontal.
-    pub(crate) const ELBOW: Vec3 = Vec3::new(0.3678, 1.1733, -0.0200);
-    /// Centre of the wrist: 0.238 m from the elbow, a little to the front.
-    pub(crate) const WRIST: Vec3 = Vec3::new(0.5426, 1.0159, 0.0120);
-    /// Hip joint.
-    pub(crate) const HIP: Vec3 = Vec3::new(0.0860, 0.8850, 0.0000);
-    /// Knee joint.
-    pub(crate) const KNEE: Vec3 = Vec3::new(0.0820, 0.4750, 0.0060);
-    /// Ankle joint.
-    pub(crate) const ANKLE: Vec3 = Vec3::new(0.0762, 0.0780, -0.0320);
-    /// Ball of the foot, where the toes bend.
-    pub(crate) const TOE: Vec3 = Vec3::new(0.0922, 0.0180, 0.0820);
-
-    /// Unit direction of the upper arm.
-    pub(crate) fn upper_arm_direction() -> Vec3 {
-        (ELBOW - SHOULDER).normalize_or(Vec3::X)
-    }
-
-    /// Unit direction of the forearm.
-    pub(crate) fn forearm_direction() -> Vec3 {
-        (WRIST - ELBOW).normalize_or(Vec3::X)
-    }
-
-    /// Unit direction of the foot, turned out by 8 degrees.
-    pub(crate) fn foot_direction() -> Vec3 {
-        let (s, c) = 8.0_f32.to_radians().sin_cos();
-        Vec3::new(s, 0.0, c)
-    }
+/// Where the joints of a figure are, world space at rest, metres; limbs of the left side.
+pub(super) struct Landmarks {
+    /// The pelvis.
+    pub(super) hips: Vec3,
+    /// The back, from below.
+    pub(super) back: [Vec3; 3],
+    /// The lower end of the neck.
+    pub(super) neck: Vec3,
+    /// Where the skull turns.
+    pub(super) head: Vec3,
+    /// Collar bone, shoulder, elbow and wrist.
+    pub(super) arm: [Vec3; 4],
+    /// Hip, knee, ankle and ball of the foot.
+    pub(super) leg: [Vec3; 4],
 }
+
+/// A skeleton, and what the choreography needs to know about it.
+pub(super) struct Rig {
+    /// The joints, parents first.
+    pub(super) joints: Vec<RigJoint>,
+    /// The direction of the palm of the left hand at rest.
+    pub(super) palm: Vec3,
+}
+
+/// Height of the hip joint on the figure for which the choreography was written, metres.
+const USUAL_HIP: f32 = 0.885;
+
+/// Where the joint sits that takes half of the hand's twist, as a fraction of the forearm.
+const FOREARM_TWIST_AT: f32 = 0.65;
 
 /// A joint of the dancer.
 pub(super) struct RigJoint {
@@ -70,7 +64,7 @@ pub(super) const UPPER_ARM: usize = 1;
 pub(super) const UPPER_ARM_TWIST: usize = 2;
 /// Offset of the forearm.
 pub(super) const FOREARM: usize = 3;
-/// Offset of the joint that has half of the hand's twist.
+/// Offset of the joint that has a part of the hand's twist.
 pub(super) const FOREARM_TWIST: usize = 4;
 /// Offset of the hand.
 pub(super) const HAND: usize = 5;
@@ -89,38 +83,48 @@ pub(super) const ARM_JOINTS: usize = 6;
 /// Joints of one leg.
 pub(super) const LEG_JOINTS: usize = 5;
 
-/// The joints, parents first.
-pub(super) fn joints() -> Vec<RigJoint> {
-    let mut joints = Vec::new();
-    let mut add = |name: String, parent: Option<usize>, rest: Vec3| {
-        joints.push(RigJoint { name, parent, rest });
-        joints.len() - 1
-    };
-    let v = Vec3::new;
-    let spine_y = [(0.930, 0.000), (1.020, -0.012), (1.120, -0.020), (1.230, -0.028)];
-    let hips = add("hips".into(), None, v(0.0, 0.930, 0.0));
-    let spine = add("spine".into(), Some(hips), v(0.0, spine_y[1].0, spine_y[1].1));
-    let spine_1 = add("spine_1".into(), Some(spine), v(0.0, spine_y[2].0, spine_y[2].1));
-    let chest = add("chest".into(), Some(spine_1), v(0.0, spine_y[3].0, spine_y[3].1));
-    let neck = add("neck".into(), Some(chest), v(0.0, 1.430, -0.032));
-    add("head".into(), Some(neck), v(0.0, 1.530, -0.010));
-    for (side, sign) in [("l", 1.0), ("r", -1.0)] {
-        let m = |p: Vec3| v(p.x * sign, p.y, p.z);
-        let collar = add(format!("clavicle_{side}"), Some(chest), m(v(0.020, 1.385, 0.0)));
-        let upper = add(format!("upper_arm_{side}"), Some(collar), m(rest::SHOULDER));
-        add(format!("upper_arm_twist_{side}"), Some(upper), m(rest::SHOULDER));
-        let fore = add(format!("forearm_{side}"), Some(upper), m(rest::ELBOW));
-        let middle = rest::ELBOW + (rest::WRIST - rest::ELBOW) * 0.5;
-        add(format!("forearm_twist_{side}"), Some(fore), m(middle));
-        add(format!("hand_{side}"), Some(fore), m(rest::WRIST));
+impl Rig {
+    /// The skeleton on these landmarks.
+    pub(super) fn new(at: &Landmarks, palm: Vec3) -> Self {
+        let mut joints = Vec::new();
+        let mut add = |name: String, parent: Option<usize>, rest: Vec3| {
+            joints.push(RigJoint { name, parent, rest });
+            joints.len() - 1
+        };
+        let hips = add("hips".into(), None, at.hips);
+        let spine = add("spine".into(), Some(hips), at.back[0]);
+        let spine_1 = add("spine_1".into(), Some(spine), at.back[1]);
+        let chest = add("chest".into(), Some(spine_1), at.back[2]);
+        let neck = add("neck".into(), Some(chest), at.neck);
+        add("head".into(), Some(neck), at.head);
+        for (side, sign) in [("l", 1.0), ("r", -1.0)] {
+            let [collar, shoulder, elbow, wrist] = at.arm.map(|p| p * Vec3::new(sign, 1.0, 1.0));
+            let collar = add(format!("clavicle_{side}"), Some(chest), collar);
+            let upper = add(format!("upper_arm_{side}"), Some(collar), shoulder);
+            add(format!("upper_arm_twist_{side}"), Some(upper), shoulder);
+            let fore = add(format!("forearm_{side}"), Some(upper), elbow);
+            add(format!("forearm_twist_{side}"), Some(fore), elbow.lerp(wrist, FOREARM_TWIST_AT));
+            add(format!("hand_{side}"), Some(fore), wrist);
+        }
+        for (side, sign) in [("l", 1.0), ("r", -1.0)] {
+            let [hip, knee, ankle, ball] = at.leg.map(|p| p * Vec3::new(sign, 1.0, 1.0));
+            let thigh = add(format!("thigh_{side}"), Some(hips), hip);
+            add(format!("thigh_twist_{side}"), Some(thigh), hip);
+            let shin = add(format!("shin_{side}"), Some(thigh), knee);
+            let foot = add(format!("foot_{side}"), Some(shin), ankle);
+            add(format!("toe_{side}"), Some(foot), ball);
+        }
+        Self { joints, palm }
     }
-    for (side, sign) in [("l", 1.0), ("r", -1.0)] {
-        let m = |p: Vec3| v(p.x * sign, p.y, p.z);
-        let thigh = add(format!("thigh_{side}"), Some(hips), m(rest::HIP));
-        add(format!("thigh_twist_{side}"), Some(thigh), m(rest::HIP));
-        let shin = add(format!("shin_{side}"), Some(thigh), m(rest::KNEE));
-        let foot = add(format!("foot_{side}"), Some(shin), m(rest::ANKLE));
-        add(format!("toe_{side}"), Some(foot), m(rest::TOE));
+
+    /// The size of the figure as a multiple of that for which the choreography was written.
+    pub(super) fn scale(&self) -> f32 {
+        self.joints[THIGH].rest.y / USUAL_HIP
     }
-    joints
+
+    /// Fraction of the hand's twist that its twist joint takes over.
+    pub(super) fn forearm_twist(&self) -> f32 {
+        let at = |offset: usize| self.joints[CLAVICLE + offset].rest;
+        at(FOREARM).distance(at(FOREARM_TWIST)) / at(FOREARM).distance(at(HAND))
+    }
 }

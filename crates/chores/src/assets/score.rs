@@ -72,6 +72,7 @@ pub(super) struct Turn {
 }
 
 /// The composition of a clip.
+#[derive(Clone)]
 pub(super) struct Score {
     /// Its name in the file.
     pub(super) name: &'static str,
@@ -99,6 +100,10 @@ pub(super) struct Score {
     pub(super) steps: [Vec<Step>; 2],
     /// Turns of the body, in order.
     pub(super) turns: Vec<Turn>,
+    /// Times at which the eyes blink, in beats.
+    pub(super) blinks: Vec<f32>,
+    /// Height of the balls of standing feet, metres.
+    pub(super) ball_y: f32,
 }
 
 /// Standing and breathing, four seconds.
@@ -128,6 +133,8 @@ pub(super) fn idle() -> Score {
         turnout: 6.0,
         steps: [vec![], vec![]],
         turns: vec![],
+        blinks: vec![1.3, 3.2],
+        ball_y: 0.018,
     }
 }
 
@@ -289,5 +296,7 @@ pub(super) fn dance() -> Score {
             ],
         ],
         turns: vec![Turn { beats: [4.45, 7.05], turns: -1.0 }, Turn { beats: [12.05, 14.55], turns: 1.0 }],
+        blinks: vec![1.9, 4.6, 8.7, 12.3, 15.3],
+        ball_y: 0.018,
     }
 }

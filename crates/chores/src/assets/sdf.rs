@@ -1,9 +1,9 @@
-//! Signed distance primitives and their smooth unions (Quilez 2013 to 2020), and lofts along an axis.
+//! Signed distance primitives and their smooth unions (Quilez 2013 to 2020).
 //!
 //! Distances are in metres and negative inside. Most are only exact to first order near the surface, which is enough for
 //! [`super::mesh`]: it finds the zero set by Newton steps along the numeric gradient.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// Smooth minimum with the cubic kernel, `k` metres wide: equal to `min` where the two differ by more than `k`.
 pub(super) fn smin(a: f32, b: f32, k: f32) -> f32 {
@@ -19,13 +19,6 @@ pub(super) fn smax(a: f32, b: f32, k: f32) -> f32 {
 /// A ball.
 pub(super) fn ball(p: Vec3, centre: Vec3, radius: f32) -> f32 {
     p.distance(centre) - radius
-}
-
-/// An ellipsoid along the axes of the space of `p`, `p` relative to its centre; first-order exact.
-pub(super) fn ellipsoid(p: Vec3, radii: Vec3) -> f32 {
-    let k0 = (p / radii).length();
-    let k1 = (p / (radii * radii)).length();
-    if k1 < 1e-6 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
 }
 
 /// The hull of two balls; exact up to the slope of the cone.
@@ -49,24 +42,6 @@ pub(super) fn round_cone(p: Vec3, a: Vec3, b: Vec3, radius_a: f32, radius_b: f32
         return (x2 + y2).sqrt() * inverse - radius_a;
     }
     ((x2 * slope_squared * inverse).sqrt() + y * difference) * inverse - radius_a
-}
-
-/// Turns `p` about the x axis by `angle` radians.
-pub(super) fn turn_x(p: Vec3, angle: f32) -> Vec3 {
-    let (s, c) = angle.sin_cos();
-    Vec3::new(p.x, c * p.y - s * p.z, s * p.y + c * p.z)
-}
-
-/// Turns `p` about the y axis by `angle` radians.
-pub(super) fn turn_y(p: Vec3, angle: f32) -> Vec3 {
-    let (s, c) = angle.sin_cos();
-    Vec3::new(c * p.x + s * p.z, p.y, -s * p.x + c * p.z)
-}
-
-/// Turns `p` about the z axis by `angle` radians.
-pub(super) fn turn_z(p: Vec3, angle: f32) -> Vec3 {
-    let (s, c) = angle.sin_cos();
-    Vec3::new(c * p.x - s * p.y, s * p.x + c * p.y, p.z)
 }
 
 /// Value at `x` of the cubic through `keys` (first entry the abscissa), with the slopes of Catmull and Rom for
@@ -107,57 +82,4 @@ pub(super) fn curve<const N: usize>(keys: &[[f32; N]], x: f32) -> [f32; N] {
             + (t3 - t2) * m1;
     }
     out
-}
-
-/// A body part as sections along an axis: each section is a superellipse with its own radius on either side.
-pub(super) struct Loft {
-    /// The point on the axis at which the abscissa of the keys is 0.
-    pub(super) origin: Vec3,
-    /// Unit direction of the axis.
-    pub(super) axis: Vec3,
-    /// Unit direction of a section's first coordinate, at right angles to `axis`.
-    pub(super) side: Vec3,
-    /// Unit direction of a section's second coordinate.
-    pub(super) front: Vec3,
-    /// Exponent of the superellipse: 2 is an ellipse, more is squarer.
-    pub(super) exponent: f32,
-    /// Sections: abscissa, first coordinate's upper and lower end, second coordinate's upper end, middle and
-    /// lower end; metres along their directions.
-    pub(super) sections: Vec<[f32; 6]>,
-}
-
-impl Loft {
-    /// Distance to the surface, first-order exact across the axis; the ends are rounded.
-    pub(super) fn distance(&self, p: Vec3) -> f32 {
-        let q = p - self.origin;
-        let along = q.dot(self.axis);
-        let (low, high) = (self.sections[0][0], self.sections[self.sections.len() - 1][0]);
-        let clamped = along.clamp(low, high);
-        let [_, side_high, side_low, front_high, middle, front_low] = curve(&self.sections, clamped);
-        let centre = 0.5 * (side_high + side_low);
-        let half = 0.5 * (side_high - side_low);
-        let (u, v) = (q.dot(self.side) - centre, q.dot(self.front) - middle);
-        let depth = if v > 0.0 { front_high - middle } else { middle - front_low };
-        let (a, b) = (u.abs() / half, v.abs() / depth);
-        let across = if self.exponent == 2.0 {
-            let rho = a.hypot(b);
-            let slope = Vec2::new(a / half, b / depth).length();
-            if slope < 1e-5 { -half.min(depth) } else { (rho - 1.0) * rho / slope }
-        } else {
-            let n = self.exponent;
-            let sum = a.powf(n) + b.powf(n);
-            let slope = Vec2::new(a.powf(n - 1.0) / half, b.powf(n - 1.0) / depth).length();
-            if slope < 1e-5 {
-                -half.min(depth)
-            } else {
-                (sum.powf(1.0 / n) - 1.0) * sum.powf(1.0 - 1.0 / n) / slope
-            }
-        };
-        let beyond = along - clamped;
-        if beyond == 0.0 {
-            return across;
-        }
-        let round = half.min(depth);
-        Vec2::new((across + round).max(0.0), beyond).length() - round
-    }
 }

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 28] = [
+const ARROWS: [(&str, &[&str]); 30] = [
     (
         "app",
         &[
@@ -24,6 +24,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
             "sound",
             "appearance",
             "metrics",
+            "glyphs",
             "base",
         ],
     ),
@@ -56,6 +57,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
             "render",
             "brush",
             "style",
+            "simulation-gpu",
             "simulation",
             "motion",
             "groom",
@@ -71,8 +73,9 @@ const ARROWS: [(&str, &[&str]); 28] = [
     ("satf", &["groom", "base"]),
     ("brush", &["style", "groom", "base"]),
     ("style", &["groom", "base"]),
+    ("simulation-gpu", &["gpu", "simulation", "motion", "groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
-    ("record", &["groom", "alembic", "gltf", "base"]),
+    ("record", &["groom", "motion", "alembic", "gltf", "base"]),
     ("motion", &["gltf", "usd", "base"]),
     ("groom", &["appearance", "alembic", "gltf", "usd", "base"]),
     ("alembic", &[]),
@@ -81,7 +84,8 @@ const ARROWS: [(&str, &[&str]); 28] = [
     ("sound", &["base"]),
     ("gpu", &["base"]),
     ("appearance", &["base"]),
-    ("metrics", &["base"]),
+    ("glyphs", &[]),
+    ("metrics", &["glyphs", "base"]),
     ("base", &[]),
     ("testkit", &["metrics", "base"]),
     (
@@ -107,12 +111,13 @@ const ARROWS: [(&str, &[&str]); 28] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 18] = [
+const WITHOUT_WGPU: [&str; 19] = [
     "alembic",
     "appearance",
     "base",
     "brush",
     "gltf",
+    "glyphs",
     "groom",
     "motion",
     "picture",
@@ -184,12 +189,12 @@ const CIRCLES: [(&str, &[&str], &str); 7] = [
     ("render", &["cpu", "layers"], "layers are an output of the CPU renderer, whose tone mapping they use"),
     (
         "shadow",
-        &["bounds", "cpu", "error", "gpu", "methods", "perspective"],
-        "a method is a folder with its CPU and GPU parts, the registry of methods dispatches to them, and lights are projected below all of them",
+        &["area", "bounds", "cpu", "error", "gpu", "light", "methods", "perspective", "world"],
+        "a method is a folder with its CPU and GPU parts, the registry of methods dispatches to them, and lights are projected, sampled over their areas, and followed in the world below all of them",
     ),
     (
         "study",
-        &["batch::light_sweep", "batch::stability", "batch::swim", "batch::work"],
+        &["batch::light_sweep", "batch::sequence", "batch::stability", "batch::swim", "batch::work"],
         "the work of a study hands itself to each measurement",
     ),
 ];
@@ -274,7 +279,7 @@ mod tests {
             ("lovelock-project → lovelock-session", "project may use picture"),
             ("lovelock-session → lovelock-jobs", "session may use project"),
             ("lovelock-groom → lovelock-motion", "groom may use appearance, alembic, gltf, usd, base"),
-            ("lovelock-record → lovelock-session", "record may use groom, alembic, gltf, base"),
+            ("lovelock-record → lovelock-session", "record may use groom, motion, alembic, gltf, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
             ("lovelock-render ⇢ lovelock-metrics", "render may use"),

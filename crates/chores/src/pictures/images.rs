@@ -30,6 +30,11 @@ pub(super) fn read(path: &Path) -> anyhow::Result<RgbImage> {
 
 /// Joins images to rows on white, with labels below them unless all are empty.
 pub(super) fn join(tiles: &[(&str, RgbImage)]) -> anyhow::Result<RgbImage> {
+    join_in(COLUMNS, tiles)
+}
+
+/// As [`join`], with at most `columns` beside each other.
+pub(super) fn join_in(columns: usize, tiles: &[(&str, RgbImage)]) -> anyhow::Result<RgbImage> {
     let [mut width, mut height] = [0_usize; 2];
     for (_, image) in tiles {
         width = width.max(image.width() as usize);
@@ -38,7 +43,7 @@ pub(super) fn join(tiles: &[(&str, RgbImage)]) -> anyhow::Result<RgbImage> {
     let has_labels = tiles.iter().any(|(label, _)| !label.is_empty());
     let across = width + 2 * GAP;
     let down = height + 2 * GAP + if has_labels { LABEL } else { 0 };
-    let columns = tiles.len().clamp(1, COLUMNS);
+    let columns = tiles.len().clamp(1, columns.max(1));
     let mut canvas = Canvas::new(columns * across, tiles.len().div_ceil(columns) * down, PAPER);
     for (i, (label, image)) in tiles.iter().enumerate() {
         let (x, y) = (i % columns * across + GAP, i / columns * down + GAP);

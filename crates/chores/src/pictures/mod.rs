@@ -11,7 +11,7 @@ mod window;
 use anyhow::{Context as _, ensure};
 use image::RgbImage;
 use lovelock_xtask::{system, tool};
-use recipes::{RECIPES, Recipe, Source};
+use recipes::{PORTRAIT, RECIPES, Recipe, Source};
 use std::fs;
 use std::path::Path;
 
@@ -55,6 +55,9 @@ fn chosen(names: &[String]) -> anyhow::Result<Vec<&'static Recipe>> {
     Ok(RECIPES.iter().filter(|recipe| is_chosen(recipe)).collect())
 }
 
+/// The sides of a portrait, radians from the front: front, half, profile, back, and the other half.
+const SIDES: [f32; 5] = [0.0, 0.75, std::f32::consts::FRAC_PI_2, std::f32::consts::PI, -0.75];
+
 /// The name of an image's file.
 fn file_name(recipe: &Recipe) -> String {
     let extension = if matches!(recipe.source, Source::Plate) { "png" } else { "jpg" };
@@ -86,6 +89,31 @@ fn make(recipe: &Recipe, folder: &Path) -> anyhow::Result<RgbImage> {
                 let on = format!("--set hair.stack.{layer}.on=true");
                 tiles.push((label, render::rest(folder, None, &[&preset, &on, view])?));
             }
+        }
+        Source::Rows { view, columns, options } => {
+            for (label, options) in options {
+                tiles.push((label, render::rest(folder, None, &[view, options])?));
+            }
+            return images::join_in(columns, &tiles);
+        }
+        Source::Portraits { figure } => {
+            for rig in ["soft-beauty", "three-point", "rim-at-night"] {
+                let light = format!("--lights {rig}");
+                for azimuth in SIDES {
+                    let side = format!("--set camera.azimuth={azimuth}");
+                    let options = [figure, PORTRAIT, "--size 180x225", &light, &side];
+                    tiles.push(("", render::rest(folder, None, &options)?));
+                }
+            }
+            return images::join_in(SIDES.len(), &tiles);
+        }
+        Source::Instants { view, columns, secs } => {
+            for secs in secs {
+                let frame = (secs * 30.0).round() as u32;
+                let at = format!("--fps 30 --frames {frame}..{}", frame + 1);
+                tiles.push(("", render::frame(folder, None, &[view, PORTRAIT, &at])?));
+            }
+            return images::join_in(columns, &tiles);
         }
         Source::Strokes { view, counts } => {
             for &count in counts {

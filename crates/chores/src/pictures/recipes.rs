@@ -27,6 +27,12 @@ pub(super) enum Source {
     Dance { view: &'static str, frames: &'static [u32] },
     /// A film of the strokes during the dance, at these seconds.
     Film { view: &'static str, secs: &'static [u32] },
+    /// A hairstyle at rest with each of these options, by their labels.
+    Rows { view: &'static str, columns: usize, options: &'static [(&'static str, &'static str)] },
+    /// A figure of the program, by the options that choose it, from five sides in three lights.
+    Portraits { figure: &'static str },
+    /// The dance, at these seconds.
+    Instants { view: &'static str, columns: usize, secs: &'static [f32] },
     /// Limp hair on a plate, drawn by the example `brush` of the simulation.
     Plate,
 }
@@ -37,6 +43,23 @@ pub(super) struct Step {
     /// The numbers of the layers that are off.
     pub(super) off: &'static [u32],
 }
+
+/// A head that fills the image.
+pub(super) const PORTRAIT: &str = "--set camera.fov_y=0.28 --set camera.distance=1.5 --set camera.follow_offset=0,0.015,0 \
+                        --set picture.strand_detail=2";
+
+/// Fair hair in one hard light from the front, so that the shadow of a method can be seen.
+const SHADED: &str = "--preset long-waves --size 220x260 --set lights.1.enabled=false --set lights.2.enabled=false \
+                      --set lights.0.softness=0 --set look.eumelanin=0.25 --set picture.exposure_stops=1 \
+                      --set camera.distance=1.15 --set camera.azimuth=1.7 --set camera.follow_offset=0.02,-0.09,0";
+
+/// A method beside the exact shadow, and where it fails.
+const fn method(name: &'static str, options: &'static [(&'static str, &'static str)]) -> Recipe {
+    Recipe { name, source: Source::Rows { view: SHADED, columns: 3, options } }
+}
+
+/// The first tile of [`method`].
+const EXACT: (&str, &str) = ("exact", "--shadow exact");
 
 const BOB: &str = "--preset docs/examples/shaved-side-bob.lovelockstyle";
 /// The hem of the bob before its last steps.
@@ -57,6 +80,133 @@ pub(super) const RECIPES: &[Recipe] = &[
     },
     Recipe { name: "compare", source: Source::Page("--frame 45 --size 960x540 --backend cpu") },
     Recipe { name: "compare_window", source: Source::Window("--panes --after 12") },
+    method(
+        "method_none",
+        &[
+            EXACT,
+            ("none", "--shadow none"),
+            ("none, from the light", "--shadow none --set camera.azimuth=0.9"),
+        ],
+    ),
+    method(
+        "method_voxel_map",
+        &[
+            EXACT,
+            ("128 cells", "--shadow voxel-map"),
+            (
+                "24, closest",
+                "--shadow voxel-map --set shadow.voxel_map.resolution=24 --set shadow.voxel_map.filter=closest",
+            ),
+        ],
+    ),
+    method(
+        "method_opacity_maps",
+        &[
+            EXACT,
+            ("128 slices", "--shadow opacity-maps"),
+            ("8 slices", "--shadow opacity-maps --set shadow.opacity_maps.slices=8"),
+        ],
+    ),
+    method(
+        "method_deep_opacity_maps",
+        &[
+            EXACT,
+            ("4 layers", "--shadow deep-opacity-maps"),
+            (
+                "3 thick layers",
+                "--shadow deep-opacity-maps --set shadow.deep_opacity_maps.layers=3 --set shadow.deep_opacity_maps.depth_share=1 \
+                 --set shadow.deep_opacity_maps.growth=even",
+            ),
+        ],
+    ),
+    method(
+        "method_density_clustering",
+        &[
+            EXACT,
+            ("4 clusters", "--shadow density-clustering"),
+            ("1 cluster", "--shadow density-clustering --set shadow.density_clustering.clusters=1"),
+        ],
+    ),
+    method(
+        "method_occupancy_maps",
+        &[
+            EXACT,
+            ("128 slices", "--shadow occupancy-maps"),
+            (
+                "4 slabs, 64 texels",
+                "--shadow occupancy-maps --set shadow.occupancy_maps.slabs=4 --set shadow.occupancy_maps.resolution=64",
+            ),
+        ],
+    ),
+    method(
+        "method_deep_shadow_maps",
+        &[
+            EXACT,
+            ("16 nodes", "--shadow deep-shadow-maps"),
+            (
+                "8 nodes, e = 0.25",
+                "--shadow deep-shadow-maps --set shadow.deep_shadow_maps.nodes=8 --set shadow.deep_shadow_maps.tolerance=0.25",
+            ),
+        ],
+    ),
+    method(
+        "method_approximate_deep",
+        &[
+            EXACT,
+            ("2 mm", "--shadow approximate-deep"),
+            ("0.2 mm", "--shadow approximate-deep --set shadow.approximate_deep.spacing=0.0002"),
+        ],
+    ),
+    method(
+        "method_fourier",
+        &[
+            EXACT,
+            ("7 terms", "--shadow fourier"),
+            (
+                "3 terms, map's depth",
+                "--shadow fourier --set shadow.fourier.terms=3 --set shadow.fourier.depth_range=map",
+            ),
+        ],
+    ),
+    method(
+        "method_adaptive",
+        &[
+            EXACT,
+            ("8 nodes", "--shadow adaptive"),
+            ("4 nodes", "--shadow adaptive --set shadow.adaptive.nodes=4"),
+        ],
+    ),
+    method(
+        "method_moments",
+        &[
+            EXACT,
+            ("4 moments", "--shadow moments"),
+            (
+                "16 bits, bias 100",
+                "--shadow moments --set shadow.moments.bits=16 --set shadow.moments.bias=100 \
+                 --set shadow.moments.overestimation=0",
+            ),
+        ],
+    ),
+    method(
+        "method_voxel_march",
+        &[
+            EXACT,
+            ("128 cells", "--shadow voxel-march"),
+            (
+                "32 cells, steps of 4",
+                "--shadow voxel-march --set shadow.voxel_march.resolution=32 --set shadow.voxel_march.step=4",
+            ),
+        ],
+    ),
+    method(
+        "method_ray_traced",
+        &[
+            EXACT,
+            ("4 rays", "--shadow ray-traced"),
+            ("1 ray", "--shadow ray-traced --set shadow.ray_traced.rays=1"),
+        ],
+    ),
     Recipe {
         name: "layers",
         source: Source::Window(
@@ -187,6 +337,40 @@ pub(super) const RECIPES: &[Recipe] = &[
                 Step { options: &[FADE], off: &[5, 6] },
                 Step { options: &[FADE], off: &[6] },
                 Step { options: &[FADE], off: &[] },
+            ],
+        },
+    },
+    Recipe { name: "portraits_dancer", source: Source::Portraits { figure: "--preset long" } },
+    Recipe {
+        name: "portraits_man",
+        source: Source::Portraits { figure: "--set body.source=Man --preset side-part" },
+    },
+    Recipe {
+        name: "portraits_woman",
+        source: Source::Portraits { figure: "--set body.source=Woman --preset coils" },
+    },
+    Recipe {
+        name: "portraits_elder",
+        source: Source::Portraits { figure: "--set body.source=Elder --preset bob --set look.grey=0.85" },
+    },
+    Recipe {
+        name: "portraits_dance",
+        source: Source::Instants {
+            view: "--preset long --lights soft-beauty --size 220x275",
+            columns: 4,
+            secs: &[0.3, 1.5, 2.7, 3.9, 5.1, 6.3, 7.5, 8.7],
+        },
+    },
+    Recipe {
+        name: "portraits_rigs",
+        source: Source::Rows {
+            view: PORTRAIT,
+            columns: 4,
+            options: &[
+                ("Soft beauty", "--size 300x375 --preset long --lights soft-beauty"),
+                ("Three-point", "--size 300x375 --preset long --lights three-point"),
+                ("Rim at night", "--size 300x375 --preset long --lights rim-at-night"),
+                ("Flat", "--size 300x375 --preset long --lights flat"),
             ],
         },
     },

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Size in pixels; 384x384, or 256x256 with --quick
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Strands of a hairstyle, 100 to 120000, the wider the fewer; 12000 if none is given
+    /// Strands of a hairstyle, 100 to 120000, the wider the fewer; 60000 if none is given
     #[arg(long, value_name = "N")]
     strands: Option<u32>,
     /// Stops by which both images are brightened before they are compared: a single light leaves hair dark

@@ -16,7 +16,9 @@ use lovelock_base::random::SplitMix64;
 const REACH: Reach = Reach { beyond: 8.0, step: 0.25 };
 /// Distance from the tips over which hair bends under or out, metres.
 const ENDS: f32 = 0.09;
-/// The turn between two links above which a guide counts as folded and is laid again, radians.
+/// The turn between two links above which a guide is laid again over what it meets, radians.
+const SHARP: f32 = 0.7;
+/// The turn between two links above which a guide counts as folded and is cut, radians.
 const FOLD: f32 = 1.2;
 /// The sharpest turn of a guide that needs no further smoothing, radians.
 const EASY_TURN: f32 = 0.45;
@@ -25,6 +27,8 @@ const SMOOTHINGS: usize = 6;
 const CUTS: usize = 3;
 /// Clearance between the body and the path of such a guide, metres: far enough that its links need no push.
 const CLEAR: f32 = 0.005;
+/// Hair lies over what stands out from the head by less than this, such as an ear, metres.
+const STANDS_OUT: f32 = 0.05;
 
 /// Three guides of equal links around `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
 pub(super) fn around(
@@ -87,38 +91,47 @@ pub(super) fn around(
         });
         let mut target = target;
         target[0] = own_root.position;
-        lay_smoothly(&target, own_length, own_root.normal, obstacle)
+        lay_smoothly(&target, own_length, own_root.normal, comb.centre, obstacle)
     })
 }
 
 /// As [`lay`], without folds.
 ///
-/// Where the target passes through something thin, such as an ear, a chain that is pushed out of it link by link folds
-/// back on itself. Its path is smoothed until it does not. A guide that meets a shoulder head-on and still folds is cut
-/// shorter.
+/// Where the target passes through something thin, such as an ear, a chain that is pushed out of it link by link comes to lie behind it
+/// and folds back on itself. Such a guide is laid over it instead, along a path that is smoothed until no turn is sharp. A guide that
+/// meets a shoulder head-on and still folds is cut shorter.
 fn lay_smoothly(
     target: &[Vec3; GUIDE_POINTS],
     length: f32,
     root_normal: Vec3,
+    centre: Vec3,
     obstacle: &dyn Obstacle,
 ) -> [Vec3; GUIDE_POINTS] {
     let mut best = lay(target, length, root_normal, obstacle);
     let mut sharpest = sharpest_turn(&best);
-    if sharpest < FOLD {
+    if sharpest < SHARP {
         return best;
     }
     let mut length = length;
     for _ in 0..CUTS {
-        let mut target = *target;
-        for round in 0..SMOOTHINGS {
-            if sharpest < EASY_TURN {
-                return best;
+        for over in [false, true] {
+            let mut target = *target;
+            for round in 0..SMOOTHINGS {
+                if sharpest < EASY_TURN {
+                    return best;
+                }
+                if over {
+                    lift_over(&mut target, centre, obstacle);
+                }
+                smooth(&mut target, round, length, obstacle);
+                let laid = lay(&target, length, root_normal, obstacle);
+                let turn = sharpest_turn(&laid);
+                if turn < sharpest {
+                    (best, sharpest) = (laid, turn);
+                }
             }
-            smooth(&mut target, round, length, obstacle);
-            let laid = lay(&target, length, root_normal, obstacle);
-            let turn = sharpest_turn(&laid);
-            if turn < sharpest {
-                (best, sharpest) = (laid, turn);
+            if sharpest < SHARP {
+                break;
             }
         }
         if sharpest < FOLD {
@@ -127,6 +140,26 @@ fn lay_smoothly(
         length *= 0.9;
     }
     best
+}
+
+/// Moves the points of a path that lie in or behind something thin to its outer side, away from the axis of the head.
+fn lift_over(target: &mut [Vec3; GUIDE_POINTS], centre: Vec3, obstacle: &dyn Obstacle) {
+    for p in &mut target[1..] {
+        let Some(out) = Vec3::new(p.x - centre.x, 0.0, p.z - centre.z).try_normalize() else { continue };
+        // From outside inward to the first surface.
+        let mut ahead = STANDS_OUT;
+        while ahead > 0.0 {
+            let free = obstacle.distance(*p + out * ahead).0 - CLEAR;
+            if free < 1e-4 {
+                break;
+            }
+            ahead -= free.max(0.0005);
+        }
+        // What is deeper is the body itself, whose surface is not out there.
+        if ahead > 0.0 && ahead < STANDS_OUT {
+            *p += out * ahead;
+        }
+    }
 }
 
 /// Smooths the path of a guide, more strongly in later rounds, and keeps it clear of the body.

@@ -47,7 +47,7 @@ use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 use bound::Amounts;
 use crowd::Crowd;
 
-/// What to measure. Scenes without rendering ([`BenchScene::is_simulated_alone`]) only use `frames`.
+/// What to measure. Scenes without rendering ([`BenchScene::is_simulated_alone`]) only use `simulate` and `frames`.
 #[derive(Clone, Debug)]
 pub struct BenchRequest {
     /// The scenes, in order.
@@ -60,6 +60,8 @@ pub struct BenchRequest {
     pub occupancy_order: bool,
     /// The backends, in order; an unavailable one is skipped with a note.
     pub backends: Vec<Backend>,
+    /// What simulates the hair of scenes without rendering; `None` uses the scene's own, the CPU. The CPU simulates rendered scenes.
+    pub simulate: Option<Backend>,
     /// Number of frames to measure, after one that is not counted.
     pub frames: u32,
     /// Width and height, pixels; `None` uses the scene's own.
@@ -78,12 +80,12 @@ pub struct BenchRequest {
 impl Default for BenchRequest {
     fn default() -> Self {
         Self {
-            // A crowd of strands takes more memory than many devices have.
-            scenes: BenchScene::ALL.into_iter().filter(|scene| !scene.is_of_crowd()).collect(),
+            scenes: BenchScene::ALL.into_iter().filter(|scene| !scene.is_huge()).collect(),
             locks: Vec::new(),
             voxel_map: false,
             occupancy_order: false,
             backends: vec![Backend::Cpu, Backend::Gpu],
+            simulate: None,
             frames: 15,
             size: None,
             shadow: None,
@@ -237,12 +239,16 @@ impl Prepared {
             strand_points: self.loaded.style.strands.points() as u64,
             ..Amounts::default()
         };
-        report.stages.iter_mut().for_each(|stage| stage.measure_by(yardstick, &amounts));
-        (report, note)
+        let mut stages = std::mem::take(&mut report.stages);
+        // The yardstick is that of the CPU.
+        for stage in stages.iter_mut().filter(|stage| report.is_on_cpu(&stage.name)) {
+            stage.measure_by(yardstick, &amounts);
+        }
+        (SceneReport { stages, ..report }, note)
     }
 }
 
-/// Stages that run on the CPU whatever draws.
+/// Stages of rendered scenes that run on the CPU whatever draws.
 const ON_CPU: [&str; 2] = ["motion", "simulate"];
 
 /// The project of a scene with the changes of the command line.
@@ -253,6 +259,7 @@ fn changed(
 ) -> Result<Project, ProjectError> {
     let mut project = scene.project();
     change(&mut project)?;
+    project.picture.simulate = request.simulate.unwrap_or(project.picture.simulate);
     project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
     Ok(project)
 }
@@ -306,7 +313,7 @@ fn measure(
         engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + 1 + frame));
         let snapshot = engine.snapshot();
         let camera = snapshot.camera(&project.camera);
-        let mut input = snapshot.frame_input(project, &camera);
+        let mut input = snapshot.measured_input(project, &camera);
         if let Some(crowd) = &mut crowd {
             let guides = crowd.follow(&snapshot.guides);
             (input.style, input.hair, input.guides) = (&style, HairPose::Guides(guides), Some(guides));

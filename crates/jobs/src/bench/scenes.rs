@@ -9,6 +9,7 @@ use lovelock_groom::{GroomSettings, HairShading, Preset};
 use lovelock_project::Project;
 use lovelock_project::project::parse_project;
 use lovelock_render::{HairDrawing, ShadowMethod, StrandCount, Transparency};
+use lovelock_simulation::Integrator;
 
 /// A measured scene: the default project with more or other hair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,11 +56,17 @@ pub enum BenchScene {
     Simulate402,
     /// The same with each of 20,100 strands simulated individually.
     Simulate20k,
+    /// As many of these strands as make 1,071 guides, simulated by the default method.
+    Simulate1k,
+    /// 10,050 of them.
+    Simulate10k,
+    /// 100,098 of them.
+    Simulate100k,
 }
 
 impl BenchScene {
     /// All of them, by paper and from small to large.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 24] = [
         Self::Smooth,
         Self::Curly,
         Self::Smooth500k,
@@ -81,6 +88,9 @@ impl BenchScene {
         Self::ClustersCrowdStrands,
         Self::Simulate402,
         Self::Simulate20k,
+        Self::Simulate1k,
+        Self::Simulate10k,
+        Self::Simulate100k,
     ];
 
     /// The stable name for the command line and reports.
@@ -107,6 +117,9 @@ impl BenchScene {
             Self::ClustersCrowdStrands => "clusters-crowd-strands",
             Self::Simulate402 => "simulate-402",
             Self::Simulate20k => "simulate-20k",
+            Self::Simulate1k => "simulate-1k",
+            Self::Simulate10k => "simulate-10k",
+            Self::Simulate100k => "simulate-100k",
         }
     }
 
@@ -117,12 +130,25 @@ impl BenchScene {
 
     /// Whether it is only simulated, by every method with rigid links, and not rendered.
     pub const fn is_simulated_alone(self) -> bool {
-        matches!(self, Self::Simulate402 | Self::Simulate20k)
+        matches!(self, Self::Simulate402) || self.simulates_strands()
+    }
+
+    /// The methods with rigid links by which it is simulated.
+    pub(super) const fn integrators(self) -> &'static [Integrator] {
+        match self {
+            Self::Simulate1k | Self::Simulate10k | Self::Simulate100k => &[Integrator::Direct],
+            _ => &Integrator::ALL,
+        }
+    }
+
+    /// Whether it takes more memory or time than many machines have, so that it is measured only if it is named.
+    pub(super) const fn is_huge(self) -> bool {
+        self.is_of_crowd() || matches!(self, Self::Simulate100k)
     }
 
     /// Whether each strand is simulated individually.
     pub(super) const fn simulates_strands(self) -> bool {
-        matches!(self, Self::Simulate20k)
+        matches!(self, Self::Simulate20k | Self::Simulate1k | Self::Simulate10k | Self::Simulate100k)
     }
 
     /// Whether it is one of Sintorn and Assarsson 2009.
@@ -199,6 +225,9 @@ impl BenchScene {
                 (groom.wisps, groom.strands_per_wisp) = (40, 525);
             }
             Self::Simulate20k => groom.strands_per_wisp = 150,
+            Self::Simulate1k => groom.strands_per_wisp = 8,
+            Self::Simulate10k => groom.strands_per_wisp = 75,
+            Self::Simulate100k => groom.strands_per_wisp = 747,
             // 134 wisps of 30 segments per strand: 4,020 segments for each strand of a wisp.
             Self::Smooth500k => groom.strands_per_wisp = 125,
             Self::Smooth1M => groom.strands_per_wisp = 249,

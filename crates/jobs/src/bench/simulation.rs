@@ -35,6 +35,8 @@ struct Measured {
     strands: Vec<f64>,
     /// Smallest and largest number of substeps per step.
     substeps: [u32; 2],
+    /// Whether a graphics device did the steps.
+    on_device: bool,
 }
 
 /// The stable name of a method.
@@ -69,9 +71,11 @@ pub(super) fn measure(
     let mut strands = Strands::default();
     // The first time allocates.
     interpolate(&loaded.style, &start.snapshot().guides, &mut strands);
-    let measured: Vec<_> = Integrator::ALL
-        .into_iter()
-        .map(|method| {
+    let mut refused = None;
+    let measured: Vec<_> = scene
+        .integrators()
+        .iter()
+        .map(|&method| {
             let mut engine = start.copy();
             engine.set_settings(&SimulationSettings { integrator: method, ..project.simulation });
             engine.advance_to_step(FIRST_STEP + WARM_UP);
@@ -93,24 +97,36 @@ pub(super) fn measure(
             if method == Integrator::Direct {
                 gauges = health(&engine.totals(), engine.rest_inside(), &loaded, &project.simulation);
             }
-            Measured { method, times, stretch: engine.totals().max_stretch, strands: drawn, substeps }
+            let (on_device, refusal) = engine.simulated_on_device();
+            refused = refused.take().or_else(|| refusal.cloned());
+            let stretch = engine.totals().max_stretch;
+            Measured { method, times, stretch, strands: drawn, substeps, on_device }
         })
         .collect();
     let stretch = |of: &Measured| format!("{:.2e} ({})", of.stretch, id(of.method));
     let [least, most] = measured
         .iter()
         .fold([u32::MAX, 0], |[least, most], of| [least.min(of.substeps[0]), most.max(of.substeps[1])]);
+    let refused = refused.map_or_else(String::new, |reason| format!(" ({reason})"));
     let note = format!(
-        "{scene}: a step is {:.1} ms of {least} to {most} substeps; the largest stretch of a link is {}",
+        "{scene}{refused}: a step is {:.1} ms of {least} to {most} substeps; the largest stretch of a link is {}",
         STEP_SECS * 1e3,
         measured.iter().map(stretch).collect::<Vec<_>>().join(", ")
     );
-    (SceneReport::of_simulation(scene, &loaded.style.guides, gauges, &measured), note)
+    let on_device = measured.iter().any(|of| of.on_device);
+    let backend = if on_device { Backend::Gpu } else { Backend::Cpu };
+    (SceneReport::of_simulation(scene, backend, &loaded.style.guides, gauges, &measured), note)
 }
 
 impl SceneReport {
     /// The report of a scene without rendering.
-    fn of_simulation(scene: BenchScene, guides: &Guides, health: Vec<Gauge>, measured: &[Measured]) -> Self {
+    fn of_simulation(
+        scene: BenchScene,
+        backend: Backend,
+        guides: &Guides,
+        health: Vec<Gauge>,
+        measured: &[Measured],
+    ) -> Self {
         let row = |name: &str, times: &[f64]| StageReport::new(name, scene.published(name), times);
         let mut stages: Vec<_> =
             measured.iter().map(|of| row(&format!("simulate/{}", id(of.method)), &of.times)).collect();
@@ -124,7 +140,7 @@ impl SceneReport {
         }
         Self {
             scene: scene.id().to_owned(),
-            backend: Backend::Cpu.to_string(),
+            backend: backend.to_string(),
             adapter: "simulation".to_owned(),
             threads: rayon::current_num_threads() as u64,
             shadow: String::new(),
@@ -150,6 +166,11 @@ impl SceneReport {
     /// Whether the scene is not rendered.
     pub(super) fn is_simulated_alone(&self) -> bool {
         self.width == 0
+    }
+
+    /// Whether a stage of a scene without rendering ran on the CPU. `animation` contains the simulation.
+    pub(super) fn is_on_cpu(&self, stage: &str) -> bool {
+        self.backend == Backend::Cpu.id() || !["simulate", ANIMATION].iter().any(|of| stage.starts_with(of))
     }
 
     /// One line about the measurement.
@@ -219,6 +240,9 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_project::error::ProjectError;
+    use lovelock_render::Gpu;
+
     use super::*;
 
     #[test]
@@ -259,5 +283,42 @@ mod tests {
         assert_eq!((report.stages[1].published_ms, report.stages[4].published_ms), (None, Some(70.0)));
         assert!(report.stages[4].min_ms >= report.stages[1].min_ms + report.stages[3].min_ms);
         assert!(!report.health.is_empty() && note.contains("(relaxation)"), "{note}");
+        assert_eq!(report.backend, "cpu");
+        // Multiples are those of the CPU.
+        let on_cpu = |report: &SceneReport| names.iter().filter(|name| report.is_on_cpu(name)).count();
+        let on_card = SceneReport { backend: "gpu".to_owned(), ..report.clone() };
+        assert_eq!([on_cpu(&report), on_cpu(&on_card)], [5, 1]);
+        assert!(on_card.is_on_cpu("interpolate"));
+    }
+
+    #[test]
+    fn the_report_says_what_simulated() {
+        if let Err(error) = Gpu::open() {
+            return lovelock_testkit::skip_without_adapter(&error);
+        }
+        let mut project = BenchScene::Simulate402.project();
+        project.hair.groom.wisps = 8;
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Gpu;
+        let loaded = super::super::load(&project).expect("a scene");
+        let request = BenchRequest { frames: 1, ..BenchRequest::default() };
+        let (report, note) = measure(BenchScene::Simulate402, &project, &loaded, &request);
+        assert_eq!(report.backend, "gpu", "{note}");
+    }
+
+    #[test]
+    fn the_option_chooses_what_simulates_before_the_setting() {
+        let set = |project: &mut Project| {
+            project.picture.simulate = Backend::Gpu;
+            Ok(())
+        };
+        let chosen = |simulate, change: &dyn Fn(&mut Project) -> Result<(), ProjectError>| {
+            let request = BenchRequest { simulate, ..BenchRequest::default() };
+            let project = super::super::changed(BenchScene::Simulate402, &request, change);
+            project.expect("a project").picture.simulate
+        };
+        assert_eq!(chosen(None, &|_| Ok(())), Backend::Cpu);
+        assert_eq!(chosen(None, &set), Backend::Gpu);
+        assert_eq!(chosen(Some(Backend::Auto), &set), Backend::Auto);
     }
 }

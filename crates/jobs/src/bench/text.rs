@@ -111,7 +111,7 @@ impl fmt::Display for BenchReport {
                     _ => writeln!(f)?,
                 }
             }
-            // The simulation does not depend on the backend: one column, with advice for gauges over their limits.
+            // The simulation does not depend on what draws: one column, with advice for gauges over their limits.
             for gauge in &first.health {
                 writeln!(f, "  {:<width$}{:>12}", gauge.kind.label().to_lowercase(), gauge.in_words())?;
             }

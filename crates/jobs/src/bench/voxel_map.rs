@@ -1,8 +1,9 @@
 //! `lovelock bench voxel-map`: the voxel map against the published loop, in one run.
 //!
 //! Every loop fills the density, sums it along the light and looks up the filtered transmittance of every point once. The published
-//! loop runs on one thread, as printed and with its cells in the best order. All use the printed density and filter (one per point), and
-//! their results are compared before they are timed. The map as the program uses it, which adds the length of segments, is timed too.
+//! loop has its cells as printed, and in the best order. Each is timed on one thread and on all, so that a ratio never compares different
+//! numbers of threads. All use the printed density and filter (one per point), and their results are compared before they are timed.
+//! The map as the program uses it, which adds the length of segments, is timed too.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -43,28 +44,26 @@ const EXTINCTION: f32 = 50.0;
 /// The results of all sizes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VoxelMapReport {
-    /// Threads of the map; the published loop has one.
-    pub threads: usize,
-    /// A row for each number of points and resolution.
+    /// A row for each number of points, resolution and number of threads: one, and all if there are several.
     pub rows: Vec<VoxelMapRow>,
 }
 
-/// The times of one number of points and one resolution: the fastest of all runs, milliseconds.
+/// The times of one number of points, one resolution and one number of threads: the fastest of all runs, milliseconds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VoxelMapRow {
     /// Points that are added and looked up.
     pub points: usize,
     /// Cells along each edge.
     pub resolution: u32,
+    /// Threads of the map and of the published loop.
+    pub threads: usize,
     /// The published loop with the cells as printed, `[i][j][k]`.
     pub as_printed_ms: f64,
     /// The published loop in its best order, `[j][k][i]`.
     pub best_order_ms: f64,
-    /// The map on one thread.
-    pub one_thread_ms: f64,
-    /// The map on all threads.
+    /// The map.
     pub map_ms: f64,
-    /// The map on all threads, as the program uses it: density by length and the centred filter.
+    /// The map as the program uses it: density by length and the centred filter.
     pub by_length_ms: f64,
     /// The largest difference of transmittance between the loops.
     pub largest_difference: f32,
@@ -88,9 +87,12 @@ impl VoxelMapRow {
 }
 
 impl VoxelMapReport {
-    /// How the time grows from the fewest to the most points, for each resolution: the factor on the points, and that on the time.
+    /// How the time on all threads grows from the fewest to the most points, for each resolution: the factor on the points, and that on
+    /// the time.
     fn growth(&self) -> Vec<(u32, f64, f64)> {
-        let of = |resolution| self.rows.iter().filter(move |row| row.resolution == resolution);
+        let threads = self.rows.iter().map(|row| row.threads).max().unwrap_or(0);
+        let rows = || self.rows.iter().filter(move |row| row.threads == threads);
+        let of = |resolution| rows().filter(move |row| row.resolution == resolution);
         let mut resolutions: Vec<_> = self.rows.iter().map(|row| row.resolution).collect();
         resolutions.sort_unstable();
         resolutions.dedup();
@@ -122,7 +124,12 @@ fn measure_sizes(
         .map_err(ProjectError::work)?;
     let mut strands = Strands::default();
     interpolate(&style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(ProjectError::work)?;
+    let all = rayon::current_num_threads();
+    let pools = std::iter::once(1).chain((all > 1).then_some(all));
+    let pools: Vec<_> = pools
+        .map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build())
+        .collect::<Result<_, _>>()
+        .map_err(ProjectError::work)?;
     let mut rows = Vec::new();
     for &copies in copies {
         let strands = copied(&strands, copies);
@@ -130,10 +137,10 @@ fn measure_sizes(
             if progress(&format!("voxel-map, {} points, {resolution}³ cells", strands.points())).is_break() {
                 return Err(ProjectError::Cancelled);
             }
-            rows.push(Loops::new(&strands, resolution, copies).time(&one)?);
+            rows.extend(Loops::new(&strands, resolution, copies).time(&pools)?);
         }
     }
-    Ok(VoxelMapReport { threads: rayon::current_num_threads(), rows })
+    Ok(VoxelMapReport { rows })
 }
 
 /// The strands, each `copies` times within a centimetre: hair of the same shape with more points.
@@ -168,8 +175,8 @@ struct Loops<'a> {
     printed: ShadowSettings,
     /// The program's own.
     by_length: ShadowSettings,
-    /// The map on all threads as printed, the same on one thread, and by length. Each keeps its memory.
-    maps: [VoxelMap; 3],
+    /// The map with the printed density, and by length: on one thread, then on all. Each keeps its memory.
+    maps: [[VoxelMap; 2]; 2],
     published: [PublishedMap; 2],
     out: Vec<f32>,
 }
@@ -196,14 +203,14 @@ impl<'a> Loops<'a> {
         };
         let orders = [CellOrder::AsPrinted, CellOrder::AlongLight];
         let published = orders.map(|order| PublishedMap::new(resolution, order));
-        let maps = std::array::from_fn(|_| VoxelMap::default());
+        let maps = std::array::from_fn(|_| std::array::from_fn(|_| VoxelMap::default()));
         Self { input, printed, by_length, maps, published, out: vec![0.0; strands.points()] }
     }
 
-    /// Runs one of the maps: as printed (0, and 1 for one thread), or as the program uses it (2).
-    fn run_map(&mut self, which: usize) -> Result<(), ProjectError> {
-        let settings = if which == 2 { &self.by_length } else { &self.printed };
-        let map = &mut self.maps[which];
+    /// Runs a map, one of those for one thread (0) or for all (1): with the printed density (0), or as the program uses it (1).
+    fn run_map(&mut self, threads: usize, which: usize) -> Result<(), ProjectError> {
+        let settings = if which == 1 { &self.by_length } else { &self.printed };
+        let map = &mut self.maps[threads][which];
         map.build(&self.input, settings).map_err(ProjectError::work)?;
         let Strands { x, y, z, .. } = self.input.strands;
         map.transmittance_at(x, y, z, &mut self.out);
@@ -213,7 +220,7 @@ impl<'a> Loops<'a> {
     /// Runs the published loop: as printed (0) or in its best order (1).
     fn run_published(&mut self, order: usize) {
         // The loop has the cells of the map, which must be built before.
-        let Some(lattice) = self.maps[0].lattice().copied() else { return };
+        let Some(lattice) = self.maps[0][0].lattice().copied() else { return };
         let depth = self.input.extinction_scale * self.printed.voxel_map.point_extinction * lattice.cell_size;
         let map = &mut self.published[order];
         map.build(&lattice, self.input.strands, depth);
@@ -222,7 +229,7 @@ impl<'a> Loops<'a> {
 
     /// The largest difference between the loops.
     fn difference(&mut self) -> Result<f32, ProjectError> {
-        self.run_map(0)?;
+        self.run_map(0, 0)?;
         let wanted = self.out.clone();
         let mut largest = 0.0_f32;
         for order in 0..self.published.len() {
@@ -238,41 +245,52 @@ impl<'a> Loops<'a> {
         Ok(largest)
     }
 
-    fn time(mut self, one: &ThreadPool) -> Result<VoxelMapRow, ProjectError> {
+    /// A row for each of the pools, of one thread and of all.
+    fn time(mut self, pools: &[ThreadPool]) -> Result<Vec<VoxelMapRow>, ProjectError> {
         let largest_difference = self.difference()?;
-        let mut least = [f64::INFINITY; 5];
+        let mut least = vec![[f64::INFINITY; 4]; pools.len()];
         let whole = Stopwatch::start();
         let mut rounds = 0;
         while rounds < ROUNDS[0] || rounds < ROUNDS[1] && whole.secs() < SECS {
-            for (which, least) in least.iter_mut().enumerate() {
-                let round = Stopwatch::start();
-                loop {
-                    let watch = Stopwatch::start();
-                    match which {
-                        0 | 1 => self.run_published(which),
-                        2 => one.install(|| self.run_map(1))?,
-                        3 => self.run_map(0)?,
-                        _ => self.run_map(2)?,
-                    }
-                    *least = least.min(watch.ms());
-                    if round.ms() > ROUND_MS {
-                        break;
-                    }
+            for which in 0..4 {
+                for (threads, (pool, least)) in pools.iter().zip(&mut least).enumerate() {
+                    let ms = pool.install(|| self.run_for_a_round(threads, which))?;
+                    least[which] = least[which].min(ms);
                 }
             }
             rounds += 1;
         }
-        let [as_printed_ms, best_order_ms, one_thread_ms, map_ms, by_length_ms] = least;
-        Ok(VoxelMapRow {
-            points: self.input.strands.points(),
-            resolution: self.printed.voxel_map.resolution,
-            as_printed_ms,
-            best_order_ms,
-            one_thread_ms,
-            map_ms,
-            by_length_ms,
-            largest_difference,
-        })
+        let row = |(pool, least): (&ThreadPool, [f64; 4])| {
+            let [as_printed_ms, best_order_ms, map_ms, by_length_ms] = least;
+            VoxelMapRow {
+                points: self.input.strands.points(),
+                resolution: self.printed.voxel_map.resolution,
+                threads: pool.current_num_threads(),
+                as_printed_ms,
+                best_order_ms,
+                map_ms,
+                by_length_ms,
+                largest_difference,
+            }
+        };
+        Ok(pools.iter().zip(least).map(row).collect())
+    }
+
+    /// Repeats one of the loops, both orders and both maps, for [`ROUND_MS`]. Returns the time of the fastest run, milliseconds.
+    fn run_for_a_round(&mut self, threads: usize, which: usize) -> Result<f64, ProjectError> {
+        let round = Stopwatch::start();
+        let mut least = f64::INFINITY;
+        loop {
+            let watch = Stopwatch::start();
+            match which {
+                0 | 1 => self.run_published(which),
+                _ => self.run_map(threads, which - 2)?,
+            }
+            least = least.min(watch.ms());
+            if round.ms() > ROUND_MS {
+                return Ok(least);
+            }
+        }
     }
 }
 
@@ -280,18 +298,16 @@ impl fmt::Display for VoxelMapReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "voxel-map: density, sum along the light and one filtered lookup per point; the fastest run, milliseconds; the published \
-             loop on one thread, the map on {}",
-            self.threads
+            "voxel-map: density, sum along the light and one filtered lookup per point; the fastest run, milliseconds"
         )?;
         writeln!(
             f,
-            "{:>12}{:>8}{:>12}{:>12}{:>12}{:>10}{:>10}{:>10}{:>12}{:>12}{:>12}",
+            "{:>12}{:>8}{:>9}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>12}",
             "points",
             "cells",
+            "threads",
             "as printed",
             "best order",
-            "one thread",
             "map",
             "times",
             "times",
@@ -303,12 +319,12 @@ impl fmt::Display for VoxelMapReport {
             let [printed, best] = [row.times_printed(), row.times_best()].map(|times| format!("{times:.1}"));
             writeln!(
                 f,
-                "{:>12}{:>8}{:>12.2}{:>12.2}{:>12.2}{:>10.2}{printed:>10}{best:>10}{:>12.2}{:>12.2}{:>12.5}",
+                "{:>12}{:>8}{:>9}{:>12.2}{:>12.2}{:>10.2}{printed:>10}{best:>10}{:>10.2}{:>12.2}{:>12.5}",
                 row.points,
                 format!("{}³", row.resolution),
+                row.threads,
                 row.as_printed_ms,
                 row.best_order_ms,
-                row.one_thread_ms,
                 row.map_ms,
                 row.ns_per_point(),
                 row.by_length_ms,
@@ -317,7 +333,8 @@ impl fmt::Display for VoxelMapReport {
         }
         writeln!(
             f,
-            "  times: as printed and best order, divided by map; by length: the map as the program uses it"
+            "  times: as printed and best order, divided by map, each on the same number of threads; by length: the map as the program \
+             uses it"
         )?;
         for (resolution, points, time) in self.growth() {
             writeln!(
@@ -352,9 +369,13 @@ mod tests {
     fn the_loops_agree_on_hair_that_is_neither_black_nor_lit() {
         let mut silent = |_: &str| ControlFlow::Continue(());
         let report = measure_sizes(&[1], &[32], &mut silent).expect("they agree");
-        let row = &report.rows[0];
-        assert_eq!((row.points, row.resolution), (103_850, 32));
-        assert!(row.as_printed_ms > 0.0 && row.map_ms > 0.0 && row.largest_difference > 0.0, "{row:?}");
+        let mut threads = vec![1, rayon::current_num_threads()];
+        threads.dedup();
+        assert_eq!(report.rows.iter().map(|row| row.threads).collect::<Vec<_>>(), threads);
+        for row in &report.rows {
+            assert_eq!((row.points, row.resolution), (103_850, 32));
+            assert!(row.as_printed_ms > 0.0 && row.map_ms > 0.0 && row.largest_difference > 0.0, "{row:?}");
+        }
         assert!(report.growth().is_empty());
         let mut cancel = |_: &str| ControlFlow::Break(());
         assert!(matches!(measure_sizes(&[1], &[32], &mut cancel), Err(ProjectError::Cancelled)));
@@ -377,23 +398,25 @@ mod tests {
 
     #[test]
     fn ratios_and_growth_by_hand() {
-        let row = |points, map_ms| VoxelMapRow {
+        let row = |points, threads, map_ms| VoxelMapRow {
             points,
             resolution: 128,
+            threads,
             as_printed_ms: 60.0,
             best_order_ms: 12.0,
-            one_thread_ms: 2.0,
             map_ms,
             by_length_ms: 2.0,
             largest_difference: 1e-4,
         };
-        let report = VoxelMapReport { threads: 2, rows: vec![row(100_000, 1.0), row(10_000_000, 90.0)] };
+        let rows = [(100_000, 1, 2.0), (100_000, 2, 1.0), (10_000_000, 1, 120.0), (10_000_000, 2, 90.0)];
+        let report =
+            VoxelMapReport { rows: rows.map(|(points, threads, ms)| row(points, threads, ms)).to_vec() };
         assert_eq!(report.growth(), [(128, 100.0, 90.0)]);
         let text = report.to_string();
-        let numbers: Vec<_> = text.lines().nth(2).expect("a row").split_whitespace().collect();
+        let numbers: Vec<_> = text.lines().nth(3).expect("a row").split_whitespace().collect();
         assert_eq!(
             numbers,
-            ["100000", "128³", "60.00", "12.00", "2.00", "1.00", "60.0", "12.0", "10.00", "2.00", "0.00010"]
+            ["100000", "128³", "2", "60.00", "12.00", "1.00", "60.0", "12.0", "10.00", "2.00", "0.00010"]
         );
         assert!(text.contains("growth at 128³: 100 times the points take 90 times as long"), "{text}");
     }

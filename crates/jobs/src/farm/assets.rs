@@ -41,6 +41,7 @@ pub(super) fn copy(
             Place::Motion => project.motion.file = file,
             Place::Sound => project.sound.file = file,
             Place::Surroundings => project.surroundings.file = file,
+            Place::Backdrop => project.surroundings.backdrop = file,
             _ => project.hair.file = file,
         }
     }

@@ -81,7 +81,9 @@ fn wrong_requests_are_refused_and_leave_nothing() {
     lost.set_hair_file(at("gone.hair"));
     let mut seamless = small_project();
     seamless.recording.seamless = true;
-    for (project, request, wanted) in [
+    // A list on the heap: projects are large.
+    #[allow(clippy::useless_vec)]
+    let cases = vec![
         (seamless, request(), "a seamless loop"),
         (small_project(), FarmRequest { frames: Some(4..4), ..request() }, "an empty range"),
         (small_project(), FarmRequest { chunk: Some(0), ..request() }, "--chunk: found 0"),
@@ -93,7 +95,8 @@ fn wrong_requests_are_refused_and_leave_nothing() {
         (small_project(), FarmRequest { fps: Some(0.0), ..request() }, "frames per second"),
         (small_project(), FarmRequest { size: Some((0, 9)), ..request() }, "0x9"),
         (lost, request(), "gone.hair"),
-    ] {
+    ];
+    for (project, request, wanted) in cases {
         let error = make(&project, &request).expect_err(wanted);
         assert!(error.to_string().contains(wanted) && error.exit_code() == 2, "{wanted}: {error}");
     }

@@ -1,6 +1,8 @@
 //! `lovelock info`: describes the contents of a file.
 
+mod character_text;
 mod kind;
+mod lines;
 mod sound;
 mod style;
 mod surroundings;
@@ -19,7 +21,7 @@ use std::path::Path;
 use lovelock_groom::{CurveMotion, HairInfo, ImportSettings, hair_info, load_hair};
 use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
 use lovelock_project::error::ProjectError;
-use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
+use lovelock_project::project::{HairSource, MotionSource, PROJECT_VERSION, load_project};
 use serde::Serialize;
 
 use crate::satf::DatabaseInfo;
@@ -154,12 +156,7 @@ fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
         format: format!("Lovelock project {PROJECT_VERSION}"),
         dropped,
         notes: problems.iter().map(ToString::to_string).collect(),
-        body: match project.body.source {
-            BodySource::Dancer => "dancer".to_owned(),
-            BodySource::Animal => "animal".to_owned(),
-            BodySource::Lawn => "lawn".to_owned(),
-            BodySource::File => name(&project.body.file),
-        },
+        body: project.body.source.name().map_or_else(|| name(&project.body.file), ToOwned::to_owned),
         motion: match project.motion.source {
             MotionSource::Clip => project.motion.clip.clone(),
             MotionSource::File => name(&project.motion.file),

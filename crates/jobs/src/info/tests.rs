@@ -241,3 +241,28 @@ fn a_sound_is_described_with_its_tempo() {
     let error = super::info(&path).expect_err("no sound");
     assert!(error.exit_code() == 2 && error.to_string().contains("clicks ü.wav"), "{error}");
 }
+
+#[test]
+fn the_surface_of_a_character_is_described() {
+    let figure = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    let info = info(&figure).expect("the dancer");
+    let json = serde_json::to_value(&info).expect("JSON");
+    let list = |key: &str| json[key].as_array().unwrap_or_else(|| panic!("{key}: {json}")).clone();
+    let (materials, textures) = (list("materials"), list("textures"));
+    let regions: Vec<_> = materials.iter().filter_map(|material| material["region"].as_str()).collect();
+    assert!(
+        regions.contains(&"skin") && regions.contains(&"eye") && regions.contains(&"cloth"),
+        "{regions:?}"
+    );
+    let triangles: u64 = materials.iter().filter_map(|material| material["triangles"].as_u64()).sum();
+    assert_eq!(Some(triangles), json["triangles"].as_u64());
+    for of in materials.iter().flat_map(|material| material["textures"].as_array().expect("textures")) {
+        assert!(of["texture"].as_u64().is_some_and(|index| (index as usize) < textures.len()), "{of}");
+    }
+    assert!(textures.iter().all(|texture| texture["width"].as_u64() > Some(0)) && !textures.is_empty());
+    assert_eq!(Some(list("morph_target_names").len() as u64), json["morph_targets"].as_u64());
+    let text = info.to_string();
+    for name in ["material", "texture", "morphs"] {
+        assert!(text.contains(&format!("\n  {name:<9} ")), "{name}: {text}");
+    }
+}

@@ -1,11 +1,11 @@
 //! Descriptions as text for people.
 
-use std::collections::BTreeMap;
 use std::fmt;
 
-use lovelock_base::words::counted;
 use lovelock_motion::MotionInfo;
 
+use super::character_text;
+use super::lines::{line, remarks};
 use super::{Content, Info};
 use crate::satf::DatabaseInfo;
 
@@ -33,39 +33,7 @@ impl fmt::Display for Info {
                 line(f, "up, face", format_args!("{}{up}, {}{facing}", hair.up, hair.facing))?;
                 remarks(f, &hair.dropped, &hair.notes)
             }
-            Content::Character(character) => {
-                line(f, "kind", format_args!("character, {}", character.format))?;
-                line(f, "height", format_args!("{:.2} m", character.height_m))?;
-                line(
-                    f,
-                    "joints",
-                    format_args!("{}, {}", character.joints, counted(character.skins, "skin", "skins")),
-                )?;
-                line(f, "head", &character.head)?;
-                line(
-                    f,
-                    "surface",
-                    format_args!(
-                        "{}, {}",
-                        counted(character.vertices, "vertex", "vertices"),
-                        counted(character.triangles, "triangle", "triangles")
-                    ),
-                )?;
-                if character.morph_targets > 0 {
-                    line(f, "morphs", character.morph_targets)?;
-                }
-                for clip in &character.clips {
-                    let loops = if clip.loops { ", loops" } else { ", its end is blended while it loops" };
-                    let name = if clip.name.is_empty() { "(no name)" } else { &clip.name };
-                    let (secs, start, end) = (clip.duration_secs, clip.start_secs, clip.end_secs);
-                    line(
-                        f,
-                        "clip",
-                        format_args!("{name}, {secs:.2} s from {start:.2} s to {end:.2} s{loops}"),
-                    )?;
-                }
-                remarks(f, &character.dropped, &character.notes)
-            }
+            Content::Character(character) => character_text::write(f, character),
             Content::Motion(motion) => {
                 line(f, "kind", format_args!("motion, {}", motion.format))?;
                 line(f, "joints", motion.joints)?;
@@ -191,18 +159,4 @@ fn keys_of(motion: &MotionInfo) -> String {
         Some(secs) => format!("{keys}, at multiples of {secs:.5} s"),
         None => format!("{keys}, at uneven times"),
     }
-}
-
-fn line(f: &mut fmt::Formatter<'_>, name: &str, value: impl fmt::Display) -> fmt::Result {
-    writeln!(f, "  {name:<9} {value}")
-}
-
-fn remarks(f: &mut fmt::Formatter<'_>, dropped: &BTreeMap<String, u64>, notes: &[String]) -> fmt::Result {
-    for (what, count) in dropped {
-        line(f, "left out", format_args!("{count} {what}"))?;
-    }
-    for note in notes {
-        line(f, "note", note)?;
-    }
-    Ok(())
 }

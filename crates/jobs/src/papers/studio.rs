@@ -206,7 +206,7 @@ impl<'a> Studio<'a> {
         let mut picture = Picture::default();
         let (width, height) = self.request.size;
         let stats =
-            self.renderer.picture(&snapshot.frame_input(project, &camera), width, height, &mut picture)?;
+            self.renderer.picture(&snapshot.measured_input(project, &camera), width, height, &mut picture)?;
         Ok(Drawn { picture, stats })
     }
 

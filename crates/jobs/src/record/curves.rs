@@ -10,7 +10,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_base::settings::Settings;
 use lovelock_groom::fine::lock_numbers;
 use lovelock_groom::{
-    ColourSamples, HairLook, Hairstyle, PigmentVariation, StrandMarks, Strands, colour_along,
+    ColourSamples, HairLook, Hairstyle, PigmentVariation, StrandMarks, StrandSet, Strands, colour_along,
 };
 use lovelock_motion::Body;
 use lovelock_project::Project;
@@ -136,6 +136,10 @@ pub fn record_curves(
     let first = dance.snapshot(frames.start)?;
     let body = (!request.no_body).then(|| body_of(&first));
     let mut scene = curves_of(source, &first.scene.style, &first.look(&project));
+    if let (CurveSource::Strands, Some(hair)) = (source, &first.scene.skin_hair) {
+        add_strands(&mut scene, &hair.style.strands, &first.skin_look(&project, hair));
+        scene.marks.add_group("brows and lashes", hair.count());
+    }
     (scene.rate, scene.first_frame, scene.frames) = (rate, frames.start, frames.end - frames.start);
     scene.body = body;
     let (strands, points) = (scene.curves() as u64, scene.points() as u64);
@@ -155,14 +159,7 @@ pub fn record_curves(
     report_progress(progress, Progress::Finishing)?;
     let written = writer.finish().map_err(refused)?;
     problems.extend(dance.notices());
-    let mut notes: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    if format == CurveFormat::Glb && vertices > 0 && !first.scene.body.skin.morphs.is_empty() {
-        notes.push(format!(
-            "{}: the body's joints move; its blended shapes stay as they are in frame {}",
-            out.display(),
-            frames.start
-        ));
-    }
+    let notes: Vec<String> = problems.iter().map(ToString::to_string).collect();
     Ok(CurveRecordReport {
         out: out.display().to_string(),
         format: format.id().to_owned(),
@@ -215,7 +212,10 @@ fn check_same(
             (old.guides.points_per_guide, old.guides.x.len())
                 == (new.guides.points_per_guide, new.guides.x.len())
         }
-        CurveSource::Strands => old.strands.first_point == new.strands.first_point,
+        CurveSource::Strands => {
+            let of_skin = [first, now].map(|snapshot| snapshot.skin_strands.points());
+            old.strands.first_point == new.strands.first_point && of_skin[0] == of_skin[1]
+        }
     };
     let (old_body, new_body) = (&first.scene.body, &now.scene.body);
     let same_body = Arc::ptr_eq(old_body, new_body)
@@ -262,23 +262,27 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
             }
         }
         CurveSource::Strands => {
-            let set = &style.strands;
-            let width = look.shadow_width(set.count()) * look.width_scale;
-            scene.first_point.clone_from(&set.first_point);
-            scene.marks.clone_from(&set.marks);
-            scene.widths = set.taper.iter().map(|taper| taper * width).collect();
-            let locks = lock_numbers(set);
-            let strands = set.first_point.array_windows().zip(&set.shade).zip(locks).enumerate();
-            for (strand, ((&[start, end], &shade), lock)) in strands {
-                let last = (end - start - 1).max(1) as f32;
-                let own = set.colours.strands().get(strand);
-                scene
-                    .colors
-                    .extend((0..end - start).map(|p| color(&look, p as f32 / last, shade, lock, own)));
-            }
+            scene.first_point = vec![0];
+            scene.marks.clone_from(&style.strands.marks);
+            add_strands(&mut scene, &style.strands, &look);
         }
     }
     scene
+}
+
+/// Adds strands with their rendered widths and colours.
+fn add_strands(scene: &mut CurveScene, set: &StrandSet, look: &HairLook) {
+    let width = look.shadow_width(set.count()) * look.width_scale;
+    let before = scene.widths.len() as u32;
+    scene.first_point.extend(set.first_point.iter().skip(1).map(|first| before + first));
+    scene.widths.extend(set.taper.iter().map(|taper| taper * width));
+    let locks = lock_numbers(set);
+    let strands = set.first_point.array_windows().zip(&set.shade).zip(locks).enumerate();
+    for (strand, ((&[start, end], &shade), lock)) in strands {
+        let last = (end - start - 1).max(1) as f32;
+        let own = set.colours.strands().get(strand);
+        scene.colors.extend((0..end - start).map(|p| color(look, p as f32 / last, shade, lock, own)));
+    }
 }
 
 /// Colour at the fraction `along` of a strand with that shade, of a lock with that number; linear sRGB, as rendered in uniform light.
@@ -328,21 +332,20 @@ fn marks_of_guides(style: &Hairstyle) -> StrandMarks {
 
 fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
     let body: &Body = &snapshot.scene.body;
-    let (mut positions, mut normals) = (body.skin.positions.clone(), body.skin.normals.clone());
-    for (morph, &weight) in body.skin.morphs.iter().zip(&snapshot.pose.morph_weights) {
-        for ((&vertex, &p), &n) in morph.vertices.iter().zip(&morph.positions).zip(&morph.normals) {
-            positions[vertex as usize] += weight * p;
-            normals[vertex as usize] += weight * n;
-        }
-    }
     CurveBody {
         triangles: body.mesh.triangles.clone(),
         colors: body.mesh.colors.clone(),
-        bind_positions: positions,
-        bind_normals: normals,
+        opacity: body.mesh.opacity.clone(),
+        coordinates: body.mesh.coordinates.clone(),
+        materials: body.materials.clone(),
+        of_triangles: body.mesh.materials.clone(),
+        images: body.images.clone(),
+        bind_positions: body.skin.positions.clone(),
+        bind_normals: body.skin.normals.clone(),
         joints: body.skin.binds.clone(),
         weights: body.mesh.weights.clone(),
         joint_from_bind: body.skin.palette.iter().map(|bind| bind.joint_from_bind).collect(),
+        morphs: body.skin.morphs.clone(),
     }
 }
 
@@ -366,7 +369,11 @@ impl Moved {
                 [&guides.x[..], &guides.y, &guides.z]
             }
             CurveSource::Strands => {
-                snapshot.interpolate(&mut self.strands);
+                let (strands, more) = (&mut self.strands, &snapshot.skin_strands);
+                snapshot.interpolate(strands);
+                strands.x.extend_from_slice(&more.x);
+                strands.y.extend_from_slice(&more.y);
+                strands.z.extend_from_slice(&more.z);
                 [&self.strands.x[..], &self.strands.y, &self.strands.z]
             }
         };
@@ -385,6 +392,7 @@ impl Moved {
             positions: &snapshot.skin.positions,
             normals: &snapshot.skin.normals,
             joints: &self.joints,
+            morph_weights: &snapshot.pose.morph_weights,
         });
         CurveFrame { points, body }
     }

@@ -14,7 +14,7 @@ use super::request::RecordRequest;
 
 /// The error for unsupported settings of panes.
 pub(super) const PANES_ALONE: &str = "panes side by side can only be recorded as a film or PNG files, without a transparent \
-                                      background or motion blur: switch those off, or record the single image";
+                                      background, motion blur or depth of field: switch those off, or record the single image";
 
 /// Renders the frames of a recording.
 pub(super) enum Drawer {
@@ -121,6 +121,34 @@ impl Drawer {
                 let camera = snapshot.camera(&project.camera);
                 let input = snapshot.frame_input(project, &camera);
                 Ok(renderer.layers(&input, width, height, over_background, layers)?)
+            }
+            Self::Panes(..) => Err(ProjectError::option(PANES_ALONE)),
+        }
+    }
+
+    /// Renders a sample of a lens: the layers of its first sample, and the light of the others.
+    ///
+    /// # Errors
+    /// As [`Drawer::layers`].
+    pub(super) fn lens_sample(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+        (over_background, index, with_values): (bool, u32, bool),
+        layers: &mut Layers,
+    ) -> Result<FrameStats, ProjectError> {
+        match self {
+            Self::One(renderer) => {
+                let camera = snapshot.camera(&project.camera);
+                let lens = snapshot.lens(&project.camera, &camera);
+                let camera = lens.map_or(camera, |lens| lens.camera(&camera, index));
+                let input = snapshot.frame_input(project, &camera);
+                Ok(if with_values {
+                    renderer.layers(&input, width, height, over_background, layers)?
+                } else {
+                    renderer.light(&input, width, height, over_background, layers)?
+                })
             }
             Self::Panes(..) => Err(ProjectError::option(PANES_ALONE)),
         }

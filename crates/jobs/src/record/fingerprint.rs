@@ -10,7 +10,7 @@ use lovelock_record::TakeAsset;
 use serde_json::{Map, Value};
 
 /// Parts of a project that do not affect images, or have their own entries in the manifest.
-const BESIDE: [&str; 5] = ["version", "recording", "compare", "sound", "take"];
+const BESIDE: [&str; 6] = ["version", "recording", "compare", "reference", "sound", "take"];
 
 /// A hash of each part of the project, by name. `with_panes` includes the panes.
 ///

@@ -244,7 +244,7 @@ fn unsupported_settings_are_refused_with_a_message() {
         wipe: None,
         view: lovelock_panes::view::LiveView::default(),
         figures: true,
-        colors: [[0; 3]; 6],
+        colors: [[0; 3]; 9],
     };
     for (wrong, said) in [
         (RecordRequest { motion_blur: Some(0), ..request(&at("x")) }, "must be 1 (none) to 64"),

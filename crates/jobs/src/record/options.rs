@@ -14,6 +14,8 @@ pub(super) struct Options {
     pub transparent: bool,
     /// Samples per frame, 1 or more.
     pub subframes: u32,
+    /// Places of the aperture per frame, 1 or more; at least one for each of `subframes`.
+    pub lens_samples: u32,
     /// Shutter angle, 0 to 360 degrees per frame.
     pub shutter_degrees: f32,
     pub label: bool,
@@ -31,6 +33,7 @@ impl Options {
             format: request.format.unwrap_or(of.format),
             transparent: request.transparent || of.transparent,
             subframes: request.motion_blur.unwrap_or(of.subframes),
+            lens_samples: if project.camera.lens.enabled { project.camera.lens.samples.max(1) } else { 1 },
             shutter_degrees: request.shutter_degrees.unwrap_or(of.shutter_degrees),
             label: request.label || of.label,
             quality: request.quality.unwrap_or(of.quality),

@@ -144,6 +144,7 @@ pub fn record(
         sound: has_sound,
         transparent: job.options.transparent,
         motion_blur: job.options.subframes,
+        lens_samples: job.options.lens_samples,
         shutter_degrees: job.options.shutter_degrees,
         strands: strands.count() as u64,
         segments: strands.segments() as u64,
@@ -182,6 +183,9 @@ impl<'a> Job<'a> {
             project.shadow.method = shadow;
         }
         project.recording.seamless |= request.seamless;
+        if let Some(secs) = request.turn_secs {
+            (project.camera.turntable, project.camera.turn_secs) = (true, secs);
+        }
         if let Some(draw) = request.draw {
             project.picture.draw = draw;
         }
@@ -208,6 +212,7 @@ impl<'a> Job<'a> {
         asked.check_kind(kind).map_err(|error| job.refused(&error))?;
         let layered = job.options.transparent
             || job.options.subframes > 1
+            || job.options.lens_samples > 1
             || (kind == OutputKind::Sequence && job.options.format == SequenceFormat::Exr);
         if request.panes.is_some() && layered {
             return Err(ProjectError::option(PANES_ALONE));
@@ -233,6 +238,11 @@ impl<'a> Job<'a> {
         let recording = &self.project.recording;
         let frames = self.request.frames.clone().unwrap_or_else(|| {
             let first = recording.first_frame.max(dance.first_frame());
+            if let Some(secs) = self.request.turn_secs {
+                // The frame after the last one would show the first again.
+                let turn = (f64::from(secs) * self.fps).round().max(1.0) as u64;
+                return first..first.saturating_add(turn);
+            }
             let count = if recording.seamless { dance.frames_of_round() } else { dance.frames() };
             let end = dance.first_frame() + count;
             first..recording.end_frame.unwrap_or_else(|| end.max(first + 1))
@@ -277,6 +287,7 @@ impl<'a> Job<'a> {
             "background": if self.options.transparent { "transparent" } else { "drawn" },
             "motion blur": self.options.subframes,
             "shutter": self.options.shutter_degrees,
+            "lens": self.options.lens_samples,
             "label": self.options.label,
             "project": fingerprint::of_project(&self.project, with_panes)?,
             "files": fingerprint::of_files(&self.project, &self.request.access, dance.take_assets(), with_panes),
@@ -290,7 +301,10 @@ impl<'a> Job<'a> {
 
     /// Whether frames are rendered as layers, which is needed for linear light and transparency.
     fn is_layered(&self) -> bool {
-        self.options.subframes > 1 || self.options.transparent || self.format() == SequenceFormat::Exr.id()
+        self.options.subframes > 1
+            || self.options.lens_samples > 1
+            || self.options.transparent
+            || self.format() == SequenceFormat::Exr.id()
     }
 
     /// The format by extension.
@@ -358,20 +372,36 @@ impl<'a> Job<'a> {
         }
         let over_background = !self.options.transparent;
         let instants = self.options.instants(frame, self.fps);
+        // Each instant has its own places of the aperture.
+        let per_instant = self.options.lens_samples.div_ceil(instants.len() as u32).max(1);
+        let whole = instants.len() as u32 * per_instant;
+        let weight = 1.0 / whole as f32;
+        let needs_values = self.format() == SequenceFormat::Exr.id();
         let (mut times, mut last) = (StageTimes::default(), FrameStats::default());
         drawn.mean.clear_to(self.width, self.height);
-        for &secs in &instants {
+        for (instant, &secs) in instants.iter().enumerate() {
             // Without blur a frame equals the single image bit for bit.
             let snapshot =
                 if instants.len() == 1 { dance.snapshot(frame)? } else { dance.snapshot_at(secs)? };
-            let layers = if instants.len() == 1 { &mut drawn.mean } else { &mut drawn.one };
             let at = self.project.seen_at(snapshot.position_secs);
-            last = drawer.layers(&at, &snapshot, size, over_background, layers)?;
             times.motion += snapshot.times.motion;
             times.simulate += snapshot.times.simulate;
-            times.add_picture(&last);
-            if instants.len() > 1 {
-                drawn.mean.add(&drawn.one, 1.0 / instants.len() as f32);
+            if whole == 1 {
+                last = drawer.layers(&at, &snapshot, size, over_background, &mut drawn.mean)?;
+                times.add_picture(&last);
+                continue;
+            }
+            for sample in 0..per_instant {
+                let index = instant as u32 + sample * instants.len() as u32;
+                // Values of the middle of the lens stand for all: they belong to what is in focus.
+                let with_values = sample == 0 && (needs_values || per_instant == 1);
+                let wanted = (over_background, index, with_values);
+                last = drawer.lens_sample(&at, &snapshot, size, wanted, &mut drawn.one)?;
+                times.add_picture(&last);
+                if with_values {
+                    drawn.mean.add_values(&drawn.one, 1.0 / instants.len() as f32);
+                }
+                drawn.mean.add_light(&drawn.one, weight);
             }
         }
         if self.format() == SequenceFormat::Exr.id() {

@@ -46,6 +46,8 @@ pub struct RecordReport {
     pub transparent: bool,
     /// Samples per frame.
     pub motion_blur: u32,
+    /// Places of the aperture per frame for depth of field, 1 if there is none.
+    pub lens_samples: u32,
     /// Shutter angle, degrees of 360 per frame.
     pub shutter_degrees: f32,
     /// Number of rendered strands.

@@ -31,6 +31,8 @@ pub struct RecordRequest {
     pub quality: Option<FilmQuality>,
     /// Whether shadow method, transparency and frame number are written into each image.
     pub label: bool,
+    /// Time in which the camera goes once round its target, seconds; without `frames` the film is one turn.
+    pub turn_secs: Option<f32>,
     /// Whether the end of the film is blended into its start; the project can also enable this.
     pub seamless: bool,
     /// Format of the files in a folder.
@@ -72,6 +74,7 @@ impl RecordRequest {
             (self.backend.is_some(), "--backend"),
             (self.quality.is_some(), "--quality"),
             (self.label, "--label"),
+            (self.turn_secs.is_some(), "--turntable"),
             (self.panes.is_some(), "--beside"),
             (self.format.is_some(), "--format"),
             (self.transparent, "--transparent"),

@@ -139,6 +139,7 @@ fn the_report_has_the_keys_that_were_promised() {
         sound: false,
         transparent: false,
         motion_blur: 1,
+        lens_samples: 1,
         shutter_degrees: 180.0,
         strands: 1,
         segments: 1,

@@ -173,7 +173,7 @@ pub fn write_reference(
             let message = "picture.strands: found by-size; must be fixed or stored for a path tracer";
             return Err(ProjectError::option(message));
         }
-        let hair = match settled.take() {
+        let mut hair = match settled.take() {
             Some((preset, hair)) if preset == scene.hair => hair,
             _ => Hair::settle(scene.hair, &project)?,
         };
@@ -194,7 +194,12 @@ struct Hair {
     id: &'static str,
     /// In the coordinates of the file.
     strands: DrawnStrands,
+    /// The share of grey strands for which files were written last, and their names: all images of a hairstyle share the files.
+    written: Option<(f32, StrandFiles)>,
 }
+
+/// The names of the files of strands: all or those with pigment, and those without.
+type StrandFiles = (String, Option<String>);
 
 impl Hair {
     /// Settles the hair.
@@ -203,32 +208,39 @@ impl Hair {
         engine.follow(project);
         engine.settle();
         let snapshot = engine.snapshot();
-        let any = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 1.0 };
+        let any = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 1.0, shear: glam::Vec2::ZERO };
         let input = without_body(&snapshot, project, &any);
         let drawn = drawn_strands(&input);
         let camera = view::camera_for(&drawn.points, &input.world_from_head);
         let head_from_world = input.world_from_head.inverse();
         let in_mm = drawn.map(|p| head_from_world.transform_point3(p) * MM, MM);
-        Ok(Self { camera, id: preset.id(), strands: in_mm, snapshot })
+        Ok(Self { camera, id: preset.id(), strands: in_mm, snapshot, written: None })
     }
 
-    /// Writes the strands, in two files if some are grey. Returns the names of the files.
-    fn write_strands(&self, grey: f32, folder: &Path) -> Result<(String, Option<String>), ProjectError> {
+    /// Writes the strands, in two files if some are grey, unless they were written last. Returns the names of the files.
+    fn write_strands(&mut self, grey: f32, folder: &Path) -> Result<StrandFiles, ProjectError> {
+        if let Some((of_grey, files)) = &self.written
+            && of_grey.to_bits() == grey.to_bits()
+        {
+            return Ok(files.clone());
+        }
         let write = |name: String, strands: &DrawnStrands| {
             write_whole(&folder.join(&name), strands.text().as_bytes()).map(|()| name)
         };
-        if grey > 0.0 {
+        let files = if grey > 0.0 {
             let [pigmented, white] = self.strands.parted(grey);
             let white = write(format!("{}-white.txt", self.id), &white)?;
-            Ok((write(format!("{}-pigmented.txt", self.id), &pigmented)?, Some(white)))
+            (write(format!("{}-pigmented.txt", self.id), &pigmented)?, Some(white))
         } else {
-            Ok((write(format!("{}.txt", self.id), &self.strands)?, None))
-        }
+            (write(format!("{}.txt", self.id), &self.strands)?, None)
+        };
+        self.written = Some((grey, files.clone()));
+        Ok(files)
     }
 
     /// Renders a scene with this hair and writes its images.
     fn write(
-        &self,
+        &mut self,
         scene: ReferenceScene,
         project: &mut Project,
         renderer: &mut Renderer,
@@ -280,7 +292,7 @@ impl Hair {
 
 /// The input of a renderer, with hair alone.
 fn without_body<'a>(snapshot: &'a FrameSnapshot, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
-    FrameInput { body: None, ..snapshot.frame_input(project, camera) }
+    FrameInput { body: None, ..snapshot.measured_input(project, camera) }
 }
 
 fn write_picture(path: &Path, picture: &Picture) -> Result<(), ProjectError> {

@@ -15,8 +15,9 @@ const PREFIX: &str = "reference";
 /// Irradiance of the light on a surface that faces it. A white diffuse surface then reflects almost 1.
 const IRRADIANCE: f32 = 3.0;
 
-/// Strands that are drawn: two thirds of a pixel wide in an image of 384 pixels.
-const STRANDS: f32 = 12_000.0;
+/// Strands that are drawn. A strand stands for two hairs: among fewer, wider strands light finds more ways that no strand blocks, and a path
+/// tracer shows hair of 12,000 strands up to a fifth brighter.
+const STRANDS: f32 = 60_000.0;
 
 /// A hairstyle of one colour in one light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

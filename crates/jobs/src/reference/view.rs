@@ -15,7 +15,8 @@ const FILL: f32 = 0.97;
 /// The camera of a square image that `points` (world space, metres) fill.
 pub(super) fn camera_for(points: &[Vec3], world_from_head: &Affine3A) -> Camera {
     let back = world_from_head.transform_vector3(TOWARD_CAMERA).normalize_or(Vec3::Z);
-    let [right, up, back] = axes(&Camera { eye: back, target: Vec3::ZERO, fov_y: FOV_Y });
+    let [right, up, back] =
+        axes(&Camera { eye: back, target: Vec3::ZERO, fov_y: FOV_Y, shear: glam::Vec2::ZERO });
     let along = |axis: Vec3| {
         let [low, high] = points.iter().fold([f32::MAX, f32::MIN], |[low, high], p| {
             let at = p.dot(axis);
@@ -29,7 +30,7 @@ pub(super) fn camera_for(points: &[Vec3], world_from_head: &Affine3A) -> Camera 
         let d = *p - target;
         distance.max(d.dot(right).abs().max(d.dot(up).abs()) / slope + d.dot(back))
     });
-    Camera { eye: target + back * distance, target, fov_y: FOV_Y }
+    Camera { eye: target + back * distance, target, fov_y: FOV_Y, shear: glam::Vec2::ZERO }
 }
 
 /// The camera's axes in world space: right, up, and from the target to the camera.

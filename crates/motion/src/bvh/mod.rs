@@ -7,14 +7,16 @@ mod interpret;
 mod parse;
 mod raw;
 mod rows;
+mod write;
 
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{Keys, MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
+use crate::{FaceTrack, Keys, MotionError, MotionSettings, UpAxis, humanoid::Humanoid};
 
 pub(crate) use interpret::height_of;
+pub use write::write_bvh;
 
 /// One joint of a motion file.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +52,8 @@ pub struct MotionFile {
     pub rotations: Vec<Quat>,
     /// Position of each joint relative to its parent, metres, in the same order.
     pub positions: Vec<Vec3>,
+    /// The weights of a face over time, by name.
+    pub faces: Vec<FaceTrack>,
     /// Counts of what was left out.
     pub dropped: BTreeMap<String, u64>,
     /// Guesses and other remarks.

@@ -6,6 +6,7 @@ use glam::{Quat, Vec3};
 
 use crate::{
     Body, BodySettings, Clip, Facing, Joint, UpAxis,
+    head::ShapedHead,
     humanoid::{Humanoid, Role, Side},
     skinning::update_rest_surface,
 };
@@ -15,14 +16,26 @@ use crate::{
 pub(super) fn turn_to_face(
     body: &mut Body,
     clips: &mut [Clip],
-    settings: BodySettings,
+    (settings, head): (BodySettings, Option<ShapedHead>),
     notes: &mut Vec<String>,
 ) {
+    let mut lies = false;
     if settings.up == UpAxis::Z {
         insert_root(body, clips, "up axis", Quat::from_rotation_x(-FRAC_PI_2));
+    } else if settings.up == UpAxis::Auto
+        && let Some(upright) = head.and_then(ShapedHead::to_upright)
+    {
+        notes.push("the crown of the figure does not point up; it was stood up".to_owned());
+        insert_root(body, clips, "up axis", upright);
+        lies = true;
     }
     let facing = match settings.facing {
-        Facing::Auto => guess_facing(body),
+        // It was turned to its face already.
+        Facing::Auto if lies => Facing::PlusZ,
+        Facing::Auto => match head.filter(|_| settings.up != UpAxis::Z) {
+            Some(head) => facing_along(head.ahead),
+            None => guess_facing(body),
+        },
         chosen => chosen,
     };
     let (angle, axis) = match facing {
@@ -46,7 +59,11 @@ fn guess_facing(body: &Body) -> Facing {
         (Some(left), Some(right)) => (left - right).normalize_or_zero().cross(Vec3::Y),
         _ => sole_direction(body).unwrap_or(Vec3::Z),
     };
-    // Only clear quarter turns are undone.
+    facing_along(forward)
+}
+
+/// The axis nearest to a direction across Y. Only clear quarter turns are undone.
+fn facing_along(forward: Vec3) -> Facing {
     match (forward.x, forward.z) {
         (x, z) if x.abs() < 2.0 * z.abs() && z >= -0.5 * forward.length() => Facing::PlusZ,
         (x, z) if z < -2.0 * x.abs() => Facing::MinusZ,

@@ -6,15 +6,18 @@ use glam::Vec3;
 
 use super::Character;
 use super::axes::turn_to_face;
+use super::headed::{add_head, add_head_of_all, is_mere_surface};
+use crate::look::{Look, Looks};
 use crate::{
-    Body, BodySettings, Clip, LengthUnit, Mesh, MotionError, Skeleton, SkinData, guess_head,
-    skinning::update_rest_surface,
+    Body, BodySettings, Clip, Expression, LengthUnit, Mesh, MotionError, Skeleton, SkinData, guess_head,
+    head::find_head, skinning::update_rest_surface,
 };
 
 /// A file whose largest extent exceeds this many metres by its own unit is in another unit.
 const GIANT: f32 = 10.0;
 
 /// A character as its reader leaves it: in the unit and axes of its format.
+#[derive(Default)]
 pub(crate) struct Draft<'a> {
     /// The file as the user named it.
     pub(crate) file: &'a str,
@@ -24,6 +27,10 @@ pub(crate) struct Draft<'a> {
     pub(crate) mesh: Mesh,
     /// The surface in bind space.
     pub(crate) skin: SkinData,
+    /// How the surface looks.
+    pub(crate) look: Look,
+    /// Its expressions.
+    pub(crate) expressions: Vec<Expression>,
     /// The clips.
     pub(crate) clips: Vec<Clip>,
     /// Joints used by skins; nodes with meshes if there is no skin.
@@ -45,14 +52,28 @@ pub(crate) struct Axes {
     pub(crate) usual_unit_metres: f32,
 }
 
-impl Draft<'_> {
+impl<'a> Draft<'a> {
+    /// A character with a surface and its materials, and nothing else yet. `notes` are the remarks so far.
+    pub(crate) fn with_surface(
+        file: &'a str,
+        (mut mesh, skin): (Mesh, SkinData),
+        looks: Looks,
+        mut notes: Vec<String>,
+    ) -> Self {
+        let look = looks.finish(&mut mesh, &mut notes);
+        Self { file, mesh, skin, look, notes, ..Self::default() }
+    }
+
     /// Brings a character to metres with its face toward +Z, and chooses its head.
     pub(crate) fn finish(self, axes: Axes) -> Result<Character, MotionError> {
         let (file, mut clips, mut notes) = (self.file, self.clips, self.notes);
         let stem =
             Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
         let (skeleton, mesh, skin) = (self.skeleton, self.mesh, self.skin);
-        let mut body = Body { name: stem, skeleton, mesh, skin, head_joint: 0 };
+        let Look { materials, images } = self.look;
+        let expressions = self.expressions;
+        let mut body =
+            Body { name: stem, skeleton, mesh, skin, materials, images, expressions, ..Body::default() };
         update_rest_surface(&mut body);
         if !body.mesh.positions.iter().all(|p| p.is_finite() && p.abs().max_element() < 1e12) {
             return Err(MotionError::malformed(
@@ -65,9 +86,22 @@ impl Draft<'_> {
         if scale != 1.0 {
             rescale(&mut body, &mut clips, scale);
         }
-        turn_to_face(&mut body, &mut clips, axes.settings, &mut notes);
+        let head = if is_mere_surface(&body, self.skins) {
+            let found = find_head(&body.mesh.positions, &body.mesh.triangles);
+            body.is_without_head = found.is_none();
+            found
+        } else {
+            None
+        };
+        turn_to_face(&mut body, &mut clips, (axes.settings, head), &mut notes);
         fix_winding(&mut body);
         body.head_joint = guess_head(&body.skeleton, &body.mesh);
+        if head.is_some() && add_head(&mut body) {
+            notes.push("the figure has no joints; its head was found by its shape".to_owned());
+        }
+        if body.is_without_head {
+            add_head_of_all(&mut body);
+        }
         for clip in &mut clips {
             clip.detect_loop(&body);
         }

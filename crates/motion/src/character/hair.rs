@@ -1,5 +1,6 @@
 //! The hair that a character was made with.
 
+use crate::words::words_of;
 use crate::{BodySettings, OwnHair};
 
 /// Decides which parts of a character are its own hair, by the names of nodes, meshes and materials: other hair grows in its place.
@@ -42,7 +43,7 @@ impl WornHair {
     }
 }
 
-/// Whether a name says hair, in English by one of its words, which end at signs, digits and before capitals. Brows and lashes are
+/// Whether a name says hair, in English by one of its words. Brows and lashes are
 /// no hair of the head.
 pub(crate) fn names_hair(name: &str) -> bool {
     const HAIR: [&str; 8] = ["hair", "hairs", "hairback", "wig", "ponytail", "hairstyle", "haircut", "bangs"];
@@ -52,17 +53,7 @@ pub(crate) fn names_hair(name: &str) -> bool {
     if name.contains(JAPANESE) {
         return true;
     }
-    let mut words = vec![String::new()];
-    let mut was_small = false;
-    for c in name.chars() {
-        if !c.is_alphabetic() || (c.is_uppercase() && was_small) {
-            words.push(String::new());
-        }
-        if let (true, Some(word)) = (c.is_alphabetic(), words.last_mut()) {
-            word.extend(c.to_lowercase());
-        }
-        was_small = c.is_lowercase();
-    }
+    let words = words_of(name);
     let holds = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
     holds(&HAIR) && !holds(&OTHER)
 }

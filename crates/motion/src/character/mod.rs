@@ -3,6 +3,7 @@
 mod axes;
 mod draft;
 mod hair;
+mod headed;
 mod hidden;
 
 use std::{collections::BTreeMap, sync::Arc};

@@ -21,6 +21,11 @@ const SKIN_INSET: f32 = 0.001;
 const FURRED: f32 = 0.8;
 /// Largest height of a slice of the trunk, metres.
 const SLICE: f32 = 0.13;
+/// Most slices of a part of the trunk, and of a figure without joints.
+const MAX_SLICES: usize = 4;
+const MAX_SLICES_OF_WHOLE: usize = 12;
+/// How deep the head of a figure without joints may be in the shapes of the rest, metres.
+const HEAD_IN_BODY: f32 = 0.002;
 /// Largest number of vertices used by the refinement.
 const POINTS: usize = 6_000;
 
@@ -37,7 +42,8 @@ pub fn fit_colliders(body: &Body) -> Vec<Collider> {
     for part in &parts {
         let shapes = match part.kind {
             Kind::Head => head_shapes(part),
-            Kind::Trunk => trunk_shapes(part),
+            Kind::Trunk => slices(part, &part.points, MAX_SLICES),
+            Kind::Whole => slices(part, &below_head(part), MAX_SLICES_OF_WHOLE),
             Kind::Ignored => Vec::new(),
             Kind::Neck | Kind::Limb => vec![(part.name.clone(), limb(part), SKIN_INSET)],
         };
@@ -51,6 +57,11 @@ pub fn fit_colliders(body: &Body) -> Vec<Collider> {
     let step = count.div_ceil(POINTS).max(1);
     let points: Vec<Vec3> = parts.iter().flat_map(|p| &p.points).step_by(step).copied().collect();
     refine(&mut fits, &points, 14);
+    if let [head, Part { kind: Kind::Whole, end: Some(neck), joint, .. }] = &parts[..] {
+        let above = |p: &&Vec3| p.y > neck.y;
+        let below = fits.iter_mut().zip(&labels).filter(|(_, (_, of))| of == joint);
+        below.for_each(|(fit, _)| keep_out(&mut fit.shape, head.points.iter().filter(above)));
+    }
     let named = labels.into_iter().zip(fits);
     named.map(|((name, joint), fit)| Collider { name, joint, shape_at_rest: fit.shape }).collect()
 }
@@ -150,18 +161,33 @@ fn skull(scalp: &[Vec3]) -> Option<(Vec3, Vec3)> {
     Some((centre, radii + (lift.min(-SKULL_INSET))))
 }
 
-/// Horizontal capsules across the trunk, one per slice.
-fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
-    let (low, high) = (percentile(&part.points, 0.02), percentile(&part.points, 0.98));
-    let slices = ((high.y - low.y) / SLICE).ceil().clamp(1.0, 4.0) as usize;
+/// The points of a figure without joints that are not beside its head, as raised arms are.
+fn below_head(part: &Part) -> Vec<Vec3> {
+    let top = part.end.map_or(f32::INFINITY, |neck| neck.y);
+    part.points.iter().copied().filter(|p| p.y < top).collect()
+}
+
+/// Shrinks a capsule until no point is deep in it.
+fn keep_out<'a>(shape: &mut ColliderShape, points: impl Iterator<Item = &'a Vec3>) {
+    let depth = points.map(|&p| -signed_distance(shape, p)).fold(0.0, f32::max) - HEAD_IN_BODY;
+    if let ColliderShape::Capsule { radius_a, radius_b, .. } = shape
+        && depth > 0.0
+    {
+        (*radius_a, *radius_b) = ((*radius_a - depth).max(1e-3), (*radius_b - depth).max(1e-3));
+    }
+}
+
+/// Horizontal capsules across some points of a part, one per slice.
+fn slices(part: &Part, points: &[Vec3], most: usize) -> Vec<(String, ColliderShape, f32)> {
+    let (low, high) = (percentile(points, 0.02), percentile(points, 0.98));
+    let slices = ((high.y - low.y) / SLICE).ceil().clamp(1.0, most as f32) as usize;
     (0..slices)
         .filter_map(|i| {
             let bottom = low.y + (high.y - low.y) * i as f32 / slices as f32;
             let top = low.y + (high.y - low.y) * (i + 1) as f32 / slices as f32;
-            let slice: Vec<Vec3> =
-                part.points.iter().copied().filter(|p| (bottom..=top).contains(&p.y)).collect();
+            let slice: Vec<Vec3> = points.iter().copied().filter(|p| (bottom..=top).contains(&p.y)).collect();
             // A few stray vertices do not make a slice.
-            if slice.len() < 12 || slice.len() * 12 < part.points.len() {
+            if slice.len() < 12 || slice.len() * (3 * slices).max(12) < points.len() {
                 return None;
             }
             let (a, b) = (percentile(&slice, 0.04), percentile(&slice, 0.96));

@@ -15,6 +15,8 @@ pub(super) enum Kind {
     Neck,
     /// Wide and flat: horizontal capsules.
     Trunk,
+    /// All of a figure without joints but its head: horizontal capsules below the head.
+    Whole,
     /// Round and long: a capsule from this joint toward the next.
     Limb,
     /// Out of reach of hair.
@@ -118,6 +120,12 @@ pub(super) fn parts(body: &Body) -> Vec<Part> {
         }
     }
     parts.retain(|p| p.points.len() >= FEWEST && p.kind != Kind::Ignored);
+    if let [head, below] = &mut parts[..]
+        && (head.kind, below.kind) == (Kind::Head, Kind::Limb)
+        && skeleton.joints.get(head.joint).is_some_and(|joint| joint.parent == Some(below.joint))
+    {
+        (below.kind, below.end) = (Kind::Whole, Some(skeleton.rest_position(head.joint)));
+    }
     parts
 }
 

@@ -1,16 +1,16 @@
 //! Meshes as pieces of the surface: triangles, normals, weights and blend shapes.
 
-use lovelock_base::words::counted;
 use std::collections::BTreeMap;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use ufbx::{BlendShape, Mesh, Node, Scene, SkinDeformer};
 
+use super::material::{Coat, Materials};
 use super::nodes::Nodes;
 use super::visible::Visibility;
 use super::{affine, vec3};
 use crate::character::{HiddenMeshes, WornHair};
-use crate::surface::{CLAY, Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
+use crate::surface::{Corners, MorphPiece, Palette, Piece, Surface, VertexWeights, WeightSums};
 use crate::{BodySettings, MotionError};
 
 /// The shapes of each channel by the number of its element: one list for each node that shows the mesh.
@@ -42,26 +42,26 @@ pub(super) fn weights_of_shapes(shapes: &[ShapeOfChannel], weight: f64) -> Vec<f
 }
 
 /// Reads all meshes of a scene.
-pub(super) struct Reader<'a> {
+pub(super) struct Reader<'a, 'b> {
     pub(super) file: &'a str,
     pub(super) nodes: &'a Nodes,
     pub(super) surface: &'a mut Surface,
     pub(super) palette: &'a mut Palette,
     pub(super) morphs: &'a mut MorphsOfChannels,
+    pub(super) materials: &'a mut Materials<'b>,
     pub(super) dropped: &'a mut BTreeMap<String, u64>,
 }
 
-impl Reader<'_> {
+impl<'b> Reader<'_, 'b> {
     pub(super) fn all(
         mut self,
-        scene: &Scene,
+        scene: &'b Scene,
         settings: BodySettings,
         hidden: &mut HiddenMeshes,
         notes: &mut Vec<String>,
     ) -> Result<(), MotionError> {
         let visibility = Visibility::new(scene);
-        let mut textured = 0;
-        let mut parts: Vec<(&Node, &Mesh)> = Vec::new();
+        let mut parts: Vec<(&'b Node, &'b Mesh)> = Vec::new();
         for node in &scene.nodes {
             let Some(mesh) = node.mesh.as_ref().filter(|mesh| mesh.num_triangles > 0) else { continue };
             if hidden.reads(visibility.hidden(node)) {
@@ -74,28 +74,46 @@ impl Reader<'_> {
         }
         let worn = worn.decide(notes);
         for ((node, mesh), is_hair) in parts.into_iter().zip(worn) {
-            textured += mesh.materials.into_iter().filter(|m| m.fbx.diffuse_color.texture.is_some()).count();
             if !is_hair {
                 self.mesh(node, mesh, notes)?;
             }
         }
-        if textured > 0 {
-            let materials = counted(textured, "material has", "materials have");
-            notes.push(format!("{materials} textures, which are ignored; only the base colour is used"));
-        }
         Ok(())
     }
 
-    fn mesh(&mut self, node: &Node, mesh: &Mesh, notes: &mut Vec<String>) -> Result<(), MotionError> {
+    fn mesh(&mut self, node: &'b Node, mesh: &'b Mesh, notes: &mut Vec<String>) -> Result<(), MotionError> {
         let refuse = |problem: String| MotionError::malformed(self.file, "the meshes", problem);
         let weights = self.weights(node, mesh, notes)?;
         let mut corners = split(mesh);
-        let mut piece =
-            Piece { color: Vec3::ONE, triangles: std::mem::take(&mut corners.triangles), ..Piece::default() };
+        let coats: Vec<Coat> = (0..mesh.materials.len().max(1))
+            .map(|k| {
+                self.materials.coat(
+                    mesh,
+                    mesh.materials.get(k).map(|material| &**material),
+                    &node.element.name,
+                )
+            })
+            .collect();
+        let coat =
+            |material: u32| coats.get(material as usize).or(coats.first()).copied().unwrap_or_default();
+        let materials =
+            corners.triangles.iter().map(|[a, ..]| coat(corners.vertices[*a as usize].1).material);
+        let materials = materials.collect();
+        let coordinates = std::mem::take(&mut corners.coordinates);
+        let mut piece = Piece {
+            color: Vec3::ONE,
+            triangles: std::mem::take(&mut corners.triangles),
+            materials,
+            coordinates: [0, 1].map(|set| {
+                let has_set = mesh.uv_sets.get(set).is_some() || set == 0 && mesh.vertex_uv.exists;
+                if has_set { coordinates[set].clone() } else { Vec::new() }
+            }),
+            ..Piece::default()
+        };
         for (&(vertex, material), &normal) in corners.vertices.iter().zip(&corners.normals) {
             piece.positions.push(mesh.vertices.get(vertex).map_or(Vec3::NAN, |&p| vec3(p)));
             piece.normals.push(normal);
-            piece.colors.push(color(mesh, material));
+            piece.colors.push(coat(material).color);
             piece.weights.push(weights.get(vertex).copied().unwrap_or(VertexWeights::rigid(0)));
         }
         let copies = corners.copies(mesh.num_vertices);
@@ -197,7 +215,7 @@ fn split(mesh: &Mesh) -> Corners {
             let placed = triangle.map(|index| {
                 let index = index as usize;
                 let vertex = mesh.vertex_indices.get(index).map_or(usize::MAX, |&v| v as usize);
-                corners.corner(vertex, material, normal(mesh, index))
+                corners.corner(vertex, material, normal(mesh, index), coordinates(mesh, index))
             });
             corners.triangles.push(placed);
         }
@@ -215,11 +233,13 @@ fn normal(mesh: &Mesh, index: usize) -> Vec3 {
     of_corner.map_or(Vec3::ZERO, |&n| vec3(n).normalize_or_zero())
 }
 
-fn color(mesh: &Mesh, material: u32) -> Vec3 {
-    let Some(material) = mesh.materials.get(material as usize) else { return CLAY };
-    let map = &material.fbx.diffuse_color;
-    let color = Vec3::new(map.value_vec4.x as f32, map.value_vec4.y as f32, map.value_vec4.z as f32);
-    if map.has_value && color.is_finite() { color } else { CLAY }
+/// The texture coordinates at a corner, counted from above; 0 where the file has none.
+fn coordinates(mesh: &Mesh, index: usize) -> [Vec2; 2] {
+    [0, 1].map(|set| {
+        let own = mesh.uv_sets.get(set).map(|set| &set.vertex_uv).or((set == 0).then_some(&mesh.vertex_uv));
+        let at = own.and_then(|uvs| uvs.values.get(*uvs.indices.get(index)? as usize));
+        at.map_or(Vec2::ZERO, |at| Vec2::new(at.x as f32, 1.0 - at.y as f32))
+    })
 }
 
 fn moved(shape: &BlendShape, copies: &[Vec<u32>]) -> Vec<(u32, Vec3, Vec3)> {

@@ -4,10 +4,13 @@
 //! turns curves of Euler angles into keys of quaternions.
 
 mod clip;
+mod material;
 mod mesh;
 mod nodes;
 mod rest;
 mod visible;
+
+use std::path::Path;
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::watch::{Cancelled, Watch};
@@ -40,6 +43,7 @@ pub fn is_fbx(bytes: &[u8]) -> bool {
 pub(crate) fn read(
     (file, watch): (&str, &Watch),
     bytes: &[u8],
+    folder: Option<&Path>,
     settings: BodySettings,
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
@@ -66,6 +70,7 @@ pub(crate) fn read(
     let mut palette = Palette::default();
     let mut morphs = mesh::MorphsOfChannels::new();
     let mut hidden = HiddenMeshes::new(settings);
+    let mut materials = material::Materials::new(folder);
     if needs_mesh {
         let read = mesh::Reader {
             file,
@@ -73,20 +78,21 @@ pub(crate) fn read(
             surface: &mut surface,
             palette: &mut palette,
             morphs: &mut morphs,
+            materials: &mut materials,
             dropped: &mut dropped,
         };
         read.all(&scene, settings, &mut hidden, &mut notes)?;
         hidden.note(&mut notes);
     }
-    let (mesh, skin) = surface.finish(palette);
-    if needs_mesh && mesh.triangles.is_empty() {
+    let mut draft = Draft::with_surface(file, surface.finish(palette), materials.looks, notes);
+    if needs_mesh && draft.mesh.triangles.is_empty() {
         return Err(MotionError::Empty {
             file: file.to_owned(),
             found: describe(&scene, bytes) + &hidden.in_error() + only_motion(scene.anim_stacks.len()),
             wanted: "a mesh of triangles",
         });
     }
-    let clips = clip::read_clips(&scene, &nodes, &morphs, &mut notes);
+    draft.clips = clip::read_clips(&scene, &nodes, &morphs, &mut draft.notes);
     let metadata = &scene.metadata;
     let format = format!(
         "FBX {}.{} ({})",
@@ -96,13 +102,12 @@ pub(crate) fn read(
     );
     let stated = scene.settings.original_unit_meters;
     let usual_unit_metres = if stated.is_finite() && stated > 0.0 { stated as f32 } else { 0.01 };
-    let skins = scene.skin_deformers.len();
-    let joints = nodes.joints_of_skins(&scene);
-    let mut skeleton = nodes.skeleton().clone();
+    (draft.joints, draft.skins) = (nodes.joints_of_skins(&scene), scene.skin_deformers.len());
+    draft.skeleton = nodes.skeleton().clone();
     if !needs_mesh {
-        notes.extend(rest::choose(&scene, &nodes, &mut skeleton, &clips));
+        draft.notes.extend(rest::choose(&scene, &nodes, &mut draft.skeleton, &draft.clips));
     }
-    let draft = Draft { file, skeleton, mesh, skin, clips, joints, skins, dropped, notes };
+    draft.dropped = dropped;
     let mut character = draft.finish(Axes { settings, usual_unit_metres })?;
     character.format = format;
     Ok(character)
@@ -128,7 +133,7 @@ fn options<'a>(file_bytes: usize, needs_mesh: bool) -> LoadOpts<'a> {
         temp_allocator: allocator(),
         result_allocator: allocator(),
         ignore_geometry: !needs_mesh,
-        ignore_embedded: true,
+        ignore_embedded: !needs_mesh,
         node_depth_limit: DEPTH_LIMIT,
         clean_skin_weights: true,
         geometry_transform_handling: GeometryTransformHandling::ModifyGeometry,

@@ -51,7 +51,7 @@ fn pillar() -> Body {
         binds: mesh.joints.clone(),
         morphs: Vec::new(),
     };
-    Body { name: "pillar".into(), skeleton, mesh, skin, head_joint: 1 }
+    Body { name: "pillar".into(), skeleton, mesh, skin, head_joint: 1, ..Body::default() }
 }
 
 #[test]

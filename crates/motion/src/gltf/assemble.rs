@@ -5,25 +5,28 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::Affine3A;
 
-use lovelock_gltf::Accessors;
 use lovelock_gltf::document::{Document, Mesh as MeshEntry, Primitive};
+use lovelock_gltf::{Accessors, Asset};
 
 use super::{
     clip::{Targets, read_clip},
-    mesh::{Binding, read_primitive},
+    expressions,
+    material::Materials,
+    mesh::{Binding, read_primitives, share_vertices},
     nodes::Tree,
     skin::read_skin,
     vrm::Vrm,
 };
 use crate::character::{Axes, Character, Draft, Hidden, HiddenMeshes, WornHair, only_motion};
 use crate::surface::{Palette, Surface};
-use crate::{BodySettings, MotionError};
+use crate::{BodySettings, Expression, MotionError};
 
 pub(super) fn assemble(
-    accessors: &Accessors,
+    asset: &Asset,
     settings: BodySettings,
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
+    let accessors = &asset.accessors();
     let (file, document) = (accessors.file, accessors.document);
     let mut dropped = BTreeMap::new();
     let mut notes = Vec::new();
@@ -71,12 +74,13 @@ pub(super) fn assemble(
     let mut palette = Palette::default();
     let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
     let mut surface = Surface::default();
+    let mut materials = Materials::new(document, asset.images());
     let mut morphs_of_node = BTreeMap::new();
     let mut hidden = HiddenMeshes::new(settings);
     for &n in &tree.order {
         let node = &document.nodes[n];
         let Some(mesh) = node.mesh.map(|m| &document.meshes[m]) else { continue };
-        if !needs_mesh || !hidden.reads((!tree.is_visible[n]).then_some(Hidden::Invisible)) {
+        if needs_mesh && !hidden.reads((!tree.is_visible[n]).then_some(Hidden::Invisible)) {
             continue;
         }
         let count = mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
@@ -88,6 +92,10 @@ pub(super) fn assemble(
         }
         if count > 0 {
             morphs_of_node.insert(n, (first_morph, count));
+        }
+        // A motion needs only the names of what moves a face.
+        if !needs_mesh {
+            continue;
         }
         if let Some(skin) = node.skin
             && !skins.contains_key(&skin)
@@ -103,11 +111,15 @@ pub(super) fn assemble(
             0
         };
         let binding = node.skin.map_or(Binding::Rigid(rigid), |s| Binding::Skin(&skins[&s]));
-        for (p, primitive) in mesh.primitives.iter().enumerate() {
-            if hair.contains(&(n, p)) {
-                continue;
-            }
-            if let Some(piece) = read_primitive(accessors, primitive, &binding, first_morph, &mut dropped)? {
+        let mut parts = Vec::new();
+        for (_, primitive) in mesh.primitives.iter().enumerate().filter(|(p, _)| !hair.contains(&(n, *p))) {
+            let names: Vec<&str> =
+                [mesh.name.as_deref(), node.name.as_deref()].into_iter().flatten().collect();
+            let has_colors = primitive.attributes.contains_key("COLOR_0");
+            parts.push((primitive, materials.coat(primitive.material, &names, has_colors)));
+        }
+        for parts in parts.chunk_by(share_vertices) {
+            if let Some(piece) = read_primitives(accessors, parts, &binding, first_morph, &mut dropped)? {
                 let too_many = |problem| MotionError::malformed(file, "the meshes", problem);
                 surface.add(piece, &mut dropped).map_err(too_many)?;
             }
@@ -123,19 +135,29 @@ pub(super) fn assemble(
             notes.push(format!("left out {what}, no part of a body"));
         }
     }
-    let (mesh, skin_data) = surface.finish(palette);
+    let (mut mesh, skin_data) = surface.finish(palette);
     if needs_mesh && mesh.triangles.is_empty() {
         let found = describe_contents(document, &dropped)
             + &hidden.in_error()
             + only_motion(document.animations.len());
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
-    let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };
+    let mut named = expressions::read(document, &morphs_of_node, &mut dropped);
+    let mut expression_of_node = BTreeMap::new();
+    for (node, name) in expressions::nodes_of_animation(document) {
+        expression_of_node.insert(node, named.len());
+        named.push(Expression { name, ..Expression::default() });
+    }
+    let targets = Targets {
+        joint_of_node: &joint_of_node,
+        morphs_of_node: &morphs_of_node,
+        expression_of_node: &expression_of_node,
+    };
     let mut times = HashMap::new();
     let mut clips = Vec::new();
     for (i, animation) in document.animations.iter().enumerate() {
         let clip = read_clip(accessors, i, animation, &targets, &mut times, &mut dropped)?;
-        if clip.joints.is_empty() && clip.morphs.is_empty() {
+        if clip.joints.is_empty() && clip.morphs.is_empty() && clip.expressions.is_empty() {
             *dropped.entry("empty_clips".into()).or_default() += 1;
         } else {
             clips.push(clip);
@@ -147,12 +169,14 @@ pub(super) fn assemble(
         skeleton.named =
             vrm.bones.into_iter().filter_map(|(node, bone)| Some((joint(node)?, bone))).collect();
     }
-    note_textures(document, &mut notes);
+    let look = materials.finish(&mut mesh, &mut notes);
     Draft {
         file,
         skeleton,
         mesh,
         skin: skin_data,
+        look,
+        expressions: named,
         clips,
         joints,
         skins: document.skins.len(),
@@ -241,13 +265,4 @@ fn morph_names(mesh: &MeshEntry) -> Vec<String> {
     names.map_or_else(Vec::new, |names| {
         names.iter().map(|n| n.as_str().unwrap_or_default().to_owned()).collect()
     })
-}
-
-fn note_textures(document: &Document, notes: &mut Vec<String>) {
-    let textured =
-        document.materials.iter().filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some()).count();
-    if textured > 0 && !document.textures.is_empty() {
-        let materials = counted(textured, "material has", "materials have");
-        notes.push(format!("{materials} textures, which are ignored; only the base colour is used"));
-    }
 }

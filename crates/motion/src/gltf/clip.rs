@@ -10,7 +10,8 @@ use glam::{Quat, Vec3};
 use lovelock_gltf::Accessors;
 use lovelock_gltf::document::Animation;
 
-use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
+use super::expressions::MorphsOfNodes;
+use crate::{Clip, ExpressionTrack, Interpolation, JointTracks, MorphTrack, MotionError, Track};
 
 /// The count of channels whose keys are at times that do not ascend, are not finite, or are too far from 0.
 pub(crate) const UNTIMED: &str = "channels_with_wrong_times";
@@ -19,10 +20,13 @@ pub(crate) const UNTIMED: &str = "channels_with_wrong_times";
 const LATEST_SECS: f32 = 1e6;
 
 /// What the nodes of a file have become.
+#[expect(clippy::struct_field_names, reason = "each is what a node has become")]
 pub(super) struct Targets<'a> {
     pub(super) joint_of_node: &'a [Option<usize>],
     /// First morph target and number of morph targets of each node that has some.
-    pub(super) morphs_of_node: &'a BTreeMap<usize, (usize, usize)>,
+    pub(super) morphs_of_node: &'a MorphsOfNodes,
+    /// The expression of each node whose way along x is the weight of one.
+    pub(super) expression_of_node: &'a BTreeMap<usize, usize>,
 }
 
 /// Reads one animation. Invalid channels are dropped and counted; channels of nodes that move nothing
@@ -42,6 +46,16 @@ pub(super) fn read_clip(
     };
     for channel in &animation.channels {
         let Some(node) = channel.target.node else { continue };
+        if let Some(&expression) = targets.expression_of_node.get(&node) {
+            let source = Source::open(accessors, animation, channel.sampler, times)?;
+            let track = source.map(|source| source.vectors()).transpose()?.flatten();
+            if let Some(track) = track.filter(|_| channel.target.path == "translation") {
+                clip.expressions.push(ExpressionTrack { expression, track: along_x(track) });
+            } else {
+                *dropped.entry("channels".into()).or_default() += 1;
+            }
+            continue;
+        }
         let joint = targets.joint_of_node.get(node).copied().flatten();
         let entry = joint
             .map(|j| joints.entry(j).or_insert_with(|| JointTracks { joint: j, ..JointTracks::default() }));
@@ -85,6 +99,12 @@ pub(super) fn read_clip(
         .collect();
     // The clock of glTF starts at 0, but files of animations with a pre-roll have keys before that.
     Ok(clip.starting_at_first_key(0.0))
+}
+
+/// The weights that a way along x says.
+fn along_x(track: Track<Vec3>) -> Track<f32> {
+    let values = track.values.iter().map(|way| way.x).collect();
+    Track { times: track.times, values, interpolation: track.interpolation }
 }
 
 /// One sampler with verified times.

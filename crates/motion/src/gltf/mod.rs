@@ -2,9 +2,13 @@
 
 mod assemble;
 mod clip;
+mod expressions;
+mod material;
 mod mesh;
+mod mtoon;
 mod nodes;
 mod skin;
+mod textures;
 mod vrm;
 
 pub(crate) use clip::UNTIMED;
@@ -26,7 +30,7 @@ pub(crate) fn read(
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
     let asset = Asset::read(name, bytes, base_dir)?;
-    let mut character = assemble::assemble(&asset.accessors(), settings, needs_mesh)?;
+    let mut character = assemble::assemble(&asset, settings, needs_mesh)?;
     character.format = match vrm::Vrm::of(&asset.document) {
         Some(vrm) => format!("{}, {}", vrm.format, asset.format),
         None => asset.format.to_owned(),

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Quat, Vec3};
 
+use crate::face;
 use crate::humanoid::{Humanoid, Role, Side};
 use crate::{Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Skeleton, Track};
 use align::Alignment;
@@ -59,6 +60,7 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
     }
     let mut clip = plan.clip(&driven, &turns, &hips);
     (clip.start_secs, clip.lead_secs) = (motion.start_secs, motion.lead_secs);
+    face::follow(motion, body, &mut clip);
     ground::set_on_ground(body, &plan.target, &mut clip);
     close_loop(body, &mut clip, motion);
     Ok(clip)

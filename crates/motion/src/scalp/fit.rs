@@ -52,6 +52,12 @@ pub struct ScalpFit {
     pub added: DirectionMap,
     /// Where none grows within it.
     pub removed: DirectionMap,
+    /// Whether the skull is where [`ScalpFit::middle`] says, in place of where it was found.
+    pub by_hand: bool,
+    /// The middle of the skull of the body at rest, world space, metres.
+    pub middle: Vec3,
+    /// Height of the skull, metres.
+    pub skull_height: f32,
 }
 
 impl Default for ScalpFit {
@@ -66,6 +72,9 @@ impl Default for ScalpFit {
             raise: Raise::default(),
             added: DirectionMap::default(),
             removed: DirectionMap::default(),
+            by_hand: false,
+            middle: Vec3::new(0.0, 1.5, 0.05),
+            skull_height: 0.16,
         }
     }
 }
@@ -110,6 +119,8 @@ impl Raise {
     }
 }
 
+/// Places of the skull, metres.
+const PLACES: [f64; 2] = [-10.0, 10.0];
 /// How far the hairline can be raised, radians.
 const RAISE: [f64; 2] = [-0.7, 0.7];
 
@@ -127,12 +138,16 @@ impl ScalpFit {
 
     /// Whether nothing is changed.
     pub fn is_automatic(&self) -> bool {
-        self.area == ScalpArea::Head && !self.moves_outline() && self.size == 1.0 && !self.is_painted()
+        self.area == ScalpArea::Head
+            && !self.moves_outline()
+            && self.size == 1.0
+            && !self.is_painted()
+            && !self.by_hand
     }
 
     /// Whether the outline is moved, as opposed to painted.
     pub fn moves_outline(&self) -> bool {
-        let plain = Self { size: self.size, ..Self::default() };
+        let plain = Self::default();
         (self.forward, self.up, self.nod, self.width, self.raise)
             != (plain.forward, plain.up, plain.nod, plain.width, plain.raise)
     }
@@ -226,6 +241,29 @@ impl Settings for ScalpFit {
             "Width of the scalp. Wider lowers the hairline at the sides.",
         )
         .unit(Unit::FRACTION),
+        Setting::switch(
+            field!(Self, by_hand),
+            "Place by hand",
+            "Puts the scalp around a skull at a place of your choice, on bodies whose head is not found.",
+        ),
+        Setting::vector(
+            field!(Self, middle),
+            PLACES,
+            "Place",
+            ["Sideways", "Upward", "Forward"],
+            "Middle of the skull around which the scalp is placed by hand, on the body at rest: to its left, up from its feet, and to \
+             the front.",
+        )
+        .unit(Unit::METRES),
+        Setting::number(
+            field!(Self, skull_height),
+            [0.02, 2.0],
+            "Skull height",
+            "Height of the skull around which the scalp is placed by hand. That of an adult is 16 cm.",
+        )
+        .unit(Unit::METRES)
+        .logarithmic()
+        .decimals(3),
         Setting::number(
             field!(Self, size),
             [0.2, 5.0],

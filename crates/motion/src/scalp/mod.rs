@@ -53,7 +53,13 @@ pub fn fitted_scalp(body: &Body, rest: &RestDistance, fit: &ScalpFit) -> FittedS
     }
     let distance = |p: Vec3| rest.distance(p).0;
     let alone = body.skeleton.joints.len() == 1 || head.positions.len() == body.mesh.positions.len();
-    let found = Skull::find(&head.positions, alone, &distance);
+    let found = if fit.by_hand {
+        let origin =
+            body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |at| at.translation.into());
+        Some(Skull::of_height(fit.middle - origin, fit.skull_height))
+    } else {
+        Skull::find(&head.positions, alone, &distance)
+    };
     if fit.area == ScalpArea::Skin {
         return whole_skin(body, found, &fit);
     }
@@ -66,7 +72,7 @@ pub fn fitted_scalp(body: &Body, rest: &RestDistance, fit: &ScalpFit) -> FittedS
         scale = 1.0;
     }
     let mut body_mask = Vec::new();
-    if head.scalp_is_guessed || fit.moves_outline() {
+    if head.scalp_is_guessed || fit.moves_outline() || fit.by_hand {
         head = mesh::fitted(body, &skull, &fit, (!is_a_cap).then_some(&distance as skull::Distance<'_>));
         body_mask = mesh::on_body(body, &skull, &head);
     } else if fit.is_painted() {

@@ -8,8 +8,8 @@ use super::ScalpFit;
 /// Elevation of the hairline, degrees, at every tenth degree from the front to the back, seen from the middle of the skull and
 /// relative to its size. Measured on the shipped dancer; a test measures it again.
 pub(super) const HAIRLINE: [f32; 19] = [
-    32.0, 33.0, 34.0, 34.0, 30.0, 25.0, 13.0, 1.0, -26.0, -20.0, -10.0, -14.0, -40.0, -59.0, -64.0, -64.0,
-    -64.0, -64.0, -64.0,
+    27.0, 30.0, 28.0, 28.0, 24.0, 19.0, 9.0, -7.0, -29.0, -21.0, -23.0, -35.0, -53.0, -63.0, -64.0, -64.0,
+    -65.0, -65.0, -65.0,
 ];
 
 /// Half of the angle over which the mask fades at the hairline, degrees.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub(super) type Distance<'a> = &'a (dyn Fn(Vec3) -> f32 + Sync);
 
 /// Half the size of the skull of the shipped dancer, metres. Hair of the usual size belongs to it.
-pub(super) const USUAL: Vec3 = Vec3::new(0.0774, 0.0796, 0.0987);
+pub(super) const USUAL: Vec3 = Vec3::new(0.0777, 0.0749, 0.0959);
 
 /// Samples along the longest side of the head in search of the ball.
 const SAMPLES: f32 = 18.0;
@@ -30,6 +30,11 @@ pub struct Skull {
 }
 
 impl Skull {
+    /// A skull of this height with the proportions of the shipped dancer's.
+    pub(super) fn of_height(middle: Vec3, height: f32) -> Self {
+        Self { middle, half: USUAL * (0.5 * height / USUAL.y) }
+    }
+
     /// A place relative to the skull: its surface is at a distance of 1. x is toward the wearer's left, y up, z toward the face.
     pub fn relative(&self, place: Vec3) -> Vec3 {
         (place - self.middle) / self.half

@@ -6,7 +6,7 @@ mod weights;
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{Mesh, MorphTarget, SkinData};
 pub(crate) use corners::Corners;
@@ -19,6 +19,9 @@ const VERTEX_LIMIT: usize = 8_000_000;
 const TRIANGLE_LIMIT: usize = 16_000_000;
 /// Larger coordinates are errors of the file: ten kilometres in the smallest common unit.
 const FAR: f32 = 1e7;
+
+/// Larger texture coordinates are errors of the file: single precision has no pixels left there.
+const FAR_COORDINATE: f32 = 1e5;
 
 /// Default colour of a surface: a warm, matt clay.
 pub(crate) const CLAY: Vec3 = Vec3::new(0.52, 0.40, 0.34);
@@ -34,12 +37,22 @@ pub(crate) struct Piece {
     pub(crate) colors: Vec<Vec3>,
     /// Colour by which all others are multiplied.
     pub(crate) color: Vec3,
+    /// Opacity; empty if all are 1.
+    pub(crate) opacity: Vec<f32>,
+    /// Two sets of texture coordinates; each may be empty.
+    pub(crate) coordinates: [Vec<Vec2>; 2],
+    /// The share of light from all directions that creases let in; empty if all are 1.
+    pub(crate) occlusion: Vec<f32>,
     /// 1 where hair grows; may be empty.
     pub(crate) scalp: Vec<f32>,
+    /// Further masks by their names; may be empty.
+    pub(crate) masks: BTreeMap<String, Vec<f32>>,
     /// Palette entries that move each vertex.
     pub(crate) weights: Vec<VertexWeights>,
     /// Counter-clockwise triangles; those with an index out of range are dropped.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Number of the material of each triangle; empty if all are 0.
+    pub(crate) materials: Vec<u16>,
     /// What morph targets move.
     pub(crate) morphs: Vec<MorphPiece>,
 }
@@ -57,7 +70,16 @@ pub(crate) struct MorphPiece {
 pub(crate) struct Surface {
     mesh: Mesh,
     skin: SkinData,
-    has_scalp: bool,
+    has: Has,
+}
+
+/// Which lists some piece has. The others are left empty.
+#[derive(Default)]
+struct Has {
+    scalp: bool,
+    opacity: bool,
+    occlusion: bool,
+    coordinates: [bool; 2],
 }
 
 impl Surface {
@@ -106,10 +128,18 @@ impl Surface {
         let place = |corner: u32| slot.get(corner as usize).copied().flatten();
         let before = self.mesh.triangles.len();
         let wanted = piece.triangles.len();
-        self.mesh
-            .triangles
-            .extend(piece.triangles.iter().filter_map(|&[a, b, c]| Some([place(a)?, place(b)?, place(c)?])));
+        for (t, &[a, b, c]) in piece.triangles.iter().enumerate() {
+            if let (Some(a), Some(b), Some(c)) = (place(a), place(b), place(c)) {
+                self.mesh.triangles.push([a, b, c]);
+                self.mesh.materials.push(piece.materials.get(t).copied().unwrap_or(0));
+            }
+        }
         drop("triangles", wanted - (self.mesh.triangles.len() - before));
+        let share = |list: &[f32], v: usize| match list.get(v) {
+            Some(share) if share.is_finite() => share.clamp(0.0, 1.0),
+            _ => 1.0,
+        };
+        let mut wrong_coordinates = 0;
         for v in (0..count).filter(|&v| slot[v].is_some()) {
             self.skin.positions.push(piece.positions[v]);
             let normal = piece.normals.get(v).copied().unwrap_or_default();
@@ -117,11 +147,33 @@ impl Surface {
             let color = piece.colors.get(v).copied().unwrap_or(Vec3::ONE) * piece.color;
             let color = if color.is_finite() { color } else { piece.color };
             self.mesh.colors.push(color.clamp(Vec3::ZERO, Vec3::ONE));
+            self.mesh.opacity.push(share(&piece.opacity, v));
+            self.mesh.occlusion.push(share(&piece.occlusion, v));
+            for (all, own) in self.mesh.coordinates.iter_mut().zip(&piece.coordinates) {
+                let at = own.get(v).copied().unwrap_or_default();
+                let usable = at.is_finite() && at.abs().max_element() < FAR_COORDINATE;
+                wrong_coordinates += usize::from(!usable);
+                all.push(if usable { at } else { Vec2::ZERO });
+            }
             self.mesh.scalp.push(piece.scalp.get(v).map_or(0.0, |s| s.clamp(0.0, 1.0)));
             self.skin.binds.push(piece.weights[v].binds);
             self.mesh.weights.push(piece.weights[v].weights);
         }
-        self.has_scalp |= !piece.scalp.is_empty();
+        drop("texture_coordinates", wrong_coordinates);
+        self.has.scalp |= !piece.scalp.is_empty();
+        self.has.opacity |= piece.opacity.iter().any(|&opacity| opacity < 1.0);
+        self.has.occlusion |= !piece.occlusion.is_empty();
+        for (has, own) in self.has.coordinates.iter_mut().zip(&piece.coordinates) {
+            *has |= !own.is_empty();
+        }
+        for (name, values) in &piece.masks {
+            let mask = self.mesh.masks.entry(name.clone()).or_default();
+            // Other pieces are outside of it.
+            mask.resize(base, 0.0);
+            let kept = slot.iter().enumerate().filter(|(_, slot)| slot.is_some());
+            let value = |v: usize| values.get(v).filter(|value| value.is_finite());
+            mask.extend(kept.map(|(v, _)| value(v).map_or(0.0, |value| value.clamp(0.0, 1.0))));
+        }
         fill_normals(&self.skin.positions, &self.mesh.triangles[before..], base, &mut self.skin.normals);
         for of_morph in piece.morphs {
             let Some(morph) = self.skin.morphs.get_mut(of_morph.morph) else { continue };
@@ -137,10 +189,24 @@ impl Surface {
         Ok(())
     }
 
-    /// Finishes the surface with the joints that its palette names. Without a scalp mask in any piece the mask is empty.
+    /// Finishes the surface with the joints that its palette names. Lists that no piece has are empty.
     pub(crate) fn finish(mut self, palette: Palette) -> (Mesh, SkinData) {
-        if !self.has_scalp {
+        if !self.has.scalp {
             self.mesh.scalp = Vec::new();
+        }
+        if !self.has.opacity {
+            self.mesh.opacity = Vec::new();
+        }
+        if !self.has.occlusion {
+            self.mesh.occlusion = Vec::new();
+        }
+        for (list, has) in self.mesh.coordinates.iter_mut().zip(self.has.coordinates) {
+            if !has {
+                *list = Vec::new();
+            }
+        }
+        for mask in self.mesh.masks.values_mut() {
+            mask.resize(self.skin.positions.len(), 0.0);
         }
         self.skin.palette = palette.into_binds();
         let joint_of = |bind: u16| self.skin.palette.get(usize::from(bind)).map_or(0, |bind| bind.joint);

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use glam::{Affine3A, DMat4, Vec3};
+use glam::{Affine3A, DMat4, Vec2, Vec3};
 use lovelock_base::words::counted;
 use lovelock_usd::{Layer, Undrawn, Value, primvar, undrawn};
 
+use super::look::{FIRST_SET, Materials};
 use super::over_mesh::{Influences, OverMesh, Sizes};
 use super::skeleton::{Figure, OneSkeleton};
 use super::{affine, affine_of, inherited_target, tokens};
@@ -27,18 +28,17 @@ pub(super) fn hidden(layer: &mut dyn Layer, prim: usize) -> Result<Option<Hidden
 }
 
 /// Reads meshes.
-pub(super) struct Reader<'a> {
+pub(super) struct Reader<'a, 'b> {
     pub(super) file: &'a str,
     pub(super) figure: &'a Figure,
     pub(super) surface: &'a mut Surface,
     pub(super) palette: &'a mut Palette,
     pub(super) shapes: &'a mut Shapes,
-    /// The shaders of the stage.
-    pub(super) shaders: &'a Shaders,
+    pub(super) materials: &'a mut Materials<'b>,
     pub(super) dropped: &'a mut BTreeMap<String, u64>,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     pub(super) fn mesh(
         &mut self,
         layer: &mut dyn Layer,
@@ -70,12 +70,22 @@ impl Reader<'_> {
         }
         let sizes = Sizes { points: points.len(), faces: counts.len(), corners: indices.len() };
         let normals = OverMesh::normals(layer, prim, sizes)?;
+        let parts = self.materials.parts(layer, prim, sizes.faces)?;
         // The colour of a material comes before display colours.
-        let material = self.shaders.color(layer, prim)?;
-        let colors = match material {
-            Some(_) => None,
-            None => OverMesh::colors(layer, prim, sizes)?,
+        let has_colors = parts.coats.iter().all(|coat| coat.color.is_some());
+        let colors = if has_colors { None } else { OverMesh::colors(layer, prim, sizes)? };
+        let mut coordinates = None;
+        for name in FIRST_SET {
+            if coordinates.is_none() {
+                coordinates = OverMesh::coordinates(layer, prim, name, sizes)?;
+            }
+        }
+        let second = match self.materials.second_set.as_deref() {
+            Some(name) => OverMesh::coordinates(layer, prim, name, sizes)?,
+            None => None,
         };
+        let has_second = self.materials.second_set.is_some() && (second.is_some() || coordinates.is_some());
+        let coats = parts.coats.len() as u32;
         let left_handed =
             layer.attribute(prim, "orientation", 1)?.is_some_and(|o| o.token() == Some("leftHanded"));
         let mut corners = Corners::default();
@@ -89,8 +99,15 @@ impl Reader<'_> {
                     let (point, corner) = at(k);
                     let of = |values: &Option<OverMesh>| values.as_ref()?.at(face, corner, point);
                     let color = of(&colors).map_or(0, |(color, _)| color);
+                    let coat = parts.of_face(face);
+                    let place = |values: &Option<OverMesh>| {
+                        of(values).map_or(Vec2::ZERO, |(_, at)| Vec2::new(at.x, 1.0 - at.y))
+                    };
+                    // A mesh without the second set is painted by its first.
+                    let both = [&coordinates, if second.is_some() { &second } else { &coordinates }];
+                    let at = if has_second { both.map(place) } else { [place(&coordinates), Vec2::ZERO] };
                     let normal = of(&normals).map_or(Vec3::ZERO, |(_, normal)| normal.normalize_or_zero());
-                    corners.corner(point, color, normal)
+                    corners.corner(point, color.wrapping_mul(coats).wrapping_add(coat), normal, at)
                 });
                 corners.triangles.push(triangle);
             }
@@ -100,18 +117,28 @@ impl Reader<'_> {
         let skeleton = self.figure.skeletons.iter().find(|of| Some(of.prim) == skeleton);
         let weights = self.weights(layer, prim, skeleton, points.len(), metres_from_stage)?;
         let mut piece = Piece {
-            color: material.unwrap_or(if colors.is_some() { Vec3::ONE } else { CLAY }),
+            color: Vec3::ONE,
             normals: std::mem::take(&mut corners.normals),
             triangles: std::mem::take(&mut corners.triangles),
             ..Piece::default()
         };
-        for &(point, color) in &corners.vertices {
+        let coat_of = |number: u32| parts.coats[(number % coats) as usize];
+        let of_triangles =
+            piece.triangles.iter().map(|[a, ..]| coat_of(corners.vertices[*a as usize].1).material);
+        piece.materials = of_triangles.collect();
+        let [of_first, of_second] = std::mem::take(&mut corners.coordinates);
+        if coordinates.is_some() {
+            piece.coordinates[0] = of_first;
+        }
+        if has_second {
+            piece.coordinates[1] = of_second;
+        }
+        for &(point, number) in &corners.vertices {
             piece.positions.push(points[point]);
             piece.weights.push(weights[point]);
-            if let Some(colors) = &colors {
-                let color = colors.value(color).filter(|color| color.is_finite());
-                piece.colors.push(color.unwrap_or(CLAY));
-            }
+            let own = colors.as_ref().and_then(|colors| colors.value(number / coats));
+            let color = coat_of(number).color.or(own.filter(|color| color.is_finite()));
+            piece.colors.push(color.unwrap_or(CLAY));
         }
         if let Some(skeleton) = skeleton {
             piece.morphs = self.shapes(layer, prim, skeleton, &corners.copies(points.len()))?;
@@ -232,35 +259,5 @@ impl Reader<'_> {
             pieces.push(MorphPiece { morph, moved });
         }
         Ok(pieces)
-    }
-}
-
-/// The shaders of a stage by their paths, ascending.
-pub(super) struct Shaders(Vec<(String, usize)>);
-
-impl Shaders {
-    pub(super) fn read(layer: &mut dyn Layer) -> Result<Self, MotionError> {
-        let prims = layer.prims(&["Shader"])?;
-        let mut shaders: Vec<(String, usize)> =
-            prims.into_iter().map(|(prim, _)| (layer.path(prim), prim)).collect();
-        shaders.sort();
-        Ok(Self(shaders))
-    }
-
-    /// The colour of a mesh's material, if it states one.
-    fn color(&self, layer: &mut dyn Layer, prim: usize) -> Result<Option<Vec3>, MotionError> {
-        if let Some(material) = inherited_target(layer, prim, "material:binding")? {
-            let folder = layer.path(material) + "/";
-            let first = self.0.partition_point(|(path, _)| *path < folder);
-            for (_, shader) in self.0[first..].iter().take_while(|(path, _)| path.starts_with(&folder)) {
-                if let Some(value) = layer.attribute(*shader, "inputs:diffuseColor", 1)?
-                    && let Some(&color) = value.into_vectors().first()
-                    && color.is_finite()
-                {
-                    return Ok(Some(color));
-                }
-            }
-        }
-        Ok(None)
     }
 }

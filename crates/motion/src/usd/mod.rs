@@ -4,6 +4,7 @@
 //! is read: what it refers to in others, and variants, are left out, and a note says so.
 
 mod clip;
+mod look;
 mod mesh;
 mod over_mesh;
 mod package;
@@ -11,11 +12,13 @@ mod skeleton;
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::path::Path;
 
 use glam::{Affine3A, DMat4, Mat3A, Mat4};
 use lovelock_base::words::counted;
 use lovelock_usd::{CRATE_MAGIC, Layer, Source, TEXT_MAGIC, UsdError, Value, stage_space};
 
+use self::look::{Files, Materials};
 use crate::character::{Axes, Character, Draft, HiddenMeshes, WornHair, only_motion};
 use crate::content::FigureContent;
 use crate::surface::{Palette, Surface};
@@ -81,10 +84,12 @@ impl From<UsdError> for MotionError {
 pub(crate) fn read(
     file: &str,
     bytes: &[u8],
+    folder: Option<&Path>,
     settings: BodySettings,
     needs_mesh: bool,
 ) -> Result<Character, MotionError> {
     let is_package = package::is_package(bytes);
+    let files = if is_package { Files::Package(bytes) } else { Files::Folder(folder) };
     let bytes = if is_package { package::first_layer(file, bytes)? } else { bytes };
     let is_crate = is_crate(bytes);
     let mut stage = lovelock_usd::open(file, Source::Memory(bytes), is_crate)?;
@@ -102,9 +107,10 @@ pub(crate) fn read(
     let mut shapes = BTreeMap::new();
     let mut meshes = 0;
     let mut hidden = HiddenMeshes::new(settings);
+    let mut materials = Materials::default();
     if needs_mesh {
         let prims = layer.prims(&["Mesh"])?;
-        let shaders = mesh::Shaders::read(layer)?;
+        materials = Materials::read(layer, files)?;
         meshes = prims.len();
         let mut worn = WornHair::new(settings);
         let mut parts = Vec::new();
@@ -124,7 +130,7 @@ pub(crate) fn read(
                 surface: &mut surface,
                 palette: &mut palette,
                 shapes: &mut shapes,
-                shaders: &shaders,
+                materials: &mut materials,
                 dropped: &mut dropped,
             };
             reader.mesh(layer, prim, metres_from_stage)?;
@@ -139,9 +145,9 @@ pub(crate) fn read(
             )),
         }
     }
-    let (mesh, skin) = surface.finish(palette);
+    let mut draft = Draft::with_surface(file, surface.finish(palette), materials.looks, notes);
     let animations = layer.prims(&["SkelAnimation"])?;
-    if needs_mesh && mesh.triangles.is_empty() {
+    if needs_mesh && draft.mesh.triangles.is_empty() {
         return Err(MotionError::Empty {
             file: file.to_owned(),
             found: format!(
@@ -153,10 +159,9 @@ pub(crate) fn read(
             wanted: "a mesh of triangles",
         });
     }
-    let clips = clip::read_clips(file, layer, &figure, &shapes)?;
-    let (joints, skins) = (figure.joints_of_skeletons(), figure.skeletons.len());
-    let skeleton = figure.skeleton;
-    let draft = Draft { file, skeleton, mesh, skin, clips, joints, skins, dropped, notes };
+    draft.clips = clip::read_clips(file, layer, &figure, &shapes)?;
+    (draft.joints, draft.skins) = (figure.joints_of_skeletons(), figure.skeletons.len());
+    (draft.skeleton, draft.dropped) = (figure.skeleton, dropped);
     let mut character = draft.finish(Axes { settings, usual_unit_metres: unit_metres })?;
     let form = match (is_package, is_crate) {
         (true, _) => "package",

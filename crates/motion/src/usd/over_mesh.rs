@@ -55,6 +55,17 @@ impl OverMesh {
         }))
     }
 
+    /// Texture coordinates of a mesh by the name of their primvar, whose third component is 0; `None` without some that fit it.
+    pub(super) fn coordinates(
+        layer: &mut dyn Layer,
+        prim: usize,
+        name: &str,
+        sizes: Sizes,
+    ) -> Result<Option<Self>, MotionError> {
+        let found = primvar(layer, prim, name, sizes.corners.max(1))?;
+        Ok(found.and_then(|found| Self::of(found, sizes, &[Per::Corner, Per::Point])))
+    }
+
     /// The stated interpolation if the number of values fits it, otherwise the first of `usual` that fits.
     fn of(found: Primvar, sizes: Sizes, usual: &[Per]) -> Option<Self> {
         let Primvar { values, indices, interpolation, .. } = found;

@@ -7,6 +7,27 @@ pub(super) fn is_package(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
 
+/// A file of a package by its name, or by the end of its path. Files are stored one after the other, each with its size before it.
+pub(super) fn entry<'a>(bytes: &'a [u8], name: &str) -> Option<&'a [u8]> {
+    let wanted = name.trim_start_matches("./").to_ascii_lowercase();
+    let ending = format!("/{wanted}");
+    let mut at = 0_usize;
+    loop {
+        let head = bytes.get(at..)?.get(..30).filter(|head| is_package(head))?;
+        let number = |at: usize, size: usize| {
+            head[at..at + size].iter().rev().fold(0, |n, &b| n << 8 | usize::from(b))
+        };
+        let (method, size, name_length) = (number(8, 2), number(22, 4), number(26, 2));
+        let start = at + 30 + name_length + number(28, 2);
+        let own = String::from_utf8_lossy(bytes.get(at + 30..)?.get(..name_length)?).to_ascii_lowercase();
+        let data = bytes.get(start..)?.get(..size)?;
+        if method == 0 && (own == wanted || own.ends_with(&ending)) {
+            return Some(data);
+        }
+        at = start + size;
+    }
+}
+
 /// The first file of a package, which is its stage.
 pub(super) fn first_layer<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a [u8], MotionError> {
     let refuse = |problem: &str| MotionError::malformed(file, "byte 0", problem);

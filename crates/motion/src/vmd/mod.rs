@@ -3,6 +3,7 @@
 //! Every frame is computed as that program does: keys with their curves, then the legs by inverse kinematics. The result
 //! is a [`MotionFile`] of 30 frames per second, which is retargeted like any other.
 
+mod faces;
 mod legs;
 mod parse;
 mod skeleton;
@@ -33,7 +34,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     let last = raw.bones.values().filter_map(|keys| keys.last()).map(|key| key.frame).max();
     let first = raw.bones.values().filter_map(|keys| keys.first()).map(|key| key.frame).min();
     let (Some(first), Some(last)) = (first, last) else {
-        let found = if raw.dropped.is_empty() && unknown == 0 {
+        let found = if raw.dropped.is_empty() && raw.faces.is_empty() && unknown == 0 {
             "no key".to_owned()
         } else {
             format!("only keys of a camera, a face, or {unknown} other bones")
@@ -91,6 +92,7 @@ pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<MotionFile, MotionError> 
     let by_targets = figure.legs.iter().filter(|leg| leg.is_some()).count();
     let how = if by_targets > 0 { "follow the targets of their feet" } else { "are turned joint by joint" };
     motion.notes.push(format!("performed by the standard skeleton of MikuMikuDance; the legs {how}"));
+    motion.faces = faces::tracks(&raw.faces, [first, last]);
     motion.dropped = raw.dropped;
     Ok(motion)
 }

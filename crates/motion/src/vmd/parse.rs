@@ -16,8 +16,8 @@ use crate::MotionError;
 pub(super) const MAGIC: &[u8] = b"Vocaloid Motion Data";
 /// Sizes of the lists' records, bytes.
 const BONE: usize = 111;
-const OTHERS: [(&str, usize); 4] =
-    [("morph_keys", 23), ("camera_keys", 61), ("light_keys", 28), ("shadow_keys", 9)];
+const FACE: usize = 23;
+const OTHERS: [(&str, usize); 3] = [("camera_keys", 61), ("light_keys", 28), ("shadow_keys", 9)];
 const SWITCH: usize = 21;
 
 /// One key of a bone, in the file's unit and left-handed axes.
@@ -38,6 +38,8 @@ pub(super) struct RawVmd {
     pub(super) bones: BTreeMap<String, Vec<Key>>,
     /// For each bone of inverse kinematics, the frames at which it is switched on or off.
     pub(super) switches: BTreeMap<String, BTreeMap<u32, bool>>,
+    /// For each morph of the face its weights by frame.
+    pub(super) faces: BTreeMap<String, BTreeMap<u32, f32>>,
     pub(super) dropped: BTreeMap<String, u64>,
 }
 
@@ -116,6 +118,16 @@ pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawVmd, MotionError> {
         keys.reverse();
         keys.sort_by_key(|key| key.frame);
         keys.dedup_by_key(|key| key.frame);
+    }
+    let Some(faces) = reader.count(FACE, "keys of facial morphs")? else { return Ok(raw) };
+    for record in reader.take(faces * FACE, "keys of facial morphs")?.chunks_exact(FACE) {
+        let weight = f32_of(&record[19..]);
+        if weight.is_finite() {
+            let of_morph = raw.faces.entry(name_of(&record[..15])).or_default();
+            of_morph.insert(u32_of(&record[15..]), weight.clamp(-1.0, 2.0));
+        } else {
+            *raw.dropped.entry("keys_of_no_number".into()).or_default() += 1;
+        }
     }
     for (what, size) in OTHERS {
         let Some(count) = reader.count(size, what)? else { return Ok(raw) };

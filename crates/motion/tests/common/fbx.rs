@@ -9,9 +9,11 @@ pub enum Value {
     Longs(Vec<i64>),
     Numbers(Vec<f64>),
     Floats(Vec<f32>),
+    /// Bytes, which only the binary form has; as text they are an empty string.
+    Bytes(Vec<u8>),
 }
 
-use Value::{Floats, Integer, Integers, Longs, Number, Numbers, Text};
+use Value::{Bytes, Floats, Integer, Integers, Longs, Number, Numbers, Text};
 
 pub struct Node {
     pub name: &'static str,
@@ -242,6 +244,7 @@ fn write_text(node: &Node, out: &mut String) {
             Integers(v) | Longs(v) => list(v.iter().map(ToString::to_string).collect()),
             Numbers(v) => list(v.iter().map(|n| format!("{n:?}")).collect()),
             Floats(v) => list(v.iter().map(|n| format!("{n:?}")).collect()),
+            Bytes(_) => "\"\"".to_owned(),
         })
         .collect();
     *out += node.name;
@@ -304,6 +307,11 @@ fn write_binary(node: &Node, out: &mut Vec<u8>) {
             Longs(v) => array(out, b'l', v.len(), v.iter().flat_map(|n| n.to_le_bytes()).collect()),
             Numbers(v) => array(out, b'd', v.len(), v.iter().flat_map(|n| n.to_le_bytes()).collect()),
             Floats(v) => array(out, b'f', v.len(), v.iter().flat_map(|n| n.to_le_bytes()).collect()),
+            Bytes(v) => {
+                out.push(b'R');
+                out.extend((v.len() as u32).to_le_bytes());
+                out.extend(v);
+            }
         }
     }
     let value_bytes = out.len() - of_values;
@@ -396,6 +404,72 @@ pub fn with_cap(mut nodes: Vec<Node>, cap: &Cap) -> Vec<Node> {
         match node.name {
             "Objects" => node.children.append(&mut objects),
             "Connections" => node.children.append(&mut connections),
+            _ => {}
+        }
+    }
+    nodes
+}
+
+/// Gives the body of a figure a material named `Face` with a texture of its colour, whose image is in the file if there is one. On another
+/// computer it was `C:\work\maps\skin.png`. The corners have the texture coordinates (0.25, 0.75), (0.5, 0) and (1, 1) from below.
+pub fn with_texture(mut nodes: Vec<Node>, image: Option<&[u8]>) -> Vec<Node> {
+    const FILE: &str = "C:\\work\\maps\\skin.png";
+    let leaf = |name: &'static str, values: Vec<Value>| node(name, values, vec![]);
+    let layer = |name: &'static str, mapping: &'static str, lists: Vec<Node>| {
+        let mut children = vec![
+            leaf("Version", vec![Integer(101)]),
+            leaf("Name", vec![word("map")]),
+            leaf("MappingInformationType", vec![word(mapping)]),
+            leaf("ReferenceInformationType", vec![word("IndexToDirect")]),
+        ];
+        children.extend(lists);
+        node(name, vec![Integer(0)], children)
+    };
+    let element = |kind: &'static str| {
+        node(
+            "LayerElement",
+            vec![],
+            vec![leaf("Type", vec![word(kind)]), leaf("TypedIndex", vec![Integer(0)])],
+        )
+    };
+    let files =
+        || vec![leaf("FileName", vec![word(FILE)]), leaf("RelativeFilename", vec![word("maps\\skin.png")])];
+    let mut content = files();
+    content.extend(image.map(|image| leaf("Content", vec![Bytes(image.to_vec())])));
+    let wrap = |name: &'static str| p(name, "enum", vec![Integer(1)]);
+    let mut texture = files();
+    texture.push(properties(vec![wrap("WrapModeU")]));
+    let color = p("DiffuseColor", "Color", vec![Number(0.1), Number(0.2), Number(0.3)]);
+    let mut objects = vec![
+        node(
+            "Material",
+            vec![Integer(80), Text("Face", "Material"), word("")],
+            vec![leaf("ShadingModel", vec![word("phong")]), properties(vec![color])],
+        ),
+        node("Texture", vec![Integer(81), Text("skin", "Texture"), word("")], texture),
+        node("Video", vec![Integer(82), Text("skin", "Video"), word("Clip")], content),
+    ];
+    let link = |child: i64, parent: i64| leaf("C", vec![word("OO"), Integer(child), Integer(parent)]);
+    let of_color = || leaf("C", vec![word("OP"), Integer(81), Integer(80), word("DiffuseColor")]);
+    for node in &mut nodes {
+        match node.name {
+            "Objects" => {
+                let body = node.children.iter_mut().find(|node| node.name == "Geometry").expect("the body");
+                body.children.push(layer(
+                    "LayerElementUV",
+                    "ByPolygonVertex",
+                    vec![
+                        leaf("UV", vec![Numbers(vec![0.25, 0.75, 0.5, 0.0, 1.0, 1.0])]),
+                        leaf("UVIndex", vec![Integers(vec![0, 1, 2])]),
+                    ],
+                ));
+                let materials = vec![leaf("Materials", vec![Integers(vec![0])])];
+                body.children.push(layer("LayerElementMaterial", "AllSame", materials));
+                let elements = vec![element("LayerElementUV"), element("LayerElementMaterial")];
+                body.children.push(self::node("Layer", vec![Integer(0)], elements));
+                node.children.append(&mut objects);
+            }
+            "Connections" => node.children.extend([link(80, 20), link(82, 81), of_color()]),
             _ => {}
         }
     }

@@ -2,6 +2,7 @@
 
 pub mod dance;
 pub mod fbx;
+pub mod textured;
 
 use std::path::PathBuf;
 

@@ -21,6 +21,34 @@ fn colliders_fit_the_dancer() {
     }
 }
 
+#[test]
+fn the_head_of_a_figure_without_joints_is_not_inside_of_its_body() {
+    let Some(data) = common::data_dir() else { return };
+    let body = load_character(&data.join("reports/whole_body_without_joints.glb")).unwrap().body;
+    let colliders = fit_colliders(&body);
+    let of_head = |joint: usize| joint == body.head_joint;
+    let deepest = |points: &[Vec3], heads: bool| {
+        let shapes = colliders.iter().filter(|collider| of_head(collider.joint) == heads);
+        let shapes: Vec<_> = shapes.map(|collider| &collider.shape_at_rest).collect();
+        let depth =
+            |p: &Vec3| shapes.iter().map(|shape| -signed_distance(shape, *p)).fold(f32::MIN, f32::max);
+        points.iter().map(depth).fold(f32::MIN, f32::max)
+    };
+    let neck = body.skeleton.rest_position(body.head_joint).y;
+    let points = |above: bool| -> Vec<Vec3> {
+        let all = body.mesh.positions.iter().copied().enumerate();
+        let own = all.filter(|(v, p)| of_head(body.dominant_joint(*v)) == above && (p.y > neck) == above);
+        own.map(|(_, p)| p).collect()
+    };
+    let (head, rest) = (points(true), points(false));
+    let found = deepest(&head, false);
+    assert!(found < 0.003, "the head is {found} m deep in the body");
+    // The control: the shapes of the body are there, and lie where its skin is.
+    let near = rest.iter().filter(|p| deepest(std::slice::from_ref(p), false) > -0.03).count();
+    println!("{} shapes, head {found} m deep, {near} of {} points near", colliders.len(), rest.len());
+    assert!(colliders.len() > 4 && 2 * near > rest.len(), "{near} of {}", rest.len());
+}
+
 fn check_fit(path: &std::path::Path) {
     let body = load_character(path).unwrap().body;
     println!("{} {:?}", body.name, body.skeleton.joints[body.head_joint].name);

@@ -1,13 +1,15 @@
 //! FBX: known positions in every unit and axis, motion alone, and files that are refused.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
+use image::ImageFormat;
 use lovelock_motion::{
-    Character, FigureContent, MotionSettings, figure_content, load_character_bytes, load_motion_bytes,
+    Character, FigureContent, MotionSettings, Region, Wrap, figure_content, load_character_bytes,
+    load_motion_bytes,
 };
 use lovelock_testkit::fuzz::damaged;
 
-use crate::common::fbx::{Cap, Node, Space, Value, binary, figure, text, with_cap};
-use crate::common::{assert_near, points_at, reads_character};
+use crate::common::fbx::{Cap, Node, Space, Value, binary, figure, text, with_cap, with_texture};
+use crate::common::{assert_near, points_at, reads_character, textured::picture};
 
 const SPACES: [Space; 4] = [
     Space { z_up: false, unit: 1.0 },
@@ -163,7 +165,51 @@ fn files_cut_anywhere_are_survived() {
 #[test]
 fn damaged_character_fbx() {
     let nodes = figure(SPACES[1]);
-    damaged("fbx", &[text(&nodes).into_bytes(), binary(&nodes)], 2000, survives);
+    let painted = with_texture(figure(SPACES[0]), Some(&picture(ImageFormat::Png)));
+    let files = [text(&nodes).into_bytes(), binary(&nodes), binary(&painted)];
+    damaged("fbx", &files, 2000, survives);
+}
+
+#[test]
+fn textures_are_in_the_file_or_beside_it_whatever_their_path_was() {
+    let png = picture(ImageFormat::Png);
+    let folder = tempfile::tempdir().expect("a folder");
+    let load = |nodes: &[Node], is_text: bool| {
+        let bytes = if is_text { text(nodes).into_bytes() } else { binary(nodes) };
+        load_character_bytes("figure.fbx", &bytes, Some(folder.path()))
+            .unwrap_or_else(|error| panic!("{error}"))
+    };
+    let check = |character: &Character, what: &str| {
+        let body = &character.body;
+        assert!(character.notes.iter().all(|note| !note.contains("image")), "{what}: {:?}", character.notes);
+        let [face] = &body.materials[..] else { panic!("{what}: {:?}", body.materials) };
+        assert_eq!((face.name.as_str(), face.region), ("Face", Region::Skin), "{what}");
+        let base = face.base.unwrap_or_else(|| panic!("{what}: no texture"));
+        assert_eq!((base.image, base.set, base.wrap), (0, 0, [Wrap::Clamp, Wrap::Repeat]), "{what}");
+        assert_eq!((body.images[0].name.as_str(), body.images[0].size), ("skin.png", [4, 4]), "{what}");
+        assert_eq!(body.images[0].pixels[..8], [250, 0, 30, 255, 250, 0, 30, 245], "{what}");
+        // Rows of images count from above.
+        let mut at = body.mesh.coordinates[0].clone();
+        at.sort_by(|a, b| a.x.total_cmp(&b.x));
+        assert_eq!(at, [Vec2::new(0.25, 0.25), Vec2::new(0.5, 1.0), Vec2::new(1.0, 0.0)], "{what}");
+        // The texture stands in the place of the colour.
+        assert!(body.mesh.colors.iter().all(|color| *color == Vec3::ONE), "{what}: {:?}", body.mesh.colors);
+    };
+    check(&load(&with_texture(figure(SPACES[0]), Some(&png)), false), "in the file");
+    let outside = with_texture(figure(SPACES[0]), None);
+    let missing = load(&outside, false);
+    assert!(missing.notes.iter().any(|note| note.contains("`skin.png`")), "{:?}", missing.notes);
+    // The colour is seen where the image is missing.
+    assert!(
+        missing.body.mesh.colors[0].abs_diff_eq(Vec3::new(0.1, 0.2, 0.3), 1e-6),
+        "{:?}",
+        missing.body.mesh.colors
+    );
+    std::fs::create_dir(folder.path().join("textures")).expect("a folder");
+    std::fs::write(folder.path().join("textures/skin.png"), &png).expect("an image");
+    for is_text in [false, true] {
+        check(&load(&outside, is_text), "beside the file");
+    }
 }
 
 #[test]

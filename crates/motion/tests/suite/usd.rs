@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
+use image::ImageFormat;
 use lovelock_motion::{
-    BodySettings, FigureContent, MotionSettings, figure_content, load_character, load_character_bytes,
-    load_character_bytes_with, load_motion_bytes,
+    Alpha, BodySettings, FigureContent, MotionSettings, Wrap, figure_content, load_character,
+    load_character_bytes, load_character_bytes_with, load_motion_bytes,
 };
 use lovelock_testkit::fuzz::damaged;
 
-use crate::common::{assert_near, points_at, reads_character};
+use crate::common::{assert_near, points_at, reads_character, textured::picture};
 
 /// A figure in centimetres with Z up: `hips` at 1 m, `head` 0.5 m above, and a triangle 0.1 m to the left, in front and above of the
 /// head. In one second the hips turn by a quarter to the left, and the shape `open` lifts the third point by 0.1 m. The turn about Z
@@ -239,8 +240,80 @@ fn the_content_of_a_crate_is_found_without_reading_it_whole() {
 
 #[test]
 fn damaged_character_usd() {
-    let files = [STAGE.as_bytes().to_vec(), crate_of(STAGE), package("a.usdc", &crate_of(STAGE))];
+    let files = [STAGE.as_bytes().to_vec(), crate_of(STAGE), package("a.usdc", &crate_of(STAGE)), packed()];
     damaged("usd figure", &files, 1500, survives);
+}
+
+/// The figure with a preview surface whose colour, opacity and emitted light are textures.
+fn painted() -> String {
+    let material = r#"
+def Material "Face"
+{
+    token outputs:surface.connect = </Face/Surface.outputs:surface>
+    def Shader "Surface"
+    {
+        uniform token info:id = "UsdPreviewSurface"
+        color3f inputs:diffuseColor.connect = </Face/Color.outputs:rgb>
+        float inputs:opacity.connect = </Face/Color.outputs:a>
+        float inputs:opacityThreshold = 1.5
+        color3f inputs:emissiveColor.connect = </Face/Color.outputs:rgb>
+        float inputs:roughness = 0.25
+        token outputs:surface
+    }
+    def Shader "Color"
+    {
+        uniform token info:id = "UsdUVTexture"
+        asset inputs:file = @maps/skin.png@
+        token inputs:wrapS = "mirror"
+        float2 inputs:st.connect = </Face/Place.outputs:result>
+        float3 outputs:rgb
+        float outputs:a
+    }
+    def Shader "Place"
+    {
+        uniform token info:id = "UsdPrimvarReader_float2"
+        string inputs:varname = "st"
+        float2 outputs:result
+    }
+}
+"#;
+    let of_mesh = "        texCoord2f[] primvars:st = [(0.25, 0.75), (0.5, 0), (1, 1)] (\n            interpolation = \"vertex\"\n        )\n        \
+                   rel material:binding = </Face>\n";
+    let at = STAGE.find("        int[] faceVertexCounts").expect("the mesh");
+    format!("{}{of_mesh}{}{material}", &STAGE[..at], &STAGE[at..])
+}
+
+/// The painted figure in a package with its image.
+fn packed() -> Vec<u8> {
+    let image = package("maps/skin.png", &picture(ImageFormat::Png));
+    [package("a.usda", painted().as_bytes()), image].concat()
+}
+
+#[test]
+fn textures_of_preview_surfaces_are_found_beside_the_file_and_in_its_package() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("maps")).expect("a folder");
+    std::fs::write(folder.path().join("maps/skin.png"), picture(ImageFormat::Png)).expect("an image");
+    let stage = painted();
+    for (bytes, folder) in [
+        (stage.as_bytes().to_vec(), Some(folder.path())),
+        (crate_of(&stage), Some(folder.path())),
+        (packed(), None),
+    ] {
+        let character = load_character_bytes("a.usd", &bytes, folder).expect("a character");
+        let body = &character.body;
+        let [face] = &body.materials[..] else { panic!("{:?}", body.materials) };
+        let base = face.base.expect("a texture");
+        assert_eq!((base.image, base.wrap, face.roughness), (0, [Wrap::Mirror, Wrap::Repeat], 0.25));
+        // A threshold above 1 hides the surface.
+        assert_eq!((face.alpha, face.emissive_texture.map(|of| of.image)), (Alpha::Mask(1.5), Some(0)));
+        assert_eq!((body.images.len(), body.images[0].size), (1, [4, 4]));
+        let mut at = body.mesh.coordinates[0].clone();
+        at.sort_by(|a, b| a.x.total_cmp(&b.x));
+        assert_eq!(at, [Vec2::new(0.25, 0.25), Vec2::new(0.5, 1.0), Vec2::new(1.0, 0.0)]);
+    }
+    let missing = load_character_bytes("a.usda", stage.as_bytes(), None).expect("a character");
+    assert!(missing.notes.iter().any(|note| note.contains("skin.png")), "{:?}", missing.notes);
 }
 
 /// A stage of one triangle, and another one with lines of its own and around it.

@@ -174,7 +174,7 @@ impl ExactReference {
         size: [u32; 2],
         picture: &mut Picture,
     ) -> Result<(), String> {
-        let same = |renderer: &Renderer| renderer.gpu().is_some_and(|own| own.device == gpu.device);
+        let same = |renderer: &Renderer| renderer.gpu().is_some_and(|own| own.is_same_device(gpu));
         let renderer = match self.seen_on_device.take().filter(same) {
             Some(renderer) => renderer,
             None => Renderer::on_device(gpu).map_err(|error| error.to_string())?,

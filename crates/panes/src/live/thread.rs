@@ -47,7 +47,7 @@ impl Worker {
     }
 
     /// Renders until the window is closed, on background workers of low priority, so that the window and its simulation keep
-    /// running while six panes are rendered. The workers end with what is kept, when the page is left: their memory as well.
+    /// running while nine panes are rendered. The workers end with what is kept, when the page is left: their memory as well.
     pub(super) fn run(mut self) {
         lower_priority();
         let mut workers = None;

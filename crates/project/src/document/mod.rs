@@ -78,6 +78,17 @@ impl Document {
         }
     }
 
+    /// A project that was not saved, with its undo steps, and its file.
+    pub fn recovered(history: History, path: Option<PathBuf>) -> Self {
+        Self { history, ..Self::new(Project::default(), path) }
+    }
+
+    /// As [`Document::replace`], with a project that was not saved and its undo steps.
+    pub fn recover(&mut self, history: History, path: Option<PathBuf>) {
+        self.replace(Project::default(), path);
+        self.history = history;
+    }
+
     /// Puts another project in place of this one: no undo step leads back. Gestures continue to be counted, and moved controls
     /// continue to write keys, unless only one control of the previous project did.
     pub fn replace(&mut self, project: Project, path: Option<PathBuf>) {
@@ -293,6 +304,7 @@ pub fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.shadow != after.shadow, "shadow"),
         (before.lights != after.lights, "light"),
         (before.surroundings != after.surroundings, "surroundings"),
+        (before.reference != after.reference, "reference"),
         (before.sound != after.sound, "sound"),
         (before.picture != after.picture, "picture"),
         (before.body != after.body, "body"),

@@ -11,7 +11,7 @@ use super::generic::unknown_fields;
 use super::version_1::Version1;
 use super::{PROJECT_VERSION, Project, loop_blend, version_2};
 use crate::error::{Place, Problem, ProblemKind, ProjectError};
-use crate::files::{Access, folder_of, write_whole};
+use crate::files::{Access, FileRef, folder_of, write_whole};
 
 /// The extension of project files, without the dot.
 pub const PROJECT_EXTENSION: &str = "lovelock";
@@ -45,6 +45,12 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
     access.set_project(Some(path));
     for (place, file) in project.files() {
         problems.extend(access.read(place, file).err());
+    }
+    for method in project.user_methods() {
+        match access.read(Place::Shadow, &FileRef::new(method.description_file())) {
+            Ok(_) => method.allow(),
+            Err(problem) => problems.push(problem),
+        }
     }
     Ok((project, problems))
 }
@@ -187,4 +193,28 @@ pub fn text_of_project(path: &Path, project: &Project) -> Result<String, ron::Er
         *file = file.for_disk(&folder);
     }
     ron::ser::to_string_pretty(&project, ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4))
+}
+
+/// The text of a project with its paths as they are in memory, on one line.
+///
+/// # Errors
+/// If a path is not Unicode.
+pub(crate) fn text_in_memory(project: &Project) -> Result<String, ron::Error> {
+    let options = text_options();
+    if project.version == PROJECT_VERSION {
+        return options.to_string(project);
+    }
+    options.to_string(&Project { version: PROJECT_VERSION, ..project.clone() })
+}
+
+/// The project of a text that [`text_in_memory`] wrote, of this version or an earlier one. `path` is used for messages only.
+///
+/// # Errors
+/// As [`parse_project`].
+pub(crate) fn project_in_memory(path: &Path, text: &str) -> Result<Project, ProjectError> {
+    match text_options().from_str::<Project>(text) {
+        // Parsed once: a history has a thousand projects.
+        Ok(project) if project.version == PROJECT_VERSION => Ok(project.sanitised().0),
+        _ => parse_project(path, text).map(|(project, _)| project),
+    }
 }

@@ -4,11 +4,14 @@
 //! nothing. File paths are absolute in memory; on disk they are relative to the project's folder if they lie in it (see
 //! [`load_project`] and [`save_project`]).
 
+mod brows;
 mod contender;
 mod file;
 mod generic;
+mod lens;
 mod loop_blend;
 mod memory;
+mod reference;
 mod sanitise;
 mod sections;
 mod settings;
@@ -18,28 +21,32 @@ mod trim;
 mod version_1;
 mod version_2;
 
+pub use brows::{BrowColour, BrowSection};
 pub use contender::{Contender, backend_label};
 pub use file::{
     PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, save_project,
     text_of_project,
 };
-pub(crate) use file::{parse_text, read_text, text_options};
+pub(crate) use file::{parse_text, project_in_memory, read_text, text_in_memory, text_options};
+pub use lens::{FocusOn, LensSettings};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairMorph, HairSection, HairSource,
     KeptScalp, Marker, MorphStyle, MotionSection, MotionSource, RecordingSection, StyleGrowth,
     SurroundingsSection, TakeSection, TimelineSection,
 };
 
+pub use reference::ReferenceSection;
 pub use sound::SoundSection;
 
 pub use settings::{
-    Assignment, all_settings, settings_json, settings_of, settings_page, settings_table, settings_text,
+    Assignment, all_settings, changed_settings, settings_json, settings_of, settings_page, settings_table,
+    settings_text,
 };
 
 use lovelock_groom::{Facing, GroomSettings, HairLook, Preset, UpAxis};
 use lovelock_motion::LoopBlend;
-use lovelock_picture::{Light, PictureSettings, StrandCount};
-use lovelock_shadow::ShadowSettings;
+use lovelock_picture::{BackgroundForm, Light, PictureSettings, StrandCount};
+use lovelock_shadow::{ShadowMethod, ShadowSettings, UserMethod};
 use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +77,8 @@ pub struct Project {
     pub lights: Vec<Light>,
     /// The light from all directions.
     pub surroundings: SurroundingsSection,
+    /// The picture that is compared with the image in the window.
+    pub reference: ReferenceSection,
     /// The sound of the dance.
     pub sound: SoundSection,
     /// The camera.
@@ -98,6 +107,7 @@ impl Default for Project {
             shadow: ShadowSettings::default(),
             lights: Light::default_rig(),
             surroundings: SurroundingsSection::default(),
+            reference: ReferenceSection::default(),
             sound: SoundSection::default(),
             camera: CameraSection::default(),
             picture: PictureSettings::default(),
@@ -162,6 +172,18 @@ impl Project {
         self.surroundings.file = Some(FileRef::new(path));
     }
 
+    /// Shows a picture that the user picked behind the figure.
+    pub fn set_backdrop_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.surroundings.backdrop = Some(FileRef::new(path));
+        self.picture.background = BackgroundForm::Picture;
+    }
+
+    /// Lays a picture that the user picked over the image in the window.
+    pub fn set_reference_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.reference.file = Some(FileRef::new(path));
+        self.reference.shown = true;
+    }
+
     /// Adds a sound file that the user picked to the dance.
     pub fn set_sound_file(&mut self, path: impl Into<std::path::PathBuf>) {
         self.sound.file = Some(FileRef::new(path));
@@ -190,10 +212,29 @@ impl Project {
                 self.motion.loop_blend = other.motion.loop_blend;
             }
             Place::Surroundings => self.surroundings.file.clone_from(&other.surroundings.file),
+            Place::Backdrop => {
+                self.surroundings.backdrop.clone_from(&other.surroundings.backdrop);
+                self.picture.background = other.picture.background;
+            }
+            Place::Reference => self.reference.clone_from(&other.reference),
             Place::Sound => self.sound.file.clone_from(&other.sound.file),
             Place::Take => self.take.file.clone_from(&other.take.file),
             _ => {}
         }
+    }
+
+    /// The shadow methods of the user's own that it uses, each once.
+    pub fn user_methods(&self) -> Vec<UserMethod> {
+        let panes = self.compare.panes.iter().map(|pane| pane.shadow.method);
+        let mut found = Vec::new();
+        for method in std::iter::once(self.shadow.method).chain(panes) {
+            if let ShadowMethod::User(user) = method
+                && !found.contains(&user)
+            {
+                found.push(user);
+            }
+        }
+        found
     }
 
     /// Every file that the project refers to and uses, with the part that uses it.
@@ -205,6 +246,7 @@ impl Project {
         let morph = self.hair.morph.to.as_ref().map(|to| &to.hair);
         let other = morph.filter(|hair| hair.source == HairSource::File).and_then(|hair| hair.file.as_ref());
         let surroundings = (crate::error::Place::Surroundings, self.surroundings.file.as_ref());
+        let backdrop = (crate::error::Place::Backdrop, self.surroundings.backdrop.as_ref());
         let sound = (crate::error::Place::Sound, self.sound.file.as_ref());
         let take = self.take.file.as_ref();
         if take.is_some() {
@@ -216,6 +258,7 @@ impl Project {
                 (crate::error::Place::Body, around(body)),
                 (crate::error::Place::Motion, around(motion)),
                 surroundings,
+                backdrop,
                 sound,
             ];
             return used.into_iter().filter_map(|(place, file)| Some((place, file?))).collect();
@@ -226,6 +269,7 @@ impl Project {
             (crate::error::Place::Hair, hair),
             (crate::error::Place::Hair, other),
             surroundings,
+            backdrop,
             sound,
         ]
         .into_iter()
@@ -245,10 +289,12 @@ impl Project {
 
     /// Every file that the project refers to, used or not.
     pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let Self { body, motion, hair, surroundings, sound, recording, take, compare, .. } = self;
-        let own = [&mut body.file, &mut motion.file, &mut surroundings.file, &mut sound.file];
+        let Self { body, motion, hair, surroundings, reference, sound, recording, take, compare, .. } = self;
+        let pictures = [&mut surroundings.file, &mut surroundings.backdrop, &mut reference.file];
+        let own = [&mut body.file, &mut motion.file, &mut sound.file];
         let scalps = body.other_scalps.iter_mut().map(|kept| &mut kept.file);
         own.into_iter()
+            .chain(pictures)
             .chain(scalps)
             .chain([&mut recording.output, &mut take.file])
             .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))

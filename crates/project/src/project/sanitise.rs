@@ -24,6 +24,7 @@ impl Project {
         note(Place::Look, differences(&self.look, &project.look));
         note(Place::Simulation, differences(&self.simulation, &project.simulation));
         note(Place::Shadow, differences(&self.shadow, &project.shadow));
+        note(Place::Reference, differences(&self.reference, &project.reference));
         note(Place::Sound, differences(&self.sound, &project.sound));
         note(Place::Camera, differences(&self.camera, &project.camera));
         note(Place::Picture, differences(&self.picture, &project.picture));

@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairLook, HairShading, HairTie, Haircut, ImportSettings, Preset};
-use lovelock_motion::{BodySettings, ColliderEdits, LoopBlend, MotionSettings, ScalpArea, ScalpFit};
+use lovelock_motion::{
+    BodySettings, ColliderEdits, FaceWeights, LoopBlend, MotionSettings, ScalpArea, ScalpFit,
+};
 use lovelock_picture::{Backend, HairDrawing, Transparency};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_shadow::{ShadowMethod, ShadowSettings};
@@ -11,7 +13,9 @@ use lovelock_style::operations::Scissors;
 use lovelock_style::{Layer, StyleStack};
 use serde::{Deserialize, Serialize};
 
+use super::brows::BrowSection;
 use super::contender::Contender;
+use super::lens::LensSettings;
 use crate::files::FileRef;
 use crate::tracks::Track;
 
@@ -21,6 +25,12 @@ pub enum BodySource {
     /// The dancer that is part of the program.
     #[default]
     Dancer,
+    /// The man that is part of the program.
+    Man,
+    /// The woman of African ancestry that is part of the program, for coils.
+    Woman,
+    /// The old woman that is part of the program.
+    Elder,
     /// The four-legged animal that is part of the program, for fur.
     Animal,
     /// The piece of ground that is part of the program, for grass.
@@ -30,6 +40,26 @@ pub enum BodySource {
 }
 
 impl BodySource {
+    /// The bodies that are part of the program: their names on the command line, and what they are.
+    pub const SHIPPED: [(Self, &str, &str); 6] = [
+        (Self::Dancer, "dancer", "Loads the shipped dancer."),
+        (Self::Man, "man", "Loads the shipped man, with the same dance."),
+        (Self::Woman, "woman", "Loads the shipped woman with a head for coils, with the same dance."),
+        (Self::Elder, "elder", "Loads the shipped old woman, with the same dance."),
+        (Self::Animal, "animal", "Loads the shipped animal at rest, with hair on its whole skin, as fur."),
+        (Self::Lawn, "lawn", "Loads the shipped piece of ground, with hair on it, as grass."),
+    ];
+
+    /// The shipped body with this name.
+    pub fn shipped(name: &str) -> Option<Self> {
+        Self::SHIPPED.iter().find(|(_, known, _)| *known == name).map(|(source, ..)| *source)
+    }
+
+    /// The name of a shipped body; `None` for one from a file.
+    pub fn name(self) -> Option<&'static str> {
+        Self::SHIPPED.iter().find(|(source, ..)| *source == self).map(|(_, name, _)| *name)
+    }
+
     /// The fitted scalp of a body with which a project begins: fur and grass grow on the whole skin.
     pub fn scalp(self) -> ScalpFit {
         let area = if matches!(self, Self::Animal | Self::Lawn) { ScalpArea::Skin } else { ScalpArea::Head };
@@ -53,6 +83,10 @@ pub struct BodySection {
     pub colliders: ColliderEdits,
     /// What is changed about the scalp that was fitted to this body.
     pub scalp: ScalpFit,
+    /// Weights of expressions and morph targets, in addition to those of the clip.
+    pub face: FaceWeights,
+    /// Brows and lashes, on bodies whose file has them.
+    pub brows: BrowSection,
     /// The corrected scalps of other bodies of this project: each returns with its body.
     pub other_scalps: Vec<KeptScalp>,
 }
@@ -329,6 +363,26 @@ pub struct CameraSection {
     pub distance: f32,
     /// Vertical field of view, radians.
     pub fov_y: f32,
+    /// Whether it goes round its target as time passes.
+    pub turntable: bool,
+    /// The time of one turn, seconds.
+    pub turn_secs: f32,
+    /// Its lens.
+    pub lens: LensSettings,
+}
+
+impl CameraSection {
+    /// The camera at a time of the scene: a turntable adds to its azimuth.
+    ///
+    /// A turn goes toward the figure's left; whole turns return exactly to the start.
+    #[must_use]
+    pub fn turned(&self, time_secs: f64) -> Self {
+        if !self.turntable {
+            return *self;
+        }
+        let turns = (time_secs / f64::from(self.turn_secs.max(0.1))).rem_euclid(1.0);
+        Self { azimuth: self.azimuth + (turns * std::f64::consts::TAU) as f32, ..*self }
+    }
 }
 
 impl Default for CameraSection {
@@ -336,13 +390,16 @@ impl Default for CameraSection {
     fn default() -> Self {
         Self {
             mode: CameraMode::Follow,
-            follow_offset: Vec3::new(0.0, -0.02, 0.0),
+            follow_offset: Vec3::new(0.0, 0.02, 0.0),
             follow_secs: 1.2,
             fixed_target: Vec3::new(0.0, 1.45, 0.0),
             azimuth: 0.45,
             elevation: 0.03,
             distance: 2.0,
             fov_y: 2.0 * (12.0_f32 / 65.0).atan(),
+            turntable: false,
+            turn_secs: 8.0,
+            lens: LensSettings::default(),
         }
     }
 }
@@ -421,6 +478,8 @@ impl RecordingSection {
 pub struct SurroundingsSection {
     /// A picture of the surroundings, Radiance (`.hdr`) or `OpenEXR` (`.exr`); a sky above a ground where none.
     pub file: Option<FileRef>,
+    /// A picture behind the figure, PNG, JPEG, Radiance or `OpenEXR`; [`lovelock_picture::BackgroundForm::Picture`] shows it.
+    pub backdrop: Option<FileRef>,
 }
 
 /// A recorded simulation that plays in place of one that runs.
@@ -479,7 +538,7 @@ pub struct CompareSection {
 
 impl CompareSection {
     /// The most panes.
-    pub const MAX_PANES: usize = 6;
+    pub const MAX_PANES: usize = 9;
 }
 
 impl Default for CompareSection {

@@ -57,6 +57,10 @@ impl Project {
     /// A path without a setting, with the nearest that has one, or a value that the setting does not take.
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), SettingError> {
         let mut changed = self.clone();
+        // The weight of a name that is not set is 0.
+        if let Some(name) = path.strip_prefix("body.face.").and_then(|rest| rest.strip_suffix(".weight")) {
+            changed.body.face.0.entry(name.to_owned()).or_default();
+        }
         set(&mut changed, path, text)?;
         match path {
             "hair.preset" => self.set_preset(changed.hair.preset),
@@ -74,6 +78,7 @@ pub fn all_settings() -> Vec<Entry> {
     project.compare.panes.truncate(1);
     project.hair.ties = vec![HairTie::default()];
     project.body.colliders.shapes.insert("NAME".to_owned(), lovelock_motion::ColliderEdit::default());
+    project.body.face.0.insert("NAME".to_owned(), lovelock_motion::FaceWeight::default());
     let listed = |entry: &Entry| !entry.path.starts_with("compare.panes.0.shadow.");
     entries(&project).into_iter().filter(listed).collect()
 }
@@ -84,6 +89,14 @@ pub fn settings_of(section: &str) -> Vec<Entry> {
         section.is_empty() || path.strip_prefix(section).is_some_and(|rest| rest.starts_with('.'))
     };
     all_settings().into_iter().filter(|entry| inside(&entry.path)).collect()
+}
+
+/// The settings that differ from the default project, as `--set` takes them. Lists are compared entry by entry.
+pub fn changed_settings(project: &Project) -> Vec<String> {
+    let default: std::collections::HashMap<_, _> =
+        entries(&Project::default()).into_iter().map(|entry| (entry.path, entry.value)).collect();
+    let changed = entries(project).into_iter().filter(|entry| default.get(&entry.path) != Some(&entry.value));
+    changed.map(|entry| format!("{}={}", entry.path, entry.info.format(entry.value))).collect()
 }
 
 /// The list for other programs: an object with `settings`.
@@ -179,7 +192,7 @@ pub fn settings_page() -> String {
          command line, and\n`lovelock settings --json` prints the same list for other programs. The program writes this \
          page: `cargo xtask docs`.\n\nValues outside the range are clamped to it when a project is opened. Where a list has \
          several entries, such as lights,\nits first entry stands for all: `lights.1.intensity` is that of the second \
-         light. `NAME` is the name of a joint.\n",
+         light. `NAME` is the name of a joint, an\nexpression or a morph target.\n",
     );
     for (section, title) in SECTIONS {
         let _ = write!(text, "\n## {title}: `{section}`\n\n{}", settings_table(section));
@@ -188,7 +201,7 @@ pub fn settings_page() -> String {
 }
 
 /// The sections of the page, with their titles.
-const SECTIONS: [(&str, &str); 13] = [
+const SECTIONS: [(&str, &str); 14] = [
     ("body", "Body"),
     ("motion", "Motion"),
     ("hair", "Hairstyle"),
@@ -196,6 +209,7 @@ const SECTIONS: [(&str, &str); 13] = [
     ("simulation", "Simulation"),
     ("shadow", "Shadow"),
     ("lights", "Lights"),
+    ("reference", "Reference picture"),
     ("sound", "Sound"),
     ("camera", "Camera"),
     ("picture", "Picture"),

@@ -44,7 +44,8 @@ impl Settings for Project {
             ("shadow".into(), &self.shadow),
         ];
         parts.extend(list("lights", &self.lights));
-        let rest: [Part<'_>; 6] = [
+        let rest: [Part<'_>; 7] = [
+            ("reference".into(), &self.reference),
             ("sound".into(), &self.sound),
             ("camera".into(), &self.camera),
             ("picture".into(), &self.picture),
@@ -66,7 +67,8 @@ impl Settings for Project {
             ("shadow".into(), &mut self.shadow),
         ];
         parts.extend(list_mut("lights", &mut self.lights));
-        let rest: [PartMut<'_>; 6] = [
+        let rest: [PartMut<'_>; 7] = [
+            ("reference".into(), &mut self.reference),
             ("sound".into(), &mut self.sound),
             ("camera".into(), &mut self.camera),
             ("picture".into(), &mut self.picture),
@@ -85,11 +87,15 @@ impl Settings for Project {
 }
 
 impl Choices for BodySource {
-    const ALL: &'static [Self] = &[Self::Dancer, Self::Animal, Self::Lawn, Self::File];
+    const ALL: &'static [Self] =
+        &[Self::Dancer, Self::Man, Self::Woman, Self::Elder, Self::Animal, Self::Lawn, Self::File];
 
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Dancer => ("Dancer", "Dancer"),
+            Self::Man => ("Man", "Man"),
+            Self::Woman => ("Woman", "Woman"),
+            Self::Elder => ("Elder", "Elder"),
             Self::Animal => ("Animal", "Animal"),
             Self::Lawn => ("Lawn", "Lawn"),
             Self::File => ("File", "Character file"),
@@ -106,7 +112,7 @@ impl Settings for BodySection {
     const TABLE: &'static [Setting<Self>] = &[Setting::choice::<BodySource>(
         field!(Self, source),
         "Body",
-        "The body that carries the hair: the shipped dancer, an animal for fur, ground for grass, or a character file.",
+        "The body that carries the hair: one of the shipped figures, an animal for fur, ground for grass, or a character file.",
     )];
 
     fn parts(&self) -> Vec<Part<'_>> {
@@ -114,6 +120,8 @@ impl Settings for BodySection {
             ("settings".into(), &self.settings),
             ("colliders".into(), &self.colliders),
             ("scalp".into(), &self.scalp),
+            ("face".into(), &self.face),
+            ("brows".into(), &self.brows),
         ]
     }
 
@@ -122,6 +130,8 @@ impl Settings for BodySection {
             ("settings".into(), &mut self.settings),
             ("colliders".into(), &mut self.colliders),
             ("scalp".into(), &mut self.scalp),
+            ("face".into(), &mut self.face),
+            ("brows".into(), &mut self.brows),
         ]
     }
 
@@ -339,7 +349,29 @@ impl Settings for CameraSection {
             "Vertical field of view. Small angles look like a long lens.",
         )
         .unit(Unit::RADIANS),
+        Setting::switch(
+            field!(Self, turntable),
+            "Turntable",
+            "Moves the camera round its target as time passes, in the window and in films.",
+        ),
+        Setting::number(
+            field!(Self, turn_secs),
+            [0.5, 600.0],
+            "Turn time",
+            "Time of one turn of the turntable.",
+        )
+        .unit(Unit::SECONDS)
+        .logarithmic()
+        .soft([2.0, 60.0]),
     ];
+
+    fn parts(&self) -> Vec<Part<'_>> {
+        vec![("lens".into(), &self.lens)]
+    }
+
+    fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        vec![("lens".into(), &mut self.lens)]
+    }
 }
 
 impl Settings for RecordingSection {

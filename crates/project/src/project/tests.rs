@@ -19,6 +19,51 @@ fn round_trip(project: &Project) -> (Project, Vec<crate::error::Problem>) {
 }
 
 #[test]
+fn a_shadow_method_of_the_users_own_is_named_by_its_folder() {
+    use lovelock_shadow::{ShadowMethod, UserMethod, new_method};
+    let dir = tempfile::tempdir().expect("a folder");
+    let folder = dir.path().join("my fog ü");
+    new_method(&folder).expect("the template");
+    let method = UserMethod::load(&folder).expect("it compiles");
+    let mut project = Project::default();
+    project.shadow.method = ShadowMethod::User(method);
+    let set = lovelock_base::settings::set(&mut project, "shadow.user.slices", "64");
+    assert_eq!(set, Ok(()));
+    project.compare.panes[0].shadow.method = ShadowMethod::User(method);
+    assert_eq!(project.user_methods(), [method]);
+    let path = dir.path().join("a.lovelock");
+    save_project(&path, &project).expect("saved");
+    let (same, problems) = load_project(&path).expect("opened");
+    assert_eq!(problems, Vec::new());
+    assert_eq!((same.shadow, same.user_methods()), (project.shadow, vec![method]));
+    assert_eq!(same.compare.panes[0].shadow.method, ShadowMethod::User(method));
+    save_project(&path, &same).expect("saved");
+    assert_eq!(load_project(&path).expect("opened"), (same, Vec::new()));
+
+    // Where the folder is gone, the project opens and says so, and names it still.
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let (same, problems) = load_project(&path).expect("opened");
+    assert_eq!(same.shadow.method, project.shadow.method);
+    assert_eq!(problems[0].place, Place::Shadow);
+    assert!(problems[0].message.contains("method.toml cannot be read"), "{}", problems[0].message);
+
+    // A folder elsewhere is not read before the user has opened it.
+    let other = tempfile::tempdir().expect("a folder");
+    new_method(&other.path().join("guessed")).expect("the template");
+    let text = std::fs::read_to_string(&path).expect("a project");
+    let theirs =
+        text.replace(&folder.display().to_string(), &other.path().join("guessed").display().to_string());
+    assert_ne!(theirs, text);
+    std::fs::write(&path, theirs).expect("written");
+    let (strange, problems) = load_project(&path).expect("opened");
+    assert!(problems[0].message.contains("outside the project's folder"), "{}", problems[0].message);
+    let guessed = strange.user_methods()[0];
+    assert!(!guessed.works() && guessed.problem().expect("a problem").contains("open the folder yourself"));
+    guessed.allow();
+    assert!(guessed.works());
+}
+
+#[test]
 fn the_default_project_comes_back_without_problems() {
     let project = Project::default();
     assert_eq!(project.sanitised(), (project.clone(), Vec::new()), "the defaults lie in their ranges");
@@ -321,7 +366,7 @@ fn old_defaults_of_motion_become_those_of_the_style_and_chosen_values_stay() {
 #[test]
 fn panes_are_limited_in_number_and_range() {
     let text = "(version: 1, compare: (panes: [(scale: 9.0), (scale: NaN, shadow: (method: \"exact\", \
-                exact: (resolution: 3))), (), (), (), (), (), ()]))";
+                exact: (resolution: 3))), (), (), (), (), (), (), (), (), ()]))";
     let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
     let panes = &project.compare.panes;
     assert_eq!(panes.len(), CompareSection::MAX_PANES);
@@ -363,6 +408,9 @@ fn any_shadow() -> impl Strategy<Value = ShadowSettings> {
             s.voxel_map.head_size = floats[0];
             s.voxel_map.point_extinction = floats[1];
             s.deep_opacity_maps.depth_share = floats[2];
+            (s.deep_shadow_maps.tolerance, s.approximate_deep.spacing) = (floats[0], floats[1]);
+            (s.moments.bias, s.moments.overestimation) = (floats[2], floats[0]);
+            s.voxel_march.step = floats[1];
             let fields = [
                 &mut s.voxel_map.resolution,
                 &mut s.opacity_maps.resolution,
@@ -376,11 +424,17 @@ fn any_shadow() -> impl Strategy<Value = ShadowSettings> {
                 &mut s.occupancy_maps.slices,
                 &mut s.occupancy_maps.slabs,
                 &mut s.exact.resolution,
+                &mut s.deep_shadow_maps.nodes,
+                &mut s.fourier.terms,
+                &mut s.adaptive.nodes,
+                &mut s.moments.bits,
             ];
             for (field, count) in fields.into_iter().zip(counts) {
                 *field = count;
             }
             s.exact.memory_limit_bytes = bytes;
+            s.voxel_march.memory_limit_bytes = bytes;
+            s.ray_traced.memory_limit_bytes = bytes;
             s
         },
     )
@@ -504,4 +558,17 @@ fn projects_saved_before_the_place_of_the_loop_blend_keep_it_at_the_start() {
     // A motion that is imported into an old project plays all its keys.
     project.set_motion_file("other.bvh");
     assert_eq!(project.motion.loop_blend, LoopBlend::End);
+}
+
+#[test]
+fn changed_settings_are_told_as_they_are_set() {
+    assert_eq!(super::changed_settings(&Project::default()), Vec::<String>::new());
+    let mut project = Project::default();
+    project.set("simulation.wind.speed", "3").expect("a setting");
+    let changed = super::changed_settings(&project);
+    assert_eq!(changed, ["simulation.wind.speed=3"]);
+    let (name, value) = changed[0].split_once('=').expect("an assignment");
+    let mut again = Project::default();
+    again.set(name, value).expect("what is told can be set");
+    assert_eq!(again, project);
 }

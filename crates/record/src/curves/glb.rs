@@ -7,12 +7,14 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use lovelock_gltf::glb::{
     self, ARRAY_BUFFER, Buffer, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_INT, UNSIGNED_SHORT,
 };
 use serde_json::{Value, json};
 
+use super::gltf_look::GltfLook;
+use super::gltf_morphs;
 use super::spool::{Spool, bounds};
 use super::{CurveBody, CurveFrame, CurveReport, CurveScene};
 use crate::RecordError;
@@ -30,6 +32,8 @@ pub(super) struct GlbWriter {
     boxes: Vec<[[f32; 3]; 2]>,
     /// Transform from each joint to the world, frame after frame.
     joints: Vec<Affine3A>,
+    /// Weights of the morph targets, frame after frame.
+    weights: Vec<f32>,
 }
 
 impl GlbWriter {
@@ -38,7 +42,7 @@ impl GlbWriter {
             .map_err(|error| RecordError::io(path, "create the file", error))?;
         let spool = Spool::create(path, &scene, false)?;
         let target = path.to_owned();
-        Ok(Self { target, file, scene, spool, boxes: Vec::new(), joints: Vec::new() })
+        Ok(Self { target, file, scene, spool, boxes: Vec::new(), joints: Vec::new(), weights: Vec::new() })
     }
 
     pub(super) fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
@@ -54,8 +58,11 @@ impl GlbWriter {
         self.spool.push(frame)?;
         let [x, y, z] = frame.points;
         self.boxes.push(bounds((0..x.len()).map(|i| [x[i], y[i], z[i]])));
-        if self.scene.body.is_some() {
+        if let Some(body) = &self.scene.body {
             self.joints.extend_from_slice(joints);
+            let weights = frame.body.map_or(&[][..], |body| body.morph_weights);
+            let weight = |morph: usize| weights.get(morph).copied().filter(|weight| weight.is_finite());
+            self.weights.extend((0..body.morphs.len()).map(|morph| weight(morph).unwrap_or(0.0)));
         }
         Ok(())
     }
@@ -68,7 +75,9 @@ impl GlbWriter {
         let mut asset = Asset::new(spooled);
         asset.hair(&self.scene, &self.boxes);
         if let Some(body) = &self.scene.body {
-            asset.body(body, &self.joints, &self.scene);
+            asset.look = GltfLook::new(body, &mut asset.buffer)
+                .map_err(|error| RecordError::io(&self.target, "write the images", error))?;
+            asset.body(body, (&self.joints, &self.weights), &self.scene);
         }
         let head = glb::head(asset.json(), asset.buffer.len()).map_err(|whole| {
             RecordError::request(format!(
@@ -107,6 +116,7 @@ struct Asset {
     skins: Vec<Value>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
+    look: GltfLook,
 }
 
 impl Asset {
@@ -124,6 +134,7 @@ impl Asset {
             skins: Vec::new(),
             samplers: Vec::new(),
             channels: Vec::new(),
+            look: GltfLook::default(),
         }
     }
 
@@ -155,7 +166,7 @@ impl Asset {
             segments.extend((start + 1..end).flat_map(|point| [point - 1, point]));
         }
         let segments = self.array(&segments, UNSIGNED_INT, "SCALAR", Some(ELEMENT_ARRAY_BUFFER), Value::Null);
-        let colors = self.colors(&scene.colors);
+        let colors = self.colors(&scene.colors, &[]);
         // glTF has no width of lines; several programs read half the width from this attribute.
         let radii: Vec<f32> = scene.widths.iter().map(|width| 0.5 * width).collect();
         let radii = self.array(&radii, FLOAT, "SCALAR", Some(ARRAY_BUFFER), Value::Null);
@@ -203,7 +214,7 @@ impl Asset {
         self.roots.push(self.nodes.len() - 1);
     }
 
-    fn body(&mut self, body: &CurveBody, transforms: &[Affine3A], scene: &CurveScene) {
+    fn body(&mut self, body: &CurveBody, (transforms, weights): (&[Affine3A], &[f32]), scene: &CurveScene) {
         let vectors = |vectors: &[Vec3]| vectors.iter().map(Vec3::to_array).collect::<Vec<_>>();
         let positions = vectors(&body.bind_positions);
         let [low, high] = bounds(positions.iter().copied());
@@ -212,15 +223,13 @@ impl Asset {
         let normals: Vec<Vec3> =
             body.bind_normals.iter().map(|normal| normal.normalize_or(Vec3::Y)).collect();
         let normal = self.array(&vectors(&normals), FLOAT, "VEC3", attributes, Value::Null);
-        let color = self.colors(&body.colors);
-        let corners = self.array(
-            body.triangles.as_flattened(),
-            UNSIGNED_INT,
-            "SCALAR",
-            Some(ELEMENT_ARRAY_BUFFER),
-            Value::Null,
-        );
+        let color = self.colors(&body.colors, &body.opacity);
         let mut set = json!({ "POSITION": position, "NORMAL": normal, "COLOR_0": color });
+        for (number, coordinates) in body.coordinates.iter().enumerate().filter(|(_, set)| !set.is_empty()) {
+            let coordinates: Vec<[f32; 2]> = coordinates.iter().map(Vec2::to_array).collect();
+            let accessor = self.array(&coordinates, FLOAT, "VEC2", attributes, Value::Null);
+            set[format!("TEXCOORD_{number}")] = accessor.into();
+        }
         let halves =
             1 + usize::from(body.weights.iter().any(|weights| weights[4..].iter().any(|&w| w > 0.0)));
         for half in 0..halves {
@@ -236,8 +245,28 @@ impl Asset {
             let weights = self.array(&weights, FLOAT, "VEC4", attributes, Value::Null);
             (set[format!("JOINTS_{half}")], set[format!("WEIGHTS_{half}")]) = (joints.into(), weights.into());
         }
-        let primitive = json!({ "attributes": set, "indices": corners, "material": 1 });
-        self.meshes.push(json!({ "name": "Body", "primitives": [primitive] }));
+        let targets = gltf_morphs::targets(&body.morphs, positions.len(), &mut self.buffer);
+        let mut primitives = Vec::new();
+        for (material, triangles) in body.parts() {
+            let corners: Vec<[u32; 3]> = triangles.iter().map(|&t| body.triangles[t]).collect();
+            let target = Some(ELEMENT_ARRAY_BUFFER);
+            let corners = self.array(corners.as_flattened(), UNSIGNED_INT, "SCALAR", target, Value::Null);
+            // The first material is that of the hair.
+            let material = 1 + material.unwrap_or(0);
+            let mut primitive = json!({ "attributes": set, "indices": corners, "material": material });
+            if !targets.is_empty() {
+                primitive["targets"] = json!(targets);
+            }
+            primitives.push(primitive);
+        }
+        let mut written = json!({ "name": "Body", "primitives": primitives });
+        let morphs = body.morphs.len();
+        if morphs > 0 {
+            written["weights"] = json!(weights.get(..morphs));
+            let names: Vec<&str> = body.morphs.iter().map(|morph| morph.name.as_str()).collect();
+            written["extras"] = json!({ "targetNames": names });
+        }
+        self.meshes.push(written);
         let mesh = self.meshes.len() - 1;
 
         let count = body.joint_from_bind.len();
@@ -273,6 +302,11 @@ impl Asset {
         let skeleton = self.nodes.len() - 1;
         self.skins.push(json!({ "joints": joints, "inverseBindMatrices": inverse, "skeleton": skeleton }));
         self.nodes.push(json!({ "name": "Body", "mesh": mesh, "skin": 0 }));
+        let moves = weights.chunks(morphs.max(1)).any(|frame| !weights.starts_with(frame));
+        if let (Some(input), true) = (input, moves) {
+            let output = self.array(weights, FLOAT, "SCALAR", None, Value::Null);
+            self.animate(skeleton + 1, "weights", "LINEAR", input, output);
+        }
         self.roots.extend([skeleton, skeleton + 1]);
     }
 
@@ -281,10 +315,14 @@ impl Asset {
         self.array(times, FLOAT, "SCALAR", None, range)
     }
 
-    fn colors(&mut self, colors: &[Vec3]) -> usize {
+    /// Colours with their opacity, which is 1 where the list is empty.
+    fn colors(&mut self, colors: &[Vec3], opacity: &[f32]) -> usize {
         let short = |v: f32| (v.clamp(0.0, 1.0) * 65535.0).round() as u16;
-        let colors: Vec<[u16; 4]> =
-            colors.iter().map(|c| [short(c.x), short(c.y), short(c.z), u16::MAX]).collect();
+        let colors: Vec<[u16; 4]> = colors
+            .iter()
+            .enumerate()
+            .map(|(i, c)| [short(c.x), short(c.y), short(c.z), short(opacity.get(i).copied().unwrap_or(1.0))])
+            .collect();
         self.array(&colors, UNSIGNED_SHORT, "VEC4", Some(ARRAY_BUFFER), json!({ "normalized": true }))
     }
 
@@ -305,6 +343,24 @@ impl Asset {
             "bufferViews": self.buffer.views,
             "buffers": [{ "byteLength": self.buffer.len() }],
         });
+        if !self.look.materials.is_empty()
+            && let Some(materials) = asset["materials"].as_array_mut()
+        {
+            materials.truncate(1);
+            materials.extend_from_slice(&self.look.materials);
+        }
+        for (name, list) in [
+            ("textures", &self.look.textures),
+            ("samplers", &self.look.samplers),
+            ("images", &self.look.images),
+        ] {
+            if !list.is_empty() {
+                asset[name] = json!(list);
+            }
+        }
+        if let Some(used) = asset["extensionsUsed"].as_array_mut() {
+            used.extend(self.look.extensions.iter().map(|&name| name.into()));
+        }
         if self.skins.is_empty() {
             // Validators report unused materials.
             if let Some(materials) = asset["materials"].as_array_mut() {

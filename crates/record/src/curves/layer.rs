@@ -6,7 +6,10 @@ use std::collections::HashMap;
 use std::io;
 
 use openusd::gf::Vec3f;
-use openusd::sdf::{AbstractData, ChildrenKey, Data, DataError, Path, SpecData, SpecType, Specifier, Value};
+use openusd::sdf::{
+    AbstractData, ChildrenKey, Data, DataError, Path, PathListOp, SpecData, SpecType, Specifier, TokenListOp,
+    Value, Variability,
+};
 use openusd::tf::Token;
 
 use super::spool::Spool;
@@ -29,13 +32,15 @@ pub(super) struct SpooledLayer {
     tracks: HashMap<Path, Track>,
     spool: RefCell<Spool>,
     first_frame: u64,
+    is_text: bool,
     /// The first error while reading the spool, because the library's text writer treats an error as a missing field.
     failed: RefCell<Option<io::Error>>,
 }
 
 impl SpooledLayer {
-    pub(super) fn new(spool: Spool, first_frame: u64) -> Self {
+    pub(super) fn new(spool: Spool, first_frame: u64, is_text: bool) -> Self {
         Self {
+            is_text,
             data: Data::new(),
             tracks: HashMap::new(),
             spool: RefCell::new(spool),
@@ -107,6 +112,32 @@ impl PrimBuilder<'_> {
         self.attribute(name, type_name)
     }
 
+    /// Adds a relationship to another prim.
+    pub(super) fn relationship(&mut self, name: &'static str, target: Path) {
+        self.properties.push(Token::from(name));
+        let spec = self.layer.data.create_spec(self.property(name), SpecType::Relationship);
+        spec.add("targetPaths", Value::PathListOp(PathListOp::explicit([target])));
+    }
+
+    /// Adds an attribute that takes its value from another one.
+    pub(super) fn connection(&mut self, name: &'static str, type_name: &'static str, source: Path) {
+        let spec = self.attribute(name, type_name);
+        spec.add("connectionPaths", Value::PathListOp(PathListOp::explicit([source])));
+    }
+
+    /// Names the schema that the prim follows besides that of its type.
+    pub(super) fn api(&mut self, schema: &'static str) {
+        // The library's text writer leaves out the brackets around a single name of a list operation, which other readers refuse.
+        let names = if self.layer.is_text {
+            Value::TokenVec(vec![Token::from(schema)])
+        } else {
+            Value::TokenListOp(TokenListOp::prepended([Token::from(schema)]))
+        };
+        if let Some(spec) = self.layer.data.spec_mut(&self.path) {
+            spec.add("apiSchemas", names);
+        }
+    }
+
     /// Sets the prim's kind in the model hierarchy.
     pub(super) fn kind(self, kind: &'static str) -> Self {
         if let Some(spec) = self.layer.data.spec_mut(&self.path) {
@@ -130,6 +161,17 @@ impl PrimBuilder<'_> {
         // All names are from this crate and valid.
         self.path.append_property(name).unwrap_or_else(|_| self.path.clone())
     }
+}
+
+/// Path of a child prim. Its name is one of this crate's, and valid.
+pub(super) fn child(parent: &Path, name: &str) -> Path {
+    parent.append_path(name).unwrap_or_else(|_| parent.clone())
+}
+
+/// Gives an attribute a value that does not change over time.
+pub(super) fn uniform(spec: &mut SpecData, value: &'static str) {
+    spec.add("variability", Value::Variability(Variability::Uniform));
+    spec.add("default", Value::Token(Token::from(value)));
 }
 
 impl AbstractData for SpooledLayer {

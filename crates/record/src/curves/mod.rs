@@ -8,14 +8,20 @@ mod abc;
 mod crate_tail;
 mod expected;
 mod glb;
+mod gltf_look;
+mod gltf_morphs;
 mod layer;
+mod look;
 mod spool;
 mod usd;
+mod usd_look;
 
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use lovelock_groom::StrandMarks;
+use lovelock_motion::{Image, Material, MorphTarget};
 
 use crate::partial::{Opener, create_parent, open_file};
 use crate::{FrameRate, RecordError};
@@ -92,7 +98,17 @@ pub struct CurveBody {
     pub triangles: Vec<[u32; 3]>,
     /// Colours, linear sRGB.
     pub colors: Vec<Vec3>,
-    /// Positions in the bind pose, in metres.
+    /// Opacity; empty if all are 1.
+    pub opacity: Vec<f32>,
+    /// Two sets of texture coordinates as in glTF; each may be empty.
+    pub coordinates: [Vec<Vec2>; 2],
+    /// How parts of the surface look.
+    pub materials: Vec<Material>,
+    /// Index into `materials` of each triangle; empty if all have the default material.
+    pub of_triangles: Vec<u16>,
+    /// The images that materials use.
+    pub images: Arc<[Image]>,
+    /// Positions in the bind pose without morph targets, in metres.
     pub bind_positions: Vec<Vec3>,
     /// Unit normals in the bind pose.
     pub bind_normals: Vec<Vec3>,
@@ -102,6 +118,8 @@ pub struct CurveBody {
     pub weights: Vec<[f32; 8]>,
     /// Transform from bind space to the space of each joint, one entry per joint.
     pub joint_from_bind: Vec<Affine3A>,
+    /// Morph targets, which move the bind pose.
+    pub morphs: Vec<MorphTarget>,
 }
 
 /// One frame in world space, in metres.
@@ -122,6 +140,8 @@ pub struct BodyFrame<'a> {
     pub normals: &'a [Vec3],
     /// Transform from each joint to the world, in the order of `joint_from_bind`.
     pub joints: &'a [Affine3A],
+    /// Weights of the morph targets; those that are missing are 0.
+    pub morph_weights: &'a [f32],
 }
 
 /// What was written.
@@ -160,6 +180,7 @@ impl CurveScene {
             [body.colors.len(), body.bind_normals.len(), body.joints.len(), body.weights.len()]
                 .iter()
                 .all(|&length| length == vertices)
+                && body.look_fits()
                 && body.triangles.as_flattened().iter().all(|&vertex| (vertex as usize) < vertices)
                 && body
                     .joints
@@ -224,7 +245,11 @@ impl CurveScene {
             // Samples are written apart, each with a length of 64 bits.
             CurveFormat::Abc => {}
             CurveFormat::Glb => {
-                let bytes = bytes(12, points).saturating_add(64 * points + 128 * vertices);
+                let morphs = self.body.as_ref().map_or(&[][..], |body| &body.morphs);
+                let moved: u64 = morphs.iter().map(|morph| morph.vertices.len() as u64).sum();
+                let bytes = bytes(12, points)
+                    .saturating_add(bytes(4, morphs.len() as u64))
+                    .saturating_add(64 * points + 128 * vertices + 28 * moved);
                 if bytes > MAX_GLB {
                     return refuse(
                         bytes,

@@ -32,6 +32,14 @@ fn dance(frames: u64, curves: u32) -> Dance {
         turn * Vec3::new(0.1, 1.7 - 0.003 * i as f32, 0.07)
     };
     let corner = |x: f32| Vec3::new(x, 1.0, 0.2);
+    let still = MorphTarget { name: "still".into(), ..MorphTarget::default() };
+    let blink = MorphTarget {
+        name: "blink".into(),
+        vertices: vec![2, 1],
+        positions: vec![Vec3::X, Vec3::new(0.0, 0.5, -0.25)],
+        normals: vec![Vec3::ZERO; 2],
+        rest_weight: 0.0,
+    };
     let body = CurveBody {
         triangles: vec![[0, 1, 2]],
         colors: vec![Vec3::new(0.8, 0.5, 0.4); 3],
@@ -40,6 +48,8 @@ fn dance(frames: u64, curves: u32) -> Dance {
         joints: vec![[0, 1, 0, 0, 0, 0, 0, 0]; 3],
         weights: [0.0, 0.3, 1.0].map(|w| [1.0 - w, w, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).to_vec(),
         joint_from_bind: vec![Affine3A::IDENTITY, Affine3A::from_translation(Vec3::new(-0.5, -1.0, 0.0))],
+        morphs: vec![still, blink],
+        ..CurveBody::default()
     };
     let joints = |frame: u64| {
         let turn =
@@ -63,15 +73,24 @@ fn dance(frames: u64, curves: u32) -> Dance {
     }
 }
 
+/// Weights of the morph targets in a frame.
+fn weights_of(frame: usize) -> [f32; 2] {
+    [0.5, 0.1 + 0.2 * frame as f32]
+}
+
 impl Dance {
     /// The body in a frame, by linear blend skinning.
     fn skinned(&self, frame: usize) -> Vec<Vec3> {
         let body = self.scene.body.as_ref().expect("a body");
         let map = |joint: usize| self.joints[frame][joint] * body.joint_from_bind[joint];
-        let vertices = body.bind_positions.iter().zip(&body.weights);
-        vertices
-            .map(|(&p, w)| w[0] * map(0).transform_point3(p) + w[1] * map(1).transform_point3(p))
-            .collect()
+        let mut bound = body.bind_positions.clone();
+        for (morph, weight) in body.morphs.iter().zip(weights_of(frame)) {
+            for (&vertex, &by) in morph.vertices.iter().zip(&morph.positions) {
+                bound[vertex as usize] += weight * by;
+            }
+        }
+        let vertices = bound.into_iter().zip(&body.weights);
+        vertices.map(|(p, w)| w[0] * map(0).transform_point3(p) + w[1] * map(1).transform_point3(p)).collect()
     }
 
     fn write(&self, path: &Path) -> Result<CurveReport, RecordError> {
@@ -84,8 +103,12 @@ impl Dance {
             let axis = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
             let [x, y, z] = [0, 1, 2].map(axis);
             let positions = self.skinned(frame);
-            let body =
-                BodyFrame { positions: &positions, normals: &[Vec3::Z; 3], joints: &self.joints[frame] };
+            let body = BodyFrame {
+                positions: &positions,
+                normals: &[Vec3::Z; 3],
+                joints: &self.joints[frame],
+                morph_weights: &weights_of(frame),
+            };
             let body = self.scene.body.is_some().then_some(body);
             writer.push(&CurveFrame { points: [&x, &y, &z], body })?;
         }
@@ -319,10 +342,24 @@ fn skin_of(glb: &gltf::Gltf, blob: &[u8], clip: &gltf::Animation<'_>, secs: f32)
     let reader = primitive.reader(|_| Some(blob));
     let bound = reader.read_joints(0).expect("joints").into_u16();
     let weights = reader.read_weights(0).expect("weights").into_f32();
-    let points = reader.read_positions().expect("positions").zip(bound).zip(weights);
+    let mut points: Vec<Vec3> = reader.read_positions().expect("positions").map(Vec3::from).collect();
+    let moves =
+        clip.channels().find(|channel| channel.target().node().index() == node.index()).expect("weights");
+    let moves = moves.reader(|_| Some(blob));
+    let key = moves.read_inputs().expect("times").position(|time| (time - secs).abs() < 1e-5).expect("a key");
+    let Some(ReadOutputs::MorphTargetWeights(of_morphs)) = moves.read_outputs() else {
+        panic!("not weights")
+    };
+    let of_morphs: Vec<f32> = of_morphs.into_f32().skip(2 * key).take(2).collect();
+    for ((by, _, _), weight) in reader.read_morph_targets().zip(of_morphs) {
+        for (point, by) in points.iter_mut().zip(by.expect("displacements")) {
+            *point += weight * Vec3::from(by);
+        }
+    }
+    let points = points.into_iter().zip(bound).zip(weights);
     points
         .map(|((p, joint), weight)| {
-            (0..4).map(|k| weight[k] * joints[usize::from(joint[k])].transform_point3(p.into())).sum()
+            (0..4).map(|k| weight[k] * joints[usize::from(joint[k])].transform_point3(p)).sum()
         })
         .collect()
 }
@@ -390,4 +427,118 @@ fn invalid_requests_are_refused() {
     }
     refused(&body, "a.usdc", "--no-body");
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing was written");
+}
+
+/// The dance with a body of two triangles, of which the first has a texture.
+fn textured() -> Dance {
+    use glam::{Affine2, Vec2};
+    use lovelock_motion::{Alpha, Image, Material, Region, Shading, TextureUse, Wrap};
+    let mut dance = dance(2, 3);
+    let body = dance.scene.body.as_mut().expect("a body");
+    body.triangles = vec![[0, 1, 2], [2, 1, 0]];
+    body.of_triangles = vec![1, 0];
+    body.coordinates[0] = [[0.0, 0.25], [1.0, 0.0], [0.5, 1.0]].map(Vec2::from).to_vec();
+    body.opacity = vec![0.5, 1.0, 1.0];
+    let pixels: Vec<u8> = (0..2 * 3 * 4).map(|k| 10 * k as u8).collect();
+    body.images = vec![Image { name: "checks".into(), size: [2, 3], pixels: pixels.into() }].into();
+    let base = TextureUse {
+        image: 0,
+        set: 0,
+        transform: Affine2::from_scale_angle_translation(Vec2::new(2.0, 0.5), 0.3, Vec2::new(0.1, 0.2)),
+        wrap: [Wrap::Mirror, Wrap::Clamp],
+        is_nearest: true,
+    };
+    let plain = Material {
+        name: "plain".into(),
+        region: Region::Cloth,
+        shading: Shading::Unlit,
+        ..Material::default()
+    };
+    let painted = Material {
+        name: "painted".into(),
+        region: Region::Eye,
+        base: Some(base),
+        normal: Some((base, 0.5)),
+        emissive: Vec3::new(3.0, 0.0, 0.0),
+        alpha: Alpha::Mask(0.25),
+        is_double_sided: true,
+        roughness: 0.75,
+        roughness_texture: Some(base),
+        ..Material::default()
+    };
+    body.materials = vec![plain, painted];
+    dance
+}
+
+#[test]
+fn materials_and_images_of_gltf_come_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.glb");
+    let dance = textured();
+    dance.write(&path).expect("a file");
+    let character = lovelock_motion::load_character(&path).expect("a character");
+    let (body, wanted) = (&character.body, dance.scene.body.as_ref().expect("a body"));
+    // Each material has triangles of its own, in the order of materials.
+    let [plain, painted] = &body.materials[..] else { panic!("{:?}", body.materials) };
+    assert_eq!(plain, &wanted.materials[0]);
+    let (found, base) = (painted.base.expect("a texture"), wanted.materials[1].base.expect("a texture"));
+    assert!(found.transform.abs_diff_eq(base.transform, 1e-5), "{found:?}");
+    assert_eq!((found.wrap, found.is_nearest, painted.normal.map(|of| of.1)), (base.wrap, true, Some(0.5)));
+    assert_eq!((painted.roughness, painted.roughness_texture.map(|of| of.image)), (0.75, Some(0)));
+    assert_eq!(
+        (painted.region, painted.alpha, painted.emissive),
+        (wanted.materials[1].region, wanted.materials[1].alpha, Vec3::new(3.0, 0.0, 0.0))
+    );
+    assert_eq!((body.images.len(), &body.images[0].pixels), (1, &wanted.images[0].pixels));
+    assert_eq!(body.mesh.materials, [0, 1]);
+    // Both materials have the same vertices, which are read once.
+    assert_eq!(body.mesh.triangles, [wanted.triangles[1], wanted.triangles[0]]);
+    assert_eq!(body.mesh.coordinates[0], wanted.coordinates[0]);
+    assert!(body.mesh.opacity.iter().any(|opacity| (opacity - 0.5).abs() < 1e-4));
+    let [still, blink] = &body.skin.morphs[..] else { panic!("{:?}", body.skin.morphs) };
+    assert_eq!((still.name.as_str(), still.vertices.len(), still.rest_weight), ("still", 0, 0.5));
+    assert_eq!((blink.name.as_str(), &blink.vertices[..]), ("blink", &[1, 2][..]));
+    assert_eq!(blink.positions, [Vec3::new(0.0, 0.5, -0.25), Vec3::X]);
+}
+
+#[test]
+fn materials_of_usd_are_beside_the_file_and_in_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["a.usda", "b.usdc"] {
+        let path = folder.path().join(name);
+        textured().write(&path).expect(name);
+        let image = folder.path().join(format!("{}_textures/image_0.png", &name[..1]));
+        assert_eq!(&fs::read(image).expect("an image")[1..4], b"PNG", "{name}");
+        assert!(load_hair(&path).is_ok(), "{name}");
+        // Our own reader of characters takes up the same look.
+        let character = lovelock_motion::load_character(&path).expect(name);
+        let (body, wanted) = (&character.body, textured().scene.body.expect("a body"));
+        let painted = body.materials.iter().find(|material| material.base.is_some()).expect(name);
+        let (found, base) = (painted.base.expect("a texture"), wanted.materials[1].base.expect("a texture"));
+        assert!(found.transform.abs_diff_eq(base.transform, 1e-5), "{name}: {found:?}");
+        assert_eq!(
+            (found.wrap, painted.alpha, painted.roughness),
+            (base.wrap, wanted.materials[1].alpha, 0.75),
+            "{name}"
+        );
+        let rough = painted.roughness_texture.expect("the skin's roughness");
+        assert!(rough.transform.abs_diff_eq(base.transform, 1e-5), "{name}: {rough:?}");
+        assert_eq!(body.images[0].pixels, wanted.images[0].pixels, "{name}");
+        let mut coordinates: Vec<_> = body.mesh.coordinates[0].iter().map(glam::Vec2::to_array).collect();
+        coordinates.dedup();
+        assert!(coordinates.contains(&[0.0, 0.25]), "{name}: {coordinates:?}");
+    }
+    let text = fs::read_to_string(folder.path().join("a.usda")).expect("text");
+    for words in [
+        "rel material:binding = </Lovelock/Materials/Material_1>",
+        "inputs:diffuseColor.connect = </Lovelock/Materials/Material_1/Base.outputs:rgb>",
+        "asset inputs:file = @./a_textures/image_0.png@",
+        "inputs:roughness.connect = </Lovelock/Materials/Material_1/Roughness.outputs:g>",
+        "float inputs:opacityThreshold = 0.25",
+        "texCoord2f[] primvars:st = [(0.0, 0.75), (1.0, 1.0), (0.5, 0.0)]",
+        "MaterialBindingAPI",
+        "token inputs:wrapS = \"mirror\"",
+    ] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
 }

@@ -9,14 +9,14 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use openusd::gf::Vec3f;
-use openusd::sdf::{self, ChildrenKey, SpecData, SpecType, Value, Variability};
+use openusd::sdf::{self, ChildrenKey, SpecData, SpecType, Value};
 use openusd::tf::Token;
 use openusd::usda::TextWriter;
 use openusd::usdc::CrateWriter;
 
-use super::layer::{SpooledLayer, Track};
+use super::layer::{SpooledLayer, Track, child, uniform};
 use super::spool::{Spool, bounds};
-use super::{CurveBody, CurveFrame, CurveReport, CurveScene, crate_tail};
+use super::{CurveBody, CurveFrame, CurveReport, CurveScene, crate_tail, usd_look};
 use crate::RecordError;
 use crate::partial::{Opener, PartialFile, partial_path};
 
@@ -68,7 +68,13 @@ impl UsdWriter {
     pub(super) fn finish(mut self) -> Result<CurveReport, RecordError> {
         self.spool.close()?;
         let frames = self.spool.frames;
-        let layer = build(self.spool, &self.scene, &self.prims, &self.extents);
+        let textures = usd_look::folder_of(&self.target);
+        let target = &self.target;
+        let failed = |error| RecordError::io(target, "write the images beside the file", error);
+        if let Some(body) = &self.scene.body {
+            usd_look::write_images(target, &textures, body).map_err(failed)?;
+        }
+        let layer = build((self.spool, self.text), &self.scene, &self.prims, &self.extents, &textures);
         let written = if self.text {
             TextWriter::write(&layer, &mut self.file)
         } else {
@@ -113,19 +119,15 @@ fn points_of(first_point: &[u32], prim: &Range<usize>) -> Range<usize> {
     first_point[prim.start] as usize..first_point[prim.end] as usize
 }
 
-/// Path of a child prim. Its name is one of this module's, and valid.
-fn child(parent: &sdf::Path, name: &str) -> sdf::Path {
-    parent.append_path(name).unwrap_or_else(|_| parent.clone())
-}
-
 fn build(
-    spool: Spool,
+    (spool, is_text): (Spool, bool),
     scene: &CurveScene,
     prims: &[Range<usize>],
     extents: &[[[f32; 3]; 2]],
+    textures: &str,
 ) -> SpooledLayer {
     let [positions_at, normals_at] = spool.body_at();
-    let mut layer = SpooledLayer::new(spool, scene.first_frame);
+    let mut layer = SpooledLayer::new(spool, scene.first_frame, is_text);
     let times: Vec<f64> = layer.times().collect();
     let a_frame = prims.len() + usize::from(scene.body.is_some());
     let extent = |index: usize| {
@@ -154,7 +156,13 @@ fn build(
     let mut children = Vec::new();
     if let Some(body) = &scene.body {
         children.push(Token::from("Body"));
-        mesh(&mut layer, child(&top, "Body"), body, [positions_at, normals_at], extent(prims.len()));
+        let materials = child(&top, "Materials");
+        let at = child(&top, "Body");
+        mesh(&mut layer, &at, body, [positions_at, normals_at], extent(prims.len()), &materials);
+        if !body.of_triangles.is_empty() {
+            children.push(Token::from("Materials"));
+            usd_look::materials(&mut layer, &materials, body, textures);
+        }
     }
     children.push(Token::from("Hair"));
     let hair = child(&top, "Hair");
@@ -206,13 +214,14 @@ fn curves(layer: &mut SpooledLayer, path: sdf::Path, scene: &CurveScene, prim: &
 
 fn mesh(
     layer: &mut SpooledLayer,
-    path: sdf::Path,
+    path: &sdf::Path,
     body: &CurveBody,
     [positions, normals]: [usize; 2],
     extent: Value,
+    materials: &sdf::Path,
 ) {
     let count = body.bind_positions.len();
-    let mut mesh = layer.prim(path, "Mesh");
+    let mut mesh = layer.prim(path.clone(), "Mesh");
     uniform(mesh.attribute("subdivisionScheme", "token"), "none");
     mesh.attribute("faceVertexCounts", "int[]").add("default", Value::IntVec(vec![3; body.triangles.len()]));
     let corners = body.triangles.as_flattened().iter().map(|&vertex| vertex as i32).collect();
@@ -223,12 +232,34 @@ fn mesh(
     colors.add("default", triples(&body.colors));
     per_vertex(colors);
     mesh.attribute("extent", "float3[]").add("timeSamples", extent);
-    mesh.finish(Vec::new());
-}
-
-fn uniform(spec: &mut SpecData, value: &'static str) {
-    spec.add("variability", Value::Variability(Variability::Uniform));
-    spec.add("default", Value::Token(Token::from(value)));
+    let parts = if body.of_triangles.is_empty() { Vec::new() } else { body.parts() };
+    for (set, name) in body.coordinates.iter().zip(usd_look::COORDINATES).filter(|(set, _)| !set.is_empty()) {
+        // In USD they count from below.
+        let flipped = set.iter().map(|at| [at.x, 1.0 - at.y].into()).collect();
+        let coordinates = mesh.attribute(name.primvar, "texCoord2f[]");
+        coordinates.add("default", Value::Vec2fVec(flipped));
+        per_vertex(coordinates);
+    }
+    if !body.opacity.is_empty() {
+        let opacity = mesh.attribute("primvars:displayOpacity", "float[]");
+        opacity.add("default", Value::FloatVec(body.opacity.clone()));
+        per_vertex(opacity);
+    }
+    if !parts.is_empty() {
+        uniform(mesh.attribute("subsetFamily:materialBind:familyType", "token"), "partition");
+    }
+    let names: Vec<String> = (0..parts.len()).map(|part| format!("Part_{part}")).collect();
+    mesh.finish(names.iter().map(|name| Token::from(name.as_str())).collect());
+    for ((material, triangles), name) in parts.into_iter().zip(&names) {
+        let mut part = layer.prim(child(path, name), "GeomSubset");
+        part.api("MaterialBindingAPI");
+        uniform(part.attribute("elementType", "token"), "face");
+        uniform(part.attribute("familyName", "token"), "materialBind");
+        let faces = triangles.into_iter().map(|triangle| triangle as i32).collect();
+        part.attribute("indices", "int[]").add("default", Value::IntVec(faces));
+        part.relationship("material:binding", usd_look::path_of(materials, material.unwrap_or(0)));
+        part.finish(Vec::new());
+    }
 }
 
 fn per_vertex(spec: &mut SpecData) {

@@ -1,6 +1,7 @@
 //! Films: H.264 in MP4.
 
 mod encoder;
+pub(crate) mod tables;
 mod worker;
 
 use crate::partial::{self, Opener};

@@ -1,6 +1,7 @@
 //! The thread that encodes frames and writes them.
 
 use super::encoder::FrameEncoder;
+use super::tables::TablesFile;
 use super::{FilmReport, FilmSettings, give_back};
 use crate::dither::Dither;
 use crate::mp4::{Mp4Writer, SoundTrack, Track};
@@ -27,6 +28,7 @@ pub(super) struct Film {
     settings: FilmSettings,
     rate: FrameRate,
     writer: Mp4Writer<PartialFile>,
+    tables: TablesFile,
     sound: Option<OpusEncoding>,
     frames: u64,
 }
@@ -46,7 +48,8 @@ impl Film {
             ticks_per_frame,
         };
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
-        Ok(Self { path: path.to_owned(), settings, rate, writer, sound: None, frames: 0 })
+        let tables = TablesFile::new(path);
+        Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0 })
     }
 
     /// Works until [`Job::Finish`] (returns the report), until the channel closes (returns `None`), or until an error.
@@ -80,7 +83,16 @@ impl Film {
             .write_frame(sample, key)
             .map_err(|error| RecordError::io(&self.path, format!("write frame {}", self.frames), error))?;
         self.frames += 1;
-        if self.writer.is_between_chunks() { self.add_sound() } else { Ok(()) }
+        if !self.writer.is_between_chunks() {
+            return Ok(());
+        }
+        self.add_sound()?;
+        if self.tables.is_due() {
+            let tables = self.writer.tables_so_far(encoder.config());
+            // The film itself does not need them.
+            let _ = tables.and_then(|tables| self.tables.write(&tables));
+        }
+        Ok(())
     }
 
     fn begin_sound(&mut self, sound: Box<dyn SoundSource>) -> Result<(), RecordError> {

@@ -9,7 +9,7 @@ mod write;
 pub(crate) use nal::{AvcConfig, append_sample};
 pub(crate) use parse::{Movie, parse};
 pub(crate) use sound::SoundTrack;
-pub(crate) use write::{Mp4Writer, Track};
+pub(crate) use write::{Mp4Writer, Tables, Track};
 
 #[cfg(test)]
 mod tests;

@@ -21,6 +21,17 @@ pub(crate) struct Track {
     pub(crate) ticks_per_frame: u32,
 }
 
+/// The tables of what is written of a film. They are right where `mdat` ends at `end` and they follow it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Tables {
+    /// Offset of `mdat`.
+    pub(crate) mdat_start: u64,
+    /// The end of the images.
+    pub(crate) end: u64,
+    /// The box `moov`.
+    pub(crate) moov: Vec<u8>,
+}
+
 /// An MP4 file that is being written: `ftyp`, then `mdat` frame by frame, then `moov`.
 pub(crate) struct Mp4Writer<W> {
     out: W,
@@ -87,6 +98,12 @@ impl<W: Write + Seek> Mp4Writer<W> {
         }
         self.position += u64::from(size);
         Ok(())
+    }
+
+    /// Hands everything written so far to the medium, and returns the tables of it.
+    pub(crate) fn tables_so_far(&mut self, config: &AvcConfig) -> io::Result<Tables> {
+        self.out.flush()?;
+        Ok(Tables { mdat_start: self.mdat_start, end: self.position, moov: self.moov(config) })
     }
 
     /// Writes the tables and the size of `mdat`. Returns the medium and the length of the file in bytes.

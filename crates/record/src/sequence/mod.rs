@@ -2,24 +2,25 @@
 
 mod exr;
 mod journal;
+mod left;
 mod settings;
 mod sound_file;
 mod worker;
 
 pub use self::exr::FrameLayers;
+pub(crate) use left::{discard_unfinished, is_left, keep_unfinished};
 pub use settings::{SequenceFormat, SequenceReport, SequenceSettings, frame_name};
 pub use sound_file::SOUND_NAME;
 pub(crate) use sound_file::remove_own;
 
 use crate::film::check_frame;
 use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, ManifestSound, VERSION, read_manifest};
-use crate::partial::{Opener, PartialFile, open_file};
+use crate::partial::{Opener, open_file};
 use crate::sound::{SoundSource, samples_of};
 use crate::{FrameRate, RecordError};
 use journal::Journal;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -397,14 +398,7 @@ impl SequenceWriter {
     }
 
     fn write_manifest(&self, manifest: &Manifest) -> Result<(), RecordError> {
-        let path = self.folder.join(MANIFEST_NAME);
-        let write = || {
-            let mut file = PartialFile::create(&path, &open_file)?;
-            serde_json::to_writer_pretty(&mut file, manifest)?;
-            file.write_all(b"\n")?;
-            file.commit(true)
-        };
-        write().map_err(|error| RecordError::io(&path, "write the manifest", error))
+        left::write_manifest(&self.folder, manifest)
     }
 
     fn remove_old_files(&self, manifest: &Manifest) {

@@ -28,7 +28,7 @@ pub(super) fn mount_file(file: File) -> Box<dyn Disk> {
 }
 
 /// `NAME.part` beside `NAME`.
-pub(super) fn part_path(target: &Path) -> PathBuf {
+pub(crate) fn part_path(target: &Path) -> PathBuf {
     let mut name = target.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     target.with_file_name(name)

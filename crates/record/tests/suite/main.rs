@@ -3,6 +3,7 @@
 #[path = "../take_scene/mod.rs"]
 mod take_scene;
 
+mod film_kill;
 mod outside;
 mod outside_sound;
 mod sequence_kill;

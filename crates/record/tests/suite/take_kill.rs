@@ -90,7 +90,10 @@ fn a_recording_that_is_killed_plays_up_to_its_last_second() {
         let played = play_all(&mut take, SIZE);
         assert!(played >= kept && played <= kept + 60, "{run}: {kept} were kept, {played} play");
         longest = longest.max(played);
-        fs::remove_file(&part).unwrap();
+        let kept = lovelock_record::keep_unfinished(&path).unwrap().unwrap();
+        assert_eq!((kept.path.as_path(), kept.frames), (path.as_path(), played));
+        assert_eq!(TakeReader::open(&path).unwrap().frames(), played);
+        assert!(!part.exists());
     }
     // Negative control: most were killed before their end.
     println!(

@@ -8,6 +8,7 @@ use lovelock_base::simd_versions;
 use super::math::{exp2, max, mix, smoothstep, three};
 use super::tile::TILE;
 use super::view::View;
+use crate::uniform::background_form::{RADIAL, STUDIO, VERTICAL};
 
 /// Pixels along each edge of a cell of ground, whose light is uniform if that of its corners is.
 const CELL: usize = 4;
@@ -108,6 +109,27 @@ pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) 
     let (top, bottom) = (uniform.background_top.to_array(), uniform.background_bottom.to_array());
     let ndc_y = 1.0 - 2.0 * y / size.y;
     let blend = smoothstep(0.0, 1.0, 0.5 - 0.5 * ndc_y);
+    match uniform.background_form {
+        STUDIO => {}
+        RADIAL => {
+            let (aspect, first, step) = (size.x / size.y, 2.0 * x / size.x - 1.0, 2.0 / size.x);
+            let corner = (aspect * aspect + 1.0).sqrt();
+            for lane in 0..TILE {
+                let u = (first + step * lane as f32) * aspect;
+                let outward = smoothstep(0.0, 1.0, (u * u + ndc_y * ndc_y).sqrt() / corner);
+                for c in 0..3 {
+                    out[c][lane] = mix(bottom[c], top[c], outward);
+                }
+            }
+            return;
+        }
+        form => {
+            for c in 0..3 {
+                out[c].fill(if form == VERTICAL { mix(top[c], bottom[c], blend) } else { top[c] });
+            }
+            return;
+        }
+    }
     // Half as elongated as the image.
     let (wide, high) = ((size.x / size.y).sqrt(), ndc_y - POOL_Y);
     let (first, step) = (2.0 * x / size.x - 1.0, 2.0 / size.x);

@@ -8,12 +8,14 @@ use lovelock_base::simd::Width;
 use lovelock_base::simd_versions;
 use rayon::prelude::*;
 
-use super::math::{floor, index_of, max, min};
+use super::math::{floor, index_of, least, max, min, most, three};
 
 /// Texels along each edge of a map. A texel is about two millimetres for a standing figure.
 pub(super) const SIZE: usize = 1024;
 /// Texels of a row that are drawn together.
 const LANES: usize = 8;
+/// The inverse of a difference of depth that is not zero.
+const STEEP: f32 = 1e30;
 
 /// Rows per task.
 const BAND_ROWS: usize = 64;
@@ -49,6 +51,26 @@ impl Default for DepthMap {
     }
 }
 
+/// Holes of surfaces that are not opaque, through which light passes.
+pub(super) trait Holes: Sync {
+    /// Whether a triangle may have holes.
+    fn has_holes(&self, triangle: u32) -> bool;
+
+    /// Whether a triangle blocks light at the barycentric coordinates `shares`, in a map in which these change by `steps` from column
+    /// to column and from row to row.
+    fn blocks(&self, triangle: u32, shares: [f32; 3], steps: [[f32; 3]; 2]) -> bool;
+}
+
+/// What casts a shadow.
+#[derive(Clone, Copy)]
+pub(super) struct Casters<'a> {
+    pub vertices: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
+    /// Whether triangles facing away from the light are behind others.
+    pub closed: bool,
+    pub holes: Option<&'a dyn Holes>,
+}
+
 /// The input of a band of rows.
 pub(super) struct Band<'a> {
     pub first_row: usize,
@@ -56,6 +78,9 @@ pub(super) struct Band<'a> {
     pub placed: &'a [Vec3],
     pub triangles: &'a [[u32; 3]],
     pub list: &'a [u32],
+    pub holes: Option<&'a dyn Holes>,
+    /// Whose holes each triangle has, if these are not its own.
+    pub ids: Option<&'a [u32]>,
 }
 
 impl DepthMap {
@@ -68,15 +93,11 @@ impl DepthMap {
             + list_bytes(&self.sorted)
     }
 
-    /// Rasterises the triangles of `vertices`. `closed` states that triangles facing away from the light are behind others.
-    pub fn draw(
-        &mut self,
-        width: Width,
-        shadow_from_world: Mat4,
-        (vertices, triangles, closed): (&[Vec3], &[[u32; 3]], bool),
-    ) {
+    /// Rasterises what casts a shadow.
+    pub fn draw(&mut self, width: Width, shadow_from_world: Mat4, casters: &Casters) {
         let half = 0.5 * SIZE as f32;
-        vertices
+        casters
+            .vertices
             .par_iter()
             .with_min_len(4096)
             .map(|&p| {
@@ -84,24 +105,25 @@ impl DepthMap {
                 Vec3::new((at.x + 1.0) * half, (1.0 - at.y) * half, at.z)
             })
             .collect_into_vec(&mut self.placed);
-        self.rasterise(width, triangles, closed);
+        self.rasterise(width, casters, None);
     }
 
     /// As [`DepthMap::draw`], for a view whose fourth coordinate is the distance along its axis. Triangles before its near end are cut
     /// off there.
-    pub fn draw_perspective(
-        &mut self,
-        width: Width,
-        from_world: Mat4,
-        (vertices, triangles, closed): (&[Vec3], &[[u32; 3]], bool),
-    ) {
-        let clip: Vec<Vec4> = vertices.par_iter().map(|&p| from_world * p.extend(1.0)).collect();
+    pub fn draw_perspective(&mut self, width: Width, from_world: Mat4, casters: &Casters) {
+        let triangles = casters.triangles;
+        let clip: Vec<Vec4> = casters.vertices.par_iter().map(|&p| from_world * p.extend(1.0)).collect();
         clip.par_iter().map(|&at| on_map(at)).collect_into_vec(&mut self.placed);
         let mut seen = Vec::with_capacity(triangles.len());
-        for corners in triangles {
+        // Triangles that are cut off have no holes.
+        let mut ids = Vec::new();
+        for (id, corners) in triangles.iter().enumerate() {
             let found = corners.map(|i| clip.get(i as usize).copied().unwrap_or(Vec4::NAN));
             if found.iter().all(|at| at.z >= 0.0) {
                 seen.push(*corners);
+                if casters.holes.is_some() {
+                    ids.push(id as u32);
+                }
                 continue;
             }
             let first = self.placed.len() as u32;
@@ -117,13 +139,17 @@ impl DepthMap {
             }
             for last in first + 2..self.placed.len() as u32 {
                 seen.push([first, last - 1, last]);
+                if casters.holes.is_some() {
+                    ids.push(u32::MAX);
+                }
             }
         }
-        self.rasterise(width, &seen, closed);
+        self.rasterise(width, &Casters { triangles: &seen, ..*casters }, Some(&ids));
     }
 
     /// Draws triangles of placed vertices.
-    fn rasterise(&mut self, width: Width, triangles: &[[u32; 3]], closed: bool) {
+    fn rasterise(&mut self, width: Width, casters: &Casters, ids: Option<&[u32]>) {
+        let Casters { triangles, closed, holes, .. } = *casters;
         self.sort_by_band(triangles, closed);
         let (placed, starts, sorted) = (&self.placed, &self.starts, &self.sorted);
         self.depth
@@ -132,8 +158,8 @@ impl DepthMap {
             .enumerate()
             .for_each(|(band, (rows, blocks))| {
                 let list = &sorted[starts[band] as usize..starts[band + 1] as usize];
-                let input = Band { first_row: band * BAND_ROWS, placed, triangles, list };
-                draw_band_simd(width, &input, rows, blocks);
+                let input = Band { first_row: band * BAND_ROWS, placed, triangles, list, holes, ids };
+                draw_band_simd(width.for_eight(), &input, rows, blocks);
             });
     }
 
@@ -184,33 +210,57 @@ impl DepthMap {
         const LAST: f32 = (SIZE - 1) as f32 - 1e-3;
         let size = SIZE as f32;
         let mut at = [0_u32; N];
-        let mut right = [0.0; N];
-        let mut below = [0.0; N];
+        let (mut right, mut below, mut held) = ([0.0; N], [0.0; N], [0.0; N]);
         for lane in 0..N {
             let x = min(max(u[lane] * size - 0.5, 0.0), LAST);
             let y = min(max(v[lane] * size - 0.5, 0.0), LAST);
             let (x0, y0) = (floor(x), floor(y));
             (right[lane], below[lane]) = (x - x0, y - y0);
-            at[lane] = index_of(y0) * SIZE as u32 + index_of(x0);
+            // Sums that are checked for overflow do not vectorise. The size is a power of two.
+            at[lane] = index_of(y0) << SIZE.ilog2() | index_of(x0);
+            // Nothing behind the far end of the map blocks light.
+            held[lane] = min(z[lane], 1.0);
         }
-        let mut lit = [[0.0; N]; 4];
-        for (corner, lit) in [0, 1, SIZE as u32, SIZE as u32 + 1].into_iter().zip(&mut lit) {
-            // Loads have a loop of their own: they would prevent vectorisation of the other one.
-            let mut depth = [0.0; N];
-            for lane in 0..N {
-                // The size is a power of two, so the compiler removes the bounds check.
-                depth[lane] = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
-            }
-            for lane in 0..N {
-                // Nothing behind the far end of the map blocks light.
-                lit[lane] = if min(z[lane], 1.0) <= depth[lane] { 1.0 } else { 0.0 };
-            }
-        }
+        let upper = self.lit_between(&at, 0, &held, &right);
+        let lower = self.lit_between(&at, SIZE as u32, &held, &right);
         for lane in 0..N {
-            let upper = lit[0][lane] + (lit[1][lane] - lit[0][lane]) * right[lane];
-            let lower = lit[2][lane] + (lit[3][lane] - lit[2][lane]) * right[lane];
-            sum[lane] += upper + (lower - upper) * below[lane];
+            sum[lane] += upper[lane] + (lower[lane] - upper[lane]) * below[lane];
         }
+    }
+
+    /// The linear fraction of two texels, `offset` after those of `at` and beside those, that are not nearer than `z`.
+    #[inline(always)]
+    fn lit_between<const N: usize>(
+        &self,
+        at: &[u32; N],
+        offset: u32,
+        z: &[f32; N],
+        right: &[f32; N],
+    ) -> [f32; N] {
+        let (first, second) = (self.lit(at, offset, z), self.lit(at, offset + 1, z));
+        let mut lit = [0.0; N];
+        for lane in 0..N {
+            lit[lane] = first[lane] + (second[lane] - first[lane]) * right[lane];
+        }
+        lit
+    }
+
+    /// 1 for texels `offset` after those of `at` that are not nearer than `z`, 0 for others.
+    #[inline(always)]
+    fn lit<const N: usize>(&self, at: &[u32; N], offset: u32, z: &[f32; N]) -> [f32; N] {
+        // Loads have a loop of their own: they would prevent vectorisation of the other one.
+        let mut depth = [0.0; N];
+        for lane in 0..N {
+            // The size is a power of two, so the compiler removes the bounds check.
+            depth[lane] = self.depth[at[lane].wrapping_add(offset) as usize % (SIZE * SIZE)];
+        }
+        let mut lit = [0.0; N];
+        for lane in 0..N {
+            // A comparison, without the branch or mask per number that the compiler makes of one. No difference of depths is as small
+            // as 1e-30.
+            lit[lane] = min(max((depth[lane] - z[lane]) * STEEP + 1.0, 0.0), 1.0);
+        }
+        lit
     }
 
     /// What [`DepthMap::add_compared`] adds for every tap within `radius`, if the blocks around all positions determine it. The depth
@@ -225,13 +275,7 @@ impl DepthMap {
         steepest: f32,
     ) -> Option<f32> {
         let (size, last) = (SIZE as f32, (SIZE - 1) as f32);
-        let range = |of: &[f32; N]| {
-            let (mut low, mut high) = (of[0], of[0]);
-            for &c in of {
-                (low, high) = (min(c, low), max(c, high));
-            }
-            (low, high)
-        };
+        let range = |of: &[f32; N]| (least(of), most(of));
         let ((left, right), (top, bottom), (near, far)) = (range(u), range(v), range(z));
         // Half a texel for interpolation, and one for rounding.
         let reach = radius * size + 1.5;
@@ -281,6 +325,13 @@ fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
     for &triangle in input.list {
         let [i, j, k] = input.triangles[triangle as usize];
         let corners = [input.placed[i as usize], input.placed[j as usize], input.placed[k as usize]];
+        if let Some(holes) = input.holes {
+            let id = input.ids.map_or(triangle, |ids| ids[triangle as usize]);
+            if id != u32::MAX && holes.has_holes(id) {
+                draw_with_holes(corners, (holes, id), input.first_row, rows);
+                continue;
+            }
+        }
         draw_triangle(corners, input.first_row, rows);
     }
     bound_blocks(rows, blocks);
@@ -310,20 +361,58 @@ fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
     let (bx, by) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
     let (cx, cy) = ((a.y - b.y) * inverse, (b.x - a.x) * inverse);
     let (zx, zy) = (bx * (b.z - a.z) + cx * (c.z - a.z), by * (b.z - a.z) + cy * (c.z - a.z));
+    let mut steps = [[0.0; LANES]; 3];
+    for (steps, by) in steps.iter_mut().zip([bx, cx, zx]) {
+        for (lane, step) in steps.iter_mut().enumerate() {
+            *step = by * lane as f32;
+        }
+    }
     for y in y0..y1 {
         let dy = (first_row + y) as f32 + 0.5 - a.y;
         for x in (x0..x1).step_by(LANES) {
             // The last run of a row starts earlier, so that it does not exceed the row.
             let x = x.min(SIZE - LANES);
             let dx = x as f32 + 0.5 - a.x;
-            let (share_b, share_c) = (bx * dx + by * dy, cx * dx + cy * dy);
-            let z = a.z + zx * dx + zy * dy;
+            let start = [bx * dx + by * dy, cx * dx + cy * dy, a.z + zx * dx + zy * dy];
             let Some((depth, _)) = rows[y * SIZE + x..].split_first_chunk_mut::<LANES>() else { return };
             for lane in 0..LANES {
-                let step = lane as f32;
-                let (b, c, z) = (share_b + bx * step, share_c + cx * step, z + zx * step);
-                let nearer = (b >= 0.0) & (c >= 0.0) & (b + c <= 1.0) & (z < depth[lane]);
-                depth[lane] = if nearer { z } else { depth[lane] };
+                let [b, c, z] = three(|k| start[k] + steps[k][lane]);
+                // The least of the three coordinates decides: one comparison vectorises, several do not.
+                let inside = min(min(b, c), 1.0 - (b + c));
+                let nearer = if inside >= 0.0 { z } else { f32::INFINITY };
+                depth[lane] = min(nearer, depth[lane]);
+            }
+        }
+    }
+}
+
+/// As [`draw_triangle`], texel by texel, for a triangle through which light may pass.
+fn draw_with_holes([a, b, c]: [Vec3; 3], (holes, id): (&dyn Holes, u32), first_row: usize, rows: &mut [f32]) {
+    let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    let is_some = area.abs() > 0.0 && area.abs() < f32::INFINITY;
+    if !is_some {
+        return;
+    }
+    let centre = |v: f32, most: f32| min(max(v + 0.5, 0.0), most) as usize;
+    let from_row = |v: f32| centre(v - first_row as f32, (rows.len() / SIZE) as f32);
+    let (x0, x1) = (centre(a.x.min(b.x).min(c.x), SIZE as f32), centre(a.x.max(b.x).max(c.x), SIZE as f32));
+    let (y0, y1) = (from_row(a.y.min(b.y).min(c.y)), from_row(a.y.max(b.y).max(c.y)));
+    let inverse = 1.0 / area;
+    let steps = [
+        [(b.y - c.y) * inverse, (c.y - a.y) * inverse, (a.y - b.y) * inverse],
+        [(c.x - b.x) * inverse, (a.x - c.x) * inverse, (b.x - a.x) * inverse],
+    ];
+    for y in y0..y1 {
+        let dy = (first_row + y) as f32 + 0.5 - a.y;
+        for x in x0..x1 {
+            let dx = x as f32 + 0.5 - a.x;
+            let share = |corner: usize| steps[0][corner] * dx + steps[1][corner] * dy;
+            let shares = [1.0 + share(0), share(1), share(2)];
+            let z = a.z * shares[0] + b.z * shares[1] + c.z * shares[2];
+            let depth = &mut rows[y * SIZE + x];
+            let is_inside = shares.iter().all(|share| *share >= 0.0);
+            if is_inside && z < *depth && holes.blocks(id, shares, steps) {
+                *depth = z;
             }
         }
     }
@@ -333,20 +422,19 @@ fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
 #[inline(always)]
 fn bound_blocks(rows: &[f32], blocks: &mut [[f32; 2]]) {
     for (rows, blocks) in rows.chunks_exact(BLOCK * SIZE).zip(blocks.chunks_exact_mut(SIZE / BLOCK)) {
-        for (column, block) in blocks.iter_mut().enumerate() {
-            let (mut near, mut far) = ([1.0; LANES], [0.0; LANES]);
-            for row in rows.chunks_exact(SIZE) {
-                for texels in row[column * BLOCK..(column + 1) * BLOCK].as_chunks::<LANES>().0 {
-                    for lane in 0..LANES {
-                        near[lane] = min(texels[lane], near[lane]);
-                        far[lane] = max(texels[lane], far[lane]);
-                    }
-                }
+        // Whole rows, which vectorise; then the columns of each block.
+        let (mut near, mut far) = ([1.0; SIZE], [0.0; SIZE]);
+        for row in rows.as_chunks::<SIZE>().0 {
+            for x in 0..SIZE {
+                near[x] = min(row[x], near[x]);
+                far[x] = max(row[x], far[x]);
             }
+        }
+        let columns = near.as_chunks::<BLOCK>().0.iter().zip(far.as_chunks::<BLOCK>().0);
+        for (block, (near, far)) in blocks.iter_mut().zip(columns) {
             *block = [1.0, 0.0];
-            for lane in 0..LANES {
-                block[0] = min(near[lane], block[0]);
-                block[1] = max(far[lane], block[1]);
+            for (&near, &far) in near.iter().zip(far) {
+                *block = [min(near, block[0]), max(far, block[1])];
             }
         }
     }
@@ -360,7 +448,8 @@ mod tests {
 
     fn drawn(vertices: &[Vec3], triangles: &[[u32; 3]]) -> DepthMap {
         let mut map = DepthMap::default();
-        map.draw(Width::widest(), Mat4::IDENTITY, (vertices, triangles, false));
+        let casters = Casters { vertices, triangles, closed: false, holes: None };
+        map.draw(Width::widest(), Mat4::IDENTITY, &casters);
         map
     }
 
@@ -405,7 +494,8 @@ mod tests {
         let view = Mat4::from_cols_array_2d(&rows).transpose();
         let floor = [(-50.0, -9.0), (50.0, -9.0), (0.0, 50.0)].map(|(x, z)| Vec3::new(x, -1.0, z));
         let mut map = DepthMap::default();
-        map.draw_perspective(Width::widest(), view, (&floor, &[[0, 1, 2]], false));
+        let casters = Casters { vertices: &floor, triangles: &[[0, 1, 2]], closed: false, holes: None };
+        map.draw_perspective(Width::widest(), view, &casters);
         let at = |map: &DepthMap, row: usize| map.depth[row * SIZE + SIZE / 2];
         assert_eq!(at(&map, SIZE / 4), 1.0, "the sky");
         // Rows between the horizon and the lower edge show the floor at the distance at which their ray meets it.
@@ -415,7 +505,7 @@ mod tests {
             let found = at(&map, row);
             assert!((found - wanted).abs() < 1e-4, "{row}: {found} for {wanted}");
         }
-        map.draw(Width::widest(), view, (&floor, &[[0, 1, 2]], false));
+        map.draw(Width::widest(), view, &casters);
         assert_eq!(at(&map, 900), 1.0, "control: without the division the floor is a line");
     }
 

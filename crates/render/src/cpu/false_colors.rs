@@ -31,6 +31,9 @@ pub(super) fn paint_values(
         let known = value.abs() < MAX;
         point.color = if known { [(value - low) * inverse, 1.0, 0.0] } else { [0.0; 3] };
     });
+    for point in placed.carried_points() {
+        point.color = [0.0; 3];
+    }
     let (placed, scratch) = (&*placed, Pool::<TileScratch>::default());
     tiles.par_chunks_mut(TILE_BYTES).enumerate().for_each_init(
         || scratch.take(),

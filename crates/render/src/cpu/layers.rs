@@ -6,7 +6,7 @@
 use lovelock_base::memory::list_bytes;
 use rayon::prelude::*;
 
-use super::finish::{PixelsIn, compose_row, noise_at};
+use super::finish::{PixelsIn, compose_row, noise_at, show_over};
 use super::hair::fragments::{Span, SpanSink, each_span};
 use super::math::{clamp, floor, index_of};
 use super::placed::{PlacedScene, PosedBody, TileScratch, copy_rows, posed_body};
@@ -16,6 +16,7 @@ use super::surface::raster::SurfaceSamples;
 use super::tile::{BLOCK_LANES, Grid, STRIDE, TILE, pixel_of};
 use super::tone_map::encode;
 use super::view::View;
+use crate::backdrop::LaidBackdrop;
 use crate::camera::NEAR_METRES;
 use crate::{FrameInput, Layers};
 
@@ -48,21 +49,24 @@ impl LayerTiles {
             + self.scratch.bytes(TileScratch::bytes)
     }
 
-    /// Draws depth and transmittance. Overwrites the colours of points. `at_points` has four packed transmittances per point.
+    /// Draws depth and transmittance. Overwrites the colours of points. `at_points` and `at_carried` have four packed transmittances per
+    /// point of the hairstyle and of carried hair.
     pub fn draw_values(
         &mut self,
         view: &View,
         grid: &Grid,
         input: &FrameInput,
         placed: &mut PlacedScene,
-        at_points: &[u32],
+        (at_points, at_carried): (&[u32], &[u32]),
     ) {
         let lit = view.lights.is_empty();
-        placed.points.par_iter_mut().zip(at_points).with_min_len(8192).for_each(|(point, &packed)| {
+        let value = |(point, &packed): (&mut ShadedPoint, &u32)| {
             let left = if lit { 1.0 } else { (packed & 0xff) as f32 * (1.0 / 255.0) };
             // The value and 1 in place of colours: their quotient is the mean, whatever multiplies both.
             point.color = [left, 1.0, 0.0];
-        });
+        };
+        placed.points.par_iter_mut().zip(at_points).with_min_len(8192).for_each(value);
+        placed.carried_points().iter_mut().zip(at_carried).for_each(value);
         let Self { depth, transmittance, scratch, .. } = self;
         let placed = &*placed;
         let tiles = depth.par_chunks_mut(TILE * TILE).zip(transmittance.par_chunks_mut(TILE * TILE));
@@ -92,6 +96,12 @@ impl LayerTiles {
         );
     }
 
+    /// Copies the light of the tiles into rows.
+    pub fn write_light(&self, grid: &Grid, out: &mut Layers) {
+        out.resize(grid.width, grid.height);
+        copy_rows(&self.light, 1, grid, &mut out.light);
+    }
+
     /// Copies the tiles into rows.
     pub fn write(&self, grid: &Grid, out: &mut Layers) {
         out.resize(grid.width, grid.height);
@@ -106,8 +116,9 @@ pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool,
     let exposure = view.uniform.exposure;
     for (y, out) in out.chunks_exact_mut(TILE).enumerate() {
         let (row, open) = compose_row(view, input, y, over_background);
+        let is_whole = over_background && input.picture.is_none();
         for (x, out) in out.iter_mut().enumerate() {
-            let alpha = if over_background { 1.0 } else { clamp(1.0 - open[x], 0.0, 1.0) };
+            let alpha = if is_whole { 1.0 } else { clamp(1.0 - open[x], 0.0, 1.0) };
             *out = [row[0][x] * exposure, row[1][x] * exposure, row[2][x] * exposure, alpha];
         }
     }
@@ -171,6 +182,23 @@ impl SpanSink for Nearest<'_> {
             if alpha * 0.25 * seen as f32 >= Layers::LEAST_COVER && depth > self.near[at] {
                 self.near[at] = depth;
             }
+        }
+    }
+}
+
+/// Row `y` of a tone-mapped picture over the one behind it, from exposed light that is multiplied by alpha.
+pub(crate) fn show_row_over(light: &[[f32; 4]], y: u32, behind: &LaidBackdrop, out: &mut [u8]) {
+    for (group, (light, out)) in light.chunks(SHOWN).zip(out.chunks_mut(4 * SHOWN)).enumerate() {
+        let (mut row, mut open) = ([[0.0; SHOWN]; 3], [0.0; SHOWN]);
+        for (x, &[r, g, b, alpha]) in light.iter().enumerate() {
+            (row[0][x], row[1][x], row[2][x]) = (r, g, b);
+            open[x] = clamp(1.0 - alpha, 0.0, 1.0);
+        }
+        show_over(&mut row, &open, behind, [group * SHOWN, y as usize], 1.0);
+        for (x, pixel) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            let noise = noise_at((group * SHOWN + x) as f32, y as f32);
+            let byte = |v: f32| index_of(floor(clamp(v * 255.0 + noise + 0.5, 0.0, 255.0))) as u8;
+            *pixel = [byte(row[0][x]), byte(row[1][x]), byte(row[2][x]), 255];
         }
     }
 }

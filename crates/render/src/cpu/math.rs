@@ -24,6 +24,36 @@ pub(super) fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
+/// The largest of numbers; any if one is NaN. By halves, which vectorises; a loop that keeps the largest so far does not.
+#[inline(always)]
+pub(super) fn most<const N: usize>(of: &[f32; N]) -> f32 {
+    folded(of, max)
+}
+
+/// The smallest of numbers, like [`most`].
+#[inline(always)]
+pub(super) fn least<const N: usize>(of: &[f32; N]) -> f32 {
+    folded(of, min)
+}
+
+#[inline(always)]
+fn folded<const N: usize>(of: &[f32; N], two: impl Fn(f32, f32) -> f32) -> f32 {
+    let mut left = *of;
+    let mut count = N;
+    while count > 1 {
+        let half = count / 2;
+        for i in 0..half {
+            left[i] = two(left[i], left[i + half]);
+        }
+        // The last of an odd number.
+        if count % 2 == 1 {
+            left[0] = two(left[0], left[count - 1]);
+        }
+        count = half;
+    }
+    left[0]
+}
+
 /// `x` clamped to 0 and 1; 0 for NaN.
 #[inline(always)]
 pub(super) fn saturate(x: f32) -> f32 {
@@ -130,6 +160,18 @@ mod tests {
             assert_eq!(index_of(x), x as u32);
         }
         assert_eq!((min(f32::NAN, 2.0), max(f32::NAN, 2.0), saturate(f32::NAN)), (2.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn the_largest_and_the_smallest_of_any_count() {
+        let of = [3.0, -2.0, 7.5, 7.5, -9.0, 1.0, 0.0];
+        assert_eq!((most(&of), least(&of)), (7.5, -9.0));
+        for at in 0..7 {
+            let mut of = [0.5; 7];
+            of[at] = 2.0;
+            assert_eq!((most(&of), least(&of)), (2.0, 0.5), "{at}");
+        }
+        assert_eq!((most(&[4.0]), least(&[4.0; 16])), (4.0, 4.0));
     }
 
     #[test]

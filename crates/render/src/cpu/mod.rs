@@ -18,11 +18,13 @@
 mod backdrop;
 mod bins;
 mod body_depth;
+mod carried;
 mod clusters;
 mod drawn;
 mod false_colors;
 mod finish;
 mod hair;
+mod interrupt;
 mod kept;
 mod layers;
 mod math;
@@ -40,6 +42,8 @@ mod values;
 mod view;
 
 pub use drawn::DrawnHair;
-pub(crate) use layers::show_row;
+pub use interrupt::Interrupt;
+pub(crate) use layers::{show_row, show_row_over};
 pub use renderer::CpuRenderer;
+pub(crate) use tone_map::encode;
 pub use values::{HairHit, ValuePicture, ValueRenderer};

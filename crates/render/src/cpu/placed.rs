@@ -14,9 +14,10 @@ use super::clusters::PlacedClusters;
 use super::hair::blend::{BlendState, BlendTile, blend_segments_simd};
 use super::hair::fragments::{bounds, is_drawn};
 use super::hair::list::{Fragments, ListTile, list_segments_simd};
-use super::hair::order::SegmentKeys;
-use super::strand_points::{PointsIn, ShadedPoint, shade_all};
+use super::hair::order::{Pieces, SegmentKeys};
+use super::strand_points::{PointsIn, ShadedPoint, ShadedPoints, shade_all};
 use super::surface::PlacedSurface;
+use super::surface::materials::Cutouts;
 use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile, raster_triangles_simd};
 use super::tile::{Grid, HairPlanes, TILE};
 use super::transparency::resolve_tile;
@@ -25,17 +26,18 @@ use crate::closed::{Closedness, encloses};
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, Transparency};
 
-/// Segments of a tile that are fetched and drawn together.
-const SEGMENTS_AT_ONCE: usize = 128;
-
 /// The projected content of a picture, sorted into tiles; kept from frame to frame.
 #[derive(Debug)]
 pub(super) struct PlacedScene {
     pub width: Width,
+    /// Whether light is computed at every strand point and the body's shadow at every pixel, also where they vary evenly.
+    pub is_exact: bool,
     pub points: Vec<ShadedPoint>,
     /// First points of segments, in the order of points; see [`PlacedScene::segments`].
     all_segments: Arc<Vec<u32>>,
     whole: usize,
+    /// The first point of carried hair, if there is any behind the points of the hairstyle, and the number of its segments.
+    carried: Option<(usize, usize)>,
     pub surface: PlacedSurface,
     pub segment_bins: Bins,
     keys: SegmentKeys,
@@ -52,17 +54,14 @@ pub(super) struct TileScratch {
     hidden: Occlusion,
     blend: BlendState,
     order: Vec<u64>,
-    segments: Vec<[ShadedPoint; 2]>,
+    pieces: Pieces,
     fragments: Fragments,
 }
 
 impl TileScratch {
     /// Its memory, bytes.
     pub fn bytes(&self) -> u64 {
-        size_of_val(self) as u64
-            + list_bytes(&self.order)
-            + list_bytes(&self.segments)
-            + self.fragments.bytes()
+        size_of_val(self) as u64 + list_bytes(&self.order) + self.pieces.bytes() + self.fragments.bytes()
     }
 }
 
@@ -73,9 +72,11 @@ impl PlacedScene {
     pub fn new(width: Width) -> Self {
         Self {
             width,
+            is_exact: false,
             points: Vec::new(),
             all_segments: Arc::default(),
             whole: 0,
+            carried: None,
             surface: PlacedSurface::default(),
             segment_bins: Bins::default(),
             keys: SegmentKeys::default(),
@@ -107,15 +108,46 @@ impl PlacedScene {
         is_draft: bool,
     ) {
         let from = PointsIn { strands, details: &details.words, transmittance, colours: details.colours() };
-        shade_all(self.width, view, &from, is_draft, &mut self.points);
+        let shaded = if is_draft {
+            ShadedPoints::Second
+        } else if self.is_exact {
+            ShadedPoints::All
+        } else {
+            ShadedPoints::Needed
+        };
+        shade_all(self.width, view, &from, shaded, &mut self.points);
         self.all_segments = Arc::clone(&details.segments);
         self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
+        self.carried = None;
+    }
+
+    /// Adds shaded points of carried hair. `segments` are those of the hairstyle and then those of the new points.
+    pub fn append(&mut self, points: &[ShadedPoint], segments: &Arc<Vec<u32>>) {
+        self.carried = Some((self.points.len(), segments.len() - self.whole));
+        self.points.extend_from_slice(points);
+        (self.all_segments, self.whole) = (Arc::clone(segments), segments.len());
+    }
+
+    /// The points of carried hair.
+    pub fn carried_points(&mut self) -> &mut [ShadedPoint] {
+        let first = self.carried.map_or(self.points.len(), |(first, _)| first);
+        &mut self.points[first..]
+    }
+
+    /// The segments of all stored or fine strands, and how many of them are drawn.
+    pub fn all_segments(&self) -> (&Arc<Vec<u32>>, usize) {
+        (&self.all_segments, self.whole)
+    }
+
+    /// The number of segments of the hairstyle that are drawn.
+    pub fn hair_segments(&self) -> usize {
+        self.whole - self.carried.map_or(0, |(_, segments)| segments)
     }
 
     /// Draws no strand.
     pub fn clear_strands(&mut self) {
         self.points.clear();
-        self.whole = 0;
+        (self.whole, self.carried) = (0, None);
     }
 
     /// First points of the segments whose points both exist, in the order of points.
@@ -140,10 +172,13 @@ impl PlacedScene {
                 !encloses(input.camera.eye, &skin.positions, &body.mesh.triangles)
             });
         let points = &self.points;
-        let segments = &self.all_segments[..self.whole];
+        let (segments, carried) = (&self.all_segments[..self.whole], self.carried);
         let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
         rayon::join(
-            || surface.place(view.uniform.clip_from_world, grid, input.body, hair_on_body, seen_from_without),
+            || {
+                let (from_world, hair) = (view.uniform.clip_from_world, (hair_on_body, seen_from_without));
+                surface.place(from_world, grid, input.body, hair, &input.picture.body_look);
+            },
             || {
                 bins.fill(segments.len(), grid.columns, grid.rows, |i| {
                     let first = segments[i] as usize;
@@ -152,7 +187,8 @@ impl PlacedScene {
                 });
                 if input.picture.transparency == Transparency::Sorted {
                     let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
-                    keys.measure(strands, segments, forward);
+                    let more = carried.zip(input.carried).map(|((first, _), hair)| (first, hair.strands));
+                    keys.measure(strands, more, segments, forward);
                 }
             },
         );
@@ -194,7 +230,8 @@ impl PlacedScene {
             && !list.is_empty()
         {
             let (vertices, triangles) = (&self.surface.vertices[..], &body.mesh.triangles[..]);
-            let input = TriangleTile { origin: grid.origin(tile), vertices, triangles, list };
+            let cutouts = self.surface.materials.as_ref().map(|materials| Cutouts { materials, body });
+            let input = TriangleTile { origin: grid.origin(tile), vertices, triangles, list, cutouts };
             raster_triangles_simd(self.width, &input, &mut scratch.samples, &mut scratch.hidden);
         }
     }
@@ -209,24 +246,13 @@ impl PlacedScene {
     ) {
         let opacity = view.uniform.opacity;
         if transparency == Transparency::Sorted {
-            self.keys.sort(segments, self.segments(), &mut scratch.order);
-            let order = std::mem::take(&mut scratch.order);
-            scratch.blend.clear();
-            // In batches: segments behind an opaque tile are not fetched.
-            for order in order.chunks(SEGMENTS_AT_ONCE) {
-                scratch.segments.clear();
-                scratch.segments.extend(order.iter().map(|&first| {
-                    let first = first as u32 as usize;
-                    [self.points[first], self.points[first + 1]]
-                }));
-                let input =
-                    BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
-                blend_segments_simd(self.width, &input, &mut scratch.blend);
-                if scratch.blend.is_full() {
-                    break;
-                }
-            }
-            scratch.order = order;
+            let TileScratch { blend, hidden, pieces, .. } = scratch;
+            blend.clear();
+            self.keys.each_piece(segments, self.segments(), pieces, |order| {
+                let input = BlendTile { origin, points: &self.points, order, hidden, opacity };
+                blend_segments_simd(self.width.for_eight(), &input, blend);
+                !blend.is_full()
+            });
             scratch.blend.write(&mut scratch.hair);
         } else {
             scratch.fragments.clear();
@@ -245,7 +271,7 @@ impl PlacedScene {
             samples: &scratch.samples,
             opacity: view.uniform.opacity,
         };
-        list_segments_simd(self.width, &input, &mut scratch.fragments);
+        list_segments_simd(self.width.for_eight(), &input, &mut scratch.fragments);
     }
 
     /// Draws clusters, and strands among them.

@@ -1,6 +1,11 @@
 //! The CPU renderer.
 
 mod inspect;
+mod options;
+mod outputs;
+mod plain;
+
+use std::sync::Arc;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
@@ -11,27 +16,33 @@ use lovelock_picture::check_size;
 use rayon::prelude::*;
 
 use super::backdrop::{Ground, ground_simd};
-use super::body_depth::{self, DepthMap};
+use super::body_depth::{self, Casters, DepthMap, Holes};
+use super::carried::CarriedStage;
 use super::drawn::DrawnStrands;
 use super::false_colors::paint_values;
 use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
+use super::interrupt::{Interrupt, check};
 use super::kept::{KeptInputs, Unchanged};
 use super::layers::{LayerTiles, finish_light};
 use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of};
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
+use super::surface::materials::Cutouts;
 use super::tile::{Grid, SurfacePlanes, TILE};
+use super::tone_map::encode;
 use super::view::{FibreView, ShadingView, View};
+use crate::backdrop::{Backdrop, LaidBackdrop};
 use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::frame::INTERPOLATE;
 use crate::light_view::{bounding_sphere, light_views};
 use crate::scene_light::SceneLight;
-use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
+use crate::uniform::{FrameUniform, LightMaps};
 use crate::{
     ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, Light, Picture, RenderError,
 };
+use plain::PlainTiles;
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -45,9 +56,11 @@ pub struct CpuRenderer {
     light: Option<Box<SceneLight>>,
     kept: KeptInputs,
     keeps: bool,
+    interrupt: Option<Interrupt>,
     maps: Vec<LightMaps>,
     shadow: ShadowStage,
     placed: PlacedScene,
+    carried: CarriedStage,
     /// The views of the body of each light: one, or one per side of a cube.
     depth: Vec<Vec<DepthMap>>,
     /// How long the depth maps took when they were last drawn, milliseconds.
@@ -57,6 +70,9 @@ pub struct CpuRenderer {
     interpolated_ms: [f64; 2],
     tiles: Vec<u8>,
     plain: PlainTiles,
+    backdrop: Backdrop,
+    /// The picture behind the figure in the image that is drawn.
+    behind: Option<Arc<LaidBackdrop>>,
     layers: LayerTiles,
     scratch: Pool<Scratch>,
 }
@@ -77,8 +93,8 @@ enum Target<'a> {
     Picture(&'a mut Picture),
     /// A picture whose hair is coloured by one value per stored strand.
     FalseColors(&'a mut Picture, &'a [f32], &'a ColorScale),
-    /// Layers, with or without the background.
-    Layers(&'a mut Layers, bool),
+    /// Layers, with or without the background, and with or without values.
+    Layers(&'a mut Layers, bool, bool),
 }
 
 /// Scratch memory of a thread for one tile.
@@ -91,8 +107,13 @@ struct Scratch {
 
 impl Scratch {
     /// The input of a finished tile.
-    fn seen<'a>(&'a self, origin: [f32; 2], ground: Option<&'a Ground>) -> PixelsIn<'a> {
-        PixelsIn { origin, hair: &self.tile.hair, surface: &self.surface, ground }
+    fn seen<'a>(
+        &'a self,
+        origin: [f32; 2],
+        ground: Option<&'a Ground>,
+        picture: Option<&'a LaidBackdrop>,
+    ) -> PixelsIn<'a> {
+        PixelsIn { origin, hair: &self.tile.hair, surface: &self.surface, ground, picture }
     }
 }
 
@@ -104,14 +125,18 @@ impl Default for CpuRenderer {
             light: None,
             kept: KeptInputs::default(),
             keeps: true,
+            interrupt: None,
             maps: Vec::new(),
             shadow: ShadowStage::default(),
             placed: PlacedScene::new(Width::widest()),
+            carried: CarriedStage::default(),
             depth: Vec::new(),
             depth_ms: 0.0,
             interpolated_ms: [0.0; 2],
             tiles: Vec::new(),
             plain: PlainTiles::default(),
+            backdrop: Backdrop::default(),
+            behind: None,
             layers: LayerTiles::default(),
             scratch: Pool::default(),
         }
@@ -119,39 +144,21 @@ impl Default for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// A renderer whose loops are compiled for `width`, which the CPU must support: for tests of equality.
-    ///
-    /// # Panics
-    /// If the CPU does not support such vectors.
-    pub fn with_width(width: Width) -> Self {
-        assert!(width.is_available(), "{width:?} on a processor without");
-        Self { placed: PlacedScene::new(width), ..Self::default() }
-    }
-
-    /// A renderer that computes everything anew for each picture, also what has not changed since the one before.
-    #[must_use]
-    pub fn keeping_nothing(self) -> Self {
-        Self { keeps: false, ..self }
-    }
-
-    /// Whether results are kept for the next picture while nothing moves, which is so at first. Times of repeated pictures only mean
-    /// something without.
-    pub fn set_keeping(&mut self, keeps: bool) {
-        self.keeps = keeps;
-    }
-
     /// The memory that it keeps from picture to picture, bytes: what it has drawn, and the scratch memory of threads.
     pub fn bytes(&self) -> u64 {
-        let scratch = |scratch: &Scratch| size_of_val(scratch) as u64 + scratch.tile.bytes();
+        let scratch =
+            |scratch: &Scratch| size_of_val(scratch) as u64 + scratch.tile.bytes() + scratch.light.bytes();
         self.strands.bytes()
             + self.drawn.bytes()
             + self.light.as_ref().map_or(0, |light| light.grid.bytes())
             + self.kept.bytes()
             + self.shadow.kept_bytes()
             + self.placed.bytes()
+            + self.carried.bytes()
             + self.depth.iter().flatten().map(DepthMap::bytes).sum::<u64>()
             + list_bytes(&self.tiles)
             + list_bytes(&self.plain.bytes)
+            + self.backdrop.bytes()
             + self.layers.bytes()
             + self.scratch.bytes(scratch)
     }
@@ -162,50 +169,6 @@ impl CpuRenderer {
         format!("processor ({:?}, {threads} threads)", Width::widest())
     }
 
-    /// Renders `input` at `width` by `height` pixels.
-    ///
-    /// # Errors
-    /// The size is out of range, or the shadow needs too much memory.
-    pub fn picture(
-        &mut self,
-        input: &FrameInput,
-        width: u32,
-        height: u32,
-        picture: &mut Picture,
-    ) -> Result<FrameStats, RenderError> {
-        self.draw_to(input, width, height, Target::Picture(picture))
-    }
-
-    /// Renders the layers of `input` at `width` by `height` pixels, with or without the background.
-    ///
-    /// # Errors
-    /// As [`CpuRenderer::picture`].
-    pub fn layers(
-        &mut self,
-        input: &FrameInput,
-        width: u32,
-        height: u32,
-        over_background: bool,
-        layers: &mut Layers,
-    ) -> Result<FrameStats, RenderError> {
-        self.draw_to(input, width, height, Target::Layers(layers, over_background))
-    }
-
-    /// As [`CpuRenderer::picture`], with hair in the colours of `scale` by one value per stored strand; fine strands have what lies between
-    /// their parents. A value that is not finite is missing: it hides what is behind it but has no colour.
-    ///
-    /// # Errors
-    /// As [`CpuRenderer::picture`].
-    pub fn strand_colors(
-        &mut self,
-        input: &FrameInput,
-        [width, height]: [u32; 2],
-        (of_strands, scale): (&[f32], &ColorScale),
-        picture: &mut Picture,
-    ) -> Result<FrameStats, RenderError> {
-        self.draw_to(input, width, height, Target::FalseColors(picture, of_strands, scale))
-    }
-
     fn draw_to(
         &mut self,
         input: &FrameInput,
@@ -214,7 +177,9 @@ impl CpuRenderer {
         target: Target,
     ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
+        check(self.interrupt.as_ref())?;
         let watch = Stopwatch::start();
+        self.behind = self.backdrop.follow(input, [width, height], encode);
         let share = self.placed.clusters.follow(input, height);
         let clusters = self.placed.clusters.hair();
         let picture = without_strands(input.picture);
@@ -225,21 +190,21 @@ impl CpuRenderer {
             self.kept.follow(input)
         } else {
             self.kept.forget();
-            Unchanged { body: false, hair: false }
+            Unchanged::default()
         };
         let mut made = std::mem::take(&mut self.strands);
         let strands = match input.hair {
-            HairPose::Guides(_) if unchanged.hair => &made,
+            HairPose::Guides(_) if unchanged.strands => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
         let stored_ms = watch.ms();
         let mut drawn = std::mem::take(&mut self.drawn);
-        let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.hair));
+        let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.strands));
         let interpolate_ms = watch.ms();
         let now = [stored_ms, interpolate_ms - stored_ms];
         let mut kept_ms = 0.0;
         for ((made, now), is_kept) in
-            self.interpolated_ms.iter_mut().zip(now).zip([unchanged.hair, same_points])
+            self.interpolated_ms.iter_mut().zip(now).zip([unchanged.strands, same_points])
         {
             if is_kept {
                 kept_ms += *made;
@@ -257,11 +222,12 @@ impl CpuRenderer {
         if let Ok(stats) = &mut stats {
             stats.draw_ms += ambient_ms;
             stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms: ambient_ms });
-            if unchanged.hair {
+            if unchanged.strands {
                 stats.kept.push(PassTime { name: INTERPOLATE.to_owned(), ms: kept_ms });
             }
         }
-        if stats.is_err() {
+        // What is kept is whole before an image is given up: see `draw`.
+        if stats.as_ref().is_err_and(|error| !matches!(error, RenderError::Interrupted)) {
             self.kept.forget();
         }
         stats.map(|stats| FrameStats { interpolate_ms, ..stats })
@@ -276,31 +242,24 @@ impl CpuRenderer {
         height: u32,
         target: Target,
     ) -> Result<FrameStats, RenderError> {
+        let interrupt = self.interrupt.clone();
+        // Asked after the shadow maps and the body's depth alone, so that an image that is given up leaves them to the next one.
+        let go_on = || check(interrupt.as_ref());
         let watch = Stopwatch::start();
         let strands = hair.drawn.strands(hair.stored);
         let asked = (strands, hair.drawn.portion().map(|(_, points)| points));
-        if !unchanged.hair {
-            self.shadow.run(input, hair.stored, asked)?;
-        } else if hair.same_points {
-            self.shadow.passes.clear();
-        } else {
-            self.shadow.look_up_again(input, asked)?;
-        }
+        self.shadow.run(input, hair.stored, asked, (unchanged, hair.same_points))?;
         let shadow_ms = watch.ms();
 
         let watch = Stopwatch::start();
         let mut passes = self.shadow.passes.clone();
-        let mut kept = Vec::new();
-        if unchanged.hair {
-            let is_new = |pass: &PassTime| passes.iter().any(|new| new.name == pass.name);
-            kept.extend(self.shadow.made.iter().filter(|pass| !is_new(pass)).cloned());
-        }
+        let mut kept = self.shadow.kept.clone();
         let mut passed = |name: &str, part: &Stopwatch| {
             passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
         };
         let part = Stopwatch::start();
-        if !unchanged.body {
-            self.maps = self.draw_depth(input);
+        if !unchanged.depth() {
+            self.maps = self.draw_depth(input, unchanged);
         }
         for (maps, light) in self.maps.iter_mut().zip(Light::enabled(input.lights)) {
             if light.stands() {
@@ -319,21 +278,34 @@ impl CpuRenderer {
         };
         let view =
             View::new(&uniform, (&light.grid, shading()), &self.depth, &self.shadow.columns, DEPTH_TEXELS);
-        if unchanged.body {
+        if unchanged.depth() {
             kept.push(PassTime { name: "draw/body-depth".to_owned(), ms: self.depth_ms });
         } else {
             self.depth_ms = part.ms();
             passed("draw/body-depth", &part);
         }
+        go_on()?;
 
         let part = Stopwatch::start();
         let details = &hair.drawn.details;
+        let stored = without_strands(input.picture);
+        let of_carried = input.of_carried(&stored).filter(|_| hair.share > 0.0);
         if hair.share > 0.0 {
             self.placed.shade(&view, (strands, details), &self.shadow.at_points, input.is_draft);
         } else {
             self.placed.clear_strands();
         }
+        if let Some(of_carried) = &of_carried {
+            let uniform =
+                FrameUniform::new(of_carried, None, light, (width, height), &self.maps, DEPTH_TEXELS);
+            let lit = (&light.grid, shading());
+            let view = View::new(&uniform, lit, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+            self.carried.draw(&view, of_carried, &self.shadow, &mut self.placed);
+        } else {
+            self.carried = CarriedStage::default();
+        }
         passed("draw/points", &part);
+        go_on()?;
 
         let grid = Grid::new(width, height);
         if let Some(ribs) = self.placed.clusters.ribs().cloned() {
@@ -348,15 +320,23 @@ impl CpuRenderer {
         let part = Stopwatch::start();
         self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
         passed("draw/sort", &part);
+        go_on()?;
 
         let (picture, colors) = match target {
             Target::Picture(picture) => (picture, None),
             Target::FalseColors(picture, of_strands, scale) => (picture, Some((of_strands, scale))),
-            Target::Layers(layers, over_background) => {
+            Target::Layers(layers, over_background, with_values) => {
                 let part = Stopwatch::start();
                 let mut held = std::mem::take(&mut self.layers);
                 held.fit(&grid);
                 self.draw_light(&view, &grid, input, over_background, &mut held.light);
+                if !with_values {
+                    held.write_light(&grid, layers);
+                    layers.behind = self.behind.clone().filter(|_| over_background);
+                    self.layers = held;
+                    passed("draw/layers", &part);
+                    return Ok(self.stats(shadow_ms, &watch, (passes, kept)));
+                }
                 if hair.share <= 0.0 {
                     // Depth and transmittance of clusters are those of the strands that cast their shadow.
                     let points = (strands, details);
@@ -364,8 +344,10 @@ impl CpuRenderer {
                     self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
                 }
                 self.placed.clusters.hide();
-                held.draw_values(&view, &grid, input, &mut self.placed, &self.shadow.at_points);
+                let at_points = (&self.shadow.at_points[..], &self.carried.packed[..]);
+                held.draw_values(&view, &grid, input, &mut self.placed, at_points);
                 held.write(&grid, layers);
+                layers.behind = self.behind.clone().filter(|_| over_background);
                 self.layers = held;
                 passed("draw/layers", &part);
                 return Ok(self.stats(shadow_ms, &watch, (passes, kept)));
@@ -374,10 +356,14 @@ impl CpuRenderer {
         let part = Stopwatch::start();
         let mut tiles = std::mem::take(&mut self.tiles);
         tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
-        self.plain.follow(&uniform, &grid);
+        self.plain.follow(&uniform, &grid, self.behind.as_ref().map_or(0, |behind| behind.number));
         let mut plain = std::mem::take(&mut self.plain);
-        self.draw_tiles(&view, &grid, input, &mut tiles, &mut plain);
+        let drawn = self.draw_tiles(&view, &grid, input, &mut tiles, &mut plain);
         self.plain = plain;
+        if drawn.is_err() {
+            self.tiles = tiles;
+            return Err(RenderError::Interrupted);
+        }
         if let Some((of_strands, scale)) = colors {
             let values = hair.drawn.at_points(input.style, of_strands);
             paint_values(&view, &grid, input, &mut self.placed, (&values, scale), &mut tiles);
@@ -404,12 +390,16 @@ impl CpuRenderer {
                 let ground = ground_simd(self.placed.width, view, grid.origin(tile));
                 let scratch = lease.get();
                 self.draw_seen(view, grid, input, tile, scratch);
-                finish_light(view, &scratch.seen(grid.origin(tile), ground.as_ref()), over_background, out);
+                let seen = scratch.seen(grid.origin(tile), ground.as_ref(), self.behind.as_deref());
+                finish_light(view, &seen, over_background, out);
             },
         );
     }
 
     /// Draws all tiles. Those that show only the background are copied from `plain` if it has them, and to it otherwise.
+    ///
+    /// # Errors
+    /// The picture must end.
     fn draw_tiles(
         &self,
         view: &View,
@@ -417,28 +407,30 @@ impl CpuRenderer {
         input: &FrameInput,
         tiles: &mut [u8],
         plain: &mut PlainTiles,
-    ) {
+    ) -> Result<(), RenderError> {
         tiles
             .par_chunks_mut(TILE_BYTES)
             .zip(plain.bytes.par_chunks_mut(TILE_BYTES))
             .zip(&mut plain.known)
             .enumerate()
-            .for_each_init(
+            .try_for_each_init(
                 || self.scratch.take(),
                 |lease, (tile, ((out, plain), known))| {
+                    check(self.interrupt.as_ref())?;
                     let ground = ground_simd(self.placed.width, view, grid.origin(tile));
                     let is_plain = ground.is_none() && self.placed.is_empty(tile);
                     if is_plain && *known {
                         out.copy_from_slice(plain);
-                        return;
+                        return Ok(());
                     }
                     self.draw_tile(view, grid, input, (tile, ground.as_ref()), lease.get(), out);
                     if is_plain {
                         plain.copy_from_slice(out);
                         *known = true;
                     }
+                    Ok(())
                 },
-            );
+            )
     }
 
     fn stats(
@@ -453,7 +445,7 @@ impl CpuRenderer {
             draw_ms: drawing.ms(),
             passes,
             kept,
-            segments: self.placed.segments().len() as u64,
+            segments: self.placed.hair_segments() as u64,
             shadow_bytes: self.shadow.bytes,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
@@ -462,27 +454,41 @@ impl CpuRenderer {
         }
     }
 
-    /// Draws the depth maps of the body for all lights.
-    fn draw_depth(&mut self, input: &FrameInput) -> Vec<LightMaps> {
-        let (positions, triangles) = surface_of(input);
-        let sphere = bounding_sphere(positions);
+    /// Draws the depth maps of the body for all lights, as far as they are not unchanged.
+    fn draw_depth(&mut self, input: &FrameInput, unchanged: Unchanged) -> Vec<LightMaps> {
+        let (vertices, triangles) = surface_of(input);
+        self.placed.surface.follow_materials(input.body.map(|(body, _)| body), &input.picture.body_look);
+        let closed = self.placed.is_closed(input);
+        let cutouts = self.placed.surface.materials.as_ref().zip(input.body);
+        let cutouts = cutouts.map(|(materials, (body, _))| Cutouts { materials, body });
+        let holed = cutouts.as_ref().filter(|cutouts| cutouts.any());
+        let holes = holed.map(|cutouts| cutouts as &dyn Holes);
+        let sphere = bounding_sphere(vertices);
         let lights: Vec<_> = Light::enabled(input.lights).collect();
         self.depth.resize_with(lights.len(), Vec::new);
-        let (width, closed) = (self.placed.width, self.placed.is_closed(input));
-        let shadow = &self.shadow;
+        // Light passes through holes to faces that look away from it.
+        let (width, closed) = (self.placed.width, closed && holes.is_none());
+        let (shadow, before) = (&self.shadow, &self.maps);
         lights
             .par_iter()
             .zip(&mut self.depth)
             .enumerate()
             .map(|(k, (light, depth))| {
+                if unchanged.surface
+                    && unchanged.lights[k]
+                    && let Some(views) = before.get(k)
+                {
+                    return *views;
+                }
                 let views = light_views(light, &shadow.frame(k), sphere, DEPTH_TEXELS);
                 depth.resize_with(views.body_views().len(), DepthMap::default);
                 depth.par_iter_mut().zip(views.body_views()).for_each(|(depth, from_world)| {
                     if views.standing.is_standing() {
                         // From within a closed body, triangles that face away are nearest.
-                        depth.draw_perspective(width, *from_world, (positions, triangles, false));
+                        let casters = Casters { vertices, triangles, closed: false, holes };
+                        depth.draw_perspective(width, *from_world, &casters);
                     } else {
-                        depth.draw(width, *from_world, (positions, triangles, closed));
+                        depth.draw(width, *from_world, &Casters { vertices, triangles, closed, holes });
                     }
                 });
                 views
@@ -500,7 +506,8 @@ impl CpuRenderer {
         out: &mut [u8],
     ) {
         self.draw_seen(view, grid, input, tile, scratch);
-        finish_pixels_simd(self.placed.width, view, &scratch.seen(grid.origin(tile), ground), out);
+        let seen = scratch.seen(grid.origin(tile), ground, self.behind.as_deref());
+        finish_pixels_simd(self.placed.width, view, &seen, out);
     }
 
     /// Draws the body and the hair of a tile.
@@ -508,7 +515,7 @@ impl CpuRenderer {
         let (placed, origin) = (&self.placed, grid.origin(tile));
         placed.draw_tile(view, grid, input, tile, &mut scratch.tile);
         scratch.surface.clear();
-        if let Some((body, _)) = posed_body(input)
+        if let Some(body) = posed_body(input)
             && !placed.surface.bins.of(tile).is_empty()
         {
             scratch.light.shade_tile(
@@ -517,31 +524,9 @@ impl CpuRenderer {
                 origin,
                 (&placed.surface, body),
                 (&scratch.tile.samples, &scratch.tile.hair),
+                placed.is_exact,
                 &mut scratch.surface,
             );
-        }
-    }
-}
-
-/// Tiles that show only the background: the same in every frame until the background or the size changes.
-#[derive(Debug, Default)]
-struct PlainTiles {
-    /// What the tiles depend on.
-    of: Option<(PlainBackground, Grid)>,
-    bytes: Vec<u8>,
-    /// Whether each tile has been drawn.
-    known: Vec<bool>,
-}
-
-impl PlainTiles {
-    /// Clears the tiles if the background or the size has changed.
-    fn follow(&mut self, uniform: &FrameUniform, grid: &Grid) {
-        let of = Some((PlainBackground::of(uniform), *grid));
-        if self.of != of {
-            self.of = of;
-            self.known.clear();
-            self.known.resize(grid.columns * grid.rows, false);
-            self.bytes.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         }
     }
 }

@@ -9,10 +9,11 @@ use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
+use super::kept::Unchanged;
 use crate::shadow_look::{PIECE, ShadowLook, has_soft_skin, pack};
 use crate::skin::Neighbours;
 use crate::standing::placed_frame;
-use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
+use crate::{FrameInput, KnownTransmittance, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
@@ -29,15 +30,19 @@ pub(crate) struct ShadowStage {
     pub mean: f32,
     /// Bytes of all maps.
     pub bytes: u64,
-    /// The times of builds and lookups, added up over lights.
+    /// The times of builds and lookups, added up over lights: the time of the stage, divided in proportion to what each took on its thread.
     pub passes: Vec<PassTime>,
-    /// The time of every pass when it was last run, for what is kept while nothing moves.
-    pub made: Vec<PassTime>,
+    /// The same of what was kept, when it was last run.
+    pub kept: Vec<PassTime>,
+    /// The time to look up and pack what all lights share, milliseconds.
+    packed_ms: f64,
     vertices: [Vec<f32>; 3],
     /// The places at which strands are looked up.
     asked: [Vec<f32>; 3],
     neighbours: Neighbours,
     softer: Vec<u32>,
+    /// Whether the transmittances at vertices were softened when they were packed.
+    is_softened: bool,
     /// Whether the last run was completed.
     is_whole: bool,
 }
@@ -50,6 +55,28 @@ struct LightShadow {
     /// Transmittance at the strands' points and at the body's vertices.
     at_points: Vec<f32>,
     at_vertices: Vec<f32>,
+    /// What the next run keeps.
+    keeps: Keeps,
+    /// The time of each of [`PASSES`] when it was last run, milliseconds.
+    made_ms: [f64; 3],
+}
+
+/// The passes of a light.
+const PASSES: [&str; 3] = ["shadow/build", "shadow/ask", "shadow/columns"];
+
+/// What is kept of the last frame for one light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Keeps {
+    map: bool,
+    points: bool,
+    vertices: bool,
+}
+
+impl Keeps {
+    /// Whether each of [`PASSES`] is left out.
+    fn passes(self) -> [bool; 3] {
+        [self.map, self.points && self.vertices, self.map]
+    }
 }
 
 impl LightShadow {
@@ -76,10 +103,27 @@ impl LightShadow {
         self.shadow.build(&from, &look.settings)
     }
 
-    /// Looks up strand points, if any are passed, and vertices, unless their transmittance is given.
-    fn look_up(&mut self, points: Option<[&[f32]; 3]>, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
-        let vertices = vertices.each_ref().map(Vec::as_slice);
-        let asked = [(points, &mut self.at_points), (Some(vertices), &mut self.at_vertices)];
+    /// Builds the map, looks up strand points, if any are passed, and vertices, unless their transmittance is given, and makes the map of
+    /// the ground, all as far as they are not kept.
+    fn run(
+        &mut self,
+        frame: &LightRun,
+        (k, light): (usize, &Light),
+        columns: &mut Vec<ColumnMap>,
+    ) -> Result<(), ShadowError> {
+        let keeps = self.keeps;
+        let watch = Stopwatch::start();
+        if !keeps.map {
+            self.build(light, frame.maps, frame.look, frame.stored)?;
+        }
+        let built_ms = watch.ms();
+        let points = frame.points.filter(|_| !keeps.points);
+        let vertices = frame.vertices.each_ref().map(Vec::as_slice);
+        let vertices = Some(vertices).filter(|_| !keeps.vertices);
+        let known = frame.known.map_or([None; 2], |known| {
+            [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
+        });
+        let asked = [(points, &mut self.at_points), (vertices, &mut self.at_vertices)];
         for ((asked, answers), known) in asked.into_iter().zip(known) {
             let Some([x, y, z]) = asked else { continue };
             answers.resize(x.len(), 1.0);
@@ -88,7 +132,27 @@ impl LightShadow {
                 None => self.shadow.transmittance_at(x, y, z, answers),
             }
         }
+        let asked_ms = watch.ms();
+        if !keeps.map {
+            *columns = self.shadow.column_maps();
+        }
+        let times = [built_ms, asked_ms - built_ms, watch.ms() - asked_ms];
+        for ((made, now), is_kept) in self.made_ms.iter_mut().zip(times).zip(keeps.passes()) {
+            *made = if is_kept { *made } else { now };
+        }
+        Ok(())
     }
+}
+
+/// What the maps of all lights have in common.
+struct LightRun<'a> {
+    maps: u32,
+    look: &'a ShadowLook,
+    stored: &'a Strands,
+    /// Where strands are looked up, unless they are looked up at places of their own.
+    points: Option<[&'a [f32]; 3]>,
+    vertices: &'a [Vec<f32>; 3],
+    known: Option<KnownTransmittance<'a>>,
 }
 
 impl std::fmt::Debug for ShadowStage {
@@ -110,8 +174,11 @@ impl ShadowStage {
             + self.vertices.iter().chain(&self.asked).map(list_bytes).sum::<u64>()
     }
 
-    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices. Fine strands, each of so
-    /// many points, are looked up at places that are apart: see [`moved_apart`].
+    /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices, as far as that is not
+    /// `unchanged`; `same_points` tells whether the drawn points are those of the last frame. Fine strands, each of so many points, are
+    /// looked up at places that are apart: see [`moved_apart`].
+    ///
+    /// A thread builds one map while others look up finished ones: lights wait for each other only at the end.
     ///
     /// # Errors
     /// The map would exceed its memory limit, or given transmittance does not match the picture.
@@ -119,26 +186,27 @@ impl ShadowStage {
         &mut self,
         input: &FrameInput,
         stored: &Strands,
-        drawn: (&Strands, Option<usize>),
+        (drawn, points): (&Strands, Option<usize>),
+        (unchanged, same_points): (Unchanged, bool),
     ) -> Result<(), RenderError> {
-        self.is_whole = false;
+        let was_whole = std::mem::take(&mut self.is_whole);
+        self.passes.clear();
+        self.kept.clear();
         let lights: Vec<Light> = Light::enabled(input.lights).collect();
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
         if self.method != Some(method) {
             self.lights.clear();
-            self.made.clear();
             self.method = Some(method);
         }
         self.lights.truncate(lights.len());
-        let empty: &[Vec3] = &[];
-        let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
+        let positions = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
         if let Some(known) = input.known {
-            known.check(lights.len(), drawn.0.points(), positions.len())?;
+            known.check(lights.len(), drawn.points(), positions.len())?;
         }
-        self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
-            values.clear();
-            values.extend(positions.iter().map(|p| p[axis]));
-        });
+        for (k, light) in self.lights.iter_mut().enumerate() {
+            let map = was_whole && unchanged.strands && unchanged.lights[k];
+            light.keeps = Keeps { map, points: map && same_points, vertices: map && unchanged.surface };
+        }
         while self.lights.len() < lights.len() {
             let base = LightFrame::new(lights[self.lights.len()].direction);
             self.lights.push(LightShadow {
@@ -147,43 +215,107 @@ impl ShadowStage {
                 shadow: cpu_shadow(method),
                 at_points: Vec::new(),
                 at_vertices: Vec::new(),
+                keeps: Keeps::default(),
+                made_ms: [0.0; 3],
             });
         }
-        let maps = lights.len() as u32;
-        self.passes.clear();
-        let part = Stopwatch::start();
+        if self.lights.iter().any(|light| !light.keeps.vertices) || lights.is_empty() {
+            self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
+                values.clear();
+                values.extend(positions.iter().map(|p| p[axis]));
+            });
+        }
+        self.columns.resize_with(lights.len(), Vec::new);
         let look = ShadowLook::of(input);
+        let places = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
+        let apart = points.filter(|_| look.reach > 0.0 && input.known.is_none());
+        let frame = LightRun {
+            maps: lights.len() as u32,
+            look: &look,
+            stored,
+            points: apart.is_none().then_some(places),
+            vertices: &self.vertices,
+            known: input.known,
+        };
+        let stage = Stopwatch::start();
         self.lights
             .par_iter_mut()
+            .zip(&mut self.columns)
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.build(light, maps, &look, stored))?;
-        self.passed("shadow/build", &part);
-        self.look_up(input, drawn);
-
-        let part = Stopwatch::start();
-        self.columns.clear();
-        self.columns.extend(self.lights.iter().map(|light| light.shadow.column_maps()));
-        self.passed("shadow/columns", &part);
+            .enumerate()
+            .try_for_each(|(k, ((shadow, columns), light))| shadow.run(&frame, (k, light), columns))?;
+        let lights_ms = stage.ms();
+        let packed_anew = self.pack_lights(input, places, apart.map(|points| (points, look.reach)));
+        if packed_anew {
+            self.packed_ms = stage.ms() - lights_ms;
+        }
+        self.take_times(lights_ms, packed_anew);
         self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
         self.is_whole = true;
         Ok(())
     }
 
-    /// Looks up the points of other strands, and the vertices, in the maps of the last run.
-    ///
-    /// # Errors
-    /// There was none.
-    pub fn look_up_again(
-        &mut self,
-        input: &FrameInput,
-        drawn: (&Strands, Option<usize>),
-    ) -> Result<(), RenderError> {
-        if !self.is_whole {
-            return Err(RenderError::NoPicture);
+    /// Looks up points apart, and packs the transmittances of all lights. Returns whether anything changed.
+    fn pack_lights(&mut self, input: &FrameInput, places: [&[f32]; 3], apart: Option<(usize, f32)>) -> bool {
+        let keeps = |of: fn(Keeps) -> bool| self.lights.iter().all(|light| of(light.keeps));
+        let is_softened = input.body.is_some() && has_soft_skin(input, apart.is_some());
+        // Without lights the lists of the last frame may have another length.
+        let has_lights = !self.lights.is_empty();
+        let same_points = has_lights && keeps(|keeps| keeps.points);
+        let same_vertices = has_lights && keeps(|keeps| keeps.vertices) && is_softened == self.is_softened;
+        if !same_points {
+            if let Some((points, reach)) = apart {
+                self.look_up_apart(places, points, reach);
+            }
+            let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
+            pack(&at_points, places[0].len(), &mut self.at_points);
+            self.mean = at_points.first().map_or(1.0, |values| mean(values));
         }
-        self.passes.clear();
-        self.look_up(input, drawn);
-        Ok(())
+        if !same_vertices {
+            let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
+            pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
+            if let (Some((body, _)), true) = (input.body, is_softened) {
+                self.neighbours.follow(body);
+                self.neighbours.soften(&mut self.at_vertices, &mut self.softer);
+            }
+        }
+        self.is_softened = is_softened;
+        !(same_points && same_vertices)
+    }
+
+    /// Lists the times of passes, of which those of lights together took `lights_ms`.
+    fn take_times(&mut self, lights_ms: f64, packed_anew: bool) {
+        let ran = |light: &LightShadow, pass: usize| !light.keeps.passes()[pass];
+        let on_threads: f64 = self
+            .lights
+            .iter()
+            .flat_map(|light| {
+                (0..PASSES.len()).filter(|&pass| ran(light, pass)).map(|pass| light.made_ms[pass])
+            })
+            .sum();
+        let scale = if on_threads > 0.0 { lights_ms / on_threads } else { 0.0 };
+        for light in &mut self.lights {
+            for (made, is_kept) in light.made_ms.iter_mut().zip(light.keeps.passes()) {
+                *made *= if is_kept { 1.0 } else { scale };
+            }
+        }
+        for (pass, name) in PASSES.into_iter().enumerate() {
+            let sum = |new: bool| -> (usize, f64) {
+                let those = self.lights.iter().filter(|light| ran(light, pass) == new);
+                (those.clone().count(), those.map(|light| light.made_ms[pass]).sum())
+            };
+            let ((new, mut new_ms), (old, mut old_ms)) = (sum(true), sum(false));
+            let is_asked = pass == 1;
+            if is_asked {
+                *(if packed_anew { &mut new_ms } else { &mut old_ms }) += self.packed_ms;
+            }
+            if new > 0 || is_asked && packed_anew {
+                self.passes.push(PassTime { name: name.to_owned(), ms: new_ms });
+            }
+            if old > 0 {
+                self.kept.push(PassTime { name: name.to_owned(), ms: old_ms });
+            }
+        }
     }
 
     /// Packed transmittances of further points in the maps of the last run, as many for each light, whose places for a light are those of
@@ -203,57 +335,48 @@ impl ShadowStage {
         pack(&answers.each_ref().map(Vec::as_slice)[..lights], asked(0).points(), packed);
     }
 
-    fn look_up(&mut self, input: &FrameInput, (drawn, points): (&Strands, Option<usize>)) {
-        let part = Stopwatch::start();
-        let reach = ShadowLook::of(input).reach;
-        let positions = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
-        let apart = points.filter(|_| reach > 0.0 && input.known.is_none());
-        if let Some(points) = apart {
-            self.look_up_apart(positions, points, reach);
-        }
-        let vertices = &self.vertices;
-        self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
-            let known = input.known.map_or([None; 2], |known| {
-                [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
-            });
-            shadow.look_up(apart.is_none().then_some(positions), vertices, known);
-        });
-        let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
-        pack(&at_points, drawn.points(), &mut self.at_points);
-        let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
-        pack(&at_vertices, self.vertices[0].len(), &mut self.at_vertices);
-        if let (Some((body, _)), true) = (input.body, has_soft_skin(input, apart.is_some())) {
-            self.neighbours.follow(body);
-            self.neighbours.soften(&mut self.at_vertices, &mut self.softer);
-        }
-        self.mean = at_points.first().map_or(1.0, |values| mean(values));
-        self.passed("shadow/ask", &part);
-    }
-
-    /// Looks up points at the places of their strands, in pieces, because copies of all positions would need much memory.
+    /// Looks up points at the places of their strands, in pieces, because copies of all positions would need much memory. A piece is moved
+    /// once and looked up for all lights.
     fn look_up_apart(&mut self, positions: [&[f32]; 3], points: usize, reach: f32) {
         let count = positions.iter().map(|axis| axis.len()).min().unwrap_or(0);
-        for light in &mut self.lights {
+        for light in self.lights.iter_mut().filter(|light| !light.keeps.points) {
             light.at_points.resize(count, 1.0);
+        }
+        for axis in &mut self.asked {
+            axis.resize(count.min(POINTS_AT_ONCE), 0.0);
         }
         for from in (0..count).step_by(POINTS_AT_ONCE) {
             let until = (from + POINTS_AT_ONCE).min(count);
-            for (axis, (asked, positions)) in self.asked.iter_mut().zip(positions).enumerate() {
-                asked.resize(until - from, 0.0);
-                moved_apart(positions, (axis, from), points, reach, asked);
+            let mut pieces: Vec<[&mut [f32]; MAX_LIGHTS]> = Vec::new();
+            pieces.resize_with((until - from).div_ceil(POINTS_PER_PIECE), Default::default);
+            let mut maps: [Option<&(dyn CpuShadow + Send + Sync)>; MAX_LIGHTS] = [None; MAX_LIGHTS];
+            for (k, light) in self.lights.iter_mut().enumerate().filter(|(_, light)| !light.keeps.points) {
+                let LightShadow { shadow, at_points, .. } = light;
+                maps[k] = Some(&**shadow);
+                let answers = at_points[from..until].chunks_mut(POINTS_PER_PIECE);
+                pieces.iter_mut().zip(answers).for_each(|(piece, answers)| piece[k] = answers);
             }
-            let [x, y, z] = &self.asked;
-            self.lights.par_iter_mut().for_each(|light| {
-                light.shadow.transmittance_at(x, y, z, &mut light.at_points[from..until]);
-            });
+            let [x, y, z] = &mut self.asked;
+            pieces
+                .par_iter_mut()
+                .zip(x.par_chunks_mut(POINTS_PER_PIECE))
+                .zip(y.par_chunks_mut(POINTS_PER_PIECE))
+                .zip(z.par_chunks_mut(POINTS_PER_PIECE))
+                .enumerate()
+                .for_each(|(piece, (((answers, x), y), z))| {
+                    let start = from + piece * POINTS_PER_PIECE;
+                    let mut moved = [x, y, z].map(|axis| &mut axis[..(until - start).min(POINTS_PER_PIECE)]);
+                    for (axis, (asked, positions)) in moved.iter_mut().zip(positions).enumerate() {
+                        moved_apart(positions, (axis, start), points, reach, asked);
+                    }
+                    let [x, y, z] = moved;
+                    for (map, answers) in maps.iter().zip(answers) {
+                        if let Some(map) = map {
+                            map.transmittance_at(x, y, z, answers);
+                        }
+                    }
+                });
         }
-    }
-
-    fn passed(&mut self, name: &str, part: &Stopwatch) {
-        let pass = PassTime { name: name.to_owned(), ms: part.ms() };
-        self.made.retain(|made| made.name != name);
-        self.made.push(pass.clone());
-        self.passes.push(pass);
     }
 
     /// The axes of the maps of light `light` of the last run; those of light from above if it has none.
@@ -288,8 +411,9 @@ impl ShadowStage {
     }
 }
 
-/// Points that are looked up together at places of their own.
+/// Points that are looked up together at places of their own, and those of a task.
 const POINTS_AT_ONCE: usize = 1 << 18;
+const POINTS_PER_PIECE: usize = 4096;
 
 /// The mean of values, added up in an order that does not depend on the number of threads; 1 if there are none.
 fn mean(values: &[f32]) -> f32 {

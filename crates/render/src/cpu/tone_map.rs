@@ -24,7 +24,7 @@ const HIGH: f32 = 4.026_069;
 ///
 /// Stage by stage over all pixels, so that each loop vectorises.
 #[inline(always)]
-pub(super) fn encode<const N: usize>(color: &mut [[f32; N]; 3], exposure: f32) {
+pub(crate) fn encode<const N: usize>(color: &mut [[f32; N]; 3], exposure: f32) {
     let mut curved = [[0.0; N]; 3];
     for (c, row) in INSET.iter().enumerate() {
         for x in 0..N {

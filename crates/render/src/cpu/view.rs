@@ -7,15 +7,17 @@ use lovelock_appearance::fibre::FibreTables;
 use lovelock_shadow::ColumnMap;
 
 use super::body_depth::DepthMap;
-use super::math::{max, three};
+use super::math::{max, min, most, three};
 use super::standing::{StandingLight, light_behind};
 use crate::MAX_LIGHTS;
 use crate::ambient::AmbientGrid;
 use crate::fibre::FibreLight;
-use crate::uniform::FrameUniform;
+use crate::uniform::{FrameUniform, WIDE_BLUR, WIDE_LAMP};
 
 /// Taps of a soft shadow on a surface. Six taps would show bands.
 const SURFACE_TAPS: usize = 12;
+/// Taps of a soft shadow on a surface whose edge is wide: twelve would show as that many edges beside each other.
+const WIDE_TAPS: usize = 48;
 /// Taps of a soft shadow on a strand point, which its neighbours blur.
 const STRAND_TAPS: usize = 3;
 
@@ -25,11 +27,14 @@ pub(super) struct View<'a> {
     pub lights: Vec<LightView<'a>>,
     /// Golden-angle discs for surfaces and for strands, as in the shader.
     pub surface_disc: [Vec2; SURFACE_TAPS],
+    wide_disc: [Vec2; WIDE_TAPS],
     pub strand_disc: [Vec2; STRAND_TAPS],
     /// Light from all directions among the hair.
     pub grid: &'a AmbientGrid,
     /// How strands are shaded.
     pub shading: ShadingView<'a>,
+    /// The light from all directions on surfaces: [`FrameUniform::surround`] as plain numbers, so that loops over them vectorise.
+    surround: [[f32; 3]; 9],
 }
 
 /// How strands are shaded, with what that needs: see [`lovelock_groom::HairShading`].
@@ -56,6 +61,8 @@ pub(super) struct LightView<'a> {
     blur: f32,
     /// The size of a texel, as a fraction of the map's edge.
     texel: f32,
+    /// Whether the edge of the body's shadow is wide.
+    wide: bool,
     /// Unit vectors along the map's edges, to the right and down.
     edges: [Vec3; 2],
     shadow_from_world: Mat4,
@@ -88,6 +95,11 @@ impl<'a> View<'a> {
                 radiance: light.radiance,
                 blur: light.blur.max(1.0) / texels as f32,
                 texel: 1.0 / texels as f32,
+                wide: if standing.is_standing() {
+                    standing.radius > WIDE_LAMP
+                } else {
+                    light.blur > WIDE_BLUR
+                },
                 edges: [
                     light.shadow_from_world.row(0).truncate().normalize_or_zero(),
                     -light.shadow_from_world.row(1).truncate().normalize_or_zero(),
@@ -98,7 +110,14 @@ impl<'a> View<'a> {
                 standing: standing.is_standing().then(|| StandingLight::new(standing, views, columns(k))),
             })
             .collect();
-        Self { uniform, lights, surface_disc: disc(), strand_disc: disc(), grid, shading }
+        let surround = uniform.surround.map(|of| [of.x, of.y, of.z]);
+        let (surface_disc, wide_disc, strand_disc) = (disc(), disc(), disc());
+        Self { uniform, lights, surface_disc, wide_disc, strand_disc, grid, shading, surround }
+    }
+
+    /// The taps of the soft shadow of a light on the body.
+    pub fn body_disc(&self, light: &LightView<'_>) -> &[Vec2] {
+        if light.wide { &self.wide_disc } else { &self.surface_disc }
     }
 
     /// Points of each fine strand; 1 if stored strands are drawn.
@@ -112,12 +131,25 @@ impl<'a> View<'a> {
         let [x, y, z] = n;
         let basis = [1.0, y, z, x, 1.5 * y * y - 0.5, y * z, y * x, z * z - x * x, 2.0 * x * z];
         let mut sum = [0.0; 3];
-        for (sh, basis) in self.uniform.surround.iter().zip(basis) {
+        for k in 0..9 {
             for c in 0..3 {
-                sum[c] += sh[c] * basis;
+                sum[c] += self.surround[k][c] * basis[k];
             }
         }
         three(|c| max(sum[c], 0.0))
+    }
+
+    /// [`View::ambient`] of several normals.
+    #[inline(always)]
+    pub fn ambient_of<const N: usize>(&self, n: &[[f32; N]; 3]) -> [[f32; N]; 3] {
+        let mut out = [[0.0; N]; 3];
+        for lane in 0..N {
+            let [r, g, b] = self.ambient([n[0][lane], n[1][lane], n[2][lane]]);
+            out[0][lane] = r;
+            out[1][lane] = g;
+            out[2][lane] = b;
+        }
+        out
     }
 
     /// The mean light from all directions: irradiance over pi, averaged over the directions of surfaces.
@@ -196,7 +228,7 @@ impl LightView<'_> {
         let mut v = [0.0; N];
         let mut z = [0.0; N];
         let mut inside = [0.0; N];
-        let (mut any, mut steepest) = (0.0, 0.0);
+        let mut steep = [0.0; N];
         for lane in 0..N {
             let (x, y, w) =
                 (p[0][lane] - toward.x * bias, p[1][lane] - toward.y * bias, p[2][lane] - toward.z * bias);
@@ -207,15 +239,15 @@ impl LightView<'_> {
             let leans = lean[0][lane].abs() + lean[1][lane].abs();
             let nearer = self.texel * leans / max(lean[2][lane], 0.25);
             z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w - nearer;
-            steepest = max(leans, steepest);
-            let seen = (u[lane] >= 0.0) & (v[lane] >= 0.0) & (u[lane] <= 1.0) & (v[lane] <= 1.0);
+            steep[lane] = leans;
+            // One comparison vectorises, four do not.
+            let seen = min(min(u[lane], 1.0 - u[lane]), min(v[lane], 1.0 - v[lane])) >= 0.0;
             inside[lane] = if seen { 1.0 } else { 0.0 };
-            any = max(inside[lane], any);
         }
-        if any <= 0.0 {
+        if most(&inside) <= 0.0 {
             return [1.0; N];
         }
-        if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur, steepest) {
+        if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur, most(&steep)) {
             let mut out = [1.0; N];
             for lane in 0..N {
                 out[lane] = if inside[lane] > 0.0 { all } else { 1.0 };

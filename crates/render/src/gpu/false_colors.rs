@@ -61,11 +61,17 @@ impl FalseColors {
         }
     }
 
-    /// Compiles the kernels if necessary, and uploads one value per strand point.
+    /// Compiles the kernels if necessary, and uploads one value per strand point. `missing` points behind them have none.
     ///
     /// # Errors
     /// A shader does not compile.
-    pub fn write(&mut self, gpu: &Gpu, shaders: &FalseColorShaders, values: &[f32]) -> Result<(), GpuError> {
+    pub fn write(
+        &mut self,
+        gpu: &Gpu,
+        shaders: &FalseColorShaders,
+        values: &[f32],
+        missing: usize,
+    ) -> Result<(), GpuError> {
         if self.kernels.is_none() {
             self.kernels = Some(Kernels {
                 values: Kernel::new(gpu, "given values of points", &shaders.values, "given_points")?,
@@ -77,6 +83,7 @@ impl FalseColors {
         let known = |&value: &f32| if value.is_finite() { value } else { f32::MAX };
         self.staging.clear();
         self.staging.extend(values.iter().map(known));
+        self.staging.resize(values.len() + missing, f32::MAX);
         self.values.write(gpu, &self.staging);
         Ok(())
     }

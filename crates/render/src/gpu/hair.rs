@@ -1,5 +1,7 @@
 //! The strands on the GPU: positions, and shading of points.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
@@ -218,6 +220,23 @@ impl HairBuffers {
             segments: self.drawn_segments.raw(),
             segment_count: (portion.drawn * (points - 1)) as u32,
         }
+    }
+
+    /// The first points of the segments of [`HairBuffers::drawn`], in order, and some more.
+    pub fn segment_list(&self) -> &Arc<Vec<u32>> {
+        &self.drawn.segments
+    }
+
+    /// Makes room for shaded points behind those of the drawn strands. Returns the offset of their place, bytes.
+    pub fn make_room(&mut self, gpu: &Gpu, points: usize) -> u64 {
+        let own = self.drawn().point_count as usize;
+        self.shaded.reserve(gpu, own + points);
+        (own * size_of::<ShadedPoint>()) as u64
+    }
+
+    /// Bytes of the shaded points of the drawn strands.
+    pub fn shaded_bytes(&self) -> u64 {
+        u64::from(self.drawn().point_count) * size_of::<ShadedPoint>() as u64
     }
 
     /// The places at which the shadows of the drawn points are looked up.

@@ -2,7 +2,7 @@
 
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, Readback, ShaderSource, wgpu};
 
-use super::light_kernels::{LISTS, LightSet};
+use super::light_kernels::{LISTS, LightSet, shows_body};
 use crate::Layers;
 
 /// Bytes per pixel of the two buffers.
@@ -12,11 +12,21 @@ const DATA_BYTES: u64 = 8;
 /// The parts of the kernels.
 #[derive(Debug)]
 pub(super) struct LayerShaders {
-    pub layers: ShaderSource,
+    /// Without and with materials of the body.
+    pub layers: [ShaderSource; 2],
     pub values: ShaderSource,
 }
 
-/// The kernels for some lights, with or without the background.
+/// What the kernels are compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LayerVariant {
+    pub lights: LightSet,
+    pub over_background: bool,
+    /// Whether the body has materials.
+    pub has_materials: bool,
+}
+
+/// The kernels of a [`LayerVariant`].
 #[derive(Debug)]
 pub(super) struct LayerKernels {
     pub background: Kernel,
@@ -31,19 +41,22 @@ impl LayerKernels {
     fn compile(
         gpu: &Gpu,
         shaders: &LayerShaders,
-        lights: LightSet,
-        over_background: bool,
+        LayerVariant { lights, over_background, has_materials }: LayerVariant,
     ) -> Result<Self, GpuError> {
         let over = ("OVER_BACKGROUND", f64::from(u8::from(over_background)));
         let [count, standing] = lights.constants();
         let kernel = |label, entry, list: f64| {
             let constants = [count, standing, ("LIST", list), over];
-            Kernel::specialised(gpu, label, &shaders.layers, entry, &constants)
+            Kernel::specialised(gpu, label, &shaders.layers[0], entry, &constants)
         };
-        let lit = |list| kernel("layer lit", "layer_lit", list);
+        let lit = |list: usize| {
+            let constants = [count, standing, ("LIST", list as f64), over];
+            let source = &shaders.layers[usize::from(has_materials && shows_body(list))];
+            Kernel::specialised(gpu, "layer lit", source, "layer_lit", &constants)
+        };
         Ok(Self {
             background: kernel("layer background", "layer_background", 0.0)?,
-            lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
+            lit: [lit(0)?, lit(1)?, lit(2)?, lit(3)?],
             values: Kernel::new(gpu, "values of points", &shaders.values, "value_points")?,
             transmittance: kernel("layer transmittance", "layer_transmittance", 0.0)?,
             depth: kernel("layer depth", "layer_depth", 0.0)?,
@@ -54,7 +67,7 @@ impl LayerKernels {
 /// The kernels that were used, and the buffers of the pixels.
 #[derive(Debug)]
 pub(super) struct LayerBuffers {
-    kernels: Vec<((LightSet, bool), LayerKernels)>,
+    kernels: Vec<(LayerVariant, LayerKernels)>,
     light: GrowBuffer<[f32; 4]>,
     data: GrowBuffer<[f32; 2]>,
     readback: Readback,
@@ -87,19 +100,19 @@ impl LayerBuffers {
         gpu: &Gpu,
         shaders: &LayerShaders,
         pixels: u64,
-        variant: (LightSet, bool),
+        variant: LayerVariant,
     ) -> Result<(), GpuError> {
         self.light.reserve(gpu, pixels as usize);
         self.data.reserve(gpu, pixels as usize);
         if !self.kernels.iter().any(|(known, _)| *known == variant) {
-            let kernels = LayerKernels::compile(gpu, shaders, variant.0, variant.1)?;
+            let kernels = LayerKernels::compile(gpu, shaders, variant)?;
             self.kernels.push((variant, kernels));
         }
         Ok(())
     }
 
     /// The kernels of a kind that [`LayerBuffers::fit`] has made.
-    pub fn kernels(&self, variant: (LightSet, bool)) -> Option<&LayerKernels> {
+    pub fn kernels(&self, variant: LayerVariant) -> Option<&LayerKernels> {
         self.kernels.iter().find(|(known, _)| *known == variant).map(|(_, kernels)| kernels)
     }
 
@@ -114,7 +127,7 @@ impl LayerBuffers {
         self.readback.copy(gpu, commands.encoder(), &wanted);
     }
 
-    /// Waits for the readback.
+    /// Waits for the readback, and takes the light, and depth and transmittance `with_values`.
     ///
     /// # Errors
     /// The device is lost.
@@ -122,6 +135,7 @@ impl LayerBuffers {
         &mut self,
         gpu: &Gpu,
         [width, height]: [u32; 2],
+        with_values: bool,
         layers: &mut Layers,
     ) -> Result<(), GpuError> {
         let [light, data] = &mut self.bytes;
@@ -129,6 +143,9 @@ impl LayerBuffers {
         layers.resize(width, height);
         for (to, from) in layers.light.iter_mut().zip(light.as_chunks::<16>().0) {
             *to = bytemuck::pod_read_unaligned(from);
+        }
+        if !with_values {
+            return Ok(());
         }
         let places = layers.depth.iter_mut().zip(&mut layers.transmittance);
         for ((depth, transmittance), from) in places.zip(data.as_chunks::<8>().0) {

@@ -43,7 +43,9 @@ pub(super) struct LightKernels {
     shade_points: [[OnceLock<Kernel>; 2]; SHADINGS],
     pub ground: Kernel,
     /// The kernels that draw the pixels of each list.
-    pub picture_lit: [Kernel; LISTS],
+    picture_lit: [Kernel; LISTS],
+    /// Those for the lists that show a body, if it has materials: compiled for the first such body.
+    materials_lit: [OnceLock<Kernel>; LISTS],
 }
 
 /// The parts of these kernels.
@@ -52,6 +54,8 @@ pub(super) struct LightShaders {
     pub points: ShaderSource,
     pub ground: ShaderSource,
     pub picture: ShaderSource,
+    /// The picture of a body with materials.
+    pub materials: ShaderSource,
 }
 
 /// The kernels for all lights that have been used.
@@ -102,8 +106,14 @@ impl LightShaders {
             ],
             ground: kernel("ground", &self.ground, "ground_corners", &[count, standing])?,
             picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
+            materials_lit: [const { OnceLock::new() }; LISTS],
         })
     }
+}
+
+/// Whether a list shows the body: twin of `BODY` and `BODY_AND_GROUND` in picture.wgsl.
+pub(super) fn shows_body(list: usize) -> bool {
+    list.is_multiple_of(2)
 }
 
 impl LightKernels {
@@ -117,6 +127,25 @@ impl LightKernels {
             return Ok(kernel);
         }
         let kernel = self.shaders.shade_points(gpu, self.lights, shading, colored)?;
+        Ok(made.get_or_init(|| kernel))
+    }
+
+    /// The kernel that draws the pixels of a list, of a body with or without materials.
+    ///
+    /// # Errors
+    /// The driver cannot compile it.
+    pub fn picture_lit(&self, gpu: &Gpu, list: usize, has_materials: bool) -> Result<&Kernel, GpuError> {
+        if !has_materials || !shows_body(list) {
+            return Ok(&self.picture_lit[list]);
+        }
+        let made = &self.materials_lit[list];
+        if let Some(kernel) = made.get() {
+            return Ok(kernel);
+        }
+        let [count, standing] = self.lights.constants();
+        let constants = [count, standing, ("LIST", list as f64)];
+        let source = &self.shaders.materials;
+        let kernel = Kernel::specialised(gpu, "picture lit", source, "picture_lit", &constants)?;
         Ok(made.get_or_init(|| kernel))
     }
 }

@@ -3,29 +3,34 @@
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 use lovelock_shadow::cube;
 
+use super::clusters;
 use super::false_colors::FalseColorShaders;
 use super::layers::LayerShaders;
 use super::light_kernels::{LightShaders, LightVariants};
 use super::present::Present;
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
-use super::{clusters, eye, fine, interpolate};
 
 macro_rules! part {
     ($name:literal) => {
-        ShaderPart {
+        lovelock_gpu::ShaderPart {
             name: concat!("crates/render/src/gpu/shaders/", $name),
-            text: include_str!(concat!("shaders/", $name)),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/gpu/shaders/", $name)),
         }
     };
 }
+pub(super) use part as shader_part;
 
-const FRAME: ShaderPart = part!("frame.wgsl");
+pub(super) const FRAME: ShaderPart = part!("frame.wgsl");
 const TWO_HIGHLIGHTS: ShaderPart = part!("two_highlights.wgsl");
 const KAJIYA_KAY: ShaderPart = part!("kajiya_kay.wgsl");
 const FIBRE: ShaderPart = part!("fibre.wgsl");
 const STRAND_POINTS: ShaderPart = part!("strand_points.wgsl");
 const SURFACE: ShaderPart = part!("surface.wgsl");
+const SURFACE_GROUPS: ShaderPart = part!("samples.wgsl");
+const SURFACE_SAMPLES: ShaderPart = part!("surface_samples.wgsl");
+const MATERIAL_SAMPLES: ShaderPart = part!("material_samples.wgsl");
+const MATERIAL_SHADING: ShaderPart = part!("material_shading.wgsl");
 const SURFACE_SHADING: ShaderPart = part!("surface_shading.wgsl");
 const DEPTH: ShaderPart = part!("depth.wgsl");
 const GROUND_LIGHT: ShaderPart = part!("ground_light.wgsl");
@@ -41,54 +46,34 @@ const SHRINK: ShaderPart = part!("shrink.wgsl");
 const SKIN_SHADOW: ShaderPart = part!("skin_shadow.wgsl");
 
 /// The shaders of these kernels and pipelines.
-fn own_shaders() -> [(&'static str, ShaderSource); 10] {
+pub(super) fn own_shaders() -> [(&'static str, ShaderSource); 12] {
     let [clusters, surface, rib_light, published] = clusters::RIB_PARTS;
+    let without = [SURFACE_SHADING, SURFACE_SAMPLES];
+    let with_materials = [MATERIAL_SHADING, MATERIAL_SAMPLES];
+    let strands = [cube::SHADER, FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS];
     [
-        ("strand points", &[cube::SHADER, FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS][..]),
-        ("ground", &[cube::SHADER, FRAME, GROUND_LIGHT, GROUND]),
-        ("picture", &[cube::SHADER, FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
-        ("surface", &[cube::SHADER, FRAME, SURFACE]),
-        ("depth", &[DEPTH]),
-        (
-            "layers",
-            &[cube::SHADER, FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS],
-        ),
-        (
-            "false colours",
-            &[
-                cube::SHADER,
-                FRAME,
-                SURFACE_SHADING,
-                GROUND_LIGHT,
-                BACKDROP,
-                TONE_MAP,
-                PICTURE,
-                LAYERS,
-                FALSE_COLORS,
-            ],
-        ),
-        (
-            "values of points",
-            &[cube::SHADER, FRAME, TWO_HIGHLIGHTS, KAJIYA_KAY, FIBRE, STRAND_POINTS, VALUE_POINTS],
-        ),
-        ("present", &[PRESENT]),
-        (
-            "light on ribs",
-            &[
-                cube::SHADER,
-                FRAME,
-                TWO_HIGHLIGHTS,
-                KAJIYA_KAY,
-                FIBRE,
-                STRAND_POINTS,
-                clusters,
-                surface,
-                rib_light,
-                published,
-            ],
-        ),
+        ("strand points", strands.to_vec()),
+        ("ground", vec![cube::SHADER, FRAME, GROUND_LIGHT, GROUND]),
+        ("picture", picture_parts(without, &[])),
+        ("surface", vec![cube::SHADER, FRAME, SURFACE]),
+        ("depth", vec![DEPTH]),
+        ("layers", picture_parts(without, &[LAYERS])),
+        ("false colours", picture_parts(without, &[LAYERS, FALSE_COLORS])),
+        ("values of points", [&strands[..], &[VALUE_POINTS]].concat()),
+        ("present", vec![PRESENT]),
+        ("light on ribs", [&strands[..], &[clusters, surface, rib_light, published]].concat()),
+        ("picture with materials", picture_parts(with_materials, &[])),
+        ("layers with materials", picture_parts(with_materials, &[LAYERS])),
     ]
-    .map(|(label, parts)| (label, ShaderSource::new(parts)))
+    .map(|(label, parts)| (label, ShaderSource::new(&parts)))
+}
+
+/// A shader that shades the samples of the body, then what is drawn from them.
+fn picture_parts(surface: [ShaderPart; 2], more: &[ShaderPart]) -> Vec<ShaderPart> {
+    let [shading, of_samples] = surface;
+    let picture =
+        [cube::SHADER, FRAME, shading, SURFACE_GROUPS, of_samples, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE];
+    [&picture[..], more].concat()
 }
 
 /// The shader of [`Shrinker`](super::Shrinker).
@@ -99,14 +84,6 @@ pub(super) fn shrink_source() -> ShaderSource {
 /// The shader of [`SkinShadow`](super::skin_shadow::SkinShadow).
 pub(super) fn skin_shadow_source() -> ShaderSource {
     ShaderSource::new(&[SKIN_SHADOW])
-}
-
-/// Every composed shader with its label, so that a test can validate them without a device.
-pub fn all_shaders() -> Vec<(String, ShaderSource)> {
-    let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
-    let more = [("shrink".to_owned(), shrink_source()), ("skin shadow".to_owned(), skin_shadow_source())];
-    let hair = interpolate::shaders().into_iter().chain(fine::shaders()).chain(clusters::shaders());
-    own.chain(more).chain(eye::shaders()).chain(hair).collect()
 }
 
 /// The kernels and pipelines, and the bind group layouts of the pipelines.
@@ -136,13 +113,25 @@ pub(super) const MOVING_VERTEX_BYTES: u64 = 32;
 pub(super) const FIXED_VERTEX_BYTES: u64 = 16;
 
 /// Without culling, and with culling of back faces.
-const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
+pub(super) const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth, layers, colors, values, present, rib_light] =
-            own_shaders();
+        let [
+            points,
+            ground,
+            picture,
+            surface,
+            depth,
+            layers,
+            colors,
+            values,
+            present,
+            rib_light,
+            picture_of_materials,
+            layers_of_materials,
+        ] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -165,9 +154,14 @@ impl Pipelines {
         Ok(Self {
             screen: ScreenKernels::new(gpu, &picture.1)?,
             present: Present::new(gpu, &present.1)?,
-            layers: LayerShaders { layers: layers.1, values: values.1.clone() },
+            layers: LayerShaders { layers: [layers.1, layers_of_materials.1], values: values.1.clone() },
             false_colors: FalseColorShaders { colors: colors.1, values: values.1 },
-            lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
+            lit: LightVariants::new(LightShaders {
+                points: points.1,
+                ground: ground.1,
+                picture: picture.1,
+                materials: picture_of_materials.1,
+            }),
             rib_light: rib_light.1,
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
@@ -243,7 +237,7 @@ fn depth_pipeline(
     })
 }
 
-fn depth_state(compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
+pub(super) fn depth_state(compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format: DEPTH_FORMAT,
         depth_write_enabled: Some(true),

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use lovelock_gpu::{Commands, Gpu, PassTime, PassTimer, Readback, wgpu};
 use lovelock_shadow::{GpuList, SUM_WORDS, ShadowMethod};
 
+use super::carried::CarriedBuffers;
 use super::clusters::{Clusters, RibLighting};
 use super::eye::{Area, Eye, HairOutput, Lists, too_large};
 use super::false_colors::FalseColors;
@@ -27,11 +28,14 @@ use super::shadow::GpuShadowStage;
 use super::skin_shadow::SkinShadow;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
+use crate::backdrop::{Backdrop, LaidBackdrop};
 use crate::clusters::{of_casters, without_strands};
+use crate::cpu::encode;
 use crate::image::DeviceImage;
 use crate::light_view::{bounding_sphere, light_views};
 use crate::shadow_look::has_soft_skin;
 use crate::standing::layer_of;
+use crate::textures::BodyTextures;
 use crate::uniform::{FrameUniform, LightMaps, PlainBackground};
 use crate::{FrameInput, FrameStats, Light, MAX_LIGHTS, RenderError};
 use flight::Flights;
@@ -50,6 +54,8 @@ pub struct GpuRenderer {
     timer: PassTimer,
     shadow: GpuShadowStage,
     hair: HairBuffers,
+    /// Hair that the skin carries, beside it.
+    carried: CarriedBuffers,
     /// Hair that is drawn as clusters, beside strands or in their place.
     clusters: Clusters,
     surface: SurfaceBuffers,
@@ -63,6 +69,9 @@ pub struct GpuRenderer {
     uniform_group: wgpu::BindGroup,
     targets: Option<Targets>,
     screen: Screen,
+    backdrop: Backdrop,
+    /// The picture behind the figure in the last image.
+    behind: Option<Arc<LaidBackdrop>>,
     layers: LayerBuffers,
     false_colors: FalseColors,
     /// Uniform of the last frame.
@@ -105,6 +114,7 @@ impl GpuRenderer {
             timer: PassTimer::new(&gpu)?,
             shadow: GpuShadowStage::new(&gpu),
             hair: HairBuffers::new(&gpu)?,
+            carried: CarriedBuffers::new(&gpu),
             clusters: Clusters::default(),
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             skin: SkinShadow::new(&gpu)?,
@@ -124,6 +134,8 @@ impl GpuRenderer {
             uniform,
             targets: None,
             screen: Screen::new(&gpu),
+            backdrop: Backdrop::default(),
+            behind: None,
             layers: LayerBuffers::new(&gpu),
             false_colors: FalseColors::new(&gpu),
             last: FrameUniform::default(),
@@ -185,6 +197,7 @@ impl GpuRenderer {
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
+                + self.carried.memory_bytes()
                 + self.clusters.memory_bytes()
                 + self.screen.memory_bytes()
                 + self.targets.as_ref().map_or(0, Targets::memory_bytes),
@@ -204,17 +217,23 @@ impl GpuRenderer {
         height: u32,
         output: Output,
     ) -> Result<Option<wgpu::Buffer>, RenderError> {
-        self.fit(gpu, width, height)?;
+        let has_materials = input.body.is_some_and(|(body, _)| BodyTextures::are_in(body));
+        self.fit(gpu, [width, height], has_materials)?;
+        self.behind = self.backdrop.follow(input, [width, height], encode);
         let clusters = self.clusters.follow(input, height);
         let picture = without_strands(input.picture);
         let casters = clusters.as_ref().filter(|(_, share)| *share >= 1.0);
         let casters = casters.map(|(hair, _)| of_casters(input, hair, &picture));
         let input = casters.as_ref().unwrap_or(input);
         self.hair.write(gpu, &mut commands, input, height)?;
+        let stored = without_strands(input.picture);
+        let of_carried = input.of_carried(&stored).filter(|_| casters.is_none());
+        self.carried.write(gpu, &mut commands, (of_carried.as_ref(), height), &mut self.hair)?;
         self.clusters.write(gpu, &mut commands, input, height)?;
         self.light.write(gpu, &mut commands, input);
-        self.surface.write(gpu, input.body, input.camera.eye);
-        self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
+        self.surface.write(gpu, &self.pipelines, input)?;
+        let looked_up = (self.carried.hair(), self.surface.vertices());
+        self.shadow.run(gpu, &mut commands, input, &mut self.hair, looked_up)?;
         self.clusters.look_up(gpu, &mut commands, &mut self.shadow);
         let is_soft = has_soft_skin(input, self.hair.portion().is_some());
         if is_soft && let (Some((body, _)), Some(vertices)) = (input.body, self.surface.vertices()) {
@@ -234,6 +253,11 @@ impl GpuRenderer {
             self.surface.texels,
         );
         gpu.upload(&self.uniform, 0, &[uniform]);
+        if let Some(of_carried) = &of_carried {
+            let (light, texels) = (self.light.light(), self.surface.texels);
+            let uniform = FrameUniform::new(of_carried, None, light, (width, height), &maps, texels);
+            self.carried.write_uniform(gpu, &uniform);
+        }
         let (scene_light, texels) = (self.light.light(), self.surface.texels);
         self.clusters.write_uniform(gpu, input, scene_light, (width, height), &maps, texels);
         self.last = uniform;
@@ -261,6 +285,7 @@ impl GpuRenderer {
         let shading = PointShading { kernels: lit, model: input.look.shading, tables: self.light.tables() };
         if seen.has_strands {
             self.hair.shade(gpu, "draw/points", shading, &mut commands, &frame)?;
+            self.carried.shade(gpu, shading, &mut commands, &frame, &self.hair)?;
         }
         let lighting = RibLighting {
             shading,
@@ -275,8 +300,14 @@ impl GpuRenderer {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }
         let blended = HairOutput::Blended(seen.transparency);
-        let eye =
-            eye_input(&seen, &self.hair, self.clusters.drawn(&mut commands), targets, &uniform, blended);
+        let eye = eye_input(
+            &seen,
+            (&self.hair, &self.carried),
+            self.clusters.drawn(&mut commands),
+            targets,
+            &uniform,
+            blended,
+        );
         self.eye.draw(gpu, &mut commands, &eye)?;
         let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
@@ -287,24 +318,28 @@ impl GpuRenderer {
             area,
             hair: self.eye.layer(),
             figure: figure.widened(CELL, [width, height]),
-            background: PlainBackground::of(&uniform),
+            background: PlainBackground::of(&uniform, self.behind.as_ref().map_or(0, |behind| behind.number)),
+            materials: self.surface.materials(),
+            picture: self.behind.as_deref(),
         };
-        self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);
+        self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen)?;
         let report = self.encode_output(gpu, &mut commands, output, u64::from(width) * u64::from(height));
         commands.submit();
         Ok(report)
     }
 
     /// Fits what depends on the size of the image.
-    fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<(), RenderError> {
+    fn fit(&mut self, gpu: &Gpu, [width, height]: [u32; 2], has_materials: bool) -> Result<(), RenderError> {
         let bytes = 4 * u64::from(width) * u64::from(height);
         if bytes > gpu.most_storage_bytes() {
             return Err(too_large(gpu, bytes).into());
         }
-        if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
+        let is_fit =
+            |t: &Targets| (t.width, t.height) == (width, height) && (t.materials.is_some() || !has_materials);
+        if !self.targets.as_ref().is_some_and(is_fit) {
             // The old ones are freed when the bind groups of the last frames are.
             self.targets = None;
-            self.targets = Some(Targets::new(gpu, width, height));
+            self.targets = Some(Targets::new(gpu, [width, height], has_materials));
         }
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
@@ -371,8 +406,12 @@ impl GpuRenderer {
                 ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })
         };
+        let mut attachments = vec![target(&targets.normals), target(&targets.colors)];
+        if self.surface.materials().is_some() {
+            attachments.extend(targets.materials.iter().flatten().map(target));
+        }
         let descriptor = wgpu::RenderPassDescriptor {
-            color_attachments: &[target(&targets.normals), target(&targets.colors)],
+            color_attachments: &attachments,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {

@@ -7,6 +7,7 @@ use super::frame_resources::FrameResources;
 use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
+use crate::backdrop::LaidBackdrop;
 use crate::uniform::PlainBackground;
 
 /// Bytes of the workgroups of one kernel.
@@ -46,6 +47,23 @@ pub(super) struct ScreenInput<'a> {
     /// The area that may contain hair or body, in whole cells.
     pub figure: Area,
     pub background: PlainBackground,
+    /// The records of the materials of the body, if it has any.
+    pub materials: Option<&'a wgpu::Buffer>,
+    /// The picture behind the figure, if any.
+    pub picture: Option<&'a LaidBackdrop>,
+}
+
+/// The bindings of what materials add to the samples of the body.
+pub(super) fn material_bindings<'a>(
+    targets: &'a Targets,
+    materials: Option<&'a wgpu::Buffer>,
+) -> Vec<(u32, wgpu::BindingResource<'a>)> {
+    let Some((bound, [bumps, shades])) = materials.zip(targets.materials.as_ref()) else { return Vec::new() };
+    vec![
+        (27, wgpu::BindingResource::TextureView(bumps)),
+        (25, wgpu::BindingResource::TextureView(shades)),
+        (26, bound.as_entire_binding()),
+    ]
 }
 
 /// The pixels, and the lists of those that are not plain background.
@@ -55,6 +73,9 @@ pub(super) struct Screen {
     /// The plain background, and what it was computed from.
     plain: GrowBuffer<u32>,
     plain_of: Option<PlainBackground>,
+    /// The pixels of the picture behind the figure, and its number.
+    picture: GrowBuffer<u32>,
+    picture_number: u64,
     cells: GrowBuffer<u32>,
     /// Lists of pixels. Two lists share a buffer of the size of the picture.
     listed: GrowBuffer<u32>,
@@ -70,6 +91,8 @@ impl Screen {
             pixels: GrowBuffer::new(gpu, "screen", usage),
             plain: GrowBuffer::new(gpu, "plain background", usage),
             plain_of: None,
+            picture: GrowBuffer::new(gpu, "picture behind the figure", usage),
+            picture_number: 0,
             cells: GrowBuffer::new(gpu, "light of cells", usage),
             listed: GrowBuffer::new(gpu, "listed pixels", usage),
             list_count: gpu.create_buffer(&wgpu::BufferDescriptor {
@@ -102,7 +125,10 @@ impl Screen {
     }
 
     pub fn memory_bytes(&self) -> u64 {
-        [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
+        [&self.pixels, &self.plain, &self.picture, &self.cells, &self.listed]
+            .iter()
+            .map(|buffer| buffer.raw().size())
+            .sum()
     }
 
     /// Runs a kernel with a thread for each pixel of a list of the last picture. The device knows how many these are.
@@ -139,6 +165,9 @@ impl Screen {
     }
 
     /// Encodes computing the pixels.
+    ///
+    /// # Errors
+    /// A kernel that is needed for the first time does not compile.
     pub fn run(
         &mut self,
         gpu: &Gpu,
@@ -147,8 +176,12 @@ impl Screen {
         commands: &mut Commands,
         frame: &FrameResources,
         input: &ScreenInput,
-    ) {
-        let ScreenInput { targets, area, figure, .. } = *input;
+    ) -> Result<(), GpuError> {
+        let ScreenInput { targets, area, figure, picture, .. } = *input;
+        if let Some(picture) = picture.filter(|picture| picture.number != self.picture_number) {
+            self.picture.write(gpu, &picture.pixels);
+            self.picture_number = picture.number;
+        }
         let area_of =
             |label, area: Area| commands.constants(label, &[area.left, area.top, area.columns, area.rows]);
         let (hair_area, figure_area) = (area_of("hair area", area), area_of("area of the figure", figure));
@@ -166,6 +199,7 @@ impl Screen {
                 (13, self.list_count.as_entire_binding()),
                 (14, figure_area.as_entire_binding()),
                 (18, self.list_groups.as_entire_binding()),
+                (21, self.picture.raw().as_entire_binding()),
             ])
         };
         let pixels = self.pixels.len() as u64;
@@ -175,7 +209,8 @@ impl Screen {
             commands.compute("draw/background", |pass| kernel.run(pass, &group, pixels));
             self.plain_of = Some(input.background);
         }
-        let own = own(self.pixels.raw().as_entire_binding());
+        let mut own = own(self.pixels.raw().as_entire_binding());
+        own.extend(material_bindings(targets, input.materials));
         let encoder = commands.encoder();
         encoder.copy_buffer_to_buffer(self.plain.raw(), 0, self.pixels.raw(), 0, 4 * pixels);
         encoder.clear_buffer(&self.list_count, 0, None);
@@ -190,11 +225,16 @@ impl Screen {
                 kernel.run(pass, group, *threads);
             }
         });
-        let groups = lit.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
+        let kernels = (0..LISTS).map(|list| {
+            let kernel = lit.picture_lit(gpu, list, input.materials.is_some())?;
+            Ok((kernel, kernel.bind(gpu, &own)))
+        });
+        let kernels = kernels.collect::<Result<Vec<_>, GpuError>>()?;
         commands.compute("draw/lit", |pass| {
-            for (list, (kernel, group)) in lit.picture_lit.iter().zip(&groups).enumerate() {
+            for (list, (kernel, group)) in kernels.iter().enumerate() {
                 self.run_list(pass, kernel, group, list);
             }
         });
+        Ok(())
     }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
-    GpuColumns, GpuList, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
+    Bounds, GpuColumns, GpuList, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
     gpu_shadow,
 };
 
@@ -65,7 +65,7 @@ impl GpuShadowStage {
         }
     }
 
-    /// Encodes building the maps of all lights and looking up all strand points and vertices.
+    /// Encodes building the maps of all lights and looking up all strand points, those of carried hair, and vertices.
     ///
     /// # Errors
     /// The maps exceed their memory limit, or a shader does not compile.
@@ -75,7 +75,7 @@ impl GpuShadowStage {
         commands: &mut Commands,
         input: &FrameInput,
         hair: &mut HairBuffers,
-        vertices: Option<Vertices>,
+        (carried, vertices): (Option<&HairBuffers>, Option<Vertices>),
     ) -> Result<(), RenderError> {
         let lights: Vec<Light> = Light::enabled(input.lights).collect();
         let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
@@ -100,6 +100,8 @@ impl GpuShadowStage {
         if input.known.is_none() {
             commands.encoder().clear_buffer(&self.sum, 0, None);
         }
+        let in_world = method.in_world();
+        let extent = if in_world { hair.bounds(input, LightFrame::WORLD, anchor).0 } else { Bounds::EMPTY };
         for (slot, light) in lights.iter().enumerate() {
             // Transported instead of recomputed, so that the map does not roll while the light is dragged.
             let base = match self.frames.get(slot) {
@@ -110,15 +112,23 @@ impl GpuShadowStage {
             self.frames.truncate(slot);
             self.frames.push([base, frame]);
             let (bounds, longest_strand) = hair.bounds(input, frame, anchor);
+            let samples = frame.samples(anchor);
+            let sample_bounds: Vec<_> = match &samples[..] {
+                [_] => Vec::new(),
+                all => all.iter().map(|&light| hair.bounds(input, light, anchor).0).collect(),
+            };
             let from = GpuShadowInput {
                 strands: hair.strands(),
                 bounds,
+                extent,
                 longest_strand,
                 strand_width: look.strand_width,
                 extinction_scale: look.extinction_scale,
                 light: frame,
                 anchor,
                 maps: lights.len() as u32,
+                sample_bounds: &sample_bounds,
+                shared_list: None,
                 projected: None,
             };
             shadow.build(slot, gpu, commands, &from, &look.settings)?;
@@ -129,9 +139,22 @@ impl GpuShadowStage {
                 count: strands.point_count,
                 out: hair.transmittance(),
                 sum: Some(&self.sum),
+                byte: None,
                 projected: None,
             };
             if input.known.is_none() {
+                shadow.look_up(slot, gpu, commands, &targets);
+            }
+            if let Some(carried) = carried {
+                let targets = GpuTargets {
+                    points: carried.asked(),
+                    stride: 1,
+                    count: carried.drawn().point_count,
+                    out: carried.transmittance(),
+                    sum: None,
+                    byte: None,
+                    projected: None,
+                };
                 shadow.look_up(slot, gpu, commands, &targets);
             }
             let asked = input.known.is_none_or(|known| known.at_vertices.is_empty());
@@ -142,6 +165,7 @@ impl GpuShadowStage {
                     count: vertices.count,
                     out: vertices.hair,
                     sum: None,
+                    byte: None,
                     projected: None,
                 };
                 shadow.look_up(slot, gpu, commands, &targets);

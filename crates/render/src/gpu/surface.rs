@@ -4,16 +4,18 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
-use lovelock_gpu::{Commands, Gpu, GrowBuffer, wgpu};
-use lovelock_motion::{Body, Skin};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, wgpu};
+use lovelock_motion::Body;
 use rayon::prelude::*;
 
 use super::pipelines::Pipelines;
 use super::shadow::Vertices;
+use super::surface_textures::SurfaceTextures;
 use super::targets::DEPTH_FORMAT;
-use crate::MAX_LIGHTS;
 use crate::closed::{Closedness, encloses};
 use crate::skin::ScalpPaint;
+use crate::textures::BodyTextures;
+use crate::{FrameInput, MAX_LIGHTS};
 
 /// Vertex attributes that change every frame: position and normal. Shadow methods read them as two `vec4f`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -41,6 +43,9 @@ pub(super) struct SurfaceBuffers {
     fixed: GrowBuffer<VertexColor>,
     indices: GrowBuffer<u32>,
     staging: Vec<VertexPose>,
+    /// The materials of the body, once there was a body with some, and whether this one has.
+    textures: Option<SurfaceTextures>,
+    has_materials: bool,
     depth: DepthMaps,
     /// Texels along the edge of a depth map.
     pub texels: u32,
@@ -61,6 +66,8 @@ impl SurfaceBuffers {
             fixed: GrowBuffer::new(gpu, "body colours", vertex),
             indices: GrowBuffer::new(gpu, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
+            textures: None,
+            has_materials: false,
             depth: DepthMaps::new(gpu, pipelines, texels, MAX_LIGHTS),
             texels,
         }
@@ -79,14 +86,25 @@ impl SurfaceBuffers {
         }
     }
 
-    /// Uploads one frame, seen from `eye`.
-    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, eye: Vec3) {
-        let Some((body, skin)) = body else {
-            self.body = None;
+    /// The materials of the body, if it has any.
+    pub fn materials(&self) -> Option<&wgpu::Buffer> {
+        self.drawn_textures().map(SurfaceTextures::bindings)
+    }
+
+    /// Uploads one frame.
+    ///
+    /// # Errors
+    /// The pipelines of the first body with materials do not compile.
+    pub fn write(&mut self, gpu: &Gpu, pipelines: &Pipelines, input: &FrameInput) -> Result<(), GpuError> {
+        let eye = input.camera.eye;
+        let Some((body, skin)) = input.body else {
+            (self.body, self.has_materials) = (None, false);
+            self.textures.iter_mut().for_each(SurfaceTextures::forget);
             self.indices.reserve(gpu, 0);
             self.moving.reserve(gpu, 0);
-            return;
+            return Ok(());
         };
+        self.has_materials = BodyTextures::are_in(body);
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
             let mesh = &body.mesh;
             let mut paint = ScalpPaint::default();
@@ -98,8 +116,18 @@ impl SurfaceBuffers {
                 })
                 .collect();
             self.fixed.write(gpu, &fixed);
-            self.indices.write(gpu, mesh.triangles.as_flattened());
+            if !self.has_materials {
+                self.indices.write(gpu, mesh.triangles.as_flattened());
+                self.textures.iter_mut().for_each(SurfaceTextures::forget);
+            }
             self.body = Some(Arc::clone(body));
+        }
+        if self.has_materials {
+            let drawn = match &mut self.textures {
+                Some(drawn) => drawn,
+                none => none.insert(SurfaceTextures::new(gpu, &pipelines.uniform_layout)?),
+            };
+            drawn.follow(gpu, body, &input.picture.body_look, &mut self.indices);
         }
         self.is_closed = self.closed.of(body);
         self.seen_from_without = self.is_closed && !encloses(eye, &skin.positions, &body.mesh.triangles);
@@ -110,6 +138,11 @@ impl SurfaceBuffers {
             .collect_into_vec(&mut self.staging);
         self.moving.write(gpu, &self.staging);
         self.hair.reserve(gpu, self.staging.len());
+        Ok(())
+    }
+
+    fn drawn_textures(&self) -> Option<&SurfaceTextures> {
+        self.textures.as_ref().filter(|_| self.has_materials)
     }
 
     /// The vertices for shadow methods; `None` without a body.
@@ -147,11 +180,19 @@ impl SurfaceBuffers {
             if self.indices.is_empty() {
                 return;
             }
-            pass.set_pipeline(&pipelines.depth[usize::from(self.is_closed && behind)]);
+            let textures = self.drawn_textures();
+            let holed = textures.filter(|textures| textures.has_holes());
+            // Light passes through holes to faces that look away from it.
+            let culled = self.is_closed && behind && holed.is_none();
+            pass.set_pipeline(&pipelines.depth[usize::from(culled)]);
             pass.set_bind_group(0, group, &[]);
             pass.set_vertex_buffer(0, self.moving.raw().slice(..));
             pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
+            let opaque = holed.map_or(0..self.indices.len() as u32, SurfaceTextures::opaque_indices);
+            pass.draw_indexed(opaque, 0, 0..1);
+            if let Some(holed) = holed {
+                holed.draw_depth_of_holes(pass);
+            }
         });
     }
 
@@ -160,13 +201,18 @@ impl SurfaceBuffers {
         if self.indices.is_empty() {
             return;
         }
-        pass.set_pipeline(&pipelines.surface[usize::from(self.seen_from_without)]);
+        if !self.has_materials {
+            pass.set_pipeline(&pipelines.surface[usize::from(self.seen_from_without)]);
+        }
         pass.set_bind_group(0, uniform, &[]);
         pass.set_vertex_buffer(0, self.moving.raw().slice(..));
         pass.set_vertex_buffer(1, self.fixed.raw().slice(..));
         pass.set_vertex_buffer(2, self.hair.raw().slice(..));
         pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
+        match self.drawn_textures() {
+            Some(textures) => textures.draw(pass),
+            None => pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1),
+        }
     }
 }
 

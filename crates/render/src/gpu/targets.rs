@@ -18,15 +18,19 @@ pub(super) struct Targets {
     pub normals: wgpu::TextureView,
     pub colors: wgpu::TextureView,
     pub depth: wgpu::TextureView,
+    /// What materials add: bumped normal, material and occlusion; colour in shade and emitted light.
+    pub materials: Option<[wgpu::TextureView; 2]>,
 }
 
 impl Targets {
-    /// Memory of all textures: per sample 8 bytes for normals, 8 for colours and 4 for depth.
+    /// Memory of all textures: per sample 8 bytes for normals, 8 for colours, 4 for depth and 16 for materials.
     pub fn memory_bytes(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height) * u64::from(SAMPLES) * 20
+        let bytes = if self.materials.is_some() { 36 } else { 20 };
+        u64::from(self.width) * u64::from(self.height) * u64::from(SAMPLES) * bytes
     }
 
-    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    /// Textures for a size of picture, with those of materials if it has any.
+    pub fn new(gpu: &Gpu, [width, height]: [u32; 2], has_materials: bool) -> Self {
         let make = |label, format| {
             let texture = gpu.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -46,6 +50,8 @@ impl Targets {
             normals: make("normals", NORMAL_FORMAT),
             colors: make("colours", COLOR_FORMAT),
             depth: make("depths", DEPTH_FORMAT),
+            materials: has_materials
+                .then(|| [make("materials", NORMAL_FORMAT), make("colours of materials", NORMAL_FORMAT)]),
         }
     }
 }

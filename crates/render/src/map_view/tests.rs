@@ -113,6 +113,7 @@ fn a_pixel_of_a_slice_has_the_colour_of_the_map_there() {
         eye: Vec3::new(0.0, -0.5 * DEPTH, 0.0) + 2.0 * light.y,
         target: Vec3::new(0.0, -0.5 * DEPTH, 0.0),
         fov_y: 0.3,
+        shear: glam::Vec2::ZERO,
     };
     with_field(ShadowMethod::VoxelMap, 1.0, |field| {
         let view = MapView {
@@ -151,7 +152,12 @@ fn a_pixel_of_a_slice_has_the_colour_of_the_map_there() {
 
 #[test]
 fn points_are_drawn_only_where_there_is_hair() {
-    let camera = Camera { eye: Vec3::new(0.3, 0.2, 1.0), target: Vec3::new(0.0, -0.1, 0.0), fov_y: 0.5 };
+    let camera = Camera {
+        eye: Vec3::new(0.3, 0.2, 1.0),
+        target: Vec3::new(0.0, -0.1, 0.0),
+        fov_y: 0.5,
+        shear: glam::Vec2::ZERO,
+    };
     with_field(ShadowMethod::VoxelMap, 1.0, |field| {
         let view = MapView { value: MapValue::Density, form: MapForm::Points, ..MapView::default() };
         let changed = |points: u32| {

@@ -126,7 +126,12 @@ fn hair_shadows_the_body() {
         s.lights = vec![Light { direction: Vec3::new(0.0, -0.5, -0.5), softness: 0.0, ..Light::default() }];
         s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
         s.picture.ambient = 0.0;
-        s.camera = Camera { eye: Vec3::new(0.0, -0.1, 1.0), target: Vec3::new(0.0, -0.1, 0.0), fov_y: 0.3 };
+        s.camera = Camera {
+            eye: Vec3::new(0.0, -0.1, 1.0),
+            target: Vec3::new(0.0, -0.1, 0.0),
+            fov_y: 0.3,
+            shear: glam::Vec2::ZERO,
+        };
         s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
     };
     let Some(free) = wall(false, ShadowMethod::VoxelMap) else { return };
@@ -155,7 +160,8 @@ fn hair_shadows_the_ground() {
         s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
         s.picture.ground = true;
         (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.3), Vec3::splat(0.3));
-        s.camera = Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3 };
+        s.camera =
+            Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3, shear: glam::Vec2::ZERO };
         s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
     };
     let Some(free) = ground(false, ShadowMethod::VoxelMap) else { return };
@@ -175,7 +181,12 @@ fn the_body_shadows_hair() {
             s.body = Some(quad(0.3, 0.1, Vec3::splat(0.5)));
         }
         s.lights = vec![Light { direction: Vec3::NEG_Z, ..Light::default() }];
-        s.camera = Camera { eye: Vec3::new(0.6, 0.0, 0.25), target: Vec3::ZERO, fov_y: 0.2 };
+        s.camera = Camera {
+            eye: Vec3::new(0.6, 0.0, 0.25),
+            target: Vec3::ZERO,
+            fov_y: 0.2,
+            shear: glam::Vec2::ZERO,
+        };
         s.picture.ambient = 0.1;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;

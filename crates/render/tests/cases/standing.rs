@@ -19,7 +19,8 @@ fn wall(lights: Vec<Light>) -> Scene {
     s.body = Some(common::grid(0.0, 0.5, 64, Vec3::splat(0.5)));
     s.lights = lights;
     s.picture.ambient = 0.0;
-    s.camera = Camera { eye: Vec3::new(0.0, 0.0, 1.0), target: Vec3::ZERO, fov_y: 0.6 };
+    s.camera =
+        Camera { eye: Vec3::new(0.0, 0.0, 1.0), target: Vec3::ZERO, fov_y: 0.6, shear: glam::Vec2::ZERO };
     s
 }
 
@@ -84,7 +85,7 @@ fn hair_before_a_lamp_shadows_the_wall() {
             s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
             s.picture.ambient = 0.0;
             let target = Vec3::new(0.0, -0.1, 0.0);
-            s.camera = Camera { eye: target + Vec3::Z, target, fov_y: 0.3 };
+            s.camera = Camera { eye: target + Vec3::Z, target, fov_y: 0.3, shear: glam::Vec2::ZERO };
             s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
         };
         let Some(free) = at(false, ShadowMethod::VoxelMap) else { return };
@@ -119,7 +120,8 @@ fn hair_and_body_shadow_the_ground_under_a_lamp() {
         s.shadow.method = ShadowMethod::Exact;
         s.picture.ground = true;
         (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.3), Vec3::splat(0.3));
-        s.camera = Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3 };
+        s.camera =
+            Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3, shear: glam::Vec2::ZERO };
         s.draw_by(BACKEND, 96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
     };
     // At 0.55 m the hair and the board take in more than one view.
@@ -141,7 +143,12 @@ fn a_board_shadows_hair_from_a_lamp_and_not_from_one_between_them() {
         }
         let light = lamp(LightKind::Point, Vec3::new(0.0, 0.0, z), Vec3::ZERO);
         s.lights = vec![Light { intensity: 3.0 * z * z, ..light }];
-        s.camera = Camera { eye: Vec3::new(0.6, 0.0, 0.25), target: Vec3::ZERO, fov_y: 0.2 };
+        s.camera = Camera {
+            eye: Vec3::new(0.6, 0.0, 0.25),
+            target: Vec3::ZERO,
+            fov_y: 0.2,
+            shear: glam::Vec2::ZERO,
+        };
         s.picture.ambient = 0.1;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;

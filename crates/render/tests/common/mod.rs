@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec3};
-use lovelock_appearance::environment::Panorama;
+use lovelock_appearance::environment::{BackdropPicture, Panorama};
 use lovelock_gpu::Gpu;
 use lovelock_groom::{
     GroomSettings, GuideFrame, HairLook, HairShading, Hairstyle, PlainHead, StrandSet, Strands, grow,
@@ -55,6 +55,8 @@ pub struct Scene {
     pub camera: Camera,
     pub picture: PictureSettings,
     pub surroundings: Option<Arc<Panorama>>,
+    /// The picture behind the scene.
+    pub backdrop: Option<Arc<BackdropPicture>>,
 }
 
 impl Scene {
@@ -105,7 +107,9 @@ impl Scene {
             picture: &self.picture,
             is_draft: false,
             surroundings: self.surroundings.as_ref(),
+            backdrop: self.backdrop.as_ref(),
             known: None,
+            carried: None,
         }
     }
 }
@@ -140,6 +144,14 @@ pub fn soft_wig() -> Scene {
     scene.lights[0].direction = Vec3::new(0.25, -0.1, -1.0);
     scene.picture.strand_number = 3_000.0;
     scene
+}
+
+/// The share of pixels in which some channel differs by more than each of `steps`.
+pub fn shares_over<const N: usize>(a: &Picture, b: &Picture, steps: [u8; N]) -> [f32; N] {
+    let largest = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap_or(0);
+    let [a, b] = [a, b].map(|picture| picture.rgba.as_chunks::<4>().0);
+    let differences: Vec<u8> = a.iter().zip(b).map(largest).collect();
+    steps.map(|step| differences.iter().filter(|&&d| d > step).count() as f32 / a.len() as f32)
 }
 
 /// A hairstyle for strands given as points, with default properties.
@@ -182,7 +194,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
         body: None,
         lights: vec![Light { direction: Vec3::new(0.0, -0.6, -0.8), ..Light::default() }],
         shadow: ShadowSettings { method: ShadowMethod::None, ..ShadowSettings::default() },
-        camera: Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5 },
+        camera: Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5, shear: glam::Vec2::ZERO },
         picture: PictureSettings {
             background_top: Vec3::ZERO,
             background_bottom: Vec3::ZERO,
@@ -193,6 +205,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
             ..PictureSettings::default()
         },
         surroundings: None,
+        backdrop: None,
     }
 }
 

@@ -225,7 +225,12 @@ fn over_ground() -> Scene {
     s.lights.truncate(1);
     s.lights[0].direction = Vec3::new(0.1, -1.0, 0.05);
     s.picture.ground = true;
-    s.camera = Camera { eye: Vec3::new(0.0, 0.5, 1.2), target: Vec3::new(0.0, 0.1, 0.0), fov_y: 0.6 };
+    s.camera = Camera {
+        eye: Vec3::new(0.0, 0.5, 1.2),
+        target: Vec3::new(0.0, 0.1, 0.0),
+        fov_y: 0.6,
+        shear: glam::Vec2::ZERO,
+    };
     s
 }
 
@@ -260,7 +265,8 @@ fn the_shadow_on_the_ground_ends_with_its_map() {
 fn pictures_larger_than_the_devices_buffers_are_drawn_in_bands() {
     let mut s = tuft_scene(60);
     // Hair in the whole picture: 72 bytes per pixel exceed the 128 MiB that software adapters can bind.
-    s.camera = Camera { eye: Vec3::new(0.0, 0.0, 0.1), target: Vec3::ZERO, fov_y: 1.2 };
+    s.camera =
+        Camera { eye: Vec3::new(0.0, 0.0, 0.1), target: Vec3::ZERO, fov_y: 1.2, shear: glam::Vec2::ZERO };
     s.picture.transparency = Transparency::OccupancyOrder;
     let (w, h) = (1700, 1200);
     let Some(gpu) = s.draw_by(Backend::Gpu, w, h) else { return };
@@ -279,7 +285,12 @@ fn ground_beyond_the_bodys_shadow_map_is_lit() {
         s.style = common::scene(&[]).style;
         // Steep light, a ground far below the body, and a position right under it but behind the far end of the map.
         s.lights[0].direction = Vec3::new(0.02, -1.0, 0.02);
-        s.camera = Camera { eye: Vec3::new(0.0, 3.0, 3.0), target: Vec3::new(0.0, 0.0, 0.0), fov_y: 0.5 };
+        s.camera = Camera {
+            eye: Vec3::new(0.0, 3.0, 3.0),
+            target: Vec3::new(0.0, 0.0, 0.0),
+            fov_y: 0.5,
+            shear: glam::Vec2::ZERO,
+        };
         if let Some((_, skin)) = &mut s.body {
             skin.positions.iter_mut().for_each(|p| p.y += 1.0);
         }

@@ -4,6 +4,8 @@
 mod common;
 
 mod agreement;
+mod backdrop;
+mod carried;
 mod cluster_agreement;
 mod cluster_lights;
 mod clusters;
@@ -14,10 +16,12 @@ mod fine;
 mod inspect;
 mod kajiya_kay;
 mod layers;
+mod lens;
 mod map_view;
 mod picture_cpu;
 mod picture_gpu;
 mod receding;
 mod shaders;
+mod surfaces;
 mod values;
 mod window;

@@ -63,7 +63,8 @@ fn grey_tuft(transparency: Transparency) -> Scene {
     s.picture.ambient = 1.0;
     s.picture.strand_opacity = 0.7;
     s.picture.transparency = transparency;
-    s.camera = Camera { eye: Vec3::new(0.0, 0.0, 1.0), target: Vec3::ZERO, fov_y: 0.3 };
+    s.camera =
+        Camera { eye: Vec3::new(0.0, 0.0, 1.0), target: Vec3::ZERO, fov_y: 0.3, shear: glam::Vec2::ZERO };
     s
 }
 

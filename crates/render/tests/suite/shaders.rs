@@ -10,3 +10,12 @@ fn every_shader_is_valid() {
         }
     }
 }
+
+#[test]
+fn every_shader_has_a_translation_for_direct3d() {
+    for (label, source) in all_shaders() {
+        if let Err(error) = lovelock_gpu::to_hlsl(&source) {
+            panic!("{label}: {error}");
+        }
+    }
+}

@@ -44,6 +44,7 @@ impl Engine {
             styling: self.styling.clone(),
             animation: self.animation.clone(),
             simulation: self.simulation.clone(),
+            stepper: self.stepper.copy(),
             combing: None,
             pose: Pose::default(),
             colliders: Vec::new(),
@@ -64,6 +65,7 @@ impl Engine {
         self.combing = None;
         (self.scene, self.styling) = (aside.scene, aside.styling);
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
+        self.stepper.take_settled(aside.stepper);
         (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
         self.sheltering = aside.sheltering;
         self.report = aside.report;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use lovelock_motion::{pose_at, skin};
 use lovelock_record::TakeFrame;
 
 use super::Engine;
@@ -66,6 +65,8 @@ impl Engine {
         let (scene, times) = (combed.as_ref().unwrap_or(&self.scene), &mut self.times);
         let (simulation, own_pose, report, totals) = (&self.simulation, &self.pose, self.report, self.totals);
         let rest_inside = self.rest_inside;
+        let (on_device, refusal) = self.stepper.state();
+        let refusal = refusal.cloned();
         let own_secs = self.at_step as f64 * self.step_secs;
         let (step, time_secs) = (self.taken, between.map_or(own_secs, |(frame, _)| frame.guides.time_secs));
         self.pool.make(scene, |frame| {
@@ -73,16 +74,17 @@ impl Engine {
                 (step, time_secs, scene.position_secs(time_secs));
             frame.duration_secs = scene.duration_secs();
             if let Some((mixed, _)) = between {
-                pose_at(&scene.body, scene.clip.as_deref(), mixed.clip_secs, &mut frame.pose);
+                scene.pose_at(mixed.clip_secs, &mut frame.pose);
                 frame.guides.clone_from(&mixed.guides);
             } else {
                 frame.pose.clone_from(own_pose);
                 simulation.frame(&mut frame.guides);
             }
-            skin(&scene.body, &frame.pose, &mut frame.skin);
+            frame.follow_pose();
             // The simulator's clock contains jumps; frames use the time of the scene.
             frame.guides.time_secs = time_secs;
             (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
+            (frame.on_device, frame.device_refusal) = (on_device, refusal);
             times.motion += watch.ms();
             frame.times = std::mem::take(times);
         })

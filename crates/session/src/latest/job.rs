@@ -72,6 +72,11 @@ impl<T> LatestJob<T> {
         pending.request.is_some() || pending.rest
     }
 
+    /// What `of` returns for the request that waits, if any.
+    pub fn peek<R>(&self, of: impl FnOnce(&T) -> R) -> Option<R> {
+        self.lock().request.as_ref().map(of)
+    }
+
     /// Whether the current request is obsolete: the worker must end, or free what it keeps.
     pub fn is_dropped(&self) -> bool {
         let pending = self.lock();
@@ -152,7 +157,9 @@ mod tests {
         jobs.done(None);
         assert!(!busy(&jobs));
         assert_eq!(jobs.next_within(Duration::from_millis(1)), None);
+        assert_eq!(jobs.peek(|request| *request), None);
         jobs.put(5);
+        assert_eq!(jobs.peek(|request| *request), Some(5), "it still waits");
         assert_eq!(jobs.next_within(Duration::ZERO), Some(Job::Do(5)));
     }
 

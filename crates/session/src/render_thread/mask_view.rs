@@ -62,6 +62,13 @@ fn painted(body: &Body, vertices: &[u32], scalp: &Scalp, shown: &ShownMask) -> B
     // The roots of hair would colour the skin as well.
     let hairy_skin = std::mem::take(&mut mesh.scalp);
     mesh.colors.resize(mesh.positions.len(), Vec3::splat(0.5));
+    // No texture changes the colours of the mask.
+    let is_hairy = |&vertex: &u32| hairy_skin.get(vertex as usize).is_some_and(|hairy| *hairy > 0.0);
+    for (corners, material) in mesh.triangles.iter().zip(&mut mesh.materials) {
+        if corners.iter().any(is_hairy) {
+            *material = u16::MAX;
+        }
+    }
     let head = HeadBox::of(scalp);
     if vertices.len() != scalp.positions.len() {
         // A scalp that was fitted has a net of its own; the body has its mask.

@@ -1,6 +1,7 @@
 //! The render thread: takes the newest request when it is free, renders it and publishes the image.
 
 mod mask_view;
+mod patience;
 mod samples;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,7 +13,7 @@ use std::time::Duration;
 use lovelock_project::Project;
 use lovelock_project::project::backend_label;
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, HairDrawing, Image, Picture,
+    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, HairDrawing, Image, Interrupt, Picture,
     PictureSettings, RenderError, Renderer, Transparency,
 };
 
@@ -23,6 +24,7 @@ use crate::stats::StageTimes;
 use crate::window_device::WindowDevice;
 use mask_view::MaskView;
 pub use mask_view::ShownMask;
+use patience::Patience;
 use samples::{Samples, jitter};
 
 /// How well an image is rendered.
@@ -52,6 +54,9 @@ pub struct RenderRequest {
     pub measured: bool,
     /// A mask that is shown on hair and scalp in place of their colours.
     pub mask: Option<Arc<ShownMask>>,
+    /// Rises with each input of the user that the image shows, and not with the frames of a dance. The CPU gives up an image that has
+    /// hardly begun if a request with another number waits.
+    pub input: u64,
 }
 
 /// A finished image with its cost.
@@ -161,6 +166,7 @@ impl RenderThread {
             last: None,
             samples: Samples::default(),
             mask: MaskView::default(),
+            patience: Patience::default(),
             picture: Picture::default(),
             cost: None,
             transmittance: 1.0,
@@ -249,6 +255,7 @@ struct Worker {
     last: Option<RenderRequest>,
     samples: Samples,
     mask: MaskView,
+    patience: Patience,
     picture: Picture,
     /// The image that a device finished last: its size, and its time in milliseconds.
     cost: Option<([u32; 2], f64)>,
@@ -303,6 +310,12 @@ impl Worker {
                     self.images.put(Arc::new(image));
                     self.last = Some(request.clone());
                     false
+                }
+                // The request that ended it waits, or none is of use any more.
+                Ok(Err(RenderError::Interrupted)) => {
+                    self.samples.forget();
+                    self.jobs.done(None);
+                    continue;
                 }
                 Ok(Err(error)) => {
                     self.samples.forget();
@@ -399,7 +412,7 @@ impl Worker {
         if let Some(gpu) = opened_on_window.or_else(|| self.window.get()).filter(|gpu| gpu.is_lost()) {
             // The window opens another device and asks again. A loss that two images notice is one loss.
             self.opened = None;
-            let known = self.lost.as_ref().is_some_and(|lost| lost.device == gpu.device);
+            let known = self.lost.as_ref().is_some_and(|lost| lost.is_same_device(&gpu));
             if known && self.failures.latest().is_some_and(|last| last.pictures == self.images.number()) {
                 return false;
             }
@@ -488,6 +501,13 @@ impl Worker {
                 &mut none.insert(Opened { backend, window, renderer }).renderer
             }
         };
+        let jobs = self.jobs.clone();
+        let waiting = move || jobs.peek(|waiting| waiting.input);
+        let for_newer = self.patience.interrupt((request.input, is_sample), waiting);
+        let jobs = self.jobs.clone();
+        renderer.set_interrupt(Some(Interrupt::new(move || {
+            jobs.is_dropped() || for_newer.as_ref().is_some_and(Interrupt::is_due)
+        })));
         let RenderRequest { project, snapshot, size, measured, .. } = request;
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
@@ -508,9 +528,13 @@ impl Worker {
                 ..snapshot.frame_input(project, &camera)
             };
             renderer.strand_colors(&input, *size, (&self.mask.values, &shown.scale), textures)?
-        } else if request.quality == ImageQuality::Refined && renderer.backend() == Backend::Cpu {
+        } else if request.quality == ImageQuality::Refined
+            && (renderer.backend() == Backend::Cpu || project.camera.lens.enabled)
+        {
             let index = if is_sample { self.samples.taken() } else { 0 };
-            let jittered = camera.moved_by_pixels(jitter(index), size[1]);
+            let lens = snapshot.lens(&project.camera, &camera);
+            let jittered = camera.moved_by_pixels(jitter(index, lens.is_some()), size[1]);
+            let jittered = lens.map_or(jittered, |lens| lens.camera(&jittered, index));
             let picture = &mut self.picture;
             let input = snapshot.frame_input(project, &jittered);
             let stats = renderer.picture(&input, size[0], size[1], picture)?;
@@ -532,6 +556,7 @@ impl Worker {
         } else {
             self.cost = Some((*size, stats.interpolate_ms + stats.shadow_ms + stats.draw_ms));
         }
+        self.patience.finished();
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
@@ -555,7 +580,10 @@ impl Worker {
 
 /// Whether both are the same device, or none.
 fn same_device(a: Option<&Arc<Gpu>>, b: Option<&Arc<Gpu>>) -> bool {
-    a.map(|gpu| &gpu.device) == b.map(|gpu| &gpu.device)
+    match (a, b) {
+        (Some(a), Some(b)) => a.is_same_device(b),
+        (a, b) => a.is_none() && b.is_none(),
+    }
 }
 
 /// Whether the renderer must be opened again. Opening it again does not help if a shader does not compile, something does not

@@ -9,24 +9,21 @@ use lovelock_render::Picture;
 use rayon::prelude::*;
 
 use super::{ImageQuality, RenderRequest};
+use crate::scene::radical;
 use crate::snapshot::FrameSnapshot;
 
 /// The most samples of each pixel.
 const MAX: u32 = 16;
 
-/// Where sample `index` is taken, pixels from the middle of a pixel: points of Halton's sequence for the bases 2 and 3.
-pub(super) fn jitter(index: u32) -> Vec2 {
-    let radical = |base: u32| {
-        let (mut rest, mut digit, mut sum) = (index, 1.0, 0.0);
-        while rest > 0 {
-            digit /= base as f32;
-            sum += digit * (rest % base) as f32;
-            rest /= base;
-        }
-        sum
-    };
+/// The most samples of an image with depth of field.
+const MAX_OF_LENS: u32 = 48;
+
+/// Where sample `index` is taken, pixels from the middle of a pixel: points of Halton's sequence. The places of a lens use its first two
+/// bases.
+pub(super) fn jitter(index: u32, of_lens: bool) -> Vec2 {
+    let [a, b] = if of_lens { [5, 7] } else { [2, 3] };
     // The first sample is the middle of the pixel, as in an image of one sample.
-    if index == 0 { Vec2::ZERO } else { Vec2::new(radical(2), radical(3)) - 0.5 }
+    if index == 0 { Vec2::ZERO } else { Vec2::new(radical(index, a), radical(index, b)) - 0.5 }
 }
 
 /// The sums of the samples of one image.
@@ -51,7 +48,8 @@ impl Samples {
 
     /// Whether further samples of `request` are worth their time.
     pub fn wants_more(&self, request: &RenderRequest) -> bool {
-        request.quality == ImageQuality::Refined && self.is_of(request) && (1..MAX).contains(&self.taken)
+        let most = if request.project.camera.lens.enabled { MAX_OF_LENS } else { MAX };
+        request.quality == ImageQuality::Refined && self.is_of(request) && (1..most).contains(&self.taken)
     }
 
     fn is_of(&self, request: &RenderRequest) -> bool {
@@ -143,7 +141,7 @@ mod tests {
 
     #[test]
     fn samples_fill_a_pixel_evenly() {
-        let all: Vec<_> = (0..MAX).map(jitter).collect();
+        let all: Vec<_> = (0..MAX).map(|index| jitter(index, false)).collect();
         assert_eq!(all[0], Vec2::ZERO);
         let mean = all.iter().sum::<Vec2>() / MAX as f32;
         assert!(mean.length() < 0.06, "{mean}");

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, sync_channel};
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::files::Access;
 use lovelock_render::Gpu;
 use lovelock_testkit::wait::HANG;
@@ -58,6 +59,7 @@ impl Rig {
             quality: ImageQuality::Full,
             measured: false,
             mask: None,
+            input: 0,
         });
         while self.thread.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
@@ -193,11 +195,16 @@ fn images_are_textures_of_the_window_whatever_draws_them() {
     let window = WindowDevice::default();
     window.set(Some(Arc::clone(&gpu)));
     let (there, here) = (Rig::on(window, Renderer::open), Rig::new(Renderer::open));
-    for (rig, is_texture) in [(&there, true), (&here, false)] {
-        rig.draw(Backend::Cpu);
+    // The renderer on the GPU has a device of its own, as beside the software adapter of a window.
+    for (backend, (rig, is_texture)) in [Backend::Gpu, Backend::Cpu]
+        .into_iter()
+        .flat_map(|backend| [(backend, (&there, true)), (backend, (&here, false))])
+    {
+        rig.draw(backend);
+        assert_eq!(rig.thread.error(), None, "{backend}");
         let image = rig.thread.images().latest().expect("an image").image.clone();
         assert_eq!(image.on_device().is_some(), is_texture);
-        assert!(image.on_device().is_none_or(|image| image.gpu().device == gpu.device));
+        assert!(image.on_device().is_none_or(|image| image.gpu().is_same_device(&gpu)));
     }
     assert!(there.pixels() == here.pixels(), "the same bytes");
 }
@@ -216,7 +223,7 @@ fn a_lost_window_device_is_not_retried_until_the_window_has_another_one() {
     rig.draw(Backend::Gpu);
     let before = rig.pixels();
     let image = rig.thread.images().latest().expect("an image");
-    assert!(image.image.on_device().is_some_and(|image| image.gpu().device == gpu.device));
+    assert!(image.image.on_device().is_some_and(|image| image.gpu().is_same_device(&gpu)));
     drop(image);
     gpu.device.destroy();
     rig.draw(Backend::Gpu);
@@ -247,6 +254,7 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         quality,
         measured: false,
         mask: None,
+        input: 0,
     };
     let wait = |samples: u32| loop {
         rig.finished.recv_timeout(HANG).expect("an image");
@@ -278,4 +286,34 @@ fn what_stands_still_is_refined_until_something_else_is_wanted() {
         off(&some, &refined),
         off(&plain, &refined)
     );
+}
+
+#[test]
+fn input_that_never_stops_is_seen() {
+    let rig = Rig::new(Renderer::open);
+    let mut project = small_project();
+    project.picture.backend = Backend::Cpu;
+    let project = Arc::new(project);
+    let (mut input, mut seen, mut images) = (0, 0, 0);
+    // A new input arrives many times during each image.
+    let watch = Stopwatch::start();
+    while images < 8 {
+        assert!(watch.elapsed() < HANG, "{images} images of {input} inputs");
+        input += 1;
+        rig.thread.request(RenderRequest {
+            project: Arc::clone(&project),
+            snapshot: Arc::clone(&rig.snapshot),
+            size: [64, 48],
+            quality: ImageQuality::Draft,
+            measured: false,
+            mask: None,
+            input,
+        });
+        images += usize::from(rig.thread.images().newer_than(&mut seen).is_some());
+        std::thread::sleep(Duration::from_micros(500));
+    }
+    while rig.thread.busy().load(Ordering::Relaxed) {
+        rig.finished.recv_timeout(HANG).expect("an end");
+    }
+    assert_eq!(rig.thread.error(), None, "an image that is given up is no failure");
 }

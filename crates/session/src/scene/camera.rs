@@ -1,6 +1,6 @@
 //! The camera at a time of the scene, and framing.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lovelock_project::project::{CameraMode, CameraSection};
 use lovelock_render::Camera;
 
@@ -8,8 +8,14 @@ use super::Scene;
 
 /// The camera of a project at a time of the scene. It depends only on its arguments.
 pub fn camera_at(section: &CameraSection, scene: &Scene, time_secs: f64) -> Camera {
+    let section = &section.turned(time_secs);
     let target = target(section, scene, time_secs);
-    Camera { eye: target + from_target(section) * section.distance, target, fov_y: section.fov_y }
+    Camera {
+        eye: target + from_target(section) * section.distance,
+        target,
+        fov_y: section.fov_y,
+        shear: Vec2::ZERO,
+    }
 }
 
 fn target(section: &CameraSection, scene: &Scene, time_secs: f64) -> Vec3 {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use lovelock_groom::Obstacle;
-use lovelock_motion::{Collider, ColliderEdits, ScalpFit};
+use lovelock_motion::{Collider, ColliderEdits, Face, ScalpFit};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
@@ -13,8 +13,9 @@ use lovelock_style::StyleCache;
 use super::control::LoadControl;
 use super::hair_slot::HairSlot;
 use super::head_path::HeadPath;
-use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart};
+use super::parts::{BodyKey, BodyPart, MotionKey, MotionPart, face_notes};
 use super::scalp_part::{Enlarged, ScalpPart};
+use super::skin_hair_part::{SkinHairPart, mask_notes};
 use super::styling::{MorphCache, MorphSource};
 use super::{Scene, StyleSource, SurroundingsLoader};
 
@@ -41,6 +42,7 @@ pub struct SceneLoader {
     other_hair: HairSlot,
     morph: MorphCache,
     enlarged: Enlarged,
+    skin_hair: SkinHairPart,
     surroundings: SurroundingsLoader,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
     colliders: Option<(Arc<BodyPart>, ColliderEdits, ColliderLists)>,
@@ -116,12 +118,14 @@ impl SceneLoader {
         control.at("done", 1.0)?;
 
         let of_parts = [&body.notes, &scalp.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned();
-        let notes: Vec<Problem> = of_parts.chain(self.surroundings.notes()).collect();
+        let of_body = face_notes(&scalp.body, &project.body.face).into_iter().chain(mask_notes(&scalp.body));
+        let notes: Vec<Problem> = of_parts.chain(of_body).chain(self.surroundings.notes()).collect();
         let [colliders, sheltering] = self.colliders(&body, &project.body.colliders);
         let scene = Scene {
             body: Arc::clone(&scalp.body),
             clips: Arc::clone(&body.clips),
             clip: motion.clip.clone(),
+            face: Arc::new(Face::new(&scalp.body, &project.body.face)),
             speed: f64::from(project.motion.speed),
             looping,
             loop_blend: project.motion.loop_blend,
@@ -131,6 +135,7 @@ impl SceneLoader {
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
             style: self.enlarged.of(&styled, scalp.scale),
+            skin_hair: self.skin_hair.of(&scalp.body, project.body.brows.grooms(), scalp.scale),
             source: Arc::new(source),
             hair_scale: scalp.scale,
             usual_scalp: Arc::clone(&scalp.scalp),

@@ -5,29 +5,34 @@ mod control;
 mod hair_part;
 mod hair_slot;
 mod head_path;
+mod lens;
 mod loader;
 mod parts;
 mod scalp_part;
 mod shipped;
+mod skin_hair_part;
 mod styling;
 mod surroundings;
 
 pub use camera::{camera_at, camera_for_size, frame_points};
 pub use control::LoadControl;
 pub use head_path::HeadPath;
+pub use lens::Lens;
+pub(crate) use lens::{Figure, radical};
 pub use loader::SceneLoader;
 pub(crate) use scalp_part::Enlarged;
 pub use shipped::dancer;
 pub use styling::StyleSource;
 pub(crate) use styling::Styling;
+pub use surroundings::Surroundings;
 pub(crate) use surroundings::SurroundingsLoader;
 
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_appearance::environment::Panorama;
+use lovelock_groom::carried::SkinHair;
 use lovelock_groom::{Hairstyle, Obstacle, Scalp};
-use lovelock_motion::{Body, BodyField, Clip, Collider, LoopBlend, RestDistance, Skull};
+use lovelock_motion::{Body, BodyField, Clip, Collider, Face, LoopBlend, Pose, RestDistance, Skull, pose_at};
 use lovelock_project::error::Problem;
 use lovelock_simulation::BodyPart;
 
@@ -57,6 +62,8 @@ pub struct Scene {
     pub clips: Arc<[Arc<Clip>]>,
     /// The clip that is played; the body is at rest if there is none.
     pub clip: Option<Arc<Clip>>,
+    /// What is added to the clip's weights of morph targets.
+    pub face: Arc<Face>,
     /// Speed: seconds of the clip per second.
     pub speed: f64,
     /// Whether the clip starts again at its end.
@@ -75,6 +82,8 @@ pub struct Scene {
     pub field_lift_m: f32,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
+    /// Brows and lashes, which the skin carries; none on bodies whose file has no masks of them.
+    pub skin_hair: Option<Arc<SkinHair>>,
     /// What the hairstyle is made of, for tracks of layers.
     pub source: Arc<StyleSource>,
     /// Size of the hair as a multiple of that on the shipped dancer: lengths of the project's settings are those on her head.
@@ -85,8 +94,8 @@ pub struct Scene {
     pub skull: Option<Skull>,
     /// The path of the head.
     pub head_path: Arc<HeadPath>,
-    /// The picture of the surroundings that gives light from all directions, if there is one.
-    pub surroundings: Option<Arc<Panorama>>,
+    /// The pictures around the figure.
+    pub surroundings: Surroundings,
     /// Notes about the files of body, motion, hair and surroundings: guesses, and ignored contents.
     pub notes: Arc<[Problem]>,
 }
@@ -109,6 +118,12 @@ impl Scene {
             // The end of the clip is the start of its next repetition.
             clip_secs.clamp(0.0, clip.duration_secs.next_down())
         }
+    }
+
+    /// Poses the body at a time of the clip.
+    pub fn pose_at(&self, clip_secs: f64, pose: &mut Pose) {
+        pose_at(&self.body, self.clip.as_deref(), clip_secs, pose);
+        self.face.apply(&mut pose.morph_weights);
     }
 
     /// The repetition of the clip at a time of the scene; 0 if it does not loop.
@@ -220,6 +235,8 @@ mod head_tests;
 mod morph_tests;
 #[cfg(test)]
 mod operation_tests;
+#[cfg(test)]
+mod skin_hair_tests;
 #[cfg(test)]
 mod styling_tests;
 #[cfg(test)]

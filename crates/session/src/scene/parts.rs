@@ -6,10 +6,11 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 use std::time::SystemTime;
 
+use lovelock_base::words::counted;
 use lovelock_motion::{
-    Body, BodyField, BodySettings, Character, Clip, Collider, LoopBlend, MotionError, MotionFile,
-    MotionSettings, RestDistance, Skeleton, fit_colliders, joint_paths, load_character_watched,
-    load_motion_watched, retarget,
+    Body, BodyField, BodySettings, Character, Clip, Collider, FaceWeights, LoopBlend, MotionError,
+    MotionFile, MotionSettings, RestDistance, Skeleton, fit_colliders, joint_paths, load_character_watched,
+    load_motion_watched, retarget, unknown_faces, unplaced_faces,
 };
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -61,13 +62,13 @@ impl BodyKey {
     /// The sources in `section`, or a problem if they may not be read.
     pub(super) fn of(section: &BodySection, access: &Access) -> Result<Self, Problem> {
         let file = match (section.source, &section.file) {
-            (BodySource::Dancer | BodySource::Animal | BodySource::Lawn, _) => None,
             (BodySource::File, Some(file)) => {
                 Some((Stamp::of(&access.read(Place::Body, file)?), section.settings))
             }
             (BodySource::File, None) => {
                 return Err(Problem::not_loaded(Place::Body, "no character file is set; pick one"));
             }
+            _ => None,
         };
         Ok(Self { source: section.source, file, head_joint: section.head_joint.clone() })
     }
@@ -133,6 +134,27 @@ impl BodyKey {
         }
         Ok(Ok(part))
     }
+}
+
+/// The weights of a face that a body has no names for.
+pub(super) fn face_notes(body: &Body, weights: &FaceWeights) -> Vec<Problem> {
+    let of_name = |(name, nearest): (&str, Option<&str>)| {
+        let nearest = nearest.map_or_else(String::new, |nearest| format!("; the nearest is `{nearest}`"));
+        let text = format!("{} has no weight of the face called `{name}`{nearest}", body.name);
+        Problem::new(Place::Body, ProblemKind::Ignored, text)
+    };
+    unknown_faces(weights, body).into_iter().map(of_name).collect()
+}
+
+/// What a motion's face does that a body cannot.
+fn face_note(motion: &MotionFile, body: &Body) -> Option<Problem> {
+    let unplaced = unplaced_faces(motion, body);
+    let names: Vec<String> = unplaced.iter().take(8).map(|name| format!("`{name}`")).collect();
+    let more = if unplaced.len() > names.len() { " and others" } else { "" };
+    let what =
+        counted(unplaced.len(), "weight of the motion's face has", "weights of the motion's face have");
+    let text = format!("{what} no place on this body: {}{more}", names.join(", "));
+    (!unplaced.is_empty()).then(|| Problem::new(Place::Motion, ProblemKind::Note, text))
 }
 
 /// A joint by its path (`hips/spine/head`) or its name; the first of several with the same name.
@@ -319,6 +341,7 @@ impl MotionKey {
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
                 let (clip, note) = shape.applied(&Arc::new(clip), &part.body);
                 let mut notes = file_notes(Place::Motion, &file.dropped, &file.notes);
+                notes.extend(face_note(&file, &part.body));
                 notes.extend(note);
                 Ok(MotionPart { clip: Some(clip), notes })
             }

@@ -40,7 +40,12 @@ impl ScalpPart {
             };
             notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
         }
-        if fit.area == ScalpArea::Skin && part.body.skeleton.joints.len() > 1 {
+        if part.body.is_without_head && fit.area == ScalpArea::Head && !fit.by_hand {
+            let message = "the file has no joints, and neither neck nor shoulders show a head: all of it is taken for a head; place the \
+                           scalp by hand if it is none";
+            notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
+        }
+        if fit.area == ScalpArea::Skin && part.body.skeleton.joints.len() > 1 && !part.body.is_without_head {
             let message = "hair grows on the whole skin and moves rigidly with the head joint: it follows the skin while the body rests";
             notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
         }

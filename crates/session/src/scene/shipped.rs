@@ -5,6 +5,9 @@ use lovelock_project::project::BodySource;
 
 /// Files of `assets`, made by `cargo xtask assets`.
 const DANCER: &[u8] = include_bytes!("../../../../assets/dancer.glb");
+const MAN: &[u8] = include_bytes!("../../../../assets/man.glb");
+const WOMAN: &[u8] = include_bytes!("../../../../assets/woman.glb");
+const ELDER: &[u8] = include_bytes!("../../../../assets/elder.glb");
 const ANIMAL: &[u8] = include_bytes!("../../../../assets/animal.glb");
 const LAWN: &[u8] = include_bytes!("../../../../assets/lawn.glb");
 
@@ -22,6 +25,9 @@ pub fn dancer() -> Result<Character, MotionError> {
 /// Never, because tests check the files in `assets`.
 pub(super) fn shipped(source: BodySource) -> Result<Character, MotionError> {
     let (name, bytes) = match source {
+        BodySource::Man => ("man.glb", MAN),
+        BodySource::Woman => ("woman.glb", WOMAN),
+        BodySource::Elder => ("elder.glb", ELDER),
         BodySource::Animal => ("animal.glb", ANIMAL),
         BodySource::Lawn => ("lawn.glb", LAWN),
         BodySource::Dancer | BodySource::File => ("dancer.glb", DANCER),

@@ -9,19 +9,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_appearance::environment::Panorama;
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{
     CurveCache, GuideFrame, HairFormat, ImportSettings, ImportedInPlace, Strands, hair_look, import_in_place,
 };
-use lovelock_motion::{Pose, pose_at, skin};
+use lovelock_motion::Pose;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{BodySection, HairSection, MotionSection, SurroundingsSection};
 use lovelock_record::{FrameRate, TakeHeader};
 
-use crate::scene::{Scene, SceneLoader};
+use crate::scene::{Scene, SceneLoader, Surroundings};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
 
@@ -162,7 +161,7 @@ impl CachePlayer {
         let frames = ((end - start) * rate.as_f64() + 1e-3).floor().max(0.0) as u64 + 1;
 
         let mut pose = Pose::default();
-        pose_at(&scene.body, scene.clip.as_deref(), scene.clip_secs(start), &mut pose);
+        scene.pose_at(scene.clip_secs(start), &mut pose);
         let mut points = Vec::new();
         let refuse = |error: &dyn std::fmt::Display| ProjectError::input(path, error);
         cache.points_at(start, &mut points).map_err(|error| refuse(&error))?;
@@ -227,13 +226,18 @@ impl CachePlayer {
         self.origin_secs
     }
 
-    pub(super) fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
-        if self.scene.surroundings.as_ref().map(Arc::as_ptr) == picture.as_ref().map(Arc::as_ptr) {
+    pub(super) fn set_surroundings(&mut self, pictures: Surroundings, notes: Vec<Problem>) -> bool {
+        if self.scene.surroundings.is(&pictures) {
             return false;
         }
-        let others = self.scene.notes.iter().filter(|note| note.place != Place::Surroundings).cloned();
+        let others = self
+            .scene
+            .notes
+            .iter()
+            .filter(|note| !matches!(note.place, Place::Surroundings | Place::Backdrop))
+            .cloned();
         let notes = others.chain(notes).collect();
-        self.scene = Arc::new(Scene { surroundings: picture, notes, ..(*self.scene).clone() });
+        self.scene = Arc::new(Scene { surroundings: pictures, notes, ..(*self.scene).clone() });
         true
     }
 
@@ -247,7 +251,7 @@ impl CachePlayer {
             .points_at(time_secs, &mut self.points)
             .map_err(|error| ProjectError::input(&self.path, error))?;
         let scene = &self.scene;
-        pose_at(&scene.body, scene.clip.as_deref(), scene.clip_secs(time_secs), &mut self.pose);
+        scene.pose_at(scene.clip_secs(time_secs), &mut self.pose);
         let file = self.cache.hair();
         self.imported.follow(&file.first_point, &self.points, &mut self.guides.guides);
         (self.guides.time_secs, self.guides.world_from_head) = (time_secs, self.pose.world_from_head);
@@ -259,7 +263,7 @@ impl CachePlayer {
             (snapshot.time_secs, snapshot.position_secs) = (time_secs, position_secs);
             snapshot.duration_secs = duration_secs;
             snapshot.pose.clone_from(pose);
-            skin(&scene.body, pose, &mut snapshot.skin);
+            snapshot.follow_pose();
             snapshot.guides.clone_from(guides);
             let strands = snapshot.strands.get_or_insert_with(Strands::default);
             fill(strands, &self.first_point, &self.imported.strands, &file.first_point, &self.points);

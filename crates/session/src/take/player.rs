@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_appearance::environment::Panorama;
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
@@ -11,7 +10,7 @@ use lovelock_record::{TakeCondition, TakeHeader};
 
 use super::cache::{CachePlayer, holds_curves};
 use super::playing::RecordedPlayer;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surroundings};
 use crate::snapshot::FrameSnapshot;
 
 /// A recorded simulation opened for playing, with its scene: a take, or curves over time of another program.
@@ -101,10 +100,9 @@ impl TakePlayer {
         either!(&self.0, player => player.scene())
     }
 
-    /// Sets the picture of the surroundings that gives light from all directions, and notes about it. A take records none.
-    /// Returns whether it is another picture than before.
-    pub fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
-        either!(&mut self.0, player => player.set_surroundings(picture, notes))
+    /// Sets the pictures around the figure, and notes about them. A take records none. Returns whether they are others than before.
+    pub fn set_surroundings(&mut self, pictures: Surroundings, notes: Vec<Problem>) -> bool {
+        either!(&mut self.0, player => player.set_surroundings(pictures, notes))
     }
 
     /// Number of frames.

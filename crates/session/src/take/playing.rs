@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_appearance::environment::Panorama;
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Hairstyle;
-use lovelock_motion::{Pose, pose_at, skin};
+use lovelock_motion::Pose;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
@@ -16,7 +15,7 @@ use lovelock_record::{
 };
 use lovelock_simulation::StepReport;
 
-use crate::scene::{Scene, SceneLoader, Styling};
+use crate::scene::{Scene, SceneLoader, Styling, Surroundings};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
 
@@ -38,7 +37,7 @@ pub(super) struct RecordedPlayer {
     /// Scenes with the projects that they were loaded from, the most recently used last.
     scenes: Vec<(Project, Arc<Scene>)>,
     /// The picture that gives light, and notes about it.
-    surroundings: (Option<Arc<Panorama>>, Vec<Problem>),
+    surroundings: (Surroundings, Vec<Problem>),
     frame: TakeFrame,
     pose: Pose,
     pool: SnapshotPool,
@@ -93,7 +92,7 @@ impl RecordedPlayer {
             styling: Styling::of(&project, None),
             scene: Arc::clone(&scene),
             scenes: vec![(made_of(&project), scene)],
-            surroundings: (None, Vec::new()),
+            surroundings: (Surroundings::default(), Vec::new()),
             frame,
             pose: Pose::default(),
             pool: SnapshotPool::default(),
@@ -130,11 +129,10 @@ impl RecordedPlayer {
         &self.scene
     }
 
-    /// Sets the picture of the surroundings that gives light from all directions, and notes about it. A take records none.
-    /// Returns whether it is another picture than before.
-    pub(super) fn set_surroundings(&mut self, picture: Option<Arc<Panorama>>, notes: Vec<Problem>) -> bool {
-        let others = self.surroundings.0.as_ref().map(Arc::as_ptr) != picture.as_ref().map(Arc::as_ptr);
-        self.surroundings = (picture, notes);
+    /// Sets the pictures around the figure, and notes about them. A take records none. Returns whether they are others than before.
+    pub(super) fn set_surroundings(&mut self, pictures: Surroundings, notes: Vec<Problem>) -> bool {
+        let others = !self.surroundings.0.is(&pictures);
+        self.surroundings = (pictures, notes);
         for at in 0..self.scenes.len() {
             let lit = self.lit(&self.scenes[at].1);
             if Arc::ptr_eq(&self.scene, &self.scenes[at].1) {
@@ -147,13 +145,14 @@ impl RecordedPlayer {
 
     /// The scene in the light of the surroundings.
     fn lit(&self, scene: &Arc<Scene>) -> Arc<Scene> {
-        let (picture, notes) = &self.surroundings;
-        if picture.as_ref().map(Arc::as_ptr) == scene.surroundings.as_ref().map(Arc::as_ptr) {
+        let (pictures, notes) = &self.surroundings;
+        if pictures.is(&scene.surroundings) {
             return Arc::clone(scene);
         }
-        let others = scene.notes.iter().filter(|note| note.place != Place::Surroundings);
+        let others =
+            scene.notes.iter().filter(|note| !matches!(note.place, Place::Surroundings | Place::Backdrop));
         let notes = others.chain(notes).cloned().collect();
-        Arc::new(Scene { surroundings: picture.clone(), notes, ..(**scene).clone() })
+        Arc::new(Scene { surroundings: pictures.clone(), notes, ..(**scene).clone() })
     }
 
     /// Number of frames.
@@ -203,7 +202,7 @@ impl RecordedPlayer {
             }
         }
         let styled = self.styled();
-        pose_at(&self.scene.body, self.scene.clip.as_deref(), self.frame.clip_secs, &mut self.pose);
+        self.scene.pose_at(self.frame.clip_secs, &mut self.pose);
         self.shown += 1;
         let duration_secs = self.duration_secs();
         let (scene, frame, pose, shown) = (&styled, &self.frame, &self.pose, self.shown);
@@ -214,7 +213,7 @@ impl RecordedPlayer {
             (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
             snapshot.duration_secs = duration_secs;
             snapshot.pose.clone_from(pose);
-            skin(&scene.body, pose, &mut snapshot.skin);
+            snapshot.follow_pose();
             snapshot.guides.clone_from(&frame.guides);
             snapshot.report = report;
             snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };

@@ -54,7 +54,7 @@ impl TakeRecording {
             .files()
             .into_iter()
             // A take records no light.
-            .filter(|(place, _)| *place != Place::Surroundings)
+            .filter(|(place, _)| !matches!(place, Place::Surroundings | Place::Backdrop))
             .filter_map(|(place, file)| TakeAsset::of_file(place.label(), &file.path).ok());
         let rate = 1.0 / engine.step_secs();
         let header = TakeHeader {

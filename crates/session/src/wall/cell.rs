@@ -143,7 +143,7 @@ impl Cell {
 /// Whether a renderer on a device is not on that of the window.
 fn is_elsewhere(renderer: &Renderer, window: Option<&Arc<Gpu>>) -> bool {
     match (renderer.gpu(), window) {
-        (Some(own), Some(window)) => own.is_lost() || own.device != window.device,
+        (Some(own), Some(window)) => own.is_lost() || !own.is_same_device(window),
         (Some(own), None) => own.is_lost(),
         (None, _) => false,
     }

@@ -186,6 +186,7 @@ fn same_files(a: &Project, b: &Project) -> bool {
         (&a.body.file, &b.body.file),
         (&a.motion.file, &b.motion.file),
         (&a.surroundings.file, &b.surroundings.file),
+        (&a.surroundings.backdrop, &b.surroundings.backdrop),
     ];
     sources(a) == sources(b) && files.iter().all(|(a, b)| a == b)
 }

@@ -293,7 +293,9 @@ fn a_dragged_slider_shows_intermediate_hair() {
         project.hair.groom.length += 1e-5;
         worker.set_project(Arc::new(project.clone()), Access::new());
         if let Some(Event::Loaded { scene, .. }) = worker.poll_event() {
-            lengths.push(scene.style.guides.point(0, 1).distance(scene.style.guides.point(0, 0)));
+            let guides = &scene.style.guides;
+            let first = |guide: usize| f64::from(guides.point(guide, 1).distance(guides.point(guide, 0)));
+            lengths.push((0..guides.count()).map(first).sum::<f64>());
         }
         (lengths.len() == 3).then_some(())
     });

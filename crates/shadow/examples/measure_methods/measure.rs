@@ -13,6 +13,8 @@ use crate::on_gpu::{self, OnGpu};
 
 /// The number of runs per median.
 pub(crate) const RUNS: usize = 15;
+/// Runs that take longer together are fewer, milliseconds.
+pub(crate) const MOST_MS: f64 = 10_000.0;
 /// Random points of the comparison with the converged shadow.
 pub(crate) const CONVERGED_POINTS: usize = 2000;
 /// A point with fewer fragments than this before it belongs to the first ten.
@@ -53,11 +55,11 @@ pub(crate) struct Measured {
     pub(crate) first_points: usize,
 }
 
-/// Every method with its default settings.
-pub(crate) fn all_methods(groom: &Groom) -> Vec<Measured> {
+/// The methods with their default settings.
+pub(crate) fn methods(groom: &Groom, methods: &[ShadowMethod]) -> Vec<Measured> {
     let truth = Converged::new(groom);
     let mut exact: Vec<Exact> = Vec::new();
-    let measured = ShadowMethod::ALL.iter().map(|&method| {
+    let measured = methods.iter().map(|&method| {
         let resolution = resolution(method);
         if exact.iter().all(|exact| exact.resolution != resolution) {
             exact.push(Exact::new(groom, resolution));
@@ -166,18 +168,20 @@ fn look_up(map: &dyn CpuShadow, groom: &Groom) -> Vec<f32> {
 }
 
 fn time(mut run: impl FnMut()) -> Time {
-    let once = |_| {
+    let mut times = Vec::new();
+    while times.len() < RUNS && times.iter().sum::<f64>() < MOST_MS {
         let watch = Stopwatch::start();
         run();
-        watch.ms()
-    };
-    median((0..RUNS).map(once).collect())
+        times.push(watch.ms());
+    }
+    median(times)
 }
 
-/// Of `RUNS` times, milliseconds.
+/// Of at least one time, milliseconds.
 pub(crate) fn median(mut times: Vec<f64>) -> Time {
     times.sort_by(f64::total_cmp);
-    Time { median: times[RUNS / 2], low: times[RUNS / 4], high: times[RUNS - 1 - RUNS / 4] }
+    let runs = times.len();
+    Time { median: times[runs / 2], low: times[runs / 4], high: times[runs - 1 - runs / 4] }
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

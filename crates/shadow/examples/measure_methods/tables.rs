@@ -34,7 +34,7 @@ pub(crate) fn how_measured() -> String {
          - *bias*: mean difference from `exact`, above 0 where a method is too bright.\n\
          - *99 %*: the 99th percentile of the absolute difference from `exact`.\n\
          - *first ten*: RMSE against `exact` over points with fewer than {FIRST} fragments before them.\n\n\
-         Times are medians of {RUNS} runs, with the quartiles, on a machine that may have been busy. *Map* is the memory of a\n\
+         Times are medians of {RUNS} runs, or of as many as take 10 s, with the quartiles, on a machine that may have been busy. *Map* is the memory of a\n\
          map (address space for the voxel map); *building* is additional memory that builds use and keep.\n\n\
          The second table of a hairstyle compares the CPU with the GPU ({adapter}). *Difference*: the 99th percentile of the\n\
          difference between both, of which rounding to 8 bits contributes 0.002. Times on the GPU are sums over passes, measured with\n\

@@ -27,6 +27,11 @@ pub const CONVERGED_CHANGE: f32 = 2e-3;
 /// The most subtexels along the edge of a texel.
 pub const MAX_CONVERGED_SAMPLES: u32 = 32;
 
+/// The samples of a light with soft shadows in the first round, and the most.
+const LEAST_LIGHT_SAMPLES: u32 = 8;
+/// See [`LEAST_LIGHT_SAMPLES`].
+const MAX_LIGHT_SAMPLES: u32 = 64;
+
 /// The first round that may be the last: two coarser rounds could agree because both miss features below a subtexel.
 const LEAST_SAMPLES: u32 = 4;
 
@@ -37,6 +42,8 @@ pub struct Converged {
     pub transmittance: Vec<f32>,
     /// Subtexels along the edge of a texel in the last round.
     pub samples: u32,
+    /// Samples of the light in the last round: 1 of one with hard shadows.
+    pub light_samples: u32,
     /// RMS change in the last round. Above [`CONVERGED_CHANGE`] only if [`MAX_CONVERGED_SAMPLES`] was reached.
     pub change: f32,
     /// Samples and RMS change of every round but the first.
@@ -44,7 +51,7 @@ pub struct Converged {
 }
 
 /// The mean of the light over the box of one texel around each of the points `x`, `y`, `z` (world space, metres; slices of the
-/// same length), to within [`CONVERGED_CHANGE`]. A point that is not finite gets 1.
+/// same length), to within [`CONVERGED_CHANGE`]. The light of an area is the mean over at least 16 samples of it, whatever number methods use. A point that is not finite gets 1.
 ///
 /// The texel is that of the map of the method in `settings`: a cell of the voxel map, and for `none` the texel of `exact`. Only what strands are (their width, `extinction_scale`) enters beside it. The result is the same for any
 /// number of threads. Time grows with the square of the samples and with the area around the points; memory is bounded,
@@ -59,10 +66,61 @@ pub fn converged(
     [x, y, z]: [&[f32]; 3],
 ) -> Result<Converged, ShadowError> {
     assert!(x.len() == y.len() && y.len() == z.len(), "slices of one length");
+    if input.light.area.samples > 1 {
+        return converged_area(input, settings, [x, y, z]);
+    }
+    converged_hard(input, settings, [x, y, z])
+}
+
+/// [`converged`] for a light with soft shadows: the mean over twice as many samples of it, and as many again, until the result hardly
+/// changes or there are [`MAX_LIGHT_SAMPLES`].
+fn converged_area(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    points: [&[f32]; 3],
+) -> Result<Converged, ShadowError> {
+    let mean = |count: u32| -> Result<Converged, ShadowError> {
+        let mut sums = vec![0.0; points[0].len()];
+        let mut all = Converged::default();
+        for light in input.light.sampled(input.anchor, count) {
+            let found = converged_hard(&ShadowInput { light, ..*input }, settings, points)?;
+            sums.iter_mut().zip(&found.transmittance).for_each(|(sum, t)| *sum += t);
+            all.join(&found, &[]);
+        }
+        all.transmittance = sums.into_iter().map(|sum| sum / count as f32).collect();
+        Ok(all)
+    };
+    let mut count = LEAST_LIGHT_SAMPLES;
+    let mut last = mean(count)?;
+    loop {
+        count *= 2;
+        let mut next = mean(count)?;
+        let light_change = rms_change(&last.transmittance, &next.transmittance);
+        next.light_samples = count;
+        if light_change <= CONVERGED_CHANGE || count >= MAX_LIGHT_SAMPLES {
+            next.change = next.change.max(light_change);
+            return Ok(next);
+        }
+        last = next;
+    }
+}
+
+/// The root mean square of the differences.
+fn rms_change(a: &[f32], b: &[f32]) -> f32 {
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
+    (squares / b.len().max(1) as f64).sqrt() as f32
+}
+
+/// [`converged`] for a light with hard shadows.
+fn converged_hard(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    [x, y, z]: [&[f32]; 3],
+) -> Result<Converged, ShadowError> {
     let Some(perspective) = perspective_of(input, settings) else {
         return converged_parallel(input, settings, [x, y, z]);
     };
-    let mut all = Converged { transmittance: vec![1.0; x.len()], ..Converged::default() };
+    let mut all = Converged { transmittance: vec![1.0; x.len()], light_samples: 1, ..Converged::default() };
     let longest = longest_strand(input.strands);
     let faces = perspective.faces().len() as u32;
     let settings = &if faces > 1 { settings.for_sides() } else { *settings };
@@ -114,12 +172,11 @@ fn converged_parallel(
     while samples < LEAST_SAMPLES || (change > CONVERGED_CHANGE && samples < MAX_CONVERGED_SAMPLES) {
         samples *= 2;
         let next = round(input, settings, &frame, &places, samples, &mut scratch)?;
-        let squares: f64 = last.iter().zip(&next).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
-        change = (squares / next.len().max(1) as f64).sqrt() as f32;
+        change = rms_change(&last, &next);
         changes.push((samples, change));
         last = next;
     }
-    Ok(Converged { transmittance: last, samples, change, changes })
+    Ok(Converged { transmittance: last, samples, light_samples: 1, change, changes })
 }
 
 /// Transmittance with `samples` subtexels along the edge of a texel.

@@ -35,7 +35,7 @@ impl LookupUniform {
         let own = Self {
             count: targets.count,
             stride: targets.stride,
-            slot: slot as u32,
+            slot: targets.byte.unwrap_or(slot as u32),
             sums: u32::from(sums),
             ..Self::default()
         };

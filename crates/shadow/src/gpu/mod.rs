@@ -34,6 +34,9 @@ pub struct GpuShadowInput<'a> {
     pub strands: GpuStrands<'a>,
     /// Bounds of their points along the light's axes, relative to the anchor, metres. They may be a little larger.
     pub bounds: Bounds,
+    /// The same along the axes of the world, for the methods that are [in the world](crate::ShadowMethod::in_world). Others do not read
+    /// it.
+    pub extent: Bounds,
     /// Length of the longest strand, metres.
     pub longest_strand: f32,
     /// As [`ShadowInput::strand_width`](crate::ShadowInput::strand_width).
@@ -46,8 +49,21 @@ pub struct GpuShadowInput<'a> {
     pub anchor: Vec3,
     /// As [`ShadowInput::maps`](crate::ShadowInput::maps).
     pub maps: u32,
+    /// The bounds along the axes of each of the light's [`LightFrame::samples`], if there are several.
+    pub sample_bounds: &'a [Bounds],
+    /// The list of fragments that this map adds its own to, of several maps of one light: only [`gpu_shadow`](crate::gpu_shadow) sets it.
+    pub shared_list: Option<SharedList>,
     /// As [`ShadowInput::projected`](crate::ShadowInput::projected): only [`gpu_shadow`](crate::gpu_shadow) sets it.
     pub projected: Option<GpuProjected>,
+}
+
+/// One list of fragments of several maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SharedList {
+    /// The slot of the first of the maps, which holds it.
+    pub of: usize,
+    /// Their number.
+    pub maps: u32,
 }
 
 /// What is known of strands that were projected from a light. The fourth coordinate of a point is a factor on the width of its strand.
@@ -57,8 +73,6 @@ pub struct GpuProjected {
     pub plane: f32,
     /// Distance from the light of depth 0, metres.
     pub start: f32,
-    /// The slot whose list of fragments this map continues, if it is another one.
-    pub list_of: usize,
     /// Slots that are in use.
     pub slots: u32,
 }
@@ -84,6 +98,8 @@ pub struct GpuTargets<'a> {
     pub out: &'a wgpu::Buffer,
     /// If set, an `array<u32>` of [`SUM_WORDS`] words whose total is increased by the bytes of slot 0.
     pub sum: Option<&'a wgpu::Buffer>,
+    /// The byte that is written, if it is not that of the slot: only [`gpu_shadow`](crate::gpu_shadow) sets it.
+    pub byte: Option<u32>,
     /// How the points are projected before they are looked up: only [`gpu_shadow`](crate::gpu_shadow) sets it.
     pub projected: Option<&'a ProjectedTargets>,
 }

@@ -11,6 +11,7 @@ use lovelock_gpu::{Gpu, GpuError, ShaderSource};
 
 use super::texels::{TEXEL_RESOLUTIONS, TexelFrame};
 use super::{ShadowMethod, ShadowSettings};
+use crate::area::{GpuSoftMaps, SoftMap, average_shaders};
 use crate::perspective::{GpuLightMaps, LightMap, MakeGpuShadow, margin};
 use crate::{Bounds, CpuShadow, GpuShadow, RayMarkKind, ShadowInput};
 
@@ -41,6 +42,8 @@ pub(crate) struct Method {
     pub footprint: fn(&ShadowInput, &ShadowSettings, &Bounds) -> TexelFrame,
     /// Whether strands block light, with these settings, by the number of their points and not by their length.
     pub counts_points: fn(&ShadowSettings) -> bool,
+    /// Whether the method itself follows the rays of lights that stand somewhere, in the world. Otherwise they are made parallel for it.
+    pub in_world: bool,
     /// An empty map on the CPU.
     pub cpu: fn() -> Box<dyn CpuShadow + Send + Sync>,
     /// The pipelines of the GPU's passes, for the strands themselves or for projected ones.
@@ -58,6 +61,8 @@ pub enum MapKind {
     Texels,
     /// Cells of a cube.
     Cells,
+    /// There is no map: rays go through the hair itself.
+    Rays,
 }
 
 /// The size of a map, as it is set.
@@ -71,18 +76,18 @@ pub struct MapSize {
 
 impl ShadowMethod {
     /// The stable name of the command line, of projects and of reports.
-    pub const fn id(self) -> &'static str {
-        self.method().id
+    pub fn id(self) -> &'static str {
+        if let Self::User(user) = self { user.id() } else { self.method().id }
     }
 
     /// The name in the interface.
-    pub const fn label(self) -> &'static str {
-        self.method().label
+    pub fn label(self) -> &'static str {
+        if let Self::User(user) = self { user.label() } else { self.method().label }
     }
 
     /// One sentence: what it does and whose it is.
-    pub const fn description(self) -> &'static str {
-        self.method().description
+    pub fn description(self) -> &'static str {
+        if let Self::User(user) = self { user.description() } else { self.method().description }
     }
 
     /// The publication that the method comes from; `None` where there is none.
@@ -100,6 +105,12 @@ impl ShadowMethod {
         self.method().map
     }
 
+    /// Whether the method itself follows the rays of lights that stand somewhere, in the world; see
+    /// [`GpuShadowInput::extent`](crate::GpuShadowInput::extent).
+    pub const fn in_world(self) -> bool {
+        self.method().in_world
+    }
+
     /// What a map of the method holds along a ray of its light.
     pub const fn marks(self) -> &'static [RayMarkKind] {
         self.method().marks
@@ -109,11 +120,17 @@ impl ShadowMethod {
 impl ShadowSettings {
     /// The settings of one method; `None` if it has none.
     pub fn of_method(&self, method: ShadowMethod) -> Option<&dyn AnySettings> {
+        if let ShadowMethod::User(user) = method {
+            return Some(self.of_any_user(user));
+        }
         (method.method().settings)(self)
     }
 
     /// The same, to be changed.
     pub fn of_method_mut(&mut self, method: ShadowMethod) -> Option<&mut dyn AnySettings> {
+        if let ShadowMethod::User(user) = method {
+            return Some(self.of_any_user_mut(user));
+        }
         self.sections_mut().into_iter().find(|(of, _)| *of == method).map(|(_, settings)| settings)
     }
 
@@ -122,8 +139,12 @@ impl ShadowSettings {
         (self.method.method().size)(self)
     }
 
-    /// The size of the map in short, such as `128³` or `512² × 4`; empty where there is no map.
+    /// The size of the map in short, such as `128³` or `512² × 4`, or the number of rays; empty where there is neither.
     pub fn size_label(&self) -> String {
+        if self.method.map_kind() == MapKind::Rays {
+            let rays = self.ray_traced.rays;
+            return format!("{rays} {}", if rays == 1 { "ray" } else { "rays" });
+        }
         let Some(MapSize { edge, per_texel }) = self.map_size() else { return String::new() };
         let power = if self.method.map_kind() == MapKind::Cells { '³' } else { '²' };
         per_texel.map_or_else(|| format!("{edge}{power}"), |count| format!("{edge}{power} × {count}"))
@@ -170,7 +191,20 @@ impl ShadowSettings {
 
 /// An empty map of `method` on the CPU: everything is lit until it is built.
 pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
-    Box::new(LightMap::new(method.method().cpu))
+    if method.map_kind() == MapKind::Rays {
+        // They go to all of the light's area.
+        return (method.method().cpu)();
+    }
+    Box::new(SoftMap::new(method, hard_cpu_shadow))
+}
+
+/// The same for one sample of a light.
+fn hard_cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
+    match method {
+        ShadowMethod::User(user) => user.on_device(),
+        method if method.in_world() => (method.method().cpu)(),
+        method => Box::new(LightMap::new(method.method().cpu)),
+    }
 }
 
 /// Compiles a method's pipelines for the GPU; its maps are empty.
@@ -178,7 +212,19 @@ pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
 /// # Errors
 /// A shader that does not compile, by file and line.
 pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
-    Ok(Box::new(GpuLightMaps::new(gpu, method.method().gpu)?))
+    if method.map_kind() == MapKind::Rays {
+        // They go to all of the light's area.
+        return (method.method().gpu)(method, gpu, false);
+    }
+    Ok(Box::new(GpuSoftMaps::new(gpu, method, hard_gpu_shadow)?))
+}
+
+/// The same for one sample of each light.
+fn hard_gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
+    if method.in_world() {
+        return (method.method().gpu)(method, gpu, false);
+    }
+    Ok(Box::new(GpuLightMaps::new(gpu, method, method.method().gpu)?))
 }
 
 /// Every composed shader of every method with its label, so that a test can validate them without a device.
@@ -187,11 +233,15 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
         let named = move |(label, source)| (format!("{method}: {label}"), source);
         (method.method().shaders)().into_iter().map(named).collect::<Vec<_>>()
     };
-    ShadowMethod::ALL.iter().flat_map(of).chain(GpuLightMaps::shaders()).collect()
+    ShadowMethod::ALL.iter().flat_map(of).chain(GpuLightMaps::shaders()).chain(average_shaders()).collect()
 }
 
 impl Choices for ShadowMethod {
     const ALL: &'static [Self] = Self::ALL;
+
+    fn more() -> Vec<Self> {
+        Self::of_users()
+    }
 
     fn names(self) -> (&'static str, &'static str) {
         (self.id(), self.label())
@@ -201,7 +251,7 @@ impl Choices for ShadowMethod {
 impl ShadowMethod {
     /// The name of its section in projects.
     fn section(self) -> String {
-        self.id().replace('-', "_")
+        self.method().id.replace('-', "_")
     }
 }
 
@@ -214,10 +264,14 @@ impl Settings for ShadowSettings {
 
     fn parts(&self) -> Vec<Part<'_>> {
         let part = |method: &ShadowMethod| Some((method.section().into(), self.of_method(*method)?));
-        ShadowMethod::ALL.iter().filter_map(part).collect()
+        ShadowMethod::ALL.iter().filter_map(part).chain(self.user_part()).collect()
     }
 
     fn parts_mut(&mut self) -> Vec<PartMut<'_>> {
+        if let ShadowMethod::User(user) = self.method {
+            // The settings of another user's method give way.
+            self.of_any_user_mut(user);
+        }
         self.sections_mut().into_iter().map(|(of, settings)| (of.section().into(), settings)).collect()
     }
 }
@@ -246,7 +300,9 @@ impl FromStr for ShadowMethod {
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         let found = Self::ALL.iter().find(|method| method.id() == name);
-        found.copied().ok_or_else(|| UnknownShadowMethod { found: name.to_owned() })
+        // Whoever asks for a folder by its name may read it; a project may not: see `TryFrom`.
+        let users = || Self::of_text(name).inspect(|method| method.allow());
+        found.copied().or_else(users).ok_or_else(|| UnknownShadowMethod { found: name.to_owned() })
     }
 }
 
@@ -254,12 +310,16 @@ impl TryFrom<String> for ShadowMethod {
     type Error = UnknownShadowMethod;
 
     fn try_from(name: String) -> Result<Self, Self::Error> {
-        name.parse()
+        let own = Self::ALL.iter().all(|method| method.id() != name).then(|| Self::of_text(&name)).flatten();
+        own.map_or_else(|| name.parse(), Ok)
     }
 }
 
 impl From<ShadowMethod> for String {
     fn from(method: ShadowMethod) -> Self {
+        if let ShadowMethod::User(user) = method {
+            return user.text();
+        }
         method.id().to_owned()
     }
 }
@@ -279,7 +339,24 @@ mod tests {
 
     #[test]
     fn every_method_is_listed_in_order() {
-        assert!(ShadowMethod::ALL.iter().enumerate().all(|(at, method)| *method as usize == at));
+        let place = |method: ShadowMethod| match method {
+            ShadowMethod::None => 0,
+            ShadowMethod::VoxelMap => 1,
+            ShadowMethod::OpacityMaps => 2,
+            ShadowMethod::DeepOpacityMaps => 3,
+            ShadowMethod::DensityClustering => 4,
+            ShadowMethod::OccupancyMaps => 5,
+            ShadowMethod::DeepShadowMaps => 6,
+            ShadowMethod::ApproximateDeep => 7,
+            ShadowMethod::Fourier => 8,
+            ShadowMethod::Adaptive => 9,
+            ShadowMethod::Moments => 10,
+            ShadowMethod::VoxelMarch => 11,
+            ShadowMethod::RayTraced => 12,
+            ShadowMethod::Exact => 13,
+            ShadowMethod::User(_) => usize::MAX,
+        };
+        assert!(ShadowMethod::ALL.iter().enumerate().all(|(at, method)| place(*method) == at));
     }
 
     #[test]
@@ -296,18 +373,34 @@ mod tests {
     fn a_map_has_a_size_marks_and_a_label() {
         let labels = ShadowMethod::ALL.iter().map(|&method| {
             let settings = ShadowSettings { method, ..ShadowSettings::default() };
-            let has_map = method.map_kind() != MapKind::None;
-            assert_eq!((settings.map_size().is_some(), !method.marks().is_empty()), (has_map, has_map));
+            let has_map = matches!(method.map_kind(), MapKind::Texels | MapKind::Cells);
+            assert_eq!(settings.map_size().is_some(), has_map, "{method}");
+            assert_eq!(!method.marks().is_empty(), method != ShadowMethod::None, "{method}");
             settings.size_label()
         });
-        let expected = ["", "128³", "512² × 128", "512² × 4", "512² × 4", "512² × 128", "512²"];
+        let expected = [
+            "",
+            "128³",
+            "512² × 128",
+            "512² × 4",
+            "512² × 4",
+            "512² × 128",
+            "512² × 16",
+            "512²",
+            "512² × 7",
+            "512² × 8",
+            "512² × 4",
+            "128³",
+            "4 rays",
+            "512²",
+        ];
         assert_eq!(labels.collect::<Vec<_>>(), expected);
     }
 
     #[test]
     fn the_memory_of_a_map_is_that_on_paper() {
         let bytes = |method| ShadowSettings { method, ..ShadowSettings::default() }.map_bytes();
-        assert_eq!(bytes(ShadowMethod::None), 0);
+        assert_eq!((bytes(ShadowMethod::None), bytes(ShadowMethod::RayTraced)), (0, 0));
         // One word for each of 128³ cells.
         assert_eq!(bytes(ShadowMethod::VoxelMap), 8 << 20);
         // 512² texels: 128 slices; 4 layers and the first depth; 3 numbers for each of 4 clusters.
@@ -316,6 +409,18 @@ mod tests {
         assert_eq!(bytes(ShadowMethod::DensityClustering), 12 << 20);
         // Sintorn and Assarsson 2009 print 10 MB for 512² texels.
         assert!((10 << 20..=12 << 20).contains(&bytes(ShadowMethod::OccupancyMaps)));
+        // A header of two words and two for each of 16 nodes, and of 8; the nearest depth; a header of three words, and two for each of 7
+        // terms, and one for each of 4 moments.
+        assert_eq!(bytes(ShadowMethod::DeepShadowMaps), 34 << 20);
+        assert_eq!(bytes(ShadowMethod::Adaptive), 18 << 20);
+        assert_eq!(bytes(ShadowMethod::ApproximateDeep), 1 << 20);
+        assert_eq!(bytes(ShadowMethod::Fourier), 17 << 20);
+        assert_eq!(bytes(ShadowMethod::Moments), 7 << 20);
+        // A brick of 8³ cells holds 9³ words: less than two for each cell.
+        assert_eq!(bytes(ShadowMethod::VoxelMarch), 16 << 20);
+        let mut settings = ShadowSettings { method: ShadowMethod::Moments, ..ShadowSettings::default() };
+        settings.moments.bits = 16;
+        assert_eq!(settings.map_bytes(), 5 << 20, "two moments a word");
         let mut settings = ShadowSettings::default();
         settings.voxel_map.resolution = u32::MAX;
         assert_eq!(settings.map_bytes(), 4 * 512_u64.pow(3), "not more than the finest map");
@@ -342,7 +447,8 @@ mod tests {
         assert_eq!(
             error,
             "no shadow method is called \"Voxel map\"; must be one of: none, voxel-map, opacity-maps, deep-opacity-maps, \
-             density-clustering, occupancy-maps, exact"
+             density-clustering, occupancy-maps, deep-shadow-maps, approximate-deep, fourier, adaptive, moments, voxel-march, \
+             ray-traced, exact"
         );
     }
 }

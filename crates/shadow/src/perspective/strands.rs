@@ -7,7 +7,7 @@ use lovelock_groom::Strands;
 use rayon::prelude::*;
 
 use super::Face;
-use crate::{ProjectedStrands, ShadowInput};
+use crate::{LightFrame, ProjectedStrands, ShadowInput};
 
 /// Strands per parallel task.
 const STRANDS_PER_TASK: usize = 256;
@@ -76,8 +76,7 @@ impl Projected {
 }
 
 /// The axes of projected hair.
-pub(crate) const PARALLEL: crate::LightFrame =
-    crate::LightFrame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z, source: None };
+pub(crate) const PARALLEL: LightFrame = LightFrame::WORLD;
 
 /// Some projected strands.
 #[derive(Debug, Default)]

@@ -8,8 +8,8 @@ use glam::Vec3;
 use lovelock_gpu::{Gpu, GrowBuffer, PassTime, PassTimer, read_buffer, wgpu};
 use lovelock_groom::Strands;
 use lovelock_shadow::{
-    Bounds, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, ShadowError, ShadowInput,
-    ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
+    Bounds, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, LightFrame, ShadowError,
+    ShadowInput, ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
 /// The device that all tests of a process share; `None` without an adapter. A test keeps it until its thread ends, because the uniforms of a
@@ -66,12 +66,15 @@ impl Uploaded {
                 segment_count: self.segments.len() as u32,
             },
             bounds: Bounds::of_strands(input),
+            extent: Bounds::of_strands(&ShadowInput { light: LightFrame::WORLD, ..*input }),
             longest_strand: longest_strand(input.strands),
             strand_width: input.strand_width,
             extinction_scale: input.extinction_scale,
             light: input.light,
             anchor: input.anchor,
             maps: input.maps,
+            sample_bounds: &[],
+            shared_list: None,
             projected: None,
         }
     }
@@ -124,7 +127,11 @@ impl Built {
         settings: &ShadowSettings,
     ) -> Result<u32, ShadowError> {
         let strands = Uploaded::new(self.gpu, input.strands);
-        self.build_from(slot, &strands.input(input), settings)
+        let lights = input.light.samples(input.anchor);
+        let bounds: Vec<_> =
+            lights.iter().map(|&light| Bounds::of_strands(&ShadowInput { light, ..*input })).collect();
+        let input = GpuShadowInput { sample_bounds: &bounds, ..strands.input(input) };
+        self.build_from(slot, &input, settings)
     }
 
     /// The heads of the lists of all maps.
@@ -170,6 +177,16 @@ impl Built {
         panic!("the second build has the room that the first one asked for");
     }
 
+    /// Takes the heads of all maps after a lookup, as a frame does.
+    pub fn settle(&mut self) -> Result<bool, ShadowError> {
+        let heads = self.heads();
+        match self.shadow.settle(self.gpu, &heads) {
+            Ok(again) => Ok(again),
+            Err(GpuShadowError::Shadow(error)) => Err(error),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
     /// The words of the first map.
     pub fn words(&self) -> Vec<u32> {
         self.shadow.map_words(0, self.gpu).expect("read back")
@@ -191,6 +208,7 @@ impl Built {
             count: at.len() as u32,
             out: out.raw(),
             sum: None,
+            byte: None,
             projected: None,
         };
         let mut commands = self.timer.begin(self.gpu, "test");

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use lovelock_base::settings::{Choices, Value, set_value};
 use lovelock_groom::Strands;
-use lovelock_shadow::{LightFrame, MapKind, ShadowInput, ShadowMethod, ShadowSettings};
+use lovelock_shadow::{LightFrame, MapKind, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter};
 
 pub use lovelock_base::random::SplitMix64;
 
@@ -14,19 +15,44 @@ pub fn texel_methods() -> impl Iterator<Item = ShadowMethod> {
     ShadowMethod::ALL.iter().copied().filter(|method| method.map_kind() == MapKind::Texels)
 }
 
+/// Sets a setting of every method with a record per texel that has one of this name.
+pub fn set_texels(settings: &mut ShadowSettings, name: &str, value: Value) {
+    for method in texel_methods() {
+        if let Some(section) = settings.of_method_mut(method) {
+            set_value(section, name, value);
+        }
+    }
+}
+
+/// Gives the maps of every method with a record per texel so many texels along each edge.
+pub fn set_resolution(settings: &mut ShadowSettings, edge: u32) {
+    set_texels(settings, "resolution", Value::Count(u64::from(edge)));
+}
+
+/// Gives every method with a record per texel a filter.
+pub fn set_filter(settings: &mut ShadowSettings, filter: TexelFilter) {
+    set_texels(settings, "filter", Value::Choice(filter.names().0));
+}
+
+/// Whether a method measures how much hair there is, and does not take its density for known.
+pub fn measures_hair(method: ShadowMethod) -> bool {
+    !matches!(method, ShadowMethod::None | ShadowMethod::ApproximateDeep)
+}
+
+/// The part of the optical depth of strands across the light that a method sees. A grid for lights from everywhere takes the mean over all
+/// directions of strands.
+pub fn part_of_strands_across(method: ShadowMethod) -> f64 {
+    if method == ShadowMethod::VoxelMarch { std::f64::consts::FRAC_PI_4 } else { 1.0 }
+}
+
 /// A method with maps of so many texels or cells along each edge.
 pub fn of_edge(method: ShadowMethod, edge: u32) -> ShadowSettings {
     let mut settings = ShadowSettings { method, ..ShadowSettings::default() };
     settings.voxel_map.resolution = edge;
-    for resolution in [
-        &mut settings.opacity_maps.resolution,
-        &mut settings.deep_opacity_maps.resolution,
-        &mut settings.density_clustering.resolution,
-        &mut settings.occupancy_maps.resolution,
-        &mut settings.exact.resolution,
-    ] {
-        *resolution = edge;
-    }
+    settings.voxel_march.resolution = edge;
+    // The tolerance is one of light, of which optical depths are made.
+    (settings.deep_shadow_maps.tolerance, settings.deep_shadow_maps.nodes) = (0.002, 32);
+    set_resolution(&mut settings, edge);
     settings
 }
 

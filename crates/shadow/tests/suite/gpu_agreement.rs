@@ -9,15 +9,18 @@ use common::SplitMix64;
 use glam::Vec3;
 use lovelock_groom::{Preset, Strands};
 use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelSlices};
-use lovelock_shadow::{LineFilter, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
+use lovelock_shadow::{
+    DepthRange, LineFilter, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow,
+};
 use lovelock_testkit::suite::sample;
 
 /// The number of points.
 const POINTS: usize = 2048;
 
-/// Differences of transmittance between the two, sorted.
+/// Differences of transmittance between the two.
 #[derive(Debug)]
 struct Differences {
+    mean: f32,
     /// The 99th percentile.
     p99: f32,
     most: f32,
@@ -27,25 +30,33 @@ impl Differences {
     fn of(a: &[f32], b: &[f32]) -> Self {
         let mut all: Vec<_> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         all.sort_by(f32::total_cmp);
-        Self { p99: all[all.len() * 99 / 100], most: all[all.len() - 1] }
+        let mean = all.iter().sum::<f32>() / all.len() as f32;
+        Self { mean, p99: all[all.len() * 99 / 100], most: all[all.len() - 1] }
     }
 
     fn within(&self, tolerance: &Self) -> bool {
-        self.p99 <= tolerance.p99 && self.most <= tolerance.most
+        self.mean <= tolerance.mean && self.p99 <= tolerance.p99 && self.most <= tolerance.most
     }
 }
 
 /// The tolerance of transmittance on the GPU. Half a step of its 8 bits is 0.00196. Measured: at most 0.00196 for the 99th percentile
-/// and 0.00206 for the maximum, except for two.
+/// and 0.00206 for the maximum, except for three.
 fn tolerance(method: ShadowMethod, settings: &ShadowSettings) -> Differences {
     let most = match method {
         // A fragment half way between two centres may go to either one. Measured: 0.038.
         ShadowMethod::DensityClustering => 0.05,
         // A share of hair half way between two of its 256 steps moves the slices of a column. Measured: 0.061.
         ShadowMethod::VoxelMap if settings.voxel_map.slices == VoxelSlices::Adaptive => 0.1,
+        // The same, where a point's own weight counts as before it. Measured: 0.0075.
+        ShadowMethod::Moments => 0.012,
+        // A ray along the edge of a ribbon may pass it on either side, and one in one takes 14 % of the light.
+        ShadowMethod::RayTraced => 0.15,
         _ => 0.0025,
     };
-    Differences { p99: 0.0021, most }
+    // The solution of few moments amplifies rounding where hair lies in few places. Measured: 0.00208 between the ends of the map.
+    let p99 = if method == ShadowMethod::Moments { 0.0025 } else { 0.0021 };
+    // Rounding to 8 bits alone: at most 0.001 in the mean.
+    Differences { mean: 0.0015, p99, most }
 }
 
 /// The tolerance of the error against `exact`. Measured: 0.00074 if the error of the definition is 0, from rounding to 8 bits; 0.00050
@@ -82,11 +93,7 @@ fn rmse(a: &[f32], b: &[f32]) -> f32 {
 
 fn with_filter(filter: TexelFilter) -> ShadowSettings {
     let mut settings = ShadowSettings::default();
-    settings.opacity_maps.filter = filter;
-    settings.deep_opacity_maps.filter = filter;
-    settings.density_clustering.filter = filter;
-    settings.occupancy_maps.filter = filter;
-    settings.exact.filter = filter;
+    common::set_filter(&mut settings, filter);
     settings
 }
 
@@ -119,6 +126,48 @@ fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
             gaussian.density_clustering.line_filter = LineFilter::Gaussian;
             TexelFilter::ALL.map(with_filter).into_iter().chain([gaussian]).collect()
         }
+        ShadowMethod::DeepShadowMaps => {
+            let mut fine = ShadowSettings::default();
+            (fine.deep_shadow_maps.tolerance, fine.deep_shadow_maps.nodes) = (0.001, 8);
+            TexelFilter::ALL.map(with_filter).into_iter().chain([fine]).collect()
+        }
+        ShadowMethod::Fourier => {
+            let (mut few, mut many) = (ShadowSettings::default(), ShadowSettings::default());
+            (few.fourier.terms, few.fourier.window) = (3, true);
+            (many.fourier.terms, many.fourier.depth_range) = (15, DepthRange::Map);
+            TexelFilter::ALL.map(with_filter).into_iter().chain([few, many]).collect()
+        }
+        ShadowMethod::Adaptive => {
+            let nodes = [4, 32].map(|nodes| {
+                let mut settings = ShadowSettings::default();
+                settings.adaptive.nodes = nodes;
+                settings
+            });
+            TexelFilter::ALL.map(with_filter).into_iter().chain(nodes).collect()
+        }
+        ShadowMethod::Moments => {
+            let (mut short, mut of_map) = (ShadowSettings::default(), ShadowSettings::default());
+            short.moments.bits = 16;
+            (of_map.moments.depth_range, of_map.moments.overestimation) = (DepthRange::Map, 1.0);
+            TexelFilter::ALL.map(with_filter).into_iter().chain([short, of_map]).collect()
+        }
+        ShadowMethod::VoxelMarch => {
+            let with = |resolution, step, jitter| {
+                let mut settings = ShadowSettings::default();
+                settings.voxel_march.resolution = resolution;
+                (settings.voxel_march.step, settings.voxel_march.jitter) = (step, jitter);
+                settings
+            };
+            vec![ShadowSettings::default(), with(256, 0.5, false), with(64, 2.5, true)]
+        }
+        ShadowMethod::RayTraced => {
+            let with = |rays| {
+                let mut settings = ShadowSettings::default();
+                settings.ray_traced.rays = rays;
+                settings
+            };
+            vec![ShadowSettings::default(), with(1), with(16)]
+        }
         _ => TexelFilter::ALL.map(with_filter).to_vec(),
     }
 }
@@ -138,7 +187,7 @@ fn transmittance_is_that_of_the_definition_with_every_filter() {
                 let defined = defined(method, &groom.input(), &settings, &at);
                 built.build(0, &groom.input(), &settings).expect("it fits");
                 let found = Differences::of(&defined, &built.look_up(&at));
-                println!("{method}, {variant}, {}: {:.5} {:.5}", groom.name, found.p99, found.most);
+                println!("{method}, {variant}, {}: {found:.5?}", groom.name);
                 assert!(
                     found.within(&tolerance(method, &settings)),
                     "{}, {method}, {variant}: {found:?}",

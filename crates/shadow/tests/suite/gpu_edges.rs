@@ -1,6 +1,6 @@
 //! Maps on the GPU that are rebuilt, empty, of invalid hair, for several lights, and too large.
 
-use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands};
+use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, set_resolution, strands};
 use crate::gpu::{Built, Uploaded, buffer, device};
 use crate::grooms::Groom;
 use glam::Vec3;
@@ -32,11 +32,8 @@ fn hair(wisps: usize, seed: u64) -> Strands {
 fn coarse() -> ShadowSettings {
     let mut settings = ShadowSettings::default();
     settings.voxel_map.resolution = 48;
-    settings.opacity_maps.resolution = 64;
-    settings.deep_opacity_maps.resolution = 64;
-    settings.density_clustering.resolution = 64;
-    settings.occupancy_maps.resolution = 64;
-    settings.exact.resolution = 64;
+    settings.voxel_march.resolution = 48;
+    set_resolution(&mut settings, 64);
     settings
 }
 
@@ -86,8 +83,14 @@ fn the_same_hair_gives_the_same_words_whatever_was_before() {
     finer.opacity_maps.slices = 64;
     finer.deep_opacity_maps.layers = 6;
     finer.occupancy_maps.slices = 256;
+    finer.deep_shadow_maps.tolerance = 1e-3;
+    finer.approximate_deep.resolution = 128;
+    finer.fourier.terms = 3;
+    finer.adaptive.nodes = 16;
+    finer.moments.bits = 16;
     finer.exact.resolution = 128;
     finer.voxel_map.resolution = 64;
+    finer.voxel_march.resolution = 64;
     for &method in &ShadowMethod::ALL[1..] {
         let mut built = Built::empty(gpu, method);
         let mut words = |strands: &Strands, settings: &ShadowSettings| {
@@ -96,7 +99,8 @@ fn the_same_hair_gives_the_same_words_whatever_was_before() {
         };
         let once = words(&first, &usual);
         assert!(words(&first, &usual) == once, "{method}: built twice");
-        assert!(words(&first, &finer) != once, "{method}: control");
+        // The hierarchy of the traced rays has no setting.
+        assert_eq!(words(&first, &finer) == once, method == ShadowMethod::RayTraced, "{method}: control");
         assert!(words(&second, &usual) != once, "{method}: control");
         assert!(words(&first, &usual) == once, "{method}: other hair and back");
         words(&Strands::default(), &usual);
@@ -166,8 +170,10 @@ fn broken_hair_and_broken_points_are_as_in_the_definition() {
                 let found = built.look_up(&at);
                 let wrong = |(p, t): &(&Vec3, &f32)| (cpu.transmittance(**p) - **t).abs() > tolerance(method);
                 let wrong: Vec<_> = at.iter().zip(&found).filter(wrong).collect();
+                // A ray along the edge of a ribbon may pass it on either side.
+                let most = if method == ShadowMethod::RayTraced { at.len() / 100 } else { 0 };
                 assert!(
-                    wrong.is_empty(),
+                    wrong.len() <= most,
                     "{method}, {what}, {extinction_scale}: {}, {:?}",
                     wrong.len(),
                     wrong[0]
@@ -229,7 +235,8 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
         let (out, sum) = (buffer(gpu, &vec![0_u32; count as usize]), buffer(gpu, &before));
         let points = hair.input(&groom.input()).strands.points;
         let (out_raw, total) = (out.raw(), Some(sum.raw()));
-        let targets = GpuTargets { points, stride, count, out: out_raw, sum: total, projected: None };
+        let targets =
+            GpuTargets { points, stride, count, out: out_raw, sum: total, byte: None, projected: None };
         let mut timer = PassTimer::new(gpu).expect("a timer");
         let mut commands = timer.begin(gpu, "test");
         built.shadow.look_up(0, gpu, &mut commands, &targets);
@@ -274,7 +281,11 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
             let mut bytes = Vec::new();
             read_texture_rgba8(gpu, &texture, &mut bytes).expect("read back");
             let found = bytes.chunks_exact(4).map(|texel| f32::from(texel[0]) / 255.0);
-            let error = found.zip(&defined.transmittance).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let mut errors: Vec<_> = found.zip(&defined.transmittance).map(|(a, b)| (a - b).abs()).collect();
+            errors.sort_by(f32::total_cmp);
+            // A ray along the edge of a ribbon may pass it on either side.
+            let few = if method == ShadowMethod::RayTraced { errors.len() / 1000 } else { 0 };
+            let error = errors[errors.len() - 1 - few];
             assert!(error < TOLERANCE, "{method}: {error}");
             assert!(defined.transmittance.iter().any(|t| *t < 0.5), "{method}: control");
         }
@@ -317,11 +328,16 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
     let at = points_around(&hair);
     let mut large = ShadowSettings::default();
     large.voxel_map.resolution = 512;
-    (large.opacity_maps.resolution, large.opacity_maps.slices) = (2048, 256);
-    (large.deep_opacity_maps.resolution, large.deep_opacity_maps.layers) = (2048, 8);
-    (large.density_clustering.resolution, large.density_clustering.clusters) = (2048, 8);
-    (large.occupancy_maps.resolution, large.occupancy_maps.slices) = (2048, 512);
-    (large.exact.resolution, large.exact.memory_limit_bytes) = (2048, 16 << 20);
+    set_resolution(&mut large, 2048);
+    large.opacity_maps.slices = 256;
+    large.deep_opacity_maps.layers = 8;
+    large.density_clustering.clusters = 8;
+    large.occupancy_maps.slices = 512;
+    large.exact.memory_limit_bytes = 16 << 20;
+    (large.voxel_march.resolution, large.voxel_march.memory_limit_bytes) = (512, 0);
+    large.ray_traced.memory_limit_bytes = 0;
+    // One word per texel: only the finest map is too large.
+    large.approximate_deep.resolution = 4096;
     let fine = ShadowInput { strand_width: 1e-5, maps: 64, ..input(&hair) };
     for &method in &ShadowMethod::ALL[1..] {
         let mut built = Built::new(gpu, method, &input(&hair), &ShadowSettings::default());
@@ -329,13 +345,15 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
         let error = built.build(0, &fine, &large);
         let (of, needed, limit) = match error {
             Err(ShadowError::TooLarge { method, needed_bytes, limit_bytes, maps }) => {
-                assert_eq!(maps, 64);
+                // Lights share one grid or hierarchy, and so its limit.
+                assert_eq!(maps, if method.in_world() { 1 } else { 64 });
                 (method, needed_bytes, limit_bytes)
             }
             Err(ShadowError::Device { method, needed_bytes, limit_bytes }) => {
                 (method, needed_bytes, limit_bytes)
             }
             Ok(_) if method == ShadowMethod::VoxelMap && gpu.most_storage_bytes() >= 512 << 20 => continue,
+            Err(ShadowError::User { .. }) => panic!("{method} is no method of a user"),
             Ok(_) => panic!("{method} fits"),
         };
         assert_eq!(of, method);

@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use crate::common::{EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
+use crate::common::{
+    EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, set_resolution, strands, texel_methods,
+};
 use glam::Vec3;
+use lovelock_base::settings::Settings;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::{VoxelDeposit, VoxelSlices};
 use lovelock_shadow::{
-    ClusterDeviation, ClusterSeeds, LayerGrowth, LightFrame, LineFilter, ShadowError, ShadowInput,
-    ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
+    ClusterDeviation, ClusterSeeds, DepthRange, LayerGrowth, LightFrame, LineFilter, ShadowError,
+    ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
 };
 use lovelock_testkit::suite::sample;
 
@@ -75,17 +78,27 @@ fn hostile(of: u32) -> ShadowSettings {
     s.voxel_map.point_extinction = x;
     s.voxel_map.slices = [VoxelSlices::Uniform, VoxelSlices::Adaptive][of as usize % 2];
     s.voxel_map.deposit = VoxelDeposit::Isotropic;
-    (s.opacity_maps.resolution, s.opacity_maps.slices) = (resolution, n);
-    (s.deep_opacity_maps.resolution, s.deep_opacity_maps.layers) = (resolution, n);
+    set_resolution(&mut s, resolution);
+    s.opacity_maps.slices = n;
+    s.deep_opacity_maps.layers = n;
     s.deep_opacity_maps.depth_share = x;
     s.deep_opacity_maps.growth = LayerGrowth::Even;
-    (s.density_clustering.resolution, s.density_clustering.clusters) = (resolution, n);
+    s.density_clustering.clusters = n;
     s.density_clustering.steps = n;
     s.density_clustering.seeds = [ClusterSeeds::Uniform, ClusterSeeds::Histogram][of as usize % 2];
     s.density_clustering.deviation = ClusterDeviation::Merged;
     (s.density_clustering.line_filter, s.density_clustering.line_width) = (LineFilter::Gaussian, x);
-    (s.occupancy_maps.resolution, s.occupancy_maps.slices, s.occupancy_maps.slabs) = (resolution, n, n);
-    (s.exact.resolution, s.exact.memory_limit_bytes) = (resolution, u64::MAX);
+    (s.occupancy_maps.slices, s.occupancy_maps.slabs) = (n, n);
+    (s.deep_shadow_maps.nodes, s.deep_shadow_maps.tolerance) = (n, x);
+    (s.approximate_deep.hairs, s.approximate_deep.spacing) = (n, x);
+    (s.fourier.terms, s.fourier.window, s.fourier.depth_range) = (n, true, DepthRange::Map);
+    s.adaptive.nodes = n;
+    (s.moments.bits, s.moments.bias, s.moments.overestimation) = (n, x, x);
+    s.voxel_march.resolution = if n == u32::MAX { 64 } else { n };
+    (s.voxel_march.step, s.voxel_march.jitter) = (x, true);
+    s.voxel_march.memory_limit_bytes = u64::MAX;
+    (s.ray_traced.rays, s.ray_traced.memory_limit_bytes) = (if n == u32::MAX { 16 } else { n }, u64::MAX);
+    s.exact.memory_limit_bytes = u64::MAX;
     s.exact.filter = TexelFilter::Nearest;
     s
 }
@@ -105,8 +118,8 @@ fn every_answer_is_a_transmittance() {
     for (what, hair) in bad_hair() {
         let [x, y, z] = points_around(&hair);
         let mut out = vec![f32::NAN; x.len()];
-        // A crowd takes longest to build: in the short suite with the first of each kind of settings alone.
-        let every = if what == "a crowded texel" { 7 } else { 1 };
+        // A crowd takes longest to build: in the short suite with the first of each kind of settings alone, and other hair with half of them.
+        let every = if what == "a crowded texel" { 7 } else { 2 };
         for &method in ShadowMethod::ALL {
             let mut map = cpu_shadow(method);
             let mut check = |input: &ShadowInput, settings: &ShadowSettings| {
@@ -138,10 +151,12 @@ fn every_answer_is_a_transmittance() {
             for strand_width in sample([1e30, 0.0, -1.0, f32::NAN, 1e-40, f32::INFINITY], every) {
                 check(&ShadowInput { strand_width, ..input(&hair) }, &ShadowSettings::default());
             }
-            // Control: valid hair casts a shadow.
+            // Control: valid hair casts a shadow. Density without directions does so along strands, too.
+            let along = method == ShadowMethod::VoxelMarch && what == "along the light";
+            let is_valid = ["a crowded texel", "hair", "partly broken"].contains(&what);
             assert_eq!(
                 usual < 0.9,
-                method != ShadowMethod::None && ["a crowded texel", "hair", "partly broken"].contains(&what),
+                method != ShadowMethod::None && is_valid || along,
                 "{method}, {what}: {usual}"
             );
         }
@@ -149,7 +164,7 @@ fn every_answer_is_a_transmittance() {
 }
 
 #[test]
-fn the_converged_shadow_takes_anything_too() {
+fn the_converged_shadow_takes_anything_too_long_suite() {
     for (what, hair) in bad_hair() {
         let [x, y, z] = points_around(&hair).map(|c| c.into_iter().step_by(9).collect::<Vec<_>>());
         let all = [(1e-3, 0.15), (f32::NAN, 0.15), (1e30, f32::INFINITY), (1e-3, 0.0)];
@@ -182,12 +197,8 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
     let hair = zigzag(150_000);
     let fine = ShadowInput { strand_width: 1e-5, ..input(&hair) };
     let mut settings = ShadowSettings::default();
-    settings.opacity_maps.resolution = 2048;
-    settings.deep_opacity_maps.resolution = 2048;
-    settings.density_clustering.resolution = 2048;
+    set_resolution(&mut settings, 2048);
     settings.density_clustering.prefiltered = false;
-    settings.occupancy_maps.resolution = 2048;
-    settings.exact.resolution = 2048;
     settings.exact.memory_limit_bytes = 1 << 30;
     for method in texel_methods() {
         let mut map = cpu_shadow(method);
@@ -221,6 +232,53 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
     map.build(&fine, &settings).expect("fits");
     settings.exact.memory_limit_bytes = 8 << 30;
     cpu_shadow(ShadowMethod::Exact).build(&fine, &settings).expect("fits");
+}
+
+#[test]
+fn numbers_beyond_their_limits_become_the_nearest() {
+    let mut least = ShadowSettings::default();
+    (least.adaptive.nodes, least.deep_shadow_maps.nodes, least.fourier.terms) = (0, 0, 0);
+    (least.moments.bits, least.ray_traced.rays, least.voxel_march.resolution) = (0, 0, 0);
+    least.voxel_march.step = -1.0;
+    let least = least.clamped();
+    assert_eq!((least.adaptive.nodes, least.deep_shadow_maps.nodes, least.fourier.terms), (4, 8, 3));
+    assert_eq!((least.moments.bits, least.ray_traced.rays, least.voxel_march.resolution), (16, 1, 16));
+    assert_eq!(least.voxel_march.step, 0.25);
+    let mut most = ShadowSettings::default();
+    (most.adaptive.nodes, most.deep_shadow_maps.nodes, most.fourier.terms) = (u32::MAX, u32::MAX, u32::MAX);
+    (most.moments.bits, most.ray_traced.rays, most.voxel_march.resolution) = (u32::MAX, u32::MAX, u32::MAX);
+    most.voxel_march.step = f32::INFINITY;
+    let most = most.clamped();
+    assert_eq!((most.adaptive.nodes, most.deep_shadow_maps.nodes, most.fourier.terms), (32, 32, 15));
+    assert_eq!((most.moments.bits, most.ray_traced.rays, most.voxel_march.resolution), (32, 256, 512));
+    assert!(most.voxel_march.step <= 4.0);
+}
+
+#[test]
+fn a_grid_that_does_not_fit_is_refused_with_the_number() {
+    let hair = strands(&grow(SMOOTH, 1));
+    let mut settings = ShadowSettings::default();
+    (settings.voxel_march.resolution, settings.voxel_march.memory_limit_bytes) = (512, 0);
+    let mut map = cpu_shadow(ShadowMethod::VoxelMarch);
+    map.build(&input(&hair), &ShadowSettings::default()).expect("the default fits");
+    let error = map.build(&input(&hair), &settings).expect_err("finer cells do not");
+    let ShadowError::TooLarge { method, needed_bytes, limit_bytes, .. } = error else { panic!("{error}") };
+    assert_eq!((method, limit_bytes), (ShadowMethod::VoxelMarch, 16 << 20), "{error}");
+    assert!(needed_bytes > limit_bytes, "{error}");
+    let text = error.to_string();
+    assert!(text.starts_with("voxel-march needs") && text.ends_with("or raise the limit"), "{text}");
+    assert_eq!(map.transmittance(HEAD + 0.5 * input(&hair).light.x), 1.0, "lit until it fits");
+    assert_eq!(map.column_map(), None);
+    // With the limit that it names it fits; lights share a limit.
+    settings.voxel_march.memory_limit_bytes = needed_bytes;
+    map.build(&input(&hair), &settings).expect("fits");
+    let report = map.report();
+    assert!(report.memory_bytes <= report.needed_bytes && report.needed_bytes == needed_bytes, "{report:?}");
+    // The formula: a word a brick of the window, and 9³ words a brick with hair.
+    let bricks = report.cells_touched / 512;
+    assert!((bricks * 729 * 4..bricks * 729 * 4 + 4 * 68 * 68 * 68).contains(&needed_bytes), "{report:?}");
+    let error = map.build(&ShadowInput { maps: 2, ..input(&hair) }, &settings).expect_err("two do not");
+    assert!(error.to_string().contains("as one of 2 lights"), "{error}");
 }
 
 #[test]
@@ -287,6 +345,24 @@ fn a_map_that_is_built_again_remembers_nothing() {
             out
         });
         assert_eq!(answers[0], answers[1], "{method}");
+    }
+}
+
+#[test]
+fn moments_that_no_distribution_has_are_counted() {
+    let hair = strands(&grow(Style { wisps: 20, ..SMOOTH }, 1));
+    let counted = |bits: u32, bias: f32| {
+        let mut settings = ShadowSettings::default();
+        (settings.moments.bits, settings.moments.bias) = (bits, bias);
+        let mut map = cpu_shadow(ShadowMethod::Moments);
+        map.build(&input(&hair), &settings).expect("fits");
+        (map.report().fallbacks, map.report().cells_touched)
+    };
+    for bits in [16, 32] {
+        let (usual, unbiased) = (counted(bits, 1.0), counted(bits, 0.0));
+        println!("{bits} bits: {usual:?} with the bias, {unbiased:?} without");
+        // Without the bias, texels with few hairs have no room for rounding.
+        assert!(usual.0 < usual.1 / 100 && unbiased.0 > unbiased.1 / 20, "{bits}: {usual:?}, {unbiased:?}");
     }
 }
 

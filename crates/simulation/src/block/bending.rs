@@ -29,9 +29,17 @@ const REFERENCE_LENGTH: f32 = 0.2;
 /// `(beta_1 L)^2` of the lowest vibration mode of a beam clamped at one end.
 const CANTILEVER: f32 = 3.516;
 
+/// The constants of bends by name, for other devices.
+pub(super) const CONSTANTS: [(&str, f64); 4] = [
+    ("STIFFEST", STIFFEST as f64),
+    ("HALF_SHARPNESS", HALF_SHARPNESS as f64),
+    ("REFERENCE_LENGTH", REFERENCE_LENGTH as f64),
+    ("CANTILEVER", CANTILEVER as f64),
+];
+
 /// The inputs of the matrix, besides the link lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BendingKey {
+pub struct BendingKey {
     pub(crate) h: f32,
     pub(crate) stiffness_root: f32,
     pub(crate) stiffness_tip: f32,
@@ -62,7 +70,7 @@ impl BendingKey {
     }
 
     /// Angular frequencies of stiffness and hold at a fraction of a guide, 1/s. Both act on the mass of the hair.
-    fn frequencies_at(&self, along: f32) -> [f32; 2] {
+    pub(crate) fn frequencies_at(&self, along: f32) -> [f32; 2] {
         let ramp = SimulationSettings {
             stiffness_root: self.stiffness_root,
             stiffness_tip: self.stiffness_tip,
@@ -76,7 +84,7 @@ impl BendingKey {
     }
 
     /// Ratio of damping to stiffness in one substep.
-    fn gamma(&self) -> f32 {
+    pub(crate) fn gamma(&self) -> f32 {
         self.damping_secs / self.h
     }
 }

@@ -23,6 +23,10 @@ const SAME_DIRECTION: f32 = 0.1 * 0.1;
 /// A pivot below this fraction of its diagonal is a rounding error.
 const LEAST_PIVOT: f32 = 1e-4;
 
+/// The constants of the factor by name, for other devices.
+pub(super) const CONSTANTS: [(&str, f64); 2] =
+    [("SAME_DIRECTION", SAME_DIRECTION as f64), ("LEAST_PIVOT", LEAST_PIVOT as f64)];
+
 /// The metric of one block. Rows and columns are links.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coupled {

@@ -14,10 +14,17 @@ use crate::factors::FactorRows;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::packing::Lanes;
 use crate::rest::RestShape;
-pub(crate) use bending::{Bending, BendingKey};
+pub(crate) use bending::Bending;
+pub use bending::BendingKey;
 pub(crate) use coupled::Coupled;
 pub(crate) use in_rope::{InRope, NO_ROPE};
 pub(crate) use lengths::{LengthScratch, project_position, project_velocity};
+
+/// The constants of bends and lengths by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 6] = {
+    let ([a, b, c, d], [e, f]) = (bending::CONSTANTS, coupled::CONSTANTS);
+    [a, b, c, d, e, f]
+};
 
 /// A block of `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the
 /// world, with the origin at the head's position at the end of the last step, so that single precision
@@ -266,7 +273,7 @@ impl Block {
                 } else {
                     let was = turn.apply(at(&old.rest.direction[i], k));
                     let link = at(&old.position[i], k) - at(&old.position[i - 1], k);
-                    turn = turn.then_smallest(was, direction_or(link, was).0);
+                    turn = turn.then_exact(was, direction_or(link, was).0);
                     end += turn.apply(at(&self.rest.direction[i], k)) * self.rest.length[i][k];
                 }
                 put(&mut self.position[i], k, end);

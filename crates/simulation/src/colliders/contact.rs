@@ -45,6 +45,18 @@ const BARE_FROM: usize = 2;
 /// After the first iteration, smaller penetrations than this are left, metres.
 const TOLERANCE: f32 = 1e-5;
 
+/// The constants of contacts by name, for other devices.
+pub(super) const CONSTANTS: [(&str, f64); 8] = [
+    ("CONTACT_RADIUS", CONTACT_RADIUS as f64),
+    ("LAYER_HEIGHT", LAYER_HEIGHT as f64),
+    ("SLACK", SLACK as f64),
+    ("ITERATIONS", ITERATIONS as f64),
+    ("BARE_FROM", BARE_FROM as f64),
+    ("TOLERANCE", TOLERANCE as f64),
+    ("EXIT_SLOPE", EXIT_SLOPE as f64),
+    ("LEAST_GUESSED_DEPTH", LEAST_GUESSED_DEPTH as f64),
+];
+
 impl ContactRules {
     /// The rules that follow from the settings, with a time step of a second.
     pub(crate) fn of(settings: &SimulationSettings) -> Self {

@@ -11,6 +11,12 @@ use lovelock_motion::{ColliderShape, PlacedCollider};
 use crate::lanes::Map;
 use shape::Shape;
 
+/// The constants of contacts by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 9] = {
+    let ([a, b, c, d, e, f, g, h], [i]) = (contact::CONSTANTS, shape::CONSTANTS);
+    [a, b, c, d, e, f, g, h, i]
+};
+
 /// A collider at one substep, in the step's working space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingShape {

@@ -51,6 +51,9 @@ const ELLIPSOID_ROUNDS: usize = 4;
 /// Tolerance of the conservative tests, metres, so that points on a surface never count as beyond it.
 const ROUNDING: f32 = 1e-5;
 
+/// The constants of shapes by name, for other devices.
+pub(super) const CONSTANTS: [(&str, f64); 1] = [("ELLIPSOID_ROUNDS", ELLIPSOID_ROUNDS as f64)];
+
 impl Shape {
     /// Prepares `shape`. A shape that is not finite or has no size gives `None`, and nothing collides with
     /// it.

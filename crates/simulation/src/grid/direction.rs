@@ -12,7 +12,7 @@
 use glam::Vec3;
 
 /// Fraction of the friction along the hair that is lost at an anisotropy of 1.
-const LOST_ALONG: f32 = 0.7;
+pub(super) const LOST_ALONG: f32 = 0.7;
 
 /// Sums of `l t t^T`: xx, yy, zz, xy, xz, yz.
 pub(super) type Tensor<T> = [T; 6];

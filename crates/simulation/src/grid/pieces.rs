@@ -20,7 +20,7 @@ use crate::lanes::{
 use crate::trilinear::weights;
 
 /// Upper limit of the squared length of a tangent.
-const UNIT: f32 = 1.01;
+pub(super) const UNIT: f32 = 1.01;
 
 /// Which state of the hair is deposited.
 pub(super) enum Source<'a> {

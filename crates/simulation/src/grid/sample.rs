@@ -17,7 +17,7 @@ use crate::settings::RepulsionMode;
 use crate::trilinear::gradient;
 
 /// Distance from the centre of a cell within which the published force is faded, as a fraction of a cell.
-const NEAR_CENTRE: f32 = 0.1;
+pub(super) const NEAR_CENTRE: f32 = 0.1;
 
 /// The head and the time step for which [`DensityGrid::act`] computes forces.
 pub(crate) struct GridStep<'a> {

@@ -9,6 +9,7 @@ use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
 use crate::colliders::field::{MovingField, PlaneRow};
 use crate::colliders::shape::Shape;
 use crate::colliders::transformed;
+use crate::device::Stamp;
 use crate::lanes::{LANES, ZERO3, at, splat3};
 use crate::{BodyPart, InsidePoint, SimulationSettings, StepInput};
 
@@ -67,6 +68,7 @@ impl Simulation {
                 if !known {
                     self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach()));
                     self.blocks.iter_mut().for_each(|block| block.skin.fill(PlaneRow::NO_SKIN));
+                    self.stamps.state = Stamp::new();
                     self.measure_field_distances();
                 }
                 !known
@@ -83,6 +85,7 @@ impl Simulation {
 
     /// Measures the rest distance of every point to the field.
     pub(super) fn measure_field_distances(&mut self) {
+        self.stamps.distances = Stamp::new();
         let field = self.field.as_ref();
         self.blocks.par_iter_mut().for_each(|block| {
             block.field_distance.clear();

@@ -10,6 +10,7 @@ use lovelock_motion::{ColliderShape, FIELD_JOINTS, PlacedCollider};
 use super::{Simulation, first_free};
 use crate::block::Block;
 use crate::colliders::field::{Joints, MovingField, PlaneRow};
+use crate::device::Stamps;
 use crate::hash::Hasher;
 use crate::lanes::{LANES, Lane, Lane3, ZERO3};
 use crate::motion::HeadPose;
@@ -220,6 +221,7 @@ impl Simulation {
         }
         next.measure_rest_distances();
         next.measure_field_distances();
+        next.stamps = Stamps::new();
         *self = next;
         Ok(())
     }

@@ -70,7 +70,9 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         last_head: &plan.last_head,
         head_from_last: &plan.head_from_last,
     };
-    plan.grid.act(block, &grid_step);
+    if let Some(grid) = plan.grid {
+        grid.act(block, &grid_step);
+    }
     for i in 0..block.points() {
         let mut position = block.position[i];
         for (axis, shift) in position.iter_mut().zip(plan.rebase.to_array()) {
@@ -106,6 +108,13 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
 
 /// Speed of the air relative to hair at which its drag is twice that of slow air, metres per second.
 const FAST_AIR: f32 = 3.0;
+
+/// The constants of forces by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 3] = [
+    ("SUPPORT_FULL", SUPPORT_FADES[0] as f64),
+    ("SUPPORT_NONE", SUPPORT_FADES[1] as f64),
+    ("FAST_AIR", FAST_AIR as f64),
+];
 
 /// Fraction of its velocity relative to the air that a point keeps in a substep; `drag` is the rate in slow air
 /// times the substep, and `sheltered` the fraction of the air that the surrounding hair keeps away.

@@ -28,6 +28,15 @@ const LOST: f32 = 4.0;
 /// Guides that move faster than this relative to their lock are lost too, metres per second.
 const FASTEST: f32 = 1e3;
 
+/// The constants of locks by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 5] = [
+    ("LOCK_FREE", FREE as f64),
+    ("LOCK_LEAST_RADIUS", LEAST_RADIUS as f64),
+    ("LOCK_FAST", FAST as f64),
+    ("LOCK_LOST", LOST as f64),
+    ("LOCK_FASTEST", FASTEST as f64),
+];
+
 /// Pulls the guides of each lock to within its bound.
 #[inline(always)]
 pub(super) fn hold_together(block: &mut Block, plan: &Plan, s: usize) {

@@ -12,7 +12,10 @@ mod plan;
 mod relaxation;
 mod substep;
 
+pub(crate) use forces::CONSTANTS as FORCE_CONSTANTS;
+pub(crate) use lock::CONSTANTS as LOCK_CONSTANTS;
 pub(crate) use plan::Plan;
+pub(crate) use substep::{CONSTANTS as SUBSTEP_CONSTANTS, FACTOR_CHECK_INTERVAL};
 
 use crate::block::{Block, Outcome, stretch_of};
 use crate::colliders::field::PlaneRow;
@@ -42,7 +45,7 @@ pub(crate) fn advance(block: &mut Block, plan: &Plan) {
 
 /// Resets guides that are not finite and measures the others.
 #[inline(always)]
-fn measure(block: &mut Block, plan: &Plan) {
+pub(crate) fn measure(block: &mut Block, plan: &Plan) {
     let count = block.points();
     let mut size = ZERO;
     for i in 0..count {

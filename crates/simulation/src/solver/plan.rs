@@ -16,6 +16,7 @@ use crate::wake::Wakes;
 use crate::wind::WindField;
 
 /// One step, prepared once and read by every block.
+#[derive(Clone, Copy)]
 pub(crate) struct Plan<'a> {
     /// Whether to use the vector instructions of this CPU.
     pub(crate) wide: bool,
@@ -42,7 +43,8 @@ pub(crate) struct Plan<'a> {
     pub(crate) field: Option<&'a MovingField>,
     pub(crate) rules: ContactRules,
     pub(crate) bending: BendingKey,
-    pub(crate) grid: &'a DensityGrid,
+    /// The grid with the hair of the start of the step; `None` where another device deposits the hair.
+    pub(crate) grid: Option<&'a DensityGrid>,
     pub(crate) wind: &'a WindField,
     pub(crate) wakes: &'a Wakes,
 }

@@ -74,9 +74,6 @@ enum LinkLength {
     Current,
 }
 
-/// The factors of the coupled lengths are checked once per this many substeps.
-const FACTOR_CHECK_INTERVAL: usize = 4;
-
 /// One Newton step of the lengths, in the metric of the bends.
 #[inline(always)]
 fn lengths(block: &mut Block, plan: &Plan, s: usize) {
@@ -250,6 +247,19 @@ const CONTACT_PUSH_KEPT: f32 = 0.9;
 /// would push it into the other.
 const NEAR_ROOT: f32 = 0.25;
 
+/// The placement pass may move points this far outside the box of their unconstrained positions, metres.
+const BESIDE_BOX: f32 = 0.03;
+
+/// The constants of contacts in a substep by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 3] = [
+    ("CONTACT_PUSH_KEPT", CONTACT_PUSH_KEPT as f64),
+    ("NEAR_ROOT", NEAR_ROOT as f64),
+    ("BESIDE_BOX", BESIDE_BOX as f64),
+];
+
+/// The factors of the coupled lengths are checked once per this many substeps.
+pub(crate) const FACTOR_CHECK_INTERVAL: usize = 4;
+
 /// Moves points in advance by most of the contact displacement of the last substep, together with everything
 /// beyond them.
 ///
@@ -303,8 +313,7 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
         }
     }
     let ((min, _), (_, max)) = (bounds(&low), bounds(&high));
-    // The placement pass may move points slightly outside the box of their unconstrained positions.
-    let reach = plan.rules.reach() + 0.03;
+    let reach = plan.rules.reach() + BESIDE_BOX;
     let carried = plan.first_free.saturating_sub(1);
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {

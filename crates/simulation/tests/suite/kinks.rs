@@ -30,12 +30,12 @@ fn all_but(mut values: Vec<f32>, rest: f64) -> f32 {
 #[test]
 fn hair_at_rest_has_no_kinks() {
     // Limits in degrees for guides, for all strands but one point in a thousand, and for every strand.
-    // Measured: guides 41, 35 and 68; strands 30, 63 and 44, at most 58, 84 and 71. Where guides fold it is
+    // Measured: guides 39, 38 and 40; strands 36, 63 and 42, at most 73, 89 and 66. Where guides fold it is
     // 180, 178 and 85. A curl of 8.5 mm and a pitch of 32 mm turns by 27 degrees per segment.
     for (preset, guide, strand, every_strand) in [
         (Preset::Smooth, 45.0, 36.0, 75.0),
         (Preset::Curly, 45.0, 68.0, 95.0),
-        (Preset::Long, 75.0, 48.0, 80.0),
+        (Preset::Long, 50.0, 48.0, 80.0),
     ] {
         let stage = Stage::new(preset);
         let mut frame = GuideFrame::at_rest(&stage.style.guides, Affine3A::IDENTITY, 0.0);

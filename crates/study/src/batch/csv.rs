@@ -72,6 +72,7 @@ fn row(report: &CompareReport, method: &MethodReport) -> Vec<(&'static str, Stri
         ("pop", number(stability.and_then(|s| s.pop))),
         ("pop_p99", number(stability.and_then(|s| s.pop_p99))),
         ("flicker", number(stability.and_then(|s| s.flicker))),
+        ("film_rmse", number(stability.and_then(|s| s.film_rmse))),
         ("light_pop", number(turned.map(|t| t.pop))),
         ("light_truth_pop", number(turned.and_then(|t| t.truth_pop))),
         ("light_truth_rms", number(turned.and_then(|t| t.truth_rms))),

@@ -1,5 +1,6 @@
 //! The image, times and errors of one entrant.
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_metrics::{Errors, Spread, errors, errors_of};
 use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, FrameStats, Picture, Renderer};
@@ -10,6 +11,12 @@ use crate::report::{MethodReport, StageMs, TimeSpread, TransmittanceError};
 
 /// Number of untimed draws that create buffers and fill caches.
 const WARM_UP: u32 = 3;
+/// Draws that are timed however long they take.
+const LEAST: usize = 5;
+/// After this time no more draws begin, seconds: a method that takes seconds a draw needs no thirty of them for a median.
+const MOST_SECS: f64 = 10.0;
+/// After this time a single timed draw is enough, seconds: what takes so long varies little.
+const SLOW_SECS: f64 = 30.0;
 
 /// The result of rendering.
 pub(super) struct Drawn {
@@ -18,7 +25,9 @@ pub(super) struct Drawn {
     pub transmittance: Vec<f32>,
 }
 
-/// Renders `draws` times after a warm-up and records times and memory. Every draw builds and looks up its maps, as while hair moves.
+/// Renders up to `draws` times after a warm-up and records times and memory; fewer times, but [`LEAST`], if that takes over [`MOST_SECS`],
+/// and once after a single untimed draw if even that takes over [`SLOW_SECS`].
+/// Every draw builds and looks up its maps, as while hair moves.
 /// `check_cancel` is called before each draw, outside the measured time.
 ///
 /// # Errors
@@ -34,10 +43,15 @@ pub(super) fn draw(
     let mut picture = Picture::default();
     let mut stats = Vec::new();
     renderer.set_keeping(false);
+    let watch = Stopwatch::start();
     let timed = (0..WARM_UP + draws.max(1)).try_for_each(|draw| {
+        let secs = watch.secs();
+        if stats.len() >= LEAST && secs > MOST_SECS || !stats.is_empty() && secs > SLOW_SECS {
+            return Ok(());
+        }
         check_cancel()?;
         let one = renderer.picture(input, width, height, &mut picture)?;
-        if draw >= WARM_UP {
+        if draw >= WARM_UP || draw > 0 && secs > MOST_SECS {
             stats.push(one);
         }
         Ok::<_, ProjectError>(())

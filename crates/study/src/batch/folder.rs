@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
+use lovelock_record::{PictureSink, SinkSettings};
 use lovelock_session::new_folders::NewFolders;
 use serde_json::Value;
 
@@ -15,6 +16,8 @@ use crate::report::CompareReport;
 
 /// Folder of the images, relative to the report.
 const PICTURES: &str = "pictures";
+/// Folder of the error maps of every frame.
+const SEQUENCES: &str = "frames";
 
 /// The folder of a report. Each file is written under a temporary name and then renamed.
 pub(super) struct Folder {
@@ -61,6 +64,44 @@ impl Folder {
             .map_err(|error| ProjectError::output(&path, error))?;
         self.pictures.borrow_mut().insert(file.clone());
         Ok(file)
+    }
+
+    /// The name of the error map of a frame in the folder of a method, and the folder's.
+    pub(super) fn frame_name(method: &str, frame: u64) -> (String, String) {
+        let folder = format!("{SEQUENCES}/{method}");
+        (format!("{folder}/error.{frame:04}.png"), folder)
+    }
+
+    /// Writes the error map of a frame; returns the name of the folder with all frames, relative to the report.
+    ///
+    /// # Errors
+    /// As [`Folder::picture`].
+    pub(super) fn frame(
+        &self,
+        (method, frame): (&str, u64),
+        (width, height, rgba): (u32, u32, &[u8]),
+    ) -> Result<String, ProjectError> {
+        let (file, folder) = Self::frame_name(method, frame);
+        let path = self.path.join(file);
+        std::fs::create_dir_all(self.path.join(&folder))
+            .map_err(|error| ProjectError::output(&path, format!("{}: {error}", path.display())))?;
+        lovelock_record::write_png(&path, width, height, rgba)
+            .map_err(|error| ProjectError::output(&path, error))?;
+        Ok(folder)
+    }
+
+    /// Begins a film.
+    ///
+    /// # Errors
+    /// As [`Folder::picture`].
+    pub(super) fn film(&self, name: &str, settings: SinkSettings) -> Result<PictureSink, ProjectError> {
+        let path = self.path.join(name);
+        PictureSink::for_path(&path, settings).map_err(|error| ProjectError::output(&path, error))
+    }
+
+    /// The whole path of a file of the report.
+    pub(super) fn path_of(&self, name: &str) -> PathBuf {
+        self.path.join(name)
     }
 
     /// Removes images of this and the previous run that the report does not name. All other files stay, and failures are ignored

@@ -48,7 +48,7 @@ impl Hair {
     pub fn frame_input<'a>(&'a self, project: &'a Project) -> FrameInput<'a> {
         FrameInput {
             hair: HairPose::Strands(&self.strands),
-            ..self.snapshot.frame_input(project, &self.camera)
+            ..self.snapshot.measured_input(project, &self.camera)
         }
     }
 

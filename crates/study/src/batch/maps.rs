@@ -79,13 +79,22 @@ impl Kind {
         }
     }
 
+    /// Values per pixel as colours.
+    pub(super) fn colours(&self, values: &[f32]) -> Vec<u8> {
+        paint(values, self.map.range_to(self.largest), self.map)
+    }
+
+    /// The scale, to be drawn beside images.
+    pub(super) fn scale(&self) -> lovelock_metrics::Legend {
+        let range = self.map.range_to(self.largest);
+        lovelock_metrics::Legend { map: self.map, range, title: self.short.to_owned() }
+    }
+
     /// Values per pixel as colours with the legend beside them: width, height and bytes.
     pub(super) fn painted(&self, width: u32, height: u32, values: &[f32]) -> Option<(u32, u32, Vec<u8>)> {
-        let range = self.map.range_to(self.largest);
-        let rgba = paint(values, range.clone(), self.map);
+        let rgba = self.colours(values);
         let image = Image::new(width, height, &rgba).ok()?;
-        let legend = lovelock_metrics::Legend { map: self.map, range, title: self.short.to_owned() };
-        let canvas = legend.beside(&image);
+        let canvas = self.scale().beside(&image);
         Some((canvas.width() as u32, canvas.height() as u32, canvas.into_rgba()))
     }
 }

@@ -7,10 +7,12 @@ use super::entrants::{Entrant, file_name};
 use super::maps::{Kind, at_pixels};
 use super::pictures::picture_error;
 use super::probe::Probe;
+use super::stability::Watched;
 use super::swim::swimming;
 use super::work::{CheckCancel, References, Work};
 use super::{banding, draw, maps, stray};
 use crate::changes::StabilityReport;
+use crate::report::FrameError;
 
 impl Work<'_> {
     /// Measures one entrant. `check_cancel` is called before each draw.
@@ -82,7 +84,9 @@ impl Work<'_> {
             (stability.swim, stability.swim_p99) = (Some(swim.rms), Some(swim.p99));
         }
         if let Some(film) = references.film {
-            let (pop, flicker) = film.watch(renderer, &project, truth, check_cancel)?;
+            let Watched { pop, flicker, errors } = film.watch(renderer, &project, truth, check_cancel)?;
+            stability.film_rmse = whole_film(&errors);
+            report.frame_errors = errors;
             (stability.pop, stability.pop_p99) = (Some(pop.max), Some(pop.p99));
             report.files.pop = self.point_map(&name, maps::POP, &pop.per_point, (values, &input))?;
             if let Some(flicker) = flicker {
@@ -122,5 +126,24 @@ impl Work<'_> {
             return Ok(None);
         };
         self.folder.picture(&format!("{name}.{}", kind.id), (width, height, &rgba)).map(Some)
+    }
+}
+
+/// The root mean square error over all frames; `None` without frames.
+fn whole_film(errors: &[FrameError]) -> Option<f64> {
+    let squares: f64 = errors.iter().map(|error| error.rmse * error.rmse).sum();
+    (!errors.is_empty()).then(|| (squares / errors.len() as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_a_film_is_the_root_mean_square_over_its_frames() {
+        let of = |rmse| FrameError { rmse, bias: 0.0 };
+        let found = whole_film(&[of(0.3), of(0.4)]).expect("frames");
+        assert!((found - 0.125_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(whole_film(&[]), None);
     }
 }

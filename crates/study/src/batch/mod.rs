@@ -14,6 +14,8 @@ mod probe;
 mod reference;
 mod request;
 mod run;
+mod sequence;
+mod sheet;
 mod stability;
 mod steps;
 mod stray;

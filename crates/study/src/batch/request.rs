@@ -39,6 +39,8 @@ pub struct CompareRequest {
     /// Whether the tests of stability, swim and banding are left out: images, errors, times, memory and probes only, and pop and flicker
     /// of several frames.
     pub quick: bool,
+    /// Whether several frames become films of panes and sequences of error maps.
+    pub film: bool,
     /// The files that the project may read.
     pub access: Access,
     /// The device to render on instead of opening one for `backends`.
@@ -61,6 +63,7 @@ impl Default for CompareRequest {
             probes: Vec::new(),
             draws: Self::DEFAULT_DRAWS,
             quick: false,
+            film: false,
             access: Access::default(),
             gpu: None,
         }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_metrics::{Stability, flicker, pop};
+use lovelock_metrics::{Errors, Stability, errors, flicker, pop};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, Light, Picture, Renderer};
@@ -11,7 +11,7 @@ use lovelock_session::snapshot::FrameSnapshot;
 use super::hair::{Hair, LitHair};
 use super::truth::{Truth, converge};
 use super::work::CheckCancel;
-use crate::report::{FootprintTruth, NamedTruth, Reference};
+use crate::report::{FootprintTruth, FrameError, NamedTruth, Reference};
 
 /// Size of images that are rendered only for their transmittance, pixels.
 pub(super) const SMALL: u32 = 16;
@@ -40,6 +40,15 @@ pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Res
         ));
     }
     Ok(())
+}
+
+/// What a method does over the frames of a film.
+pub(super) struct Watched {
+    pub pop: Stability,
+    /// Against the ground truth.
+    pub flicker: Option<Stability>,
+    /// Errors of each frame against the ground truth; empty if it is unknown.
+    pub errors: Vec<FrameError>,
 }
 
 /// The frames of a comparison and their ground truth.
@@ -94,7 +103,7 @@ impl Film {
         Ok(Self { snapshots: snapshots.to_vec(), truths })
     }
 
-    /// Pop, and flicker against the ground truth of this number.
+    /// Pop, and flicker and errors against the ground truth of this number.
     ///
     /// # Errors
     /// As rendering, or the error of `check_cancel`, which is called before each frame.
@@ -104,7 +113,7 @@ impl Film {
         project: &Project,
         truth: usize,
         check_cancel: &mut CheckCancel,
-    ) -> Result<(Stability, Option<Stability>), ProjectError> {
+    ) -> Result<Watched, ProjectError> {
         let mut frames = Vec::with_capacity(self.snapshots.len());
         for snapshot in &self.snapshots {
             check_cancel()?;
@@ -112,7 +121,30 @@ impl Film {
             frames.push(drawn(renderer, &hair.frame_input(project))?);
         }
         let truth = self.truths.get(truth).and_then(Option::as_ref);
-        Ok((pop(&frames), truth.map(|truth| flicker(&frames, truth))))
+        let of_frames = truth.map(|truth| {
+            let of = |(frame, truth): (&Vec<f32>, &Vec<f32>)| errors(frame, truth);
+            frames
+                .iter()
+                .zip(truth)
+                .map(of)
+                .map(|Errors { rmse, bias, .. }| FrameError { rmse, bias })
+                .collect()
+        });
+        Ok(Watched {
+            pop: pop(&frames),
+            flicker: truth.map(|truth| flicker(&frames, truth)),
+            errors: of_frames.unwrap_or_default(),
+        })
+    }
+
+    /// The snapshots of the frames.
+    pub(super) fn snapshots(&self) -> &[Arc<FrameSnapshot>] {
+        &self.snapshots
+    }
+
+    /// The ground truth of this number in a frame.
+    pub(super) fn truth(&self, truth: usize, frame: usize) -> Option<&[f32]> {
+        Some(self.truths.get(truth)?.as_ref()?.get(frame)?)
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) enum Step {
     Probes,
     /// All measurements of one entrant.
     Entrant,
+    /// The films of all entrants.
+    Sequence,
 }
 
 impl Step {
@@ -31,6 +33,7 @@ impl Step {
             Self::Truth => 1.0,
             Self::Picture => 2.0,
             Self::Film | Self::LightSweep | Self::Entrant => 4.0,
+            Self::Sequence => 20.0,
         }
     }
 }

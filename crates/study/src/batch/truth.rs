@@ -25,7 +25,7 @@ enum Footprint {
     /// Edge of a texel, metres, and number of texels.
     Texels(f32, u64),
     /// A map that cannot be built: its settings, and why.
-    Unknown(ShadowSettings, String),
+    Unknown(Box<ShadowSettings>, String),
 }
 
 /// Converged transmittance of the first light at every strand point, for one footprint.
@@ -87,7 +87,7 @@ fn footprint(lit: LitHair, settings: &ShadowSettings) -> (Footprint, Option<f32>
     let settings = ShadowSettings { method, ..*settings };
     let mut map = cpu_shadow(method);
     if let Err(error) = map.build(&lit.shadow_input(), &settings) {
-        return (Footprint::Unknown(settings, error.to_string()), None);
+        return (Footprint::Unknown(Box::new(settings), error.to_string()), None);
     }
     let report = map.report();
     let footprint = if method.map_kind() == MapKind::Cells {

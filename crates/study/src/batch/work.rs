@@ -18,11 +18,13 @@ use super::light_sweep::LightSweep;
 use super::pictures::ReferencePictures;
 use super::probe::Probe;
 use super::request::CompareRequest;
+use super::sequence::Played;
 use super::stability::{Film, fits};
 use super::steps::{Step, Steps};
 use super::swim::frames_shifted;
 use super::truth::{Points, Truths};
 use super::{maps, probe};
+use crate::budget::{beaten, winners};
 use crate::report::{CompareReport, MethodReport};
 
 /// Called regularly; returns an error if the work is cancelled.
@@ -135,6 +137,7 @@ impl Work<'_> {
             hair_pixels: &hair_pixels,
         };
         report.legends = maps::kinds(film.is_some()).map(|kind| kind.legend()).collect();
+        let mut played = Vec::new();
         for (entrant, (truth, cell_size)) in entrants.into_iter().zip(found) {
             let name = entrant.report.name.clone();
             part(name.clone(), true)?;
@@ -156,10 +159,18 @@ impl Work<'_> {
                 Err(ProjectError::Work { file: None, message }) => entrant.report.refused = Some(message),
                 Err(error) => return Err(error),
             }
+            if !entrant.report.frame_errors.is_empty() {
+                played.push(Played { at: report.methods.len(), contender: entrant.contender, truth });
+            }
             report.methods.push(entrant.report);
             mark_fronts(report);
             report.probes = probes.iter().map(|probe| probe.report.clone()).collect();
             self.folder.report(report)?;
+        }
+        if let Some(film) = film.as_ref().filter(|_| self.request.film) {
+            let name = || "films of all methods".to_owned();
+            part(name(), true)?;
+            self.films(film, &played, renderers, report, &mut || part(name(), false))?;
         }
         Ok(())
     }
@@ -172,6 +183,7 @@ impl Work<'_> {
         steps.extend((!self.request.quick).then_some(Step::LightSweep));
         steps.push(Step::Probes);
         steps.extend(vec![Step::Entrant; entrants]);
+        steps.extend((frames > 1 && self.request.film).then_some(Step::Sequence));
         steps
     }
 
@@ -289,4 +301,5 @@ fn mark_fronts(report: &mut CompareReport) {
     for (method, [of_time, of_memory]) in methods.iter_mut().zip(fronts) {
         (method.front_of_time, method.front_of_memory) = (of_time, of_memory);
     }
+    (report.budgets, report.beaten) = (winners(report), beaten(report));
 }

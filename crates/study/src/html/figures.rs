@@ -106,6 +106,31 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
     Some(plot.svg(&says, 0.0))
 }
 
+/// Errors of every frame, a curve per method. `None` for a single frame.
+pub(super) fn frames(group: &Group<'_>, names: &Names, [first, end]: [u64; 2]) -> Option<String> {
+    let curves: Vec<_> = group.methods.iter().filter(|(_, method)| !method.frame_errors.is_empty()).collect();
+    let all = || curves.iter().flat_map(|(_, method)| &method.frame_errors).map(|error| error.rmse);
+    // A method without shadow errs so much that the others could not be distinguished.
+    let least = all().fold(f64::MAX, f64::min).max(1e-4);
+    let largest = all().filter(|error| *error <= 12.0 * least).fold(least, f64::max);
+    if curves.is_empty() || end < first + 2 {
+        return None;
+    }
+    let x = Axis::even("frame", first as f64, (end - 1) as f64);
+    let mut plot = Plot::new(820.0, 300.0, x, Axis::even("RMSE of transmittance", 0.0, 1.1 * largest));
+    for (index, method) in &curves {
+        let of =
+            |(frame, error): (usize, &crate::report::FrameError)| (first as f64 + frame as f64, error.rmse);
+        let points: Vec<_> = method.frame_errors.iter().enumerate().map(of).collect();
+        plot.line(&points, thin(color(method)), Some(*index));
+        if let Some(&last) = points.last() {
+            let title = format!("{}: RMSE {}", names.within_group(method), fixed(Some(last.1), 4));
+            plot.dot(last, Dot::Full, color(method), Label::WhereFree(names.within_group(method)), &title);
+        }
+    }
+    Some(plot.svg(&format!("Error of transmittance in every frame of {} methods", curves.len()), 0.0))
+}
+
 /// Transmittance along the ray of light through a point, and below it what each method stores there.
 pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) -> String {
     let mm = |points: &[(f32, f32)]| -> Vec<(f64, f64)> {

@@ -1,7 +1,9 @@
 //! The report as one page for local use: it contains styles and script, images are files beside it, and a content security policy
 //! prevents network access.
 
+mod budgets;
 mod figures;
+mod films;
 mod names;
 mod pictures;
 pub(crate) mod plot;
@@ -24,8 +26,9 @@ pub(super) fn page(report: &CompareReport) -> String {
     let mut contents = Vec::new();
     let sections = [
         ("overview", "Overview", overview(report, &groups, &names)),
-        ("cost", "Error against cost", costs(&groups, &names)),
+        ("cost", "Error against cost", costs(&groups, &names) + &budgets::section(report, &names)),
         ("pictures", "Pictures and maps", pictures::section(report, &names)),
+        ("film", "Film", films::section(report, &groups, &names)),
         ("probes", "Probes", probes(report, &names)),
         ("stability", "Stability", stability::section(report, &groups, &names)),
         ("banding", "Banding", banding(report, &groups, &names)),
@@ -50,7 +53,7 @@ pub(super) fn page(report: &CompareReport) -> String {
 pub fn document(title: &str, body: &str, style: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" \
-         content=\"default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n\
+         content=\"default-src 'none'; img-src 'self' data:; media-src 'self'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>\n{}{style}</style>\n\
          </head>\n<body>\n{body}\n<script>\n{}</script>\n</body>\n</html>\n",
         escaped(title),

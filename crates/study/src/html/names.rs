@@ -8,9 +8,9 @@ use super::words::escaped;
 use crate::report::{CompareReport, MethodReport};
 
 /// Colours that can be distinguished on white, also by colour-blind readers: one per method, in the order of the menu.
-const COLORS: [&str; 10] = [
-    "#7d8590", "#0072b2", "#c98500", "#d1490f", "#a8467f", "#00825f", "#202124", "#4b9fd6", "#6b4fa0",
-    "#8a6d1f",
+const COLORS: [&str; 16] = [
+    "#7d8590", "#0072b2", "#c98500", "#d1490f", "#a8467f", "#00825f", "#6b4fa0", "#8a6d1f", "#4b9fd6",
+    "#7a3b1d", "#4f7a1c", "#b3367a", "#3d5a80", "#202124", "#c2185b", "#00838f",
 ];
 
 /// The colour of a method, the same in every plot of every report.

@@ -51,9 +51,12 @@ const AT_POINTS: &str =
 /// Tooltip of the columns of swim.
 const SWIM: &str = "Deviation of transmittance while the map is shifted by less than a texel, root mean square over points and frames";
 
+/// Tooltip of the columns of flicker.
+const FLICKER: &str = "Root mean square of the change from frame to frame that is not the reference's own";
+
 /// Errors, pictures, costs and stability of the methods of one group.
 pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport) -> String {
-    const COLUMNS: [Column; 15] = [
+    const COLUMNS: [Column; 16] = [
         Column(
             "RMSE",
             "Root mean square error of transmittance at strand points, against the method's own texels",
@@ -78,10 +81,11 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
         Column("Query", "Time to query them at every strand point and body vertex: milliseconds, median"),
         Column("Memory", "Shadow maps of all lights"),
         Column("Swim", SWIM),
+        Column("Flicker", FLICKER),
     ];
     let cost = format!("Cost on the {} (times: ms)", group.backend);
     let spans =
-        [("Error of transmittance", 6), ("Image difference", 5), (cost.as_str(), 3), ("Stability", 1)];
+        [("Error of transmittance", 6), ("Image difference", 5), (cost.as_str(), 3), ("Stability", 2)];
     let mut rows = String::new();
     for (_, method) in &group.methods {
         let _ = write!(rows, "<tr>{}", names.cell(method));
@@ -123,11 +127,12 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
             (time(stages.and_then(|s| s.query)), if quick { "front" } else { "" }),
             ((bytes(memory), memory.map(|b| b as f64)), if little { "front" } else { "" }),
             (four(method.stability.and_then(|stability| stability.swim)), "first"),
+            (four(method.stability.and_then(|stability| stability.flicker)), ""),
         ];
         rows += &cells.map(|((text, value), class)| cell(&text, value, class)).concat();
         rows += "</tr>";
     }
-    let title = format!("{}. Times are medians of {} draws.", group.title, report.scene.draws);
+    let title = format!("{}. Times are medians of up to {} draws.", group.title, report.scene.draws);
     let table = table(&title, &spans, &COLUMNS, &rows);
     match report.reference.doubt_at_points() {
         Some(change) => {
@@ -149,10 +154,7 @@ pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
             "Largest change of any point from one frame to the next, including the effect of the moving hair",
         ),
         Column("p99", "99th percentile over the points of the largest change of each"),
-        Column(
-            "Flicker",
-            "Root mean square of the change from frame to frame that is not the reference's own",
-        ),
+        Column("Flicker", FLICKER),
         Column("Pop", "Largest change of any point from one step to the next"),
         Column("Of the truth", "Largest change of the reference at any of these points"),
         Column("Excess", "Largest change of any point that is not the reference's own"),

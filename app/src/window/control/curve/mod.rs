@@ -79,7 +79,7 @@ impl Curve<'_> {
         let differs = value != default;
         ui.horizontal(|ui| {
             let text = RichText::new(self.label);
-            let text = if differs { text.color(theme::ACCENT) } else { text };
+            let text = if differs { text.color(theme::accent()) } else { text };
             let name = ui.add(egui::Label::new(text).sense(Sense::CLICK));
             if differs && name.double_clicked() {
                 value.clone_from(default);
@@ -245,7 +245,7 @@ impl Curve<'_> {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let name = value.name(point);
-            let label = ui.label(RichText::new(format!("At ({name})")).small().color(theme::QUIET));
+            let label = ui.label(RichText::new(format!("At ({name})")).small().color(theme::quiet()));
             let mut to = place * 100.0;
             let tip = "Position of the selected point: 0 % is the root, 100 % the tip.";
             let shown = ui.add_enabled_ui(free, |ui| number(ui, "At", &mut to, 0.0..=100.0, " %")).inner;
@@ -254,7 +254,7 @@ impl Curve<'_> {
             if shown.labelled_by(label.id).hover_tooltip(&tip).disabled_hover_tooltip(&tip).changed() {
                 value.set(point, [to / 100.0, height]);
             }
-            let label = ui.label(RichText::new("Value").small().color(theme::QUIET));
+            let label = ui.label(RichText::new("Value").small().color(theme::quiet()));
             let mut to = height * factor;
             let shown =
                 number(ui, "Value", &mut to, low * factor..=high * factor, unit).labelled_by(label.id);
@@ -303,20 +303,20 @@ impl Curve<'_> {
         handles: &[(Pos2, Response, bool)],
     ) {
         let painter = ui.painter_at(rect);
-        painter.rect_filled(area, 3.0, theme::PAGE);
+        painter.rect_filled(area, 3.0, theme::page());
         let font = FontId::proportional(9.5);
         let ([low, high], (unit, factor)) = (self.range, self.unit);
         for share in [0.25, 0.5, 0.75, 1.0] {
             let y = area.bottom() - share * area.height();
             if share < 1.0 {
-                painter.hline(area.x_range(), y, Stroke::new(1.0, theme::LINE));
+                painter.hline(area.x_range(), y, Stroke::new(1.0, theme::line()));
             }
             // The names of the ends are below.
             if share >= 0.5 {
                 let part = if self.axis == Axis::Root { share * share } else { share };
                 let text = format!("{:.0}{unit}", (low + part * (high - low)) * factor);
                 let under = pos2(area.right() - 10.0, y + 1.0);
-                let color = theme::QUIET.gamma_multiply(0.6);
+                let color = theme::quiet().gamma_multiply(0.6);
                 painter.text(under, Align2::RIGHT_TOP, text, font.clone(), color);
             }
         }
@@ -327,17 +327,17 @@ impl Curve<'_> {
             let held = response.has_focus() || response.hovered() || response.dragged();
             let radius = if held { 6.0 } else { 4.5 };
             let color = match (goes, held) {
-                (true, _) => theme::WRONG,
-                (_, true) => theme::ACCENT,
-                _ => theme::BRIGHT,
+                (true, _) => theme::wrong(),
+                (_, true) => theme::accent(),
+                _ => theme::bright(),
             };
-            painter.circle(*at, radius, color, Stroke::new(1.0, theme::PAGE));
+            painter.circle(*at, radius, color, Stroke::new(1.0, theme::page()));
         }
         let bottom = area.bottom() - 2.0;
         let roots = (area.left() + 10.0, Align2::LEFT_BOTTOM, "roots");
         let tips = (area.right() - 10.0, Align2::RIGHT_BOTTOM, "tips");
         for (x, align, name) in [roots, tips] {
-            painter.text(pos2(x, bottom), align, name, font.clone(), theme::QUIET);
+            painter.text(pos2(x, bottom), align, name, font.clone(), theme::quiet());
         }
     }
 }

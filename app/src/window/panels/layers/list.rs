@@ -128,9 +128,9 @@ fn layer_row(
     if !renamed(ui, columns.name, own, view, |name| set_name(layer, name)) {
         let text = RichText::new(layer.label());
         let text = match (known, factor > 0.0) {
-            (false, _) => text.color(theme::WATCH),
-            (_, true) => text.color(theme::BRIGHT),
-            _ => text.color(theme::QUIET),
+            (false, _) => text.color(theme::watch()),
+            (_, true) => text.color(theme::bright()),
+            _ => text.color(theme::quiet()),
         };
         row::name(ui, columns.name, text);
     }
@@ -311,7 +311,7 @@ fn drop_into(ui: &Ui, rect: Rect, id: Id, halves: [(usize, Option<u32>); 2], act
     let is_below = pointer.is_some_and(|at| at.y > rect.center().y);
     if response.dnd_hover_payload::<Row>().is_some() {
         let y = if is_below { rect.bottom() } else { rect.top() };
-        let stroke = Stroke::new(2.0, theme::ACCENT);
+        let stroke = Stroke::new(2.0, theme::accent());
         ui.painter().hline(rect.x_range(), y, stroke);
     }
     if let Some(moved) = response.dnd_release_payload::<Row>() {

@@ -61,7 +61,7 @@ fn put(ui: &mut Ui, rect: Rect, name: &str, widget: impl Widget) -> Response {
 
 /// The handle by which a row is dragged.
 pub(super) fn grip(ui: &mut Ui, rect: Rect) -> Response {
-    let icon = ICON_DRAG_INDICATOR.rich_text().color(theme::QUIET);
+    let icon = ICON_DRAG_INDICATOR.rich_text().color(theme::quiet());
     let grip = put(ui, rect, "grip", egui::Label::new(icon).sense(egui::Sense::drag()));
     grip.hover_tooltip("Drag to move the layer. Layers act from the top to the bottom.")
         .on_hover_cursor(egui::CursorIcon::Grab)
@@ -70,7 +70,7 @@ pub(super) fn grip(ui: &mut Ui, rect: Rect) -> Response {
 /// An eye that switches something, which screen readers call `name`.
 pub(super) fn eye(ui: &mut Ui, rect: Rect, on: &mut bool, (name, tip): (&str, &str)) {
     let icon = if *on { ICON_VISIBILITY } else { ICON_VISIBILITY_OFF };
-    let text = icon.rich_text().color(if *on { theme::BRIGHT } else { theme::QUIET });
+    let text = icon.rich_text().color(if *on { theme::bright() } else { theme::quiet() });
     let response = put(ui, rect, "eye", egui::Button::new(text).frame(false)).hover_tooltip(tip);
     if response.clicked() {
         *on = !*on;
@@ -122,7 +122,7 @@ pub(super) fn weight(ui: &mut Ui, rect: Rect, value: &mut f32, (name, tip): (&st
     let place = UiBuilder::new().id_salt("weight").max_rect(rect);
     let mut child = ui.new_child(place);
     if differs {
-        child.visuals_mut().override_text_color = Some(theme::ACCENT);
+        child.visuals_mut().override_text_color = Some(theme::accent());
     }
     let response = child.add_sized(rect.size(), drag);
     let changed = if differs { "\n\nChanged: double-click restores 100 %." } else { "" };
@@ -138,7 +138,7 @@ pub(super) fn weight(ui: &mut Ui, rect: Rect, value: &mut f32, (name, tip): (&st
 
 /// The button that makes a row the only one that acts. Returns whether it was clicked.
 pub(super) fn solo(ui: &mut Ui, rect: Rect, on: bool, tip: &str) -> bool {
-    let text = RichText::new("S").color(if on { theme::ACCENT } else { theme::QUIET });
+    let text = RichText::new("S").color(if on { theme::accent() } else { theme::quiet() });
     put(ui, rect, "solo", egui::Button::selectable(on, text)).hover_tooltip(tip).clicked()
 }
 
@@ -146,7 +146,7 @@ pub(super) fn solo(ui: &mut Ui, rect: Rect, on: bool, tip: &str) -> bool {
 pub(super) fn picture(ui: &Ui, rect: Rect, disk: egui::epaint::Mesh, masked: bool) {
     ui.painter().add(disk);
     // A rim, and a mark where the face is.
-    let color = if masked { theme::QUIET } else { theme::LINE };
+    let color = if masked { theme::quiet() } else { theme::line() };
     ui.painter().circle_stroke(rect.center(), 0.5 * PICTURE, egui::Stroke::new(1.0, color));
     let nose = rect.center_top() + vec2(0.0, 1.0);
     ui.painter().circle_filled(nose, 1.5, color);
@@ -158,7 +158,7 @@ pub(super) fn background(ui: &Ui, selected: bool, also: bool, hovered: bool) -> 
     match (selected, also, hovered) {
         (true, ..) => Some(strong.gamma_multiply(0.45)),
         (_, true, _) => Some(strong.gamma_multiply(0.25)),
-        (.., true) => Some(theme::LINE.gamma_multiply(0.6)),
+        (.., true) => Some(theme::line().gamma_multiply(0.6)),
         _ => None,
     }
 }

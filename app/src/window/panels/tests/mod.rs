@@ -1,6 +1,8 @@
 mod every_control;
+mod face;
 mod layers;
 mod one_by_one;
+mod portraits;
 mod reasons;
 mod recording;
 mod reveal;
@@ -21,7 +23,7 @@ use lovelock_appearance::environment::Panorama;
 use lovelock_groom::{HairShading, HairTie, Preset, TieKind, TieReach};
 use lovelock_motion::{ColliderEdit, ColliderEdits};
 use lovelock_project::Project;
-use lovelock_project::project::HairSource;
+use lovelock_project::project::{FocusOn, HairSource};
 use lovelock_render::{
     ClusterShading, HairDrawing, LocalShadow, MapValue, PassTime, StrandCount, VoxelDeposit,
 };
@@ -35,7 +37,7 @@ use crate::window::control::section;
 use crate::window::pointer_tool::PointerTool;
 use crate::window::readings::{Fact, LoadedBody, LoadedHair, LoadedSurroundings, Readings};
 use crate::window::recorder::State;
-use crate::window::side_panels::Panels;
+use crate::window::shelf::Panels;
 use crate::window::soundtrack::Loaded;
 use crate::window::testing::{Shown, screen, unfold};
 
@@ -83,6 +85,9 @@ impl Bench {
                 clip: "dance".to_owned(),
                 joints: vec!["hips".to_owned(), "hips/spine/neck/head".to_owned()],
                 head: "hips/spine/neck/head".to_owned(),
+                face: ["Blink", "Mabataki", "an expression of a rather long name"]
+                    .map(str::to_owned)
+                    .to_vec(),
                 notes: Vec::new(),
             },
             surroundings: LoadedSurroundings {
@@ -133,7 +138,7 @@ impl Bench {
             recording: &self.recording,
             film_frames: self.clip_frames,
         };
-        let panel = self.panels.by_title(title).expect("a panel of that title");
+        let (_, panel) = self.panels.by_title(title).expect("a panel of that title");
         let asked = panel.ui(ui, &mut self.project, &readings);
         if let Some(Command::Use(tool)) = asked {
             self.tool.toggle(tool);
@@ -198,6 +203,10 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
     files.set_motion_file("/a/b c/ü.bvh");
     files.set_surroundings_file("/a/b c/a panorama of a rather long name that says much.exr");
+    files.set_backdrop_file("/a/b c/a room of a rather long name that says much.jpg");
+    files.set_reference_file("/a/b c/a photograph of a rather long name that says much.png");
+    files.camera.turntable = true;
+    (files.camera.lens.enabled, files.camera.lens.focus) = (true, FocusOn::Distance);
     files.set_sound_file("/a/b c/a song of a rather long name that says much.flac");
     files.look.shading = HairShading::TwoHighlights;
     files.picture.strands = StrandCount::Fixed;

@@ -35,7 +35,7 @@ fn editor() -> Harness<'static, Shown<Edited>> {
         let mut project = edited.bench.project.clone();
         let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
         viewport.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
-        camera_control::apply(&mut project.camera, &viewport);
+        camera_control::apply(&mut project.camera, 0.0, &viewport);
         edited.document.edit("change", project);
     })
 }

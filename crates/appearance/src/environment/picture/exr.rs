@@ -14,7 +14,7 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
 
-use super::Reducer;
+use super::{NewReducer, Reducer};
 use crate::environment::error::{MAX_BLOCK_BYTES, MAX_HEIGHT, MAX_WIDTH, Problem};
 
 /// What a file must have.
@@ -25,14 +25,14 @@ const WANTED: &str = "a flat layer with the channels R, G and B at full resoluti
 const DWA_SIZES: std::ops::Range<usize> = 1..10;
 
 /// Reads the first flat layer with the channels R, G and B.
-pub(super) fn read(content: impl BufRead + Seek) -> Result<Reducer, Problem> {
+pub(super) fn read(content: impl BufRead + Seek, reducer: NewReducer<'_>) -> Result<Reducer, Problem> {
     // Files may come from anywhere, and assertions of the decoder may fail on damaged ones.
-    catch_unwind(AssertUnwindSafe(|| read_blocks(content))).unwrap_or_else(|_| {
+    catch_unwind(AssertUnwindSafe(|| read_blocks(content, reducer))).unwrap_or_else(|_| {
         Err(Problem::Damaged { found: "pixel data that cannot be decoded".to_owned(), wanted: WANTED })
     })
 }
 
-fn read_blocks(mut content: impl BufRead + Seek) -> Result<Reducer, Problem> {
+fn read_blocks(mut content: impl BufRead + Seek, reducer: NewReducer<'_>) -> Result<Reducer, Problem> {
     if is_deep(content.fill_buf()?) {
         return Err(deep());
     }
@@ -46,7 +46,7 @@ fn read_blocks(mut content: impl BufRead + Seek) -> Result<Reducer, Problem> {
 
     let header = &reader.headers()[layer];
     let window = header.shared_attributes.display_window;
-    let mut reducer = Reducer::new(window.size.width() as u64, window.size.height() as u64)?;
+    let mut reducer = reducer(window.size.width() as u64, window.size.height() as u64)?;
     let place = |data: i32, display: i32| i64::from(data) - i64::from(display);
     let corner = [
         place(header.own_attributes.layer_position.x(), window.position.x()),

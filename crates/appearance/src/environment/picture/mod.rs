@@ -33,20 +33,32 @@ pub(super) fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
 }
 
-/// Reads a picture. The first bytes decide on the format.
-pub(super) fn read(mut content: impl BufRead + Seek) -> Result<Reducer, Problem> {
+/// Reads a picture of the surroundings. The first bytes decide on the format.
+pub(super) fn read(content: impl BufRead + Seek) -> Result<Reducer, Problem> {
+    read_by(content, &Reducer::new)
+}
+
+/// Reads a picture with at most `side` pixels along its longest side; a larger one is averaged.
+pub(super) fn read_onto(content: impl BufRead + Seek, side: u32) -> Result<Reducer, Problem> {
+    read_by(content, &|width, height| Reducer::within(width, height, side))
+}
+
+/// What makes the reducer of a picture of some width and height.
+type NewReducer<'a> = &'a dyn Fn(u64, u64) -> Result<Reducer, Problem>;
+
+fn read_by(mut content: impl BufRead + Seek, reducer: NewReducer<'_>) -> Result<Reducer, Problem> {
     let start = content.fill_buf()?;
     if start.starts_with(&::exr::meta::magic_number::BYTES) {
-        exr::read(content)
+        exr::read(content, reducer)
     } else if start.starts_with(b"#?") {
-        radiance::read(content)
+        radiance::read(content, reducer)
     } else {
         Err(Problem::Format(describe(start)))
     }
 }
 
 /// What the first bytes of a file look like, for an error.
-fn describe(start: &[u8]) -> String {
+pub(super) fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 6] = [
         (b"\x89PNG", "a PNG picture"),
         (b"\xff\xd8\xff", "a JPEG picture"),

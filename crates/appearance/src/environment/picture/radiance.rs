@@ -5,7 +5,7 @@
 
 use std::io::{self, BufRead, Read as _};
 
-use super::Reducer;
+use super::{NewReducer, Reducer};
 use crate::environment::error::Problem;
 
 /// Bytes of the longest header that is read. Those of common tools have some hundred.
@@ -31,9 +31,9 @@ struct Layout {
 }
 
 /// Reads a picture row by row.
-pub(super) fn read(mut content: impl BufRead) -> Result<Reducer, Problem> {
+pub(super) fn read(mut content: impl BufRead, reducer: NewReducer<'_>) -> Result<Reducer, Problem> {
     let layout = read_header(&mut content)?;
-    let mut reducer = Reducer::new(layout.width, layout.height)?;
+    let mut reducer = reducer(layout.width, layout.height)?;
     let (width, height) = (layout.width as usize, layout.height as usize);
     let mut row = vec![[0; 4]; width];
     for at in 0..height {

@@ -109,6 +109,13 @@ impl Reducer {
         Ok(Self::onto([width as usize, height as usize], REDUCED))
     }
 
+    /// As [`Reducer::new`], onto a picture of the same shape with at most `side` pixels along its longest side.
+    pub fn within(width: u64, height: u64, side: u32) -> Result<Self, Problem> {
+        let whole = Self::new(width, height)?.size;
+        let scale = (f64::from(side) / whole[0].max(whole[1]) as f64).min(1.0);
+        Ok(Self::onto(whole, whole.map(|of| ((of as f64 * scale).round() as usize).max(1))))
+    }
+
     /// From one size onto another, or onto the same where the other is larger. Both are at least 1 x 1.
     pub fn onto(size: [usize; 2], target: [usize; 2]) -> Self {
         let target = [target[0].min(size[0]), target[1].min(size[1])];

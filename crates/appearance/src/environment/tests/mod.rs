@@ -1,6 +1,7 @@
 //! The light from all directions against answers known on paper, and its files against damage.
 
 mod axes;
+mod backdrop;
 mod files;
 mod mutations;
 mod reduction;

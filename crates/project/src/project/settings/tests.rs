@@ -25,7 +25,7 @@ fn leaves(path: &str, tree: &Json, out: &mut BTreeMap<String, Json>) {
 }
 
 /// Parts of a file that are not settings: names, files, what was drawn and cut, and the look inside a groom, which is not used.
-const NO_SETTINGS: [&str; 18] = [
+const NO_SETTINGS: [&str; 19] = [
     "version",
     "hair.groom.look.",
     "hair.cut.",
@@ -42,6 +42,7 @@ const NO_SETTINGS: [&str; 18] = [
     // Painted over directions.
     "body.scalp.added",
     "body.scalp.removed",
+    "surroundings.backdrop",
     ".file",
     ".name",
     ".take",
@@ -162,4 +163,19 @@ fn settings_are_assigned_and_those_that_a_take_has_recorded_are_refused() {
     project.assign(&set("picture.exposure_stops", "1")).expect("the image is drawn anew");
     let recorded = project.assign(&set("simulation.wind.speed", "4")).expect_err("the hair was recorded");
     assert!(recorded.to_string().contains("a take plays as recorded"), "{recorded}");
+}
+
+#[test]
+fn weights_of_a_face_are_set_by_any_name_and_kept_in_files() {
+    let mut project = Project::default();
+    project.set("body.face.まばたき.weight", "0.5").expect("a weight");
+    project.set("body.face.jaw.open.weight", "9").expect_err("out of range");
+    assert_eq!((project.body.face.of("まばたき"), project.body.face.0.len()), (0.5, 1));
+    let path = std::path::Path::new("/a/b.lovelock");
+    let text = crate::project::text_of_project(path, &project).expect("text");
+    let plain = crate::project::text_of_project(path, &Project::default()).expect("text");
+    assert_ne!(text, plain);
+    // What does not change is not kept.
+    project.body.face.set("まばたき", 0.0);
+    assert_eq!(project.body, Project::default().body);
 }

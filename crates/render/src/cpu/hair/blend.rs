@@ -2,10 +2,12 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
+use std::hint::black_box;
+
+use glam::Vec4;
 use lovelock_base::simd_versions;
 
 use super::fragments::{Span, SpanSink, each_span};
-use crate::cpu::math::max;
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::surface::raster::Occlusion;
 use crate::cpu::tile::{
@@ -16,8 +18,9 @@ use crate::cpu::tile::{
 pub(crate) struct BlendTile<'a> {
     /// The corner of the tile, pixels.
     pub origin: [f32; 2],
-    /// Both ends of each segment, from near to far. Gathered, because the order in memory differs from the order of depth.
-    pub segments: &'a [[ShadedPoint; 2]],
+    pub points: &'a [ShadedPoint],
+    /// The first point of each segment, from near to far, in the low 32 bits.
+    pub order: &'a [u64],
     pub hidden: &'a Occlusion,
     /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
@@ -88,12 +91,28 @@ simd_versions! {
 #[inline(always)]
 fn blend_segments(input: &BlendTile, out: &mut BlendState) {
     let mut sink = Blend { hidden: input.hidden, out };
-    for [a, b] in input.segments {
-        if sink.out.is_full() {
-            break;
+    for order in input.order.chunks(FETCHED) {
+        // Points lie in the order of strands. These loads do not wait for each other, as those below would.
+        let fetched = order.iter().filter_map(|&entry| ends_of(input, entry));
+        black_box(fetched.map(|[a, b]| a.x + b.hash).sum::<f32>());
+        for &entry in order {
+            if sink.out.is_full() {
+                return;
+            }
+            if let Some([a, b]) = ends_of(input, entry) {
+                each_span(a, b, input.origin, input.opacity, &mut sink);
+            }
         }
-        each_span(a, b, input.origin, input.opacity, &mut sink);
     }
+}
+
+/// Segments whose points are fetched together.
+const FETCHED: usize = 16;
+
+/// The ends of a segment of the order.
+#[inline(always)]
+fn ends_of<'a>(input: &BlendTile<'a>, entry: u64) -> Option<&'a [ShadedPoint; 2]> {
+    input.points.get(entry as u32 as usize..).and_then(|points| points.first_chunk())
 }
 
 struct Blend<'a> {
@@ -114,33 +133,31 @@ impl SpanSink for Blend<'_> {
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
-        // Blocks are copied, modified and written back: the compiler cannot prove that planes do not overlap.
+        // In fours, because the compiler does not turn this into vectors by itself.
         let at = span.block;
         let Occlusion { near, far, share: hidden } = self.hidden;
-        let (near, far, hidden) = (near[at], far[at], hidden[at]);
-        let mut through = self.out.through[at];
-        let mut share = [0.0; BLOCK_LANES];
-        for lane in 0..BLOCK_LANES {
-            let z = span.depth[lane];
-            let seen = if z >= near[lane] { 1.0 } else { 1.0 - hidden[lane] };
-            let alpha = if z >= far[lane] { span.alpha[lane] * seen } else { 0.0 };
-            share[lane] = alpha * through[lane] * span.gain[lane];
-            through[lane] -= alpha * through[lane];
-        }
-        self.out.through[at] = through;
-        for (c, plane) in self.out.color.iter_mut().enumerate() {
-            let mut color = plane[at];
-            let (from, to) = (a.color[c], b.color[c]);
-            for lane in 0..BLOCK_LANES {
-                color[lane] += share[lane] * (from + (to - from) * span.along[lane]);
+        let through = &mut self.out.through[at];
+        let mut most = Vec4::ZERO;
+        for from in (0..BLOCK_LANES).step_by(4) {
+            let four = |of: &[f32; BLOCK_LANES]| Vec4::from_slice(&of[from..from + 4]);
+            let z = four(&span.depth);
+            let seen = Vec4::select(z.cmpge(four(&near[at])), Vec4::ONE, Vec4::ONE - four(&hidden[at]));
+            let alpha = Vec4::select(z.cmpge(four(&far[at])), four(&span.alpha) * seen, Vec4::ZERO);
+            let before = four(through);
+            let taken = alpha * before;
+            let share = taken * four(&span.gain);
+            let left = before - taken;
+            left.write_to_slice(&mut through[from..from + 4]);
+            most = most.max(left);
+            let along = four(&span.along);
+            for (c, plane) in self.out.color.iter_mut().enumerate() {
+                let (first, second) = (Vec4::splat(a.color[c]), Vec4::splat(b.color[c]));
+                let color = &mut plane[at];
+                let sum = four(color) + share * (first + (second - first) * along);
+                sum.write_to_slice(&mut color[from..from + 4]);
             }
-            plane[at] = color;
         }
-        let mut most = 0.0;
-        for lane in 0..BLOCK_LANES {
-            most = max(through[lane], most);
-        }
-        if most <= UNSEEN {
+        if most.max_element() <= UNSEEN {
             self.out.closed[at] = true;
             self.out.open_in_row[at / BLOCKS_IN_ROW] -= 1;
             self.out.open -= 1;

@@ -2,14 +2,16 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
+use std::cmp::Ordering;
+
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd_versions;
 
 use super::fragments::{Span, SpanSink, each_span};
-use crate::cpu::math::{clamp, floor, three};
+use crate::cpu::math::{clamp, floor};
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
-use crate::cpu::tile::{BLOCK_LANES, STRIDE, TILE, pixel_of};
+use crate::cpu::tile::{BLOCK_LANES, BLOCK_WIDTH, STRIDE, TILE, pixel_of};
 
 /// One segment in one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,6 +55,8 @@ pub(crate) struct Fragments {
     found: Vec<(u32, Fragment)>,
     starts: Vec<u32>,
     by_pixel: Vec<Fragment>,
+    /// Of each fragment its depth, nearest first, above its index in `found`.
+    keys: Vec<u64>,
 }
 
 /// The input of a tile.
@@ -106,22 +110,34 @@ impl SpanSink for List<'_> {
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
+        let (left, top) = pixel_of(span.block, 0);
+        let mut seen = [0_u32; BLOCK_LANES];
         for lane in 0..BLOCK_LANES {
-            let alpha = span.alpha[lane];
-            if alpha <= 0.0 {
-                continue;
+            let body = self.samples.depths((top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH);
+            for (sample, body) in body.into_iter().enumerate() {
+                seen[lane] |= u32::from(span.depth[lane] >= body) << sample;
             }
-            let (x, y) = pixel_of(span.block, lane);
-            let (at, depth) = (y * STRIDE + x, span.depth[lane]);
-            let mut seen = 0;
-            for (sample, body) in self.samples.depths(at).into_iter().enumerate() {
-                seen |= u32::from(depth >= body) << sample;
-            }
-            if seen != 0 {
+        }
+        // All lanes, because a loop that skips some is not compiled to vectors.
+        let mut colors = [[0.0; BLOCK_LANES]; 3];
+        for (c, colors) in colors.iter_mut().enumerate() {
+            for lane in 0..BLOCK_LANES {
                 let (t, gain) = (span.along[lane], span.gain[lane]);
-                let color = three(|c| (a.color[c] + (b.color[c] - a.color[c]) * t) * gain);
-                let pixel = [self.origin[0] + x as f32, self.origin[1] + y as f32];
-                let covered = covered_samples(alpha, pixel, a.hash);
+                colors[lane] = (a.color[c] + (b.color[c] - a.color[c]) * t) * gain;
+            }
+        }
+        let mut covered = [0_u32; BLOCK_LANES];
+        for lane in 0..BLOCK_LANES {
+            let (x, y) = (left + lane % BLOCK_WIDTH, top + lane / BLOCK_WIDTH);
+            let pixel = [self.origin[0] + x as f32, self.origin[1] + y as f32];
+            covered[lane] = covered_samples(span.alpha[lane], pixel, a.hash);
+        }
+        for lane in 0..BLOCK_LANES {
+            let (alpha, seen) = (span.alpha[lane], seen[lane]);
+            if alpha > 0.0 && seen != 0 {
+                let at = (top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH;
+                let color = colors.map(|lanes| lanes[lane]);
+                let (depth, covered) = (span.depth[lane], covered[lane]);
                 self.found.push((at as u32, Fragment { depth, alpha, color, seen, covered }));
             }
         }
@@ -131,7 +147,10 @@ impl SpanSink for List<'_> {
 impl Fragments {
     /// Their memory, bytes.
     pub fn bytes(&self) -> u64 {
-        list_bytes(&self.found) + list_bytes(&self.starts) + list_bytes(&self.by_pixel)
+        list_bytes(&self.found)
+            + list_bytes(&self.starts)
+            + list_bytes(&self.by_pixel)
+            + list_bytes(&self.keys)
     }
 
     /// Begins an empty list.
@@ -147,34 +166,85 @@ impl Fragments {
     /// Groups the fragments by pixel and calls `visit` for each pixel that has any, with its index in the planes and its fragments in
     /// the order of their segments.
     pub fn each_pixel(&mut self, mut visit: impl FnMut(usize, &mut [Fragment])) {
-        const PLACES: usize = TILE * STRIDE;
-        if self.found.is_empty() {
-            return;
-        }
-        self.starts.clear();
-        self.starts.resize(PLACES + 1, 0);
-        for (at, _) in &self.found {
-            self.starts[*at as usize + 1] += 1;
-        }
-        for at in 0..PLACES {
-            self.starts[at + 1] += self.starts[at];
-        }
         self.by_pixel.resize(self.found.len(), Fragment::default());
-        // Each start advances to the end of its pixel, the original start of the next one.
-        for (at, fragment) in &self.found {
-            let slot = &mut self.starts[*at as usize];
-            self.by_pixel[*slot as usize] = *fragment;
-            *slot += 1;
-        }
-        let mut start = 0;
-        for at in 0..PLACES {
-            let end = self.starts[at] as usize;
-            if end > start {
-                visit(at, &mut self.by_pixel[start..end]);
-            }
-            start = end;
-        }
+        let by_pixel = &mut self.by_pixel;
+        place_by_pixel(&self.found, &mut self.starts, |slot, _, fragment| by_pixel[slot] = *fragment);
+        each_range(&self.starts, |at, range| visit(at, &mut by_pixel[range]));
     }
+
+    /// As [`Fragments::each_pixel`], with the fragments of each pixel in the order of [`nearest_first`].
+    pub fn each_pixel_nearest_first(&mut self, mut visit: impl FnMut(usize, &[Fragment])) {
+        self.keys.resize(self.found.len(), 0);
+        // Eight bytes per fragment are placed and sorted, and a fragment is copied once.
+        let Self { found, starts, by_pixel, keys } = self;
+        place_by_pixel(found, starts, |slot, index, fragment| {
+            keys[slot] = u64::from(nearness_key(fragment.depth)) << 32 | index as u64;
+        });
+        each_range(starts, |at, range| {
+            let keys = &mut keys[range];
+            keys.sort_unstable();
+            by_pixel.clear();
+            by_pixel.extend(keys.iter().map(|&key| found[key as u32 as usize].1));
+            // Equal depths are as good as never neighbours.
+            if keys.windows(2).any(|pair| pair[0] >> 32 == pair[1] >> 32) {
+                by_pixel.sort_by(nearest_first);
+            }
+            visit(at, by_pixel);
+        });
+    }
+}
+
+/// Places in a tile.
+const PLACES: usize = TILE * STRIDE;
+
+/// Counts the fragments of each pixel, and calls `place` for each fragment with its slot among those of all pixels and its index in
+/// `found`. Afterwards, `starts` holds the end of each pixel's slots.
+fn place_by_pixel(
+    found: &[(u32, Fragment)],
+    starts: &mut Vec<u32>,
+    mut place: impl FnMut(usize, usize, &Fragment),
+) {
+    starts.clear();
+    starts.resize(PLACES + 1, 0);
+    for (at, _) in found {
+        starts[*at as usize + 1] += 1;
+    }
+    for at in 0..PLACES {
+        starts[at + 1] += starts[at];
+    }
+    // Each start advances to the end of its pixel, the original start of the next one.
+    for (index, (at, fragment)) in found.iter().enumerate() {
+        let slot = &mut starts[*at as usize];
+        place(*slot as usize, index, fragment);
+        *slot += 1;
+    }
+}
+
+/// Calls `visit` with each pixel that has fragments, and their slots.
+fn each_range(ends: &[u32], mut visit: impl FnMut(usize, std::ops::Range<usize>)) {
+    let mut start = 0;
+    for (at, &end) in ends.iter().enumerate().take(PLACES) {
+        let end = end as usize;
+        if end > start {
+            visit(at, start..end);
+        }
+        start = end;
+    }
+}
+
+/// The order of fragments from near to far. Ties are broken by the other values, so that a result does not depend on the order of the
+/// list.
+pub(crate) fn nearest_first(a: &Fragment, b: &Fragment) -> Ordering {
+    let bits =
+        |fragment: &Fragment| (fragment.alpha.to_bits(), fragment.color.map(f32::to_bits), fragment.seen);
+    b.depth.total_cmp(&a.depth).then_with(|| bits(a).cmp(&bits(b)))
+}
+
+/// A number that rises where [`f32::total_cmp`] of the depth falls.
+fn nearness_key(depth: f32) -> u32 {
+    let bits = depth.to_bits();
+    // Negative numbers are all flipped, others have their sign set; then the order is reversed.
+    !(bits ^ (((bits as i32 >> 31) as u32) | 0x8000_0000))
 }
 
 #[cfg(test)]
@@ -249,6 +319,35 @@ mod tests {
             }
         });
         column
+    }
+
+    #[test]
+    fn keys_order_fragments_as_comparisons_do() {
+        let depths = [0.5, 0.25, 0.5, 1.0, 0.0, -0.0, -1.0, f32::NAN, -f32::NAN, f32::INFINITY, 0.5];
+        let mut fragments = Fragments::default();
+        for (i, depth) in depths.into_iter().enumerate() {
+            let alpha = 1.0 / (1.0 + (i * 7 % 5) as f32);
+            for at in [3, 2 * STRIDE] {
+                fragments.push(at, Fragment { depth, alpha, seen: 15, ..Fragment::default() });
+            }
+        }
+        let bits = |of: &[Fragment]| -> Vec<_> {
+            of.iter().map(|fragment| (fragment.depth.to_bits(), fragment.alpha.to_bits())).collect()
+        };
+        let (mut wanted, mut listed) = (Vec::new(), Vec::new());
+        fragments.each_pixel(|at, of| {
+            listed.push((at, bits(of)));
+            of.sort_by(nearest_first);
+            wanted.push((at, bits(of)));
+        });
+        let mut found = Vec::new();
+        fragments.each_pixel_nearest_first(|at, of| found.push((at, bits(of))));
+        assert_eq!(found.len(), 2);
+        assert!(found == wanted && found != listed, "{found:?}");
+        for pair in depths.windows(2) {
+            let keys = [nearness_key(pair[1]), nearness_key(pair[0])];
+            assert_eq!(keys[0].cmp(&keys[1]), pair[0].total_cmp(&pair[1]), "{pair:?}");
+        }
     }
 
     #[test]

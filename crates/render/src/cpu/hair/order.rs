@@ -21,10 +21,27 @@ impl SegmentKeys {
         list_bytes(&self.keys)
     }
 
-    /// Computes the depths of segments along `forward`. `first_points` are their first points.
-    pub fn measure(&mut self, strands: &Strands, first_points: &[u32], forward: glam::Vec3) {
-        let depth_of =
-            |i: usize| strands.x[i] * forward.x + strands.y[i] * forward.y + strands.z[i] * forward.z;
+    /// Computes the depths of segments along `forward`. `first_points` are their first points. Points from a number on are those of other
+    /// strands, if there are `more`.
+    pub fn measure(
+        &mut self,
+        strands: &Strands,
+        more: Option<(usize, &Strands)>,
+        first_points: &[u32],
+        forward: glam::Vec3,
+    ) {
+        let of = |strands: &Strands, i: usize| {
+            strands.x[i] * forward.x + strands.y[i] * forward.y + strands.z[i] * forward.z
+        };
+        match more {
+            None => self.measure_by(first_points, |i| of(strands, i)),
+            Some((from, more)) => {
+                self.measure_by(first_points, |i| if i < from { of(strands, i) } else { of(more, i - from) });
+            }
+        }
+    }
+
+    fn measure_by(&mut self, first_points: &[u32], depth_of: impl Fn(usize) -> f32 + Sync) {
         let middle = |&first: &u32| {
             let depth = 0.5 * (depth_of(first as usize) + depth_of(first as usize + 1));
             if depth.is_finite() { depth } else { 0.0 }
@@ -45,19 +62,71 @@ impl SegmentKeys {
             .collect_into_vec(&mut self.keys);
     }
 
-    /// The segments of a tile from near to far: the first point in the low bits, the key above it. `segments` are indices into
-    /// `first_points`.
-    pub fn sort(&self, segments: &[u32], first_points: &[u32], out: &mut Vec<u64>) {
-        out.clear();
-        out.extend(segments.iter().map(|&segment| {
+    /// Passes the segments of a tile to `draw` from near to far, in pieces, until it returns false: as the numbers
+    /// of their first points. `segments` are indices into `first_points`. What is not drawn, because a tile is opaque before, is not sorted.
+    pub fn each_piece(
+        &self,
+        segments: &[u32],
+        first_points: &[u32],
+        scratch: &mut Pieces,
+        mut draw: impl FnMut(&[u64]) -> bool,
+    ) {
+        let Pieces { entries, ordered } = scratch;
+        entries.clear();
+        entries.extend(segments.iter().map(|&segment| {
             let (key, first) = (self.keys[segment as usize], first_points[segment as usize]);
             // The inverted index puts the later segment first among equal depths; undone below.
             u64::from(key) << 32 | u64::from(u32::MAX - first)
         }));
-        out.sort_unstable();
-        for entry in out {
-            *entry = u64::from(u32::MAX - *entry as u32);
+        let piece_of = |entry: u64| (entry >> (32 + PIECE_BITS)) as usize;
+        let mut ends = [0_usize; PIECES];
+        for &entry in entries.iter() {
+            ends[piece_of(entry)] += 1;
         }
+        let mut sum = 0;
+        for end in &mut ends {
+            (*end, sum) = (sum, sum + *end);
+        }
+        ordered.resize(entries.len(), 0);
+        // Each start advances to the end of its piece.
+        for &entry in entries.iter() {
+            let slot = &mut ends[piece_of(entry)];
+            ordered[*slot] = entry;
+            *slot += 1;
+        }
+        let mut start = 0;
+        for end in ends {
+            let piece = &mut ordered[start..end];
+            start = end;
+            if piece.is_empty() {
+                continue;
+            }
+            piece.sort_unstable();
+            for entry in &mut *piece {
+                *entry = u64::from(u32::MAX - *entry as u32);
+            }
+            if !draw(piece) {
+                return;
+            }
+        }
+    }
+}
+
+/// Bits of a key within a piece, and the number of pieces.
+const PIECE_BITS: u32 = 8;
+const PIECES: usize = 1 << (16 - PIECE_BITS);
+
+/// Scratch memory of [`SegmentKeys::each_piece`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pieces {
+    entries: Vec<u64>,
+    ordered: Vec<u64>,
+}
+
+impl Pieces {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.entries) + list_bytes(&self.ordered)
     }
 }
 
@@ -76,14 +145,24 @@ mod tests {
         let firsts: Vec<u32> = (0..1999).collect();
         let forward = glam::Vec3::Z;
         let mut keys = SegmentKeys::default();
-        keys.measure(&strands, &firsts, forward);
-        let mut order = Vec::new();
-        keys.sort(&firsts, &firsts, &mut order);
-        let order: Vec<u32> = order.iter().map(|&entry| entry as u32).collect();
+        keys.measure(&strands, None, &firsts, forward);
+        let (mut order, mut pieces) = (Vec::new(), Vec::new());
+        keys.each_piece(&firsts, &firsts, &mut Pieces::default(), |piece| {
+            order.extend(piece.iter().map(|&entry| entry as u32));
+            pieces.push(piece.len());
+            true
+        });
+        assert!(pieces.len() > 50, "{pieces:?}");
         let middle = |first: u32| 0.5 * (strands.z[first as usize] + strands.z[first as usize + 1]);
         // Keys are steps of 1/65,535 of the range of 3 m; for equal keys the later segment comes first.
         assert!(order.windows(2).all(|w| middle(w[0]) <= middle(w[1]) + 2.0 * 3.0 / 65_535.0));
         assert!(order.windows(2).any(|w| middle(w[0]) < middle(w[1]) - 0.001), "the control: depths differ");
+        let mut some = 0;
+        keys.each_piece(&firsts, &firsts, &mut Pieces::default(), |piece| {
+            some += piece.len();
+            some < 500
+        });
+        assert!((500..1000).contains(&some), "no piece after the last that is drawn: {some}");
         let mut all = order;
         all.sort_unstable();
         assert_eq!(all, firsts, "every segment once");

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use lovelock_appearance::fibre::arithmetic::acos;
-use lovelock_appearance::fibre::{LongitudinalLobe, PointLight, PointScatter, ScatterRow};
+use lovelock_appearance::fibre::{LOBES, PointLight, PointScatter};
 
 use super::{LANES, Parts, ShadedFrom, part_of};
 use crate::MAX_LIGHTS;
@@ -24,57 +24,34 @@ pub(super) fn shade<const N: usize>(view: &View, fibre: &FibreView, from: &Shade
         cos_v[lane] = max(cos_v[lane], LEAST_COSINE);
     }
     let strength = uniform.many_scattering;
-    let mut points = [PointScatter::default(); LANES];
-    for (lane, point) in points.iter_mut().enumerate() {
-        let sigma = [absorption[0][lane], absorption[1][lane], absorption[2][lane]];
-        *point = PointScatter::new(fibre.tables, sin_v[lane], cos_v[lane], sigma);
-    }
+    let points = PointScatter::new(fibre.tables, &sin_v, &cos_v, absorption);
     let mut parts = [[[0.0; LANES]; 3]; N];
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
         let shadow = light.past_body(here, None, 0.006, &view.strand_disc);
         let ([lx, ly, lz], arriving) = light.arriving(here);
-        let mut sin_l = [0.0; LANES];
-        let mut cos_l = [0.0; LANES];
-        let mut phi = [0.0; LANES];
-        let mut fibres = [0.0; LANES];
+        let none = [0.0; LANES];
+        let mut at = PointLight { sin_theta: none, cos_theta: none, phi: none, fibres: none };
         for lane in 0..LANES {
             let (lx, ly, lz) = (lx[lane], ly[lane], lz[lane]);
             let sin = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
             let cos = max(1.0 - sin * sin, 0.0).sqrt();
             let lv = lx * to_eye[0][lane] + ly * to_eye[1][lane] + lz * to_eye[2][lane];
             // Where light or eye look along the strand there is no azimuth; any is as good.
-            phi[lane] = acos((lv - sin * sin_v[lane]) / max(cos * cos_v[lane], 1e-4));
+            at.phi[lane] = acos((lv - sin * sin_v[lane]) / max(cos * cos_v[lane], 1e-4));
             let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
             let crossed = -FIBRES_PER_DEPTH * std::f32::consts::LN_2 * log2(max(lit, LEAST_TRANSMITTANCE));
             let facing = max(lv, 0.0);
-            fibres[lane] = max(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0);
-            (sin_l[lane], cos_l[lane]) = (sin, cos);
+            at.fibres[lane] = max(crossed - OWN_FIBRES - FACING_FIBRES * facing * facing, 0.0);
+            (at.sin_theta[lane], at.cos_theta[lane]) = (sin, cos);
         }
-        let own = fibre.lights[k].variances;
-        let mut rows: [[ScatterRow; 2]; LANES] = [[[0.0; 8]; 2]; LANES];
-        for lane in 0..LANES {
-            let eye = points[lane].eye;
-            rows[lane] = [fibre.tables.direct.row(eye, phi[lane]), fibre.tables.forward.row(eye, phi[lane])];
-        }
-        let mut found = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            let at = PointLight {
-                sin_theta: sin_l[lane],
-                cos_theta: cos_l[lane],
-                phi: phi[lane],
-                fibres: fibres[lane],
-            };
-            let mut variances = own;
-            for variance in &mut variances {
-                *variance += turn[lane];
+        let mut variances = [[0.0; LANES]; LOBES];
+        for (variances, own) in variances.iter_mut().zip(fibre.lights[k].variances) {
+            for lane in 0..LANES {
+                variances[lane] = own + turn[lane];
             }
-            let lobes = variances.map(LongitudinalLobe::quick);
-            let [r, g, b] = points[lane].radiance_of_rows(&rows[lane], variances, lobes, &at, strength);
-            found[0][lane] = r;
-            found[1][lane] = g;
-            found[2][lane] = b;
         }
+        let found = points.radiance(fibre.tables, &variances, &at, strength);
         let radiance = light.radiance.to_array();
         let sum = &mut parts[part_of::<N>(Some(k))];
         for c in 0..3 {
@@ -87,7 +64,7 @@ pub(super) fn shade<const N: usize>(view: &View, fibre: &FibreView, from: &Shade
     for lane in 0..LANES {
         let around = view.grid.at([here[0][lane], here[1][lane], here[2][lane]]);
         for c in 0..3 {
-            sum[c][lane] += around[c] * points[lane].albedo[c];
+            sum[c][lane] += around[c] * points.albedo[c][lane];
         }
     }
     parts

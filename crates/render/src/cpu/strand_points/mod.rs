@@ -16,6 +16,7 @@ use crate::uniform::{FrameUniform, MAX_LIGHT};
 
 mod fibre;
 mod kajiya_kay;
+mod sparse;
 mod two_highlights;
 
 /// Points that are shaded together.
@@ -55,26 +56,33 @@ pub(super) struct PointsIn<'a> {
     pub colours: Option<PointColours<'a>>,
 }
 
+/// Which points of fine strands scattering by fibres is computed at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ShadedPoints {
+    All,
+    /// Every second one, and those between where light does not vary evenly.
+    Needed,
+    /// Every second one: a draft.
+    Second,
+}
+
 /// Shades all points, in parallel.
-///
-/// In a draft, scattering by fibres is computed at every second point of fine strands; the colours between are the means of their
-/// neighbours.
 pub(super) fn shade_all(
     width: Width,
     view: &View,
     input: &PointsIn,
-    is_draft: bool,
+    shaded: ShadedPoints,
     out: &mut Vec<ShadedPoint>,
 ) {
     out.resize(out_of(input), ShadedPoint::default());
     let points = view.points_per_strand();
-    let is_sparse = is_draft && points > 2 && matches!(view.shading, ShadingView::Fibre(_));
+    let is_sparse =
+        shaded != ShadedPoints::All && points > 2 && matches!(view.shading, ShadingView::Fibre(_));
     let piece = if is_sparse { points * (PIECE / points).max(1) } else { PIECE };
     out.par_chunks_mut(piece).enumerate().for_each(|(k, out)| {
         if is_sparse {
-            for (strand, out) in out.chunks_mut(points).enumerate() {
-                shade_strand_simd(width, view, input, k * piece + strand * points, out);
-            }
+            let is_draft = shaded == ShadedPoints::Second;
+            sparse::shade_strands_simd(width, view, input, k * piece, is_draft, out);
         } else {
             shade_points_simd(width, view, input, k * piece, out);
         }
@@ -162,13 +170,6 @@ simd_versions! {
 }
 
 simd_versions! {
-    /// [`shade_strand`] for the vectors of `width`.
-    fn shade_strand_simd(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) -> () {
-        shade_strand(view, input, first, out)
-    }
-}
-
-simd_versions! {
     /// [`shade_parts`] for the vectors of `width`.
     fn shade_parts_simd(
         view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint], lit: &mut [LitParts]
@@ -218,42 +219,6 @@ fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
         }
         let (shaded, _) = shade_group::<true, 1>(view, input, &indices);
         out.copy_from_slice(&shaded[..out.len()]);
-    }
-}
-
-/// Shades the strand whose first point is `first`: every second point and the last one, and then the points between.
-#[inline(always)]
-fn shade_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
-    let last = out.len() - 1;
-    let mut indices = [0; LANES];
-    for start in (0..=last.div_ceil(2)).step_by(LANES) {
-        for (lane, index) in indices.iter_mut().enumerate() {
-            *index = first + (2 * (start + lane)).min(last);
-        }
-        let (shaded, _) = shade_group::<true, 1>(view, input, &indices);
-        for (index, shaded) in indices.iter().zip(shaded) {
-            out[index - first] = shaded;
-        }
-    }
-    for start in (0..last.div_ceil(2)).step_by(LANES) {
-        for (lane, index) in indices.iter_mut().enumerate() {
-            *index = first + (2 * (start + lane) + 1).min(last);
-        }
-        let (placed, _) = shade_group::<false, 1>(view, input, &indices);
-        for (index, mut placed) in indices.iter().zip(placed) {
-            let k = index - first;
-            // Of an even number of points the last one is odd, and shaded already.
-            if k < last {
-                let (a, b) = (out[k - 1], out[k + 1]);
-                for c in 0..3 {
-                    placed.color[c] = 0.5 * (a.color[c] + b.color[c]);
-                }
-                if a.half_width < 0.0 || b.half_width < 0.0 {
-                    placed.half_width = -1.0;
-                }
-                out[k] = placed;
-            }
-        }
     }
 }
 
@@ -332,8 +297,8 @@ impl Group {
     fn turns(&self) -> Lane {
         let mut turn = [0.0; LANES];
         for lane in 0..LANES {
-            let [first, second] = [(&self.before, &self.here), (&self.here, &self.after)]
-                .map(|(from, to)| [0, 1, 2].map(|axis| to[axis][lane] - from[axis][lane]));
+            let first = three(|axis| self.here[axis][lane] - self.before[axis][lane]);
+            let second = three(|axis| self.after[axis][lane] - self.here[axis][lane]);
             turn[lane] = turn_variance(first, second);
         }
         turn

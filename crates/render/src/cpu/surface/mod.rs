@@ -2,8 +2,15 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
+mod edges;
 pub(super) mod light;
+mod lookup;
+mod material_shading;
+pub(super) mod materials;
+mod places;
 pub(super) mod raster;
+mod reflectance;
+mod seeds;
 pub(super) mod shading;
 
 use std::sync::Arc;
@@ -11,8 +18,11 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 use lovelock_base::memory::list_bytes;
 use lovelock_motion::{Body, Skin};
+use lovelock_picture::BodyLook;
 use rayon::prelude::*;
 
+use self::edges::faces_away;
+use self::materials::PlacedMaterials;
 use super::bins::{Bins, TileRange};
 use super::tile::{Grid, TILE};
 use crate::camera::NEAR_METRES;
@@ -31,6 +41,9 @@ pub(super) struct PlacedSurface {
     pub vertices: Vec<[f32; 3]>,
     /// Triangles that touch each tile.
     pub bins: Bins,
+    /// The materials of the body, if it has any.
+    pub materials: Option<PlacedMaterials>,
+    materials_of: Option<(Arc<Body>, BodyLook)>,
     paint: ScalpPaint,
 }
 
@@ -41,6 +54,17 @@ impl PlacedSurface {
             + list_bytes(&self.vertices)
             + self.bins.bytes()
             + list_bytes(&self.paint.values)
+            + self.materials.as_ref().map_or(0, |materials| materials.textures.bytes())
+    }
+
+    /// Takes the materials of a body that looks as `look` says.
+    pub fn follow_materials(&mut self, body: Option<&Arc<Body>>, look: &BodyLook) {
+        let is_same =
+            |(old, of): &(Arc<Body>, BodyLook)| body.is_some_and(|body| Arc::ptr_eq(old, body)) && of == look;
+        if !self.materials_of.as_ref().is_some_and(is_same) {
+            self.materials = body.and_then(|body| PlacedMaterials::of(body, look));
+            self.materials_of = body.map(|body| (Arc::clone(body), *look));
+        }
     }
 
     /// Projects the vertices and sorts the triangles into tiles. `hair` holds one word of packed transmittances per vertex; `closed`
@@ -50,9 +74,10 @@ impl PlacedSurface {
         clip_from_world: Mat4,
         grid: &Grid,
         body: Option<(&Arc<Body>, &Skin)>,
-        hair: &[u32],
-        closed: bool,
+        (hair, closed): (&[u32], bool),
+        look: &BodyLook,
     ) {
+        self.follow_materials(body.map(|(body, _)| body), look);
         self.gather(body, hair);
         let none: (&[Vec3], &[[u32; 3]]) = (&[], &[]);
         let (positions, triangles) =
@@ -67,12 +92,14 @@ impl PlacedSurface {
             })
             .collect_into_vec(&mut self.vertices);
         let vertices = &self.vertices;
+        let of = self.materials.as_ref().zip(body);
         self.bins.fill(triangles.len(), grid.columns, grid.rows, |i| {
             let mut corners = [[0.0; 3]; 3];
             for (corner, &at) in corners.iter_mut().zip(&triangles[i]) {
                 *corner = *vertices.get(at as usize)?;
             }
-            if closed && faces_away(corners) { None } else { tiles_of(corners, grid) }
+            let one_sided = of.map_or(closed, |(materials, (body, _))| materials.is_culled(body, i as u32));
+            if one_sided && faces_away(corners) { None } else { tiles_of(corners, grid) }
         });
     }
 
@@ -95,16 +122,6 @@ impl PlacedSurface {
             })
             .collect_into_vec(&mut self.attributes);
     }
-}
-
-/// Whether the camera sees the back of a triangle, whose corners are pixels times w, and w. Pixels count downward, which reverses
-/// the counter-clockwise orientation of front faces.
-#[inline(always)]
-fn faces_away([p, q, r]: [[f32; 3]; 3]) -> bool {
-    let volume = p[0] * (q[1] * r[2] - r[1] * q[2])
-        + p[1] * (r[0] * q[2] - q[0] * r[2])
-        + p[2] * (q[0] * r[1] - r[0] * q[1]);
-    volume > 0.0
 }
 
 /// The tiles that a triangle may touch.

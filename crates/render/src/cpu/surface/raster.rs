@@ -7,6 +7,8 @@
 
 use lovelock_base::simd_versions;
 
+use super::edges::{Edges, at};
+use super::materials::{CutTriangle, Cutouts};
 use super::pixel_bounds;
 use crate::camera::NEAR_METRES;
 use crate::cpu::math::{max, min, three};
@@ -108,56 +110,8 @@ pub(crate) struct TriangleTile<'a> {
     pub triangles: &'a [[u32; 3]],
     /// The triangles that touch the tile.
     pub list: &'a [u32],
-}
-
-/// The three edges of a triangle as planes over a tile.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edges {
-    /// The barycentric coordinate of the corner opposite to each edge is `a x + b y + c`, up to a common factor; not negative inside.
-    pub planes: [[f32; 3]; 3],
-    /// Their sum times this is 1/w.
-    pub scale: f32,
-}
-
-impl Edges {
-    /// `None` if the triangle has no area or is not finite.
-    #[inline(always)]
-    pub fn new(corners: [[f32; 3]; 3], origin: [f32; 2]) -> Option<Self> {
-        let local = |[x, y, w]: [f32; 3]| [x - origin[0] * w, y - origin[1] * w, w];
-        let [p, q, r] = [local(corners[0]), local(corners[1]), local(corners[2])];
-        let cross = |a: [f32; 3], b: [f32; 3]| {
-            [a[1] * b[2] - b[1] * a[2], b[0] * a[2] - a[0] * b[2], a[0] * b[1] - b[0] * a[1]]
-        };
-        let planes = [cross(q, r), cross(r, p), cross(p, q)];
-        let volume = p[0] * planes[0][0] + p[1] * planes[0][1] + p[2] * planes[0][2];
-        if !volume.is_finite() || volume == 0.0 {
-            return None;
-        }
-        let sign = 1.0_f32.copysign(volume);
-        Some(Self {
-            planes: [scaled(planes[0], sign), scaled(planes[1], sign), scaled(planes[2], sign)],
-            scale: sign / volume,
-        })
-    }
-
-    /// The perspective-correct barycentric coordinates of a point of the tile; their sum is 1.
-    #[inline(always)]
-    pub fn shares(&self, x: f32, y: f32) -> [f32; 3] {
-        // The centre of a partly covered pixel may lie outside: clamp it into the triangle.
-        let e = three(|i| max(at(self.planes[i], x, y), 0.0));
-        let sum = e[0] + e[1] + e[2];
-        if sum > 0.0 { [e[0] / sum, e[1] / sum, e[2] / sum] } else { [1.0, 0.0, 0.0] }
-    }
-}
-
-#[inline(always)]
-fn at([a, b, c]: [f32; 3], x: f32, y: f32) -> f32 {
-    a * x + b * y + c
-}
-
-#[inline(always)]
-fn scaled([a, b, c]: [f32; 3], by: f32) -> [f32; 3] {
-    [a * by, b * by, c * by]
+    /// The holes of triangles, if the body has materials.
+    pub cutouts: Option<Cutouts<'a>>,
 }
 
 simd_versions! {
@@ -200,11 +154,41 @@ fn raster(input: &TriangleTile, out: &mut SurfaceSamples) {
                 steps[lane] = a * OFFSETS[0][lane] + b * OFFSETS[1][lane];
             }
         }
+        if let Some(cut) = input.cutouts.and_then(|cutouts| cutouts.of(id)) {
+            raster_cut(input, (&cut, &edges), near, ([x0, x1], [y0, y1]), id, out);
+            continue;
+        }
         for y in y0..=y1 {
             for x in (x0..=x1).step_by(PIXELS) {
                 let (fx, fy) = (x as f32, y as f32);
                 let start = three(|i| at(edges.planes[i], fx, fy));
                 raster_run(start, &steps, near, id, (y * STRIDE + x) * SAMPLES.len(), out);
+            }
+        }
+    }
+}
+
+/// Rasterises a triangle with holes, sample by sample.
+fn raster_cut(
+    input: &TriangleTile,
+    (cut, edges): (&CutTriangle, &Edges),
+    near: f32,
+    ([x0, x1], [y0, y1]): ([usize; 2], [usize; 2]),
+    id: u32,
+    out: &mut SurfaceSamples,
+) {
+    let [left, top] = input.origin.map(|c| c as u32);
+    for y in y0..=y1 {
+        for x in x0..=x1 {
+            for (k, [dx, dy]) in SAMPLES.into_iter().enumerate() {
+                let place = (y * STRIDE + x) * SAMPLES.len() + k;
+                let e = three(|i| at(edges.planes[i], x as f32 + dx, y as f32 + dy));
+                let z = (e[0] + e[1] + e[2]) * near;
+                let inside = min(min(e[0], e[1]), e[2]) >= 0.0 && z <= 1.0;
+                if inside && z > out.depth[place] && cut.shows(edges, e, [left + x as u32, top + y as u32], k)
+                {
+                    (out.depth[place], out.triangle[place]) = (z, id);
+                }
             }
         }
     }
@@ -232,26 +216,24 @@ fn raster_run(
     place: usize,
     out: &mut SurfaceSamples,
 ) {
-    // Runs are copied, modified and written back: the compiler cannot prove that planes do not overlap.
-    let mut depth = [0.0; LANES];
-    let mut shown = [0; LANES];
-    depth.copy_from_slice(&out.depth[place..place + LANES]);
-    shown.copy_from_slice(&out.triangle[place..place + LANES]);
-    let mut nearer = [0.0; LANES];
+    let (Some(depth), Some(shown)) =
+        (out.depth[place..].first_chunk_mut::<LANES>(), out.triangle[place..].first_chunk_mut::<LANES>())
+    else {
+        return;
+    };
+    let before = *depth;
+    let mut after = [0.0; LANES];
     for lane in 0..LANES {
         let e = [start[0] + steps[0][lane], start[1] + steps[1][lane], start[2] + steps[2][lane]];
         let z = (e[0] + e[1] + e[2]) * near;
-        let inside = min(min(e[0], e[1]), e[2]) >= 0.0;
-        nearer[lane] = if inside & (z <= 1.0) { z } else { 0.0 };
+        // The least of all conditions decides: one comparison vectorises, several do not. NaN passes none.
+        let inside = min(min(min(e[0], e[1]), e[2]), min(1.0 - z, z - before[lane]));
+        after[lane] = if inside >= 0.0 { z } else { before[lane] };
     }
+    *depth = after;
     for lane in 0..LANES {
-        shown[lane] = if nearer[lane] > depth[lane] { id } else { shown[lane] };
+        shown[lane] = if after[lane] == before[lane] { shown[lane] } else { id };
     }
-    for lane in 0..LANES {
-        depth[lane] = max(nearer[lane], depth[lane]);
-    }
-    out.depth[place..place + LANES].copy_from_slice(&depth);
-    out.triangle[place..place + LANES].copy_from_slice(&shown);
 }
 
 #[cfg(test)]
@@ -265,8 +247,13 @@ mod tests {
             (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let list: Vec<u32> = (0..triangles.len() as u32).collect();
         let mut out = Box::<SurfaceSamples>::default();
-        let input =
-            TriangleTile { origin: [0.0, 0.0], vertices: &vertices, triangles: &indices, list: &list };
+        let input = TriangleTile {
+            origin: [0.0, 0.0],
+            vertices: &vertices,
+            triangles: &indices,
+            list: &list,
+            cutouts: None,
+        };
         raster(&input, &mut out);
         out
     }
@@ -300,8 +287,13 @@ mod tests {
         let corners = [[-400.0, 80.0, 5.0], [400.0, 80.0, 5.0], [16.0, 160.0, -1.0]];
         let vertices: Vec<[f32; 3]> = corners.iter().map(|&[x, y, w]| [x, y, w]).collect();
         let mut out = Box::<SurfaceSamples>::default();
-        let input =
-            TriangleTile { origin: [0.0, 0.0], vertices: &vertices, triangles: &[[0, 1, 2]], list: &[0] };
+        let input = TriangleTile {
+            origin: [0.0, 0.0],
+            vertices: &vertices,
+            triangles: &[[0, 1, 2]],
+            list: &[0],
+            cutouts: None,
+        };
         raster(&input, &mut out);
         assert!(covered(&out) > 0, "what is before the eye is drawn");
         assert!(out.depth.iter().all(|z| (0.0..=1.0).contains(z)));
@@ -315,18 +307,5 @@ mod tests {
             [[f32::INFINITY, 0.0, 1.0], [9.0, 0.0, 1.0], [0.0, 9.0, 1.0]],
         ]);
         assert_eq!(covered(&out), 0);
-    }
-
-    #[test]
-    fn shares_of_the_corners() {
-        let corners = [[0.0, 0.0, 1.0], [20.0, 0.0, 2.0], [0.0, 30.0, 3.0]];
-        let edges = Edges::new(corners, [0.0, 0.0]).expect("an area");
-        // Homogeneous: the corners lie at (0, 0), (10, 0) and (0, 10).
-        for (corner, at) in [(0, [0.0, 0.0]), (1, [10.0, 0.0]), (2, [0.0, 10.0])] {
-            assert!((edges.shares(at[0], at[1])[corner] - 1.0).abs() < 1e-5);
-        }
-        // Halfway on the screen is nearer to the near corner in space: shares 2/3 and 1/3 for w of 1 and 2.
-        let [a, b, _] = edges.shares(5.0, 0.0);
-        assert!((a - 2.0 / 3.0).abs() < 1e-5 && (b - 1.0 / 3.0).abs() < 1e-5, "{a} {b}");
     }
 }

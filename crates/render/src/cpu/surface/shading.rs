@@ -5,7 +5,7 @@
 use lovelock_base::simd_versions;
 use lovelock_groom::HairLook;
 
-use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
+use crate::cpu::math::{exp, exp2, log2, max, mix, most, pow, saturate, smoothstep, three};
 use crate::cpu::view::View;
 
 /// Height over the skin at which light from all directions is looked up, metres: hair that lies on skin shadows it.
@@ -40,6 +40,17 @@ simd_versions! {
     pub(crate) fn shade_batch_simd(view: &View, batch: &mut SurfaceBatch) -> () {
         shade_batch(view, batch)
     }
+}
+
+/// Ambient light that reaches the skin through the hair around it, looked up a little above the skin.
+#[inline(always)]
+pub(super) fn light_inside(view: &View, position: &[[f32; LANES]; 3], normal: &[[f32; LANES]; 3]) -> [f32; LANES] {
+    let mut inside = [0.0; LANES];
+    for lane in 0..LANES {
+        let at = three(|axis| position[axis][lane] + ABOVE_SKIN * normal[axis][lane]);
+        inside[lane] = view.grid.at(at)[3];
+    }
+    inside
 }
 
 /// Shades the positions of `batch`.
@@ -97,16 +108,14 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut facing = [0.0; LANES];
         let mut above = [0.0; LANES];
-        // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
-        let mut reached = f32::NEG_INFINITY;
         for lane in 0..LANES {
             facing[lane] =
                 normal[0][lane] * l[0][lane] + normal[1][lane] * l[1][lane] + normal[2][lane] * l[2][lane];
             // At grazing angles the flat triangles of a round limb shadow each other.
             above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
-            reached = max(facing[lane], reached);
         }
-        if reached <= -WRAP[0] {
+        // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
+        if most(&facing) <= -WRAP[0] {
             continue;
         }
         let mut place = [[0.0; LANES]; 3];
@@ -115,11 +124,11 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
                 place[c][lane] = batch.position[c][lane] + normal[c][lane] * above[lane];
             }
         }
-        let lit = light.past_body(&place, Some(&normal), 0.003, &view.surface_disc);
+        let lit = light.past_body(&place, Some(&normal), 0.003, view.body_disc(light));
         let mut shares = [0.0; LANES];
         let mut gloss = [0.0; LANES];
         for lane in 0..LANES {
-            let [hx, hy, hz] = [0, 1, 2].map(|c| l[c][lane] + toward_eye[c][lane]);
+            let [hx, hy, hz] = three(|c| l[c][lane] + toward_eye[c][lane]);
             let inverse = 1.0 / max((hx * hx + hy * hy + hz * hz).sqrt(), 1e-6);
             let nh = (normal[0][lane] * hx + normal[1][lane] * hy + normal[2][lane] * hz) * inverse;
             let shine = exp2(24.0 * log2(max(nh, 1e-12)));
@@ -138,12 +147,11 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         }
     }
 
-    for lane in 0..LANES {
-        let at = |axis: usize| batch.position[axis][lane] + ABOVE_SKIN * normal[axis][lane];
-        let inside = view.grid.at([at(0), at(1), at(2)])[3];
-        let ambient = view.ambient([normal[0][lane], normal[1][lane], normal[2][lane]]);
-        for c in 0..3 {
-            batch.color[c][lane] = sum[c][lane] + ambient[c] * albedo[c][lane] * inside;
+    let ambient = view.ambient_of(&normal);
+    let inside = light_inside(view, &batch.position, &normal);
+    for c in 0..3 {
+        for lane in 0..LANES {
+            batch.color[c][lane] = sum[c][lane] + ambient[c][lane] * albedo[c][lane] * inside[lane];
         }
     }
 }

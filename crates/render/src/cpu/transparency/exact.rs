@@ -1,16 +1,19 @@
 //! `exact`: all fragments of a pixel, sorted and blended, which is the result of depth peeling (Everitt 2001).
 
 use super::{Fragment, Layer};
+use crate::cpu::hair::list::nearest_first;
 
-/// Blends from near to far.
+/// Sorts the fragments and blends them.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
-    // Ties are broken by the other values, so that the result does not depend on the order of the list.
-    let bits =
-        |fragment: &Fragment| (fragment.alpha.to_bits(), fragment.color.map(f32::to_bits), fragment.seen);
-    fragments.sort_unstable_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| bits(a).cmp(&bits(b))));
+    fragments.sort_unstable_by(nearest_first);
+    blend(fragments)
+}
+
+/// Blends fragments in the order of [`nearest_first`].
+pub(super) fn blend(fragments: &[Fragment]) -> Layer {
     let mut color = [0.0; 3];
     let mut through = 1.0;
-    for fragment in fragments.iter() {
+    for fragment in fragments {
         let share = fragment.opacity() * through;
         for (sum, c) in color.iter_mut().zip(fragment.color) {
             *sum += share * c;

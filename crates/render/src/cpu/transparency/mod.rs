@@ -34,13 +34,17 @@ pub(crate) fn resolve(transparency: Transparency, fragments: &mut [Fragment]) ->
 
 /// Blends the fragments of a whole tile.
 pub(super) fn resolve_tile(transparency: Transparency, fragments: &mut Fragments, out: &mut HairPlanes) {
-    fragments.each_pixel(|at, fragments| {
-        let layer = resolve(transparency, fragments);
+    let mut write = |at: usize, layer: Layer| {
         for (plane, color) in out.color.iter_mut().zip(layer.color) {
             plane[at] = color;
         }
         out.through[at] = layer.through;
-    });
+    };
+    if matches!(transparency, Transparency::Sorted | Transparency::Exact) {
+        fragments.each_pixel_nearest_first(|at, sorted| write(at, exact::blend(sorted)));
+    } else {
+        fragments.each_pixel(|at, fragments| write(at, resolve(transparency, fragments)));
+    }
 }
 
 #[cfg(test)]

@@ -150,6 +150,7 @@ impl Clusters {
                 count: parts.ribs.drawn().point_count,
                 out: parts.ribs.transmittance(),
                 sum: None,
+                byte: None,
                 projected: None,
             };
             shadow.look_up(slot, gpu, commands, &targets);

@@ -112,7 +112,12 @@ mod tests {
     use super::*;
 
     fn camera() -> Camera {
-        Camera { eye: Vec3::new(0.3, 1.2, 2.0), target: Vec3::new(0.0, 1.0, 0.0), fov_y: 0.6 }
+        Camera {
+            eye: Vec3::new(0.3, 1.2, 2.0),
+            target: Vec3::new(0.0, 1.0, 0.0),
+            fov_y: 0.6,
+            shear: glam::Vec2::ZERO,
+        }
     }
 
     #[test]

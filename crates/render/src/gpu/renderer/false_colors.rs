@@ -52,7 +52,8 @@ impl GpuRenderer {
         }
         let gpu = Arc::clone(&self.gpu);
         let shown = images.free([targets.width, targets.height]);
-        self.false_colors.write(&gpu, &self.pipelines.false_colors, values)?;
+        // Carried hair has no values.
+        self.false_colors.write(&gpu, &self.pipelines.false_colors, values, self.carried.points())?;
         for _ in 0..=MAX_ATTEMPTS {
             if self.draw_false_colors(scale, &shown)? {
                 return Ok(shown);
@@ -88,7 +89,8 @@ impl GpuRenderer {
         self.false_colors.shade(&gpu, &mut commands, scale, self.hair.shaded());
         let front = HairOutput::Blended(Transparency::Sorted);
         // The strands, whatever hair was drawn as: values are given for their points.
-        let eye = eye_input(&self.seen.of_strands(), &self.hair, None, targets, &self.last, front);
+        let eye =
+            eye_input(&self.seen.of_strands(), (&self.hair, &self.carried), None, targets, &self.last, front);
         self.eye.draw(&gpu, &mut commands, &eye)?;
         let area = self.seen.area;
         let input = PaintInput {

@@ -54,6 +54,7 @@ impl GpuRenderer {
             count: points.len() as u32,
             out: &out,
             sum: None,
+            byte: None,
             projected: None,
         };
         self.shadow.look_up(light, gpu, &mut commands, &targets);

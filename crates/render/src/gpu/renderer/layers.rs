@@ -7,7 +7,8 @@ use lovelock_gpu::PassTimer;
 use super::{GpuRenderer, eye_input};
 use crate::gpu::eye::{HairOutput, too_large};
 use crate::gpu::frame_resources::FrameResources;
-use crate::gpu::layers::LayerBuffers;
+use crate::gpu::layers::{LayerBuffers, LayerVariant};
+use crate::gpu::screen::material_bindings;
 use crate::{FrameInput, FrameStats, Layers, Picture, RenderError};
 
 impl GpuRenderer {
@@ -24,6 +25,31 @@ impl GpuRenderer {
         over_background: bool,
         layers: &mut Layers,
     ) -> Result<FrameStats, RenderError> {
+        self.draw_layers(input, [width, height], (over_background, true), layers)
+    }
+
+    /// See [`Renderer::light`](crate::Renderer::light).
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::layers`].
+    pub fn light(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
+        self.draw_layers(input, [width, height], (over_background, false), layers)
+    }
+
+    fn draw_layers(
+        &mut self,
+        input: &FrameInput,
+        [width, height]: [u32; 2],
+        (over_background, with_values): (bool, bool),
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
         let gpu = Arc::clone(&self.gpu);
         let pixels = u64::from(width) * u64::from(height);
         let needed = LayerBuffers::needed(pixels);
@@ -36,13 +62,16 @@ impl GpuRenderer {
         let mut stats = drawn?;
 
         let uniform = self.last;
-        let kind = (self.shadow.light_set(), over_background);
+        let has_materials = self.surface.materials().is_some();
+        let kind = LayerVariant { lights: self.shadow.light_set(), over_background, has_materials };
         // Depth and transmittance of clusters are those of the strands that cast their shadow.
         let seen = self.seen.of_strands();
         self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;
         let mut timer = PassTimer::new(&gpu)?;
         let mut commands = timer.begin(&gpu, "layers");
-        self.shade_hidden_strands(&gpu, &mut commands)?;
+        if with_values {
+            self.shade_hidden_strands(&gpu, &mut commands)?;
+        }
         let (Some(kernels), Some(targets)) = (self.layers.kernels(kind), &self.targets) else {
             return Err(RenderError::NoPicture);
         };
@@ -62,6 +91,7 @@ impl GpuRenderer {
                 let (corners, hair) = (self.ground.corners(), self.eye.layer());
                 let mut all = self.screen.bindings_of_last(&frame, targets, corners, hair, &hair_area);
                 all.extend(self.layers.bindings());
+                all.extend(material_bindings(targets, self.surface.materials()));
                 all
             }};
         }
@@ -76,20 +106,27 @@ impl GpuRenderer {
             }
         });
 
-        self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
+        if with_values {
+            self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
+            self.carried.shade_values(&gpu, &kernels.values, &mut commands, &frame, &self.hair);
+        }
         let blended = HairOutput::Blended(input.picture.transparency);
         for (drawn, kernel, threads) in [
             (blended, &kernels.transmittance, seen.area.pixels()),
             (HairOutput::NearestDepth, &kernels.depth, pixels),
-        ] {
-            let eye = eye_input(&seen, &self.hair, None, targets, &uniform, drawn);
+        ]
+        .into_iter()
+        .filter(|_| with_values)
+        {
+            let eye = eye_input(&seen, (&self.hair, &self.carried), None, targets, &uniform, drawn);
             self.eye.draw(&gpu, &mut commands, &eye)?;
             let group = kernel.bind(&gpu, &bound!());
             commands.compute("draw/layers", |pass| kernel.run(pass, &group, threads));
         }
         self.layers.copy(&gpu, &mut commands, pixels);
         commands.submit();
-        self.layers.read(&gpu, [width, height], layers)?;
+        self.layers.read(&gpu, [width, height], with_values, layers)?;
+        layers.behind = self.behind.clone().filter(|_| over_background);
         gpu.check()?;
         stats.passes.extend(timer.times(&gpu));
         Ok(stats)

@@ -4,6 +4,7 @@ use lovelock_gpu::{Commands, Gpu};
 use lovelock_groom::HairShading;
 
 use super::GpuRenderer;
+use crate::gpu::carried::CarriedBuffers;
 use crate::gpu::clusters::DrawnClusters;
 use crate::gpu::eye::{Area, EyeInput, HairOutput, WIDEST_PLAIN};
 use crate::gpu::frame_resources::FrameResources;
@@ -35,20 +36,21 @@ impl SeenHair {
 /// The input of the passes over the hair.
 pub(super) fn eye_input<'a>(
     seen: &SeenHair,
-    hair: &'a HairBuffers,
+    (hair, carried): (&'a HairBuffers, &'a CarriedBuffers),
     clusters: Option<DrawnClusters<'a>>,
     targets: &'a Targets,
     uniform: &FrameUniform,
     drawn: HairOutput,
 ) -> EyeInput<'a> {
     let strands = hair.drawn();
+    let (segments, segment_count) = carried.segments().unwrap_or((strands.segments, strands.segment_count));
     EyeInput {
         area: seen.area,
         reach: seen.reach,
         streaked: seen.streaked,
         shaded: hair.shaded(),
-        segments: strands.segments,
-        segment_count: if seen.has_strands { strands.segment_count } else { 0 },
+        segments,
+        segment_count: if seen.has_strands { segment_count } else { 0 },
         depth: &targets.depth,
         opacity: uniform.opacity,
         drawn,
@@ -68,16 +70,17 @@ impl GpuRenderer {
         let strand_width = uniform.strand_width;
         let reach_at = |least: f32| 0.5 * strand_width * uniform.pixels_per_metre / bounds.min.x.max(least);
         let area = Area::of(input.camera, size, (bounds.min, bounds.max), strand_width);
+        let (area_of_carried, carried_reach) = self.carried.area(input, size, uniform.pixels_per_metre);
         let share = self.clusters.share();
         let transparency = input.picture.transparency;
         let ribs = self.clusters.bounds(input, Area::axes(input.camera), input.camera.eye);
         let area_of_ribs =
             ribs.map_or(Area::default(), |ribs| Area::of(input.camera, size, (ribs.min, ribs.max), 0.0));
         SeenHair {
-            area: area.with(area_of_ribs),
-            reach: reach_at(0.05),
+            area: area.with(area_of_ribs).with(area_of_carried),
+            reach: reach_at(0.05).max(carried_reach),
             // Nothing nearer than this is drawn.
-            streaked: reach_at(0.02) > WIDEST_PLAIN,
+            streaked: reach_at(0.02).max(carried_reach) > WIDEST_PLAIN,
             has_strands: share < 1.0,
             nearest_rib: ribs.map_or(0.0, |ribs| ribs.min.x),
             // Segments and layers have no order of their own.

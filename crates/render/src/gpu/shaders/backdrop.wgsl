@@ -42,14 +42,27 @@ const POOL_FALL: f32 = -1.3;
 // Height of the pool's middle: head and shoulders are above the middle of the image.
 const POOL_Y: f32 = 0.12;
 
+// Twins of `background_form` in uniform.rs.
+const STUDIO: u32 = 0u;
+const VERTICAL: u32 = 2u;
+const RADIAL: u32 = 3u;
+
 // The background without the ground.
 fn graded(pixel: vec2u) -> vec3f {
     let ndc = ndc_of(pixel);
-    let down = 0.5 - 0.5 * ndc.y;
+    let down = smoothstep(0.0, 1.0, 0.5 - 0.5 * ndc.y);
+    if (frame.background_form != STUDIO) {
+        let aspect = frame.size.x / frame.size.y;
+        let outward = smoothstep(0.0, 1.0, length(ndc * vec2f(aspect, 1.0)) / length(vec2f(aspect, 1.0)));
+        if (frame.background_form == RADIAL) {
+            return mix(frame.background_bottom, frame.background_top, outward);
+        }
+        return mix(frame.background_top, frame.background_bottom, select(0.0, down, frame.background_form == VERTICAL));
+    }
     // Half as elongated as the image.
     let wide = sqrt(frame.size.x / frame.size.y);
     let from_middle = vec2f(ndc.x * wide, ndc.y - POOL_Y);
     // A bell has no edge: where a ramp begins or ends, the eye sees a ring.
     let pool = 1.0 - POOL_DEPTH * (1.0 - exp2(POOL_FALL * dot(from_middle, from_middle)));
-    return mix(frame.background_top, frame.background_bottom, smoothstep(0.0, 1.0, down)) * pool;
+    return mix(frame.background_top, frame.background_bottom, down) * pool;
 }

@@ -87,6 +87,8 @@ struct FrameUniform {
     lightening: f32,
     many_scattering: f32,
     tip_lightening: f32,
+    // See backdrop.wgsl.
+    background_form: u32,
     @align(16) lobes: array<LobeUniform, 4>,
     // The corner of the grid of ambient light, and the reciprocal of its cells' edge.
     grid_corner: vec3f,
@@ -128,6 +130,11 @@ const SURFACE_SHARE: f32 = 0.012;
 
 // Taps of a soft shadow on a surface. Six taps would show bands.
 const SURFACE_TAPS: u32 = 12u;
+// Taps where the edge is wide: twelve would show as that many edges beside each other.
+const WIDE_TAPS: u32 = 48u;
+// From where on an edge is wide: texels of the map, and metres of the lamp's radius. Twins of `WIDE_BLUR` and `WIDE_LAMP` in uniform.
+const WIDE_BLUR: f32 = 12.0;
+const WIDE_LAMP: f32 = 0.25;
 
 // The fraction of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps are on a
 // disc in the plane of the surface, given by `lean`, so that a flat surface does not shadow itself.
@@ -263,6 +270,17 @@ fn past_body(i: u32, p: vec3f, n: vec3f, bias: f32, taps: u32) -> f32 {
         }
     }
     return body_light(i, p, lean_of(i, n), bias, taps);
+}
+
+// The taps of the soft shadow of light `i` on the body.
+fn body_taps(i: u32) -> u32 {
+    var wide = frame.lights[i].blur > WIDE_BLUR;
+    if (STANDING) {
+        if (frame.standing[i].radius > 0.0) {
+            wide = frame.standing[i].radius > WIDE_LAMP;
+        }
+    }
+    return select(SURFACE_TAPS, WIDE_TAPS, wide);
 }
 
 // The transmittance of all hair for light `i`, for a point behind it.

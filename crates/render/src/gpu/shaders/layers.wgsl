@@ -29,7 +29,8 @@ fn layer_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let size = picture_size();
     if (i < size.x * size.y) {
         let pixel = vec2u(i % size.x, i / size.x);
-        put_light(i, select(vec3f(0.0), graded(pixel), OVER_BACKGROUND), select(0.0, 1.0, OVER_BACKGROUND));
+        let whole = OVER_BACKGROUND && frame.background_form != PICTURE;
+        put_light(i, select(vec3f(0.0), graded(pixel), whole), select(0.0, 1.0, whole));
         data_layer[i] = vec2f(NOTHING_METRES, 1.0);
     }
 }
@@ -43,9 +44,14 @@ fn layer_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
         let i = listed[place_in_list(LIST, k, size.x * size.y)];
         let pixel = vec2u(i % size.x, i / size.x);
         let hair = hair_of(pixel);
-        let free = dot(select(vec4f(0.25), vec4f(0.0), samples_of(pixel) > vec4f(0.0)), vec4f(1.0));
-        let alpha = clamp(1.0 - hair.w * free, 0.0, 1.0);
-        put_light(i, hair.rgb + hair.w * behind_hair(pixel), select(alpha, 1.0, OVER_BACKGROUND));
+        var alpha = 1.0;
+        if (!OVER_BACKGROUND) {
+            let free = dot(select(vec4f(0.25), vec4f(0.0), samples_of(pixel) > vec4f(0.0)), vec4f(1.0));
+            alpha = clamp(1.0 - hair.w * free, 0.0, 1.0);
+        } else if (frame.background_form == PICTURE) {
+            alpha = clamp(1.0 - open_share(pixel, hair.w), 0.0, 1.0);
+        }
+        put_light(i, hair.rgb + hair.w * behind_hair(pixel), alpha);
     }
 }
 

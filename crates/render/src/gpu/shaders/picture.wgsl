@@ -24,60 +24,6 @@
 // The transmittance of hair below which what is behind it is not shaded: a quarter of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
 
-// The body in one sample.
-struct Seen {
-    normal: vec3f,
-    depth: f32,
-    color_scalp: vec4f,
-    hair: vec4f,
-}
-
-fn sample_at(pixel: vec2u, k: i32, depth: f32) -> Seen {
-    let words = textureLoad(normals, pixel, k);
-    let folded = unpack2x16snorm(words.x | (words.y << 16u));
-    let z = 1.0 - abs(folded.x) - abs(folded.y);
-    let turned = (1.0 - abs(folded.yx)) * select(vec2f(-1.0), vec2f(1.0), folded >= vec2f(0.0));
-    let normal = normalize(vec3f(select(turned, folded, z >= 0.0), z));
-    return Seen(normal, depth, textureLoad(colors, pixel, k), unpack4x8unorm(words.z | (words.w << 16u)));
-}
-
-// Whether two samples lie on the same smooth part of the body, so that they can be shaded as one.
-fn belong_together(a: Seen, b: Seen) -> bool {
-    return dot(a.normal, b.normal) > 0.9 && abs(a.depth - b.depth) <= 0.01 * a.depth
-        && all(abs(a.color_scalp - b.color_scalp) < vec4f(0.1));
-}
-
-// One of four, without an array: indexed arrays are slow on software adapters.
-fn chosen(a: Seen, b: Seen, c: Seen, d: Seen, k: u32) -> Seen {
-    var one = a;
-    if (k == 1u) {
-        one = b;
-    } else if (k == 2u) {
-        one = c;
-    } else if (k == 3u) {
-        one = d;
-    }
-    return one;
-}
-
-// Samples that are shaded together, and their number.
-struct Group {
-    sum: Seen,
-    count: f32,
-}
-
-fn join(group: Group, other: Seen, joins: bool) -> Group {
-    var joined = group;
-    if (joins) {
-        joined.sum.normal += other.normal;
-        joined.sum.depth += other.depth;
-        joined.sum.color_scalp += other.color_scalp;
-        joined.sum.hair += other.hair;
-        joined.count += 1.0;
-    }
-    return joined;
-}
-
 // The content of the pixels of each list, which selects the kernel: on software adapters all threads of a vector execute what one of them
 // needs.
 const BODY: u32 = 0u;
@@ -96,15 +42,65 @@ fn place_in_list(list: u32, item: u32, pixels: u32) -> u32 {
     return (list >> 1u) * pixels + select(item, pixels - 1u - item, (list & 1u) == 1u);
 }
 
-// The background behind a pixel.
+// Twin of `background_form::PICTURE` in uniform.rs.
+const PICTURE: u32 = 4u;
+
+// The picture behind the figure: colours that a screen shows, sRGB-encoded, 10 bits each. Twin of `LaidBackdrop`.
+@group(0) @binding(21) var<storage, read> backdrop_picture: array<u32>;
+
+// The fraction of the light that arrives at the ground behind a pixel; 1 above the horizon.
+fn light_on_ground(pixel: vec2u) -> vec3f {
+    if (LIST == BODY || LIST == EVEN_GROUND) {
+        return unpack_share(light_at(pixel)).rgb;
+    }
+    return ground_light(ndc_of(pixel)).rgb;
+}
+
+// The light of the background behind a pixel. A picture behind the figure is not in it.
 fn backdrop(pixel: vec2u) -> vec3f {
-    if (!OVER_BACKGROUND) {
+    if (!OVER_BACKGROUND || frame.background_form == PICTURE) {
         return vec3f(0.0);
     }
-    if (LIST == BODY || LIST == EVEN_GROUND) {
-        return graded(pixel) * unpack_share(light_at(pixel)).rgb;
+    return graded(pixel) * light_on_ground(pixel);
+}
+
+// The fraction of a pixel with the transmittance `through` of its hair that shows a picture behind the figure. Shadows on the ground cover
+// it as black does.
+fn open_share(pixel: vec2u, through: f32) -> f32 {
+    var open = through;
+    if (LIST == BODY || LIST == BODY_AND_GROUND) {
+        let samples = vec4f(
+            textureLoad(depths, pixel, 0),
+            textureLoad(depths, pixel, 1),
+            textureLoad(depths, pixel, 2),
+            textureLoad(depths, pixel, 3),
+        );
+        open *= dot(select(vec4f(0.25), vec4f(0.0), samples > vec4f(0.0)), vec4f(1.0));
     }
-    return graded(pixel) * ground_light(ndc_of(pixel)).rgb;
+    return open * dot(light_on_ground(pixel), vec3f(1.0 / 3.0));
+}
+
+// Twin of the one in cpu/finish.rs.
+const LEAST_COVER: f32 = 1e-5;
+
+fn linear_of(encoded: vec3f) -> vec3f {
+    let high = pow((max(encoded, vec3f(0.0)) + 0.055) / 1.055, vec3f(2.4));
+    return select(high, encoded / 12.92, encoded <= vec3f(0.04045));
+}
+
+// A pixel of the picture behind the figure, sRGB-encoded.
+fn picture_color(pixel: vec2u) -> vec3f {
+    let packed = backdrop_picture[pixel.y * picture_size().x + pixel.x];
+    return vec3f(vec3u(packed, packed >> 10u, packed >> 20u) & vec3u(1023u)) / 1023.0;
+}
+
+// A pixel of light over the picture behind it, which shows through by `open`. They are mixed as light that the screen emits: see `mixed` in
+// backdrop/mod.rs.
+fn pack_over(pixel: vec2u, light: vec3f, open: f32) -> u32 {
+    let share = select(open, 1.0, open > 1.0 - LEAST_COVER);
+    let over = tone_curve(light / max(1.0 - open, LEAST_COVER));
+    let mixed = srgb(mix(linear_of(over), linear_of(picture_color(pixel)), share));
+    return pack4x8unorm(vec4f(dithered(mixed, pixel), 1.0));
 }
 
 // The body and what is behind it. Samples of one smooth part are shaded together, at the centre of the pixel.
@@ -139,13 +135,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
         group = join(group, c, together.z);
         group = join(group, d, together.w);
         let world = frame.world_from_clip * vec4f(ndc, group.sum.depth / group.count, 1.0);
-        let surface = Surface(
-            world.xyz / world.w,
-            group.sum.normal,
-            group.sum.color_scalp / group.count,
-            group.sum.hair / group.count,
-        );
-        sum += 0.25 * group.count * shade_surface(surface);
+        sum += 0.25 * group.count * shade_surface(surface_of(group, world.xyz / world.w));
         // Tested at the end, as in `body_light`.
         continuing {
             break if !any(open);
@@ -183,7 +173,11 @@ fn plain_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let size = picture_size();
     if (i < size.x * size.y) {
         let pixel = vec2u(i % size.x, i / size.x);
-        screen[i] = pack_pixel(pixel, graded(pixel));
+        if (frame.background_form == PICTURE) {
+            screen[i] = pack4x8unorm(vec4f(dithered(picture_color(pixel), pixel), 1.0));
+        } else {
+            screen[i] = pack_pixel(pixel, graded(pixel));
+        }
     }
 }
 
@@ -254,6 +248,11 @@ fn picture_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         let i = listed[place_in_list(LIST, k, size.x * size.y)];
         let pixel = vec2u(i % size.x, i / size.x);
         let hair = hair_of(pixel);
-        screen[i] = pack_pixel(pixel, hair.rgb + hair.w * behind_hair(pixel));
+        let light = hair.rgb + hair.w * behind_hair(pixel);
+        if (frame.background_form == PICTURE) {
+            screen[i] = pack_over(pixel, light, open_share(pixel, hair.w));
+        } else {
+            screen[i] = pack_pixel(pixel, light);
+        }
     }
 }

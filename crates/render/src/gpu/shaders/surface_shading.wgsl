@@ -27,7 +27,7 @@ fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     if (wrapped.r > 0.0) {
         // At grazing angles the flat triangles of a round limb shadow each other.
         let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
-        let lit = past_body(k, above, place.n, 0.003, SURFACE_TAPS) * left * source.share;
+        let lit = past_body(k, above, place.n, 0.003, body_taps(k)) * left * source.share;
         let h = normalize(l + place.v);
         let gloss = 0.014 * place.skin * light.specular
             * (pow(max(dot(place.n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(place.n, place.v), 0.0), 4.0));

@@ -33,10 +33,18 @@ fn srgb(linear: vec3f) -> vec3f {
     return select(high, low, linear <= vec3f(0.0031308));
 }
 
-// A pixel as sRGB-encoded numbers.
-fn tone_map(light: vec3f, pixel: vec2u) -> vec3f {
-    let color = srgb(agx(max(light, vec3f(0.0)) * frame.exposure));
-    // Ordered dither of up to half a step, so that smooth gradients do not band.
+// Light as sRGB-encoded numbers.
+fn tone_curve(light: vec3f) -> vec3f {
+    return srgb(agx(max(light, vec3f(0.0)) * frame.exposure));
+}
+
+// Ordered dither of up to half a step, so that smooth gradients do not band.
+fn dithered(color: vec3f, pixel: vec2u) -> vec3f {
     let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5;
     return color + noise / 255.0;
+}
+
+// A pixel as sRGB-encoded numbers.
+fn tone_map(light: vec3f, pixel: vec2u) -> vec3f {
+    return dithered(tone_curve(light), pixel);
 }

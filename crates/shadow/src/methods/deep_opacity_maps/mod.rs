@@ -38,8 +38,9 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.deep_opacity_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    in_world: false,
     cpu: || Box::new(DeepOpacityMaps::default()),
-    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Layers>::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Layers>::new(gpu, projected)?)),
     shaders: TexelShadow::<Layers>::shaders,
 };
 

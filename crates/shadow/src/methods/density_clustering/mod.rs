@@ -43,8 +43,9 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.density_clustering.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    in_world: false,
     cpu: || Box::new(DensityClustering::default()),
-    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Clustering>::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Clustering>::new(gpu, projected)?)),
     shaders: TexelShadow::<Clustering>::shaders,
 };
 

@@ -3,7 +3,7 @@
 //! A point receives the light that the fragments before it let through; its own fragment does not count.
 
 pub(crate) mod cpu;
-mod gpu;
+pub(crate) mod gpu;
 mod table;
 
 pub use cpu::{ExactMap, SortedFragments};
@@ -28,8 +28,9 @@ pub(super) static METHOD: Method = Method {
     settings: |settings| Some(&settings.exact),
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
+    in_world: false,
     cpu: || Box::new(ExactMap::default()),
-    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu, projected)?)),
     shaders: TexelShadow::<SortedFragments>::shaders,
 };
 

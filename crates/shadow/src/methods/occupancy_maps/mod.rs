@@ -38,8 +38,9 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.occupancy_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    in_world: false,
     cpu: || Box::new(OccupancyMaps::default()),
-    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu, projected)?)),
     shaders: TexelShadow::<Occupancy>::shaders,
 };
 

@@ -35,8 +35,9 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.opacity_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    in_world: false,
     cpu: || Box::new(OpacityMaps::default()),
-    gpu: |gpu, projected| Ok(Box::new(TexelShadow::<Slices>::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Slices>::new(gpu, projected)?)),
     shaders: TexelShadow::<Slices>::shaders,
 };
 

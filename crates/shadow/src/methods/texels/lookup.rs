@@ -197,7 +197,7 @@ simd_versions! {
 /// Two hash values from 0 to 1 of a position, the same within a cube of an eighth of a millimetre: PCG in three
 /// dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering"). Twin of `place_hash` in lookup.wgsl.
 #[inline(always)]
-fn place_hash(p: [f32; 3]) -> [f32; 2] {
+pub(crate) fn place_hash(p: [f32; 3]) -> [f32; 2] {
     // The conversion saturates, and NaN becomes 0.
     let cell = |c: f32| (c * 8192.0).floor() as i32 as u32;
     let scatter = |c: u32| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

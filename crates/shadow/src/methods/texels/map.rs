@@ -9,7 +9,7 @@ use super::frame::TexelFrame;
 use super::gaussian::{GaussianLines, line_deviation};
 use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
-use super::{LineProfile, TexelFilter, TexelMethod};
+use super::{LineProfile, MapScale, TexelFilter, TexelMethod};
 use crate::cpu::safe_extinction;
 use crate::exp::exp_of_minus;
 use crate::{
@@ -113,13 +113,12 @@ impl<M: TexelMethod> TexelMap<M> {
         let method = M::new(settings);
         let bounds = input.bounds();
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
-        let method = method.within(&frame);
+        let depth_per_texel = depth_per_texel(input.extinction_scale, input.strand_width, &frame);
+        let extinction_scale = safe_extinction(input.extinction_scale);
+        let method = method.within(&MapScale { frame: &frame, extinction_scale, depth_per_texel });
         let resolution = frame.resolution;
         let texels = u64::from(resolution).pow(2);
-        let lines = Lines {
-            resolution,
-            depth_per_texel: depth_per_texel(input.extinction_scale, input.strand_width, &frame),
-        };
+        let lines = Lines { resolution, depth_per_texel };
         let gaussian = |width: f32| GaussianLines {
             lines,
             deviation: line_deviation(width, input.strand_width, &frame),
@@ -167,8 +166,19 @@ impl<M: TexelMethod> TexelMap<M> {
             points_ignored: bounds.ignored,
             scratch_bytes: scratch,
             needed_bytes,
+            fallbacks: self.fallbacks(&method),
         };
         Ok(BuiltMap { method, frame, report })
+    }
+
+    /// The number of records that cannot be read as they should be.
+    fn fallbacks(&self, method: &M) -> u64 {
+        let cells = method.cells().max(1);
+        self.cells
+            .par_chunks_exact(cells)
+            .with_min_len(4096)
+            .filter(|record| method.falls_back(record))
+            .count() as u64
     }
 
     /// Computes the records of all `in_use` texels with fragments.

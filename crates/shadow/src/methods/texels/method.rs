@@ -19,6 +19,27 @@ pub enum LineProfile {
     Gaussian(f32),
 }
 
+/// What a method may need of a map before its records are filled.
+#[derive(Clone, Copy, Debug)]
+pub struct MapScale<'a> {
+    /// The texels.
+    pub frame: &'a TexelFrame,
+    /// Factor on the optical depth of every strand, not negative and finite.
+    pub extinction_scale: f32,
+    /// Optical depth of a piece of strand whose length across the light is one texel.
+    pub depth_per_texel: f32,
+}
+
+impl MapScale<'_> {
+    /// Optical depth of one unit of the weights in which the GPU sums fragments: 1/1024 of a texel's length.
+    pub(crate) fn depth_per_weight(&self) -> f32 {
+        self.depth_per_texel / WEIGHT_ONE
+    }
+}
+
+/// The weight of a piece of strand whose length across the light is one texel. Twin of the constant in frame.wgsl.
+pub(crate) const WEIGHT_ONE: f32 = 1024.0;
+
 /// A method with a record per texel. The value holds the method's settings, clamped to their ranges.
 pub trait TexelMethod: Copy + Debug + Send + Sync {
     /// The element of a record.
@@ -33,8 +54,8 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
     /// The method with its section of `settings`.
     fn new(settings: &ShadowSettings) -> Self;
 
-    /// The method for texels of this size and number.
-    fn within(self, _frame: &TexelFrame) -> Self {
+    /// The method for the texels of one map.
+    fn within(self, _scale: &MapScale) -> Self {
         self
     }
 
@@ -69,6 +90,12 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
 
     /// Optical depth of the texel's hair before `depth`, which is 0 to 1 within the depth range of the hair and larger behind it.
     fn depth_before(&self, fragments: &[Fragment], record: &[Self::Cell], depth: f32) -> f32;
+
+    /// Whether a record could not be read as it should be, and is read in a simpler way: counted in
+    /// [`ShadowReport::fallbacks`](crate::ShadowReport::fallbacks).
+    fn falls_back(&self, _record: &[Self::Cell]) -> bool {
+        false
+    }
 
     /// Calls `put` for each piece of a record with its kind, its start and end depth and its optical depth. Pieces of one kind
     /// come in the order of depth.

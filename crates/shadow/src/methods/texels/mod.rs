@@ -4,6 +4,7 @@
 //! consists of a function from the fragments of one texel to a record, and one from a record and a depth to the optical depth before
 //! it ([`TexelMethod`]); [`TexelMap`] does the rest.
 
+pub(crate) mod curve;
 pub(crate) mod fragments;
 pub(crate) mod frame;
 pub(crate) mod gaussian;
@@ -12,12 +13,16 @@ pub(crate) mod lines;
 mod lookup;
 pub(crate) mod map;
 mod method;
+pub(crate) mod whole;
 
+pub use curve::{Curve, CurveMethod, Nodes};
 pub use fragments::Fragment;
 pub use frame::TexelFrame;
 pub(crate) use gpu::TexelShadow;
+pub(crate) use lookup::place_hash;
 pub use map::TexelMap;
-pub use method::{LineProfile, TexelMethod};
+pub(crate) use method::WEIGHT_ONE;
+pub use method::{LineProfile, MapScale, TexelMethod};
 
 use std::ops::RangeInclusive;
 
@@ -33,6 +38,9 @@ pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=4096;
 
 /// A slice of equal depth: every one in opacity maps, those whose bit is set in occupancy maps.
 pub(crate) const SLICE: RayMarkKind = RayMarkKind { label: "Slice", resolves_depth: true };
+
+/// The whole hair of a texel, which the method holds as a function of depth and not as pieces.
+pub(crate) const ALL_HAIR: RayMarkKind = RayMarkKind { label: "Hair of the texel", resolves_depth: false };
 
 /// The default number of texels along each edge.
 pub(crate) const DEFAULT_RESOLUTION: u32 = 512;
@@ -70,6 +78,53 @@ impl Choices for TexelFilter {
             Self::Jitter => ("jitter", "Jitter"),
         }
     }
+}
+
+/// The depths between which a method holds the hair of a texel as one function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DepthRange {
+    /// The nearest and the farthest hair of the texel. Light before and behind them is exact.
+    #[default]
+    Texel,
+    /// Those of the whole map, as in the publications.
+    Map,
+}
+
+impl DepthRange {
+    /// Both, in the order of menus.
+    pub const ALL: [Self; 2] = [Self::Texel, Self::Map];
+}
+
+impl Choices for DepthRange {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Texel => ("texel", "Of each texel"),
+            Self::Map => ("map", "Of the map"),
+        }
+    }
+}
+
+impl DepthRange {
+    /// The ends of the range for the hair of a texel, depths of the map.
+    pub(crate) fn ends(self, fragments: &[Fragment]) -> [f32; 2] {
+        match self {
+            Self::Texel => {
+                let depths = || fragments.iter().map(|fragment| fragment.depth());
+                [depths().fold(1.0, f32::min), depths().fold(0.0, f32::max)]
+            }
+            Self::Map => [0.0, 1.0],
+        }
+    }
+}
+
+/// The setting `depth_range` of the methods that hold all hair of a texel as one function.
+pub(crate) const fn depth_range<S>(field: Field<S>) -> Setting<S> {
+    let text = "Depths between which the function is defined: the hair of each texel, which is more accurate, or the hair of \
+                the whole map, as published.";
+    Setting::choice::<DepthRange>(field, "Depth range", text)
 }
 
 /// The setting `resolution` of every method with texels.

@@ -6,6 +6,7 @@ use lovelock_groom::Strands;
 use rayon::prelude::*;
 
 use super::deposit::{Deposit, deposit_simd};
+use super::free_grids::FreeGrids;
 use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
@@ -21,6 +22,8 @@ use crate::{
 
 /// Points per worker: with fewer, another worker does not pay off.
 const POINTS_PER_WORKER: usize = 4096;
+/// Pieces of strands per grid, so that a worker that becomes free while another map is built can take a part of it.
+const PIECES_PER_GRID: usize = 4;
 /// The most private grids. Merging more of them costs more than it saves.
 const MAX_GRIDS: usize = 8;
 /// The most cells of all private grids together, which bounds their address space to 1 GiB.
@@ -32,8 +35,8 @@ const POINTS_PER_LOOKUP: usize = 4096;
 
 /// A voxel map; everything is lit until it is built.
 ///
-/// Every worker adds its strands to a grid of its own. Cells hold integers, so the map is the same for any number of
-/// workers.
+/// Strands are added in pieces, and each piece to any grid that no other worker uses at the time: a map that is built by one worker while
+/// others build other maps needs only one. Cells hold integers, so the map is the same for any number of workers and grids.
 #[derive(Clone, Debug, Default)]
 pub struct VoxelMap {
     built: Option<BuiltMap>,
@@ -45,7 +48,7 @@ struct BuiltMap {
     lattice: Lattice,
     filter: VoxelFilter,
     width: Width,
-    /// The first one holds the map after the build.
+    /// The first one holds the map after the build; the last build may have left out others.
     grids: Vec<Grid>,
     /// Bits of the groups of slices that contain hair, per tile.
     touched: Vec<u64>,
@@ -92,9 +95,10 @@ impl VoxelMap {
         built.width = width;
         built.grids.truncate(grids);
         built.grids.resize_with(grids, || Grid::new(&layout));
-        let samples = built.deposit(input, settings);
-        sum::touched(&built.grids, &mut built.touched);
-        sum::sum_along_light(width, &layout, &mut built.grids, &built.touched);
+        let (samples, used) = built.deposit(input, settings);
+        let grids = &mut built.grids[..used];
+        sum::touched(grids, &mut built.touched);
+        sum::sum_along_light(width, &layout, grids, &built.touched);
         built.report = ShadowReport {
             memory_bytes: built.memory_bytes(),
             cells_touched: built.cells_in_use(),
@@ -104,13 +108,14 @@ impl VoxelMap {
             points_ignored: bounds.ignored,
             scratch_bytes: 0,
             needed_bytes: 0,
+            fallbacks: 0,
         };
     }
 }
 
 impl BuiltMap {
-    /// Clears the grids and adds the strands to them. Returns the number of samples.
-    fn deposit(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> u64 {
+    /// Clears grids and adds the strands to them. Returns the number of samples, and of the grids that are used: the first ones.
+    fn deposit(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> (u64, usize) {
         let (layout, width) = (self.layout, self.width);
         let deposit = Deposit {
             layout,
@@ -119,23 +124,32 @@ impl BuiltMap {
             by_point: settings.voxel_map.deposit == VoxelDeposit::PointCount,
             squares: settings.voxel_map.deposit.squares(),
         };
-        let (strands, pieces) = (input.strands, self.grids.len());
-        self.grids
-            .par_iter_mut()
-            .enumerate()
+        let strands = input.strands;
+        let pieces = piece_count(self.grids.len(), strands.points());
+        let free = FreeGrids::new(&mut self.grids);
+        let samples = (0..pieces)
+            .into_par_iter()
             .with_max_len(1)
-            .map(|(piece, grid)| {
-                grid.clear(&layout);
+            .map(|piece| {
+                let mut taken = free.take();
+                if std::mem::take(&mut taken.is_new) {
+                    taken.grid.clear(&layout);
+                }
                 let (first, last) =
                     (first_strand(strands, piece, pieces), first_strand(strands, piece + 1, pieces));
                 let samples = match &input.projected {
-                    None => deposit_simd(width, &deposit, strands, first, last, grid),
-                    Some(projected) => deposit_projected(&deposit, (strands, projected), first..last, grid),
+                    None => deposit_simd(width, &deposit, strands, first, last, taken.grid),
+                    Some(projected) => {
+                        deposit_projected(&deposit, (strands, projected), first..last, taken.grid)
+                    }
                 };
-                grid.take_marks(&layout);
+                free.give_back(taken);
                 samples
             })
-            .sum()
+            .sum();
+        let used = free.used();
+        self.grids[..used].par_iter_mut().for_each(|grid| grid.take_marks(&layout));
+        (samples, used)
     }
 
     fn lookup(&self) -> Option<Lookup<'_>> {
@@ -199,6 +213,12 @@ pub(super) fn fixed_point_depth(
 fn grid_count(layout: &Layout, points: usize) -> usize {
     let useful = rayon::current_num_threads().min(points / POINTS_PER_WORKER).min(MAX_GRIDS);
     useful.min(MAX_CELLS / layout.cells()).max(1)
+}
+
+/// The number of pieces of strands. No more than grids if there are fewer of these than threads, so that every worker finds a free one.
+fn piece_count(grids: usize, points: usize) -> usize {
+    let most = if grids < rayon::current_num_threads() { grids } else { grids * PIECES_PER_GRID };
+    most.min(points / POINTS_PER_WORKER).max(1)
 }
 
 /// The first strand of piece `piece` of `pieces`, which have about the same number of points.
@@ -286,9 +306,13 @@ mod tests {
 
     /// Strands that wind through a box, with a NaN point and a segment across the whole box.
     fn strands() -> Strands {
+        strands_of(300)
+    }
+
+    fn strands_of(count: u32) -> Strands {
         let mut made = Strands::default();
         let mut first_point = vec![0];
-        for strand in 0..300_u32 {
+        for strand in 0..count {
             for point in 0..=20_u32 {
                 let (s, p) = (strand as f32, point as f32);
                 made.x.push(0.1 * (0.7 * s + 0.2 * p).sin());
@@ -334,6 +358,45 @@ mod tests {
             for &width in Width::ALL.iter().filter(|width| width.is_available()) {
                 assert!(answers(width) == baseline, "{width:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_map_is_the_same_by_any_number_of_threads_also_after_builds_with_other_numbers() {
+        // Enough points for several grids.
+        let strands = strands_of(2000);
+        let input = ShadowInput {
+            strands: &strands,
+            strand_width: 2e-3,
+            extinction_scale: 0.15,
+            light: LightFrame::new(Vec3::new(0.2, -1.0, 0.3)),
+            anchor: Vec3::Y,
+            maps: 1,
+            projected: None,
+        };
+        let settings = ShadowSettings::default();
+        let mut one = VoxelMap::default();
+        let faces = |map: &VoxelMap| -> Vec<_> {
+            (0..128 * 128 * 128)
+                .step_by(7)
+                .map(|i: u32| map.faces([i & 127, i >> 7 & 127, i >> 14]).expect("inside"))
+                .collect()
+        };
+        let build = |map: &mut VoxelMap, threads: usize, input: &ShadowInput| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| map.build(input, &settings)).expect("a map");
+        };
+        build(&mut one, 1, &input);
+        let wanted = faces(&one);
+        assert!(wanted.iter().any(|[front, back]| front != back), "hair is in the map");
+        let mut map = VoxelMap::default();
+        for threads in [3, 1, 2, 1024, 9, 3] {
+            // Other hair before, which must not stay in any grid.
+            let other = ShadowInput { extinction_scale: 0.3, ..input };
+            build(&mut map, threads, &other);
+            assert!(faces(&map) != wanted, "control: {threads}");
+            build(&mut map, threads, &input);
+            assert!(faces(&map) == wanted, "{threads} threads");
         }
     }
 

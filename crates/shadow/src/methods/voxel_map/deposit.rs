@@ -116,7 +116,8 @@ impl Deposit {
                 }
                 self.fill(&mut block, [&padded[0], &padded[1], &padded[2]]);
             }
-            samples += block.samples.iter().map(|n| u64::from(*n)).sum::<u64>();
+            // A sum that is checked for overflow is not compiled to vectors.
+            samples += block.samples.iter().fold(0, |sum: u64, n| sum.wrapping_add(u64::from(*n)));
             self.scatter(&block, grid);
             // The last point is the first of the next block.
             at += BLOCK - 1;
@@ -195,6 +196,7 @@ impl Deposit {
     /// Adds all samples of a block.
     #[inline(always)]
     fn scatter(&self, block: &Block, grid: &mut Grid) {
+        let shift = self.layout.group_len_shift();
         for start in (0..BLOCK).step_by(LANES) {
             let samples: &[u32; LANES] = block.samples[start..start + LANES].try_into().expect("16 lanes");
             let mut most = 0;
@@ -207,8 +209,9 @@ impl Deposit {
             }
             for sample in 0..most {
                 let (addresses, depths) = self.addresses(block, start, sample);
+                let (cells, marks) = (&mut grid.cells[..], &mut grid.marks[..]);
                 for (address, depth) in addresses.iter().zip(&depths) {
-                    self.add(grid, *address, *depth);
+                    add_to(cells, marks, shift, *address, *depth);
                 }
             }
         }
@@ -245,11 +248,17 @@ impl Deposit {
 
     #[inline(always)]
     pub(super) fn add(&self, grid: &mut Grid, address: u32, depth: u32) {
-        let cell = &mut grid.cells[address as usize];
-        // Saturating sums of non-negative numbers do not depend on their order either.
-        *cell = cell.saturating_add(depth);
-        grid.marks[(address >> self.layout.group_len_shift()) as usize] = 1;
+        add_to(&mut grid.cells, &mut grid.marks, self.layout.group_len_shift(), address, depth);
     }
+}
+
+/// Adds depth to a cell and marks its group. `shift` is [`Layout::group_len_shift`].
+#[inline(always)]
+fn add_to(cells: &mut [u32], marks: &mut [u8], shift: u32, address: u32, depth: u32) {
+    let cell = &mut cells[address as usize];
+    // Saturating sums of non-negative numbers do not depend on their order either.
+    *cell = cell.saturating_add(depth);
+    marks[address.wrapping_shr(shift) as usize] = 1;
 }
 
 /// The largest coordinate whose cell leaves one empty cell at the end of the window.

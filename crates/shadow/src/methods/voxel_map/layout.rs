@@ -3,6 +3,9 @@
 //! Columns of cells (along the light) are grouped by 4 × 4 into *tiles*: `[tile j][tile k][i][4 × 4]`. One slice of a tile is
 //! one cache line, and an address is the sum of one term per coordinate. Hair fills few tiles, and a short run of slices in
 //! each; other memory is neither cleared nor summed, and the operating system does not map it.
+//!
+//! Addresses of cells within the map fit 32 bits at every resolution, as a test checks. They are computed without checks for overflow,
+//! each of which is a branch and would keep loops from being compiled to vectors.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
@@ -75,7 +78,7 @@ impl Layout {
     /// The tile of column `(j, k)`.
     #[inline(always)]
     pub(super) fn tile(&self, j: u32, k: u32) -> u32 {
-        (j >> EDGE_SHIFT) * self.tiles_per_edge + (k >> EDGE_SHIFT)
+        (j >> EDGE_SHIFT).wrapping_mul(self.tiles_per_edge).wrapping_add(k >> EDGE_SHIFT)
     }
 
     /// The term of an address that depends on i.
@@ -87,19 +90,20 @@ impl Layout {
     /// The term of an address that depends on j.
     #[inline(always)]
     pub(super) fn row(&self, j: u32) -> u32 {
-        (((j >> EDGE_SHIFT) * self.tiles_per_edge) << self.tile_shift) + ((j & WITHIN) << EDGE_SHIFT)
+        let tiles = (j >> EDGE_SHIFT).wrapping_mul(self.tiles_per_edge);
+        tiles.wrapping_shl(self.tile_shift).wrapping_add((j & WITHIN) << EDGE_SHIFT)
     }
 
     /// The term of an address that depends on k.
     #[inline(always)]
     pub(super) fn column(&self, k: u32) -> u32 {
-        ((k >> EDGE_SHIFT) << self.tile_shift) + (k & WITHIN)
+        (k >> EDGE_SHIFT).wrapping_shl(self.tile_shift).wrapping_add(k & WITHIN)
     }
 
     /// Address of cell `(i, j, k)`.
     #[inline(always)]
     pub(super) fn address(&self, i: u32, j: u32, k: u32) -> u32 {
-        self.row(j) + self.column(k) + Self::slice(i)
+        self.row(j).wrapping_add(self.column(k)).wrapping_add(Self::slice(i))
     }
 }
 

@@ -94,6 +94,7 @@ impl Lookup<'_> {
         let (layout, lattice, anchor) = (&self.layout, self.lattice, self.lattice.anchor);
         let first = lattice.first.as_vec3();
         let n = layout.resolution as f32;
+        let [last, last_but_one] = [1, 2].map(|from_end| layout.resolution - from_end);
         // The value of a column belongs to its centre; in the printed filter, to its far edge.
         let lead = match self.filter {
             VoxelFilter::Closest => 0.0,
@@ -118,21 +119,22 @@ impl Lookup<'_> {
             let v = (d[0] * to_j.x + d[1] * to_j.y + d[2] * to_j.z) - first.y;
             let w = (d[0] * to_k.x + d[1] * to_k.y + d[2] * to_k.z) - first.z;
             // Points before the window and NaN read the first face and the border, which are lit.
-            let (u, i) = split(u, n, layout.resolution - 1);
-            let (fy, j) = split(v - lead, n - 1.0, layout.resolution - 2);
-            let (fz, k) = split(w - lead, n - 1.0, layout.resolution - 2);
+            let (u, i) = split(u, n, last);
+            let (fy, j) = split(v - lead, n - 1.0, last_but_one);
+            let (fz, k) = split(w - lead, n - 1.0, last_but_one);
             places.along[lane] = if closest { 1.0 } else { u };
             places.across_y[lane] = if fy < least { 0.0 } else { fy };
             places.across_z[lane] = if fz < least { 0.0 } else { fz };
             places.slice[lane] = i;
-            let (near_j, far_j) = (layout.row(j) + Layout::slice(i), layout.row(j + 1) + Layout::slice(i));
-            let (near_k, far_k) = (layout.column(k), layout.column(k + 1));
-            places.addresses[0][lane] = near_j + near_k;
-            places.addresses[1][lane] = near_j + far_k;
-            places.addresses[2][lane] = far_j + near_k;
-            places.addresses[3][lane] = far_j + far_k;
-            let (_, j) = split(v, n, layout.resolution - 1);
-            let (_, k) = split(w, n, layout.resolution - 1);
+            let row = |j: u32| layout.row(j).wrapping_add(Layout::slice(i));
+            let (near_j, far_j) = (row(j), row(j.wrapping_add(1)));
+            let (near_k, far_k) = (layout.column(k), layout.column(k.wrapping_add(1)));
+            places.addresses[0][lane] = near_j.wrapping_add(near_k);
+            places.addresses[1][lane] = near_j.wrapping_add(far_k);
+            places.addresses[2][lane] = far_j.wrapping_add(near_k);
+            places.addresses[3][lane] = far_j.wrapping_add(far_k);
+            let (_, j) = split(v, n, last);
+            let (_, k) = split(w, n, last);
             places.tile[lane] = layout.tile(j, k);
         }
         places
@@ -145,7 +147,8 @@ impl Lookup<'_> {
         for lane in 0..BLOCK {
             // Tiles with hair and their neighbours are filled, and most points of hair lie there.
             let groups = self.touched[places.tile[lane] as usize];
-            if groups >> (places.slice[lane] >> self.layout.group_shift) & 1 == 0 {
+            let group = places.slice[lane].wrapping_shr(self.layout.group_shift);
+            if groups.wrapping_shr(group) & 1 == 0 {
                 self.load_anywhere(places, lane, &mut faces);
                 continue;
             }

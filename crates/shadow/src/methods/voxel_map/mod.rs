@@ -13,6 +13,7 @@ mod adaptive;
 mod choice;
 mod cpu;
 mod deposit;
+mod free_grids;
 mod gpu;
 mod grid;
 mod lattice;
@@ -65,8 +66,9 @@ pub(super) static METHOD: Method = Method {
         settings.voxel_map.slices == VoxelSlices::Uniform
             && settings.voxel_map.deposit == VoxelDeposit::PointCount
     },
+    in_world: false,
     cpu: || Box::new(VoxelShadow::default()),
-    gpu: |gpu, projected| Ok(Box::new(GpuVoxelShadow::new(gpu, projected)?)),
+    gpu: |_, gpu, projected| Ok(Box::new(GpuVoxelShadow::new(gpu, projected)?)),
     shaders: GpuVoxelShadow::shaders,
 };
 

@@ -1,10 +1,14 @@
-//! The published loop: density, transmittance and filter with one array each, on one thread, in single precision.
+//! The published loop: density, transmittance and filter with one array each, in single precision.
 //!
 //! This is the program that the paper describes in sections 3.1 to 3.3, for `lovelock bench voxel-map`, which times
-//! [`VoxelMap`](super::VoxelMap) against it. [`mod@super::reference`] is the same map in double precision, for tests.
+//! [`VoxelMap`](super::VoxelMap) against it. It uses the threads of the current pool; on one it is the plain loop.
+//! [`mod@super::reference`] is the same map in double precision, for tests.
+
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 use lovelock_groom::Strands;
+use rayon::prelude::*;
 
 use super::lattice::Lattice;
 
@@ -18,52 +22,66 @@ pub enum CellOrder {
 }
 
 /// The map of the published loop. Its memory is reused from build to build: two numbers per cell.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct PublishedMap {
     resolution: usize,
     order: CellOrder,
-    density: Vec<f32>,
-    transmittance: Vec<f32>,
+    /// Points per cell.
+    density: Vec<AtomicU32>,
+    /// The bits of an `f32`. Columns are interleaved, so threads that write different columns share the list; a relaxed store is a
+    /// plain one.
+    transmittance: Vec<AtomicU32>,
 }
+
+/// Points per task where there are several threads.
+const POINTS_PER_TASK: usize = 4096;
 
 impl PublishedMap {
     /// An empty map of `resolution` cells along each edge.
     pub fn new(resolution: u32, order: CellOrder) -> Self {
         let resolution = resolution as usize;
-        let cells = resolution.pow(3);
-        Self { resolution, order, density: vec![0.0; cells], transmittance: vec![1.0; cells] }
+        let cells = |value: u32| (0..resolution.pow(3)).map(|_| AtomicU32::new(value)).collect();
+        Self { resolution, order, density: cells(0), transmittance: cells(1.0_f32.to_bits()) }
     }
 
     /// Fills the density and composites the transmittance of every cell. One point adds an optical depth of `depth_per_point` to its
     /// cell (the paper's `f ds`). The lattice must have the resolution of this map and contain all points.
     pub fn build(&mut self, lattice: &Lattice, strands: &Strands, depth_per_point: f32) {
         let n = self.resolution;
-        self.density.fill(0.0);
-        for point in 0..strands.points() {
-            let (cell, _) = cell(lattice, strands.point(point));
-            let at = self.address(cell);
-            self.density[at] += 1.0;
+        if rayon::current_num_threads() == 1 {
+            self.density.iter_mut().for_each(|count| *count.get_mut() = 0);
+            for point in 0..strands.points() {
+                let at = self.address(cell(lattice, strands.point(point)).0);
+                *self.density[at].get_mut() += 1;
+            }
+        } else {
+            self.density.par_iter_mut().with_min_len(n * n).for_each(|count| *count.get_mut() = 0);
+            // Counts are whole numbers, which add up to the same in any order.
+            (0..strands.points()).into_par_iter().with_min_len(POINTS_PER_TASK).for_each(|point| {
+                let at = self.address(cell(lattice, strands.point(point)).0);
+                self.density[at].fetch_add(1, Ordering::Relaxed);
+            });
         }
         let first = lattice.wrapped(lattice.first)[0];
-        for j in 0..n {
+        (0..n).into_par_iter().for_each(|j| {
             for k in 0..n {
-                let mut previous = 1.0;
+                let mut previous = 1.0_f32;
                 // From the slice closest to the light to the farthest one, across the border of the modulo.
                 for i in (first..n).chain(0..first) {
                     let at = self.address([i, j, k]);
-                    let density = self.density[at];
-                    if density != 0.0 {
-                        previous *= (-density * depth_per_point).exp();
+                    let density = self.density[at].load(Ordering::Relaxed);
+                    if density != 0 {
+                        previous *= (-(density as f32) * depth_per_point).exp();
                     }
-                    self.transmittance[at] = previous;
+                    self.transmittance[at].store(previous.to_bits(), Ordering::Relaxed);
                 }
             }
-        }
+        });
     }
 
     /// The filtered transmittance of every point of `strands`: trilinear, between a cell and those before it on each axis.
     pub fn filter(&self, lattice: &Lattice, strands: &Strands, out: &mut [f32]) {
-        for (point, out) in out.iter_mut().enumerate() {
+        out.par_iter_mut().with_min_len(POINTS_PER_TASK).enumerate().for_each(|(point, out)| {
             let (cell, within) = cell(lattice, strands.point(point));
             let before = cell.map(|c| if c == 0 { self.resolution - 1 } else { c - 1 });
             let [x, y, z] = within.to_array();
@@ -71,12 +89,13 @@ impl PublishedMap {
             for (i, a) in [(before[0], 1.0 - x), (cell[0], x)] {
                 for (j, b) in [(before[1], 1.0 - y), (cell[1], y)] {
                     for (k, c) in [(before[2], 1.0 - z), (cell[2], z)] {
-                        sum += a * b * c * self.transmittance[self.address([i, j, k])];
+                        let at = self.address([i, j, k]);
+                        sum += a * b * c * f32::from_bits(self.transmittance[at].load(Ordering::Relaxed));
                     }
                 }
             }
             *out = sum;
-        }
+        });
     }
 
     fn address(&self, [i, j, k]: [usize; 3]) -> usize {
@@ -137,9 +156,17 @@ mod tests {
             let mut map = PublishedMap::new(lattice.resolution, order);
             // Twice, because a build starts from the memory of the one before.
             map.build(&lattice, &strands, depth);
-            map.build(&lattice, &strands, depth);
-            let mut out = vec![0.0; strands.points()];
-            map.filter(&lattice, &strands, &mut out);
+            let mut on = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                let mut out = vec![0.0_f32; strands.points()];
+                pool.install(|| {
+                    map.build(&lattice, &strands, depth);
+                    map.filter(&lattice, &strands, &mut out);
+                });
+                out
+            };
+            let out = on(1);
+            assert!(on(3) == out, "{order:?}: the same on several threads");
             for (point, found) in out.into_iter().enumerate() {
                 let wanted = reference.transmittance(strands.point(point));
                 assert!((f64::from(found) - wanted).abs() < 2e-5, "{order:?}, {point}: {found}, {wanted}");

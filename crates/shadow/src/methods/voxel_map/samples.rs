@@ -11,7 +11,8 @@ use lovelock_base::simd::whole_part;
 #[inline(always)]
 pub(super) fn sample_count(length: f32) -> u32 {
     // `⌊2·length⌋ + 1`: SSE2 has no instruction for the ceiling.
-    whole_part(2.0 * length) as u32 + 1
+    // At most 2^26 + 1; a check for overflow would be a branch in loops of vectors.
+    (whole_part(2.0 * length) as u32).wrapping_add(1)
 }
 
 /// The position of sample `index` along its segment, 0 to 1. `inverse_count` is 1 over the number of samples.

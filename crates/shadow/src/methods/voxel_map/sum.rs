@@ -4,7 +4,7 @@
 //! the high half. One load then provides everything that interpolation along the light needs.
 
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
-#![allow(clippy::inline_always, unsafe_code)]
+#![allow(clippy::inline_always, clippy::needless_range_loop, unsafe_code)]
 
 use lovelock_base::simd::Width;
 use lovelock_base::simd_versions;
@@ -78,6 +78,12 @@ fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32], others: 
     }
 }
 
+/// The minimum, in the loops of every vector width.
+#[inline(always)]
+fn least(a: u32, b: u32) -> u32 {
+    if a < b { a } else { b }
+}
+
 /// The running sums of the columns of a tile.
 struct Faces {
     sum: [u32; TILE_CELLS],
@@ -94,12 +100,16 @@ impl Faces {
     /// Adds one slice of density and replaces it by its faces.
     #[inline(always)]
     fn pass(&mut self, slice: &mut [u32; TILE_CELLS]) {
-        for ((cell, sum), front) in slice.iter_mut().zip(&mut self.sum).zip(&mut self.front) {
-            *sum = (*sum + (*cell).min(MAX)).min(MAX);
-            let back = ((*sum + (1 << (FACE_SHIFT - 1))) >> FACE_SHIFT).min(0xffff);
-            *cell = *front | back << 16;
-            *front = back;
+        // Copies, because the compiler cannot prove that the arrays do not overlap. Two numbers up to MAX fit; a check for overflow would be
+        // a branch.
+        let (mut cells, mut sums, mut fronts) = (*slice, self.sum, self.front);
+        for lane in 0..TILE_CELLS {
+            let sum = least(sums[lane].wrapping_add(least(cells[lane], MAX)), MAX);
+            let back = least(sum.wrapping_add(1 << (FACE_SHIFT - 1)) >> FACE_SHIFT, 0xffff);
+            cells[lane] = fronts[lane] | back << 16;
+            (sums[lane], fronts[lane]) = (sum, back);
         }
+        (*slice, self.sum, self.front) = (cells, sums, fronts);
     }
 }
 

@@ -12,7 +12,7 @@ use super::{Face, PARALLEL, Perspective};
 use crate::gpu::{Buffer, fits_device, wgsl};
 use crate::{
     GpuColumns, GpuList, GpuProjected, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets,
-    ProjectedTargets, ShadowReport, ShadowSettings,
+    ProjectedTargets, ShadowMethod, ShadowReport, ShadowSettings, SharedList,
 };
 
 const PROJECT: ShaderPart = wgsl!("perspective/gpu/", "project.wgsl");
@@ -20,7 +20,7 @@ const PROJECT: ShaderPart = wgsl!("perspective/gpu/", "project.wgsl");
 const PROJECT_PASS: &str = "shadow/project";
 
 /// Makes the kernels of a method, for the strands themselves or for projected ones.
-pub(crate) type MakeGpuShadow = fn(&Gpu, bool) -> Result<Box<dyn GpuShadow>, GpuError>;
+pub(crate) type MakeGpuShadow = fn(ShadowMethod, &Gpu, bool) -> Result<Box<dyn GpuShadow>, GpuError>;
 
 /// Twin of `ProjectUniform` in project.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -49,6 +49,7 @@ impl ProjectUniform {
 /// A method on the GPU, for lights of any kind.
 #[derive(Debug)]
 pub(crate) struct GpuLightMaps {
+    method: ShadowMethod,
     make: MakeGpuShadow,
     parallel: Box<dyn GpuShadow>,
     standing: Option<Box<Standing>>,
@@ -74,8 +75,8 @@ impl GpuLightMaps {
     ///
     /// # Errors
     /// A shader that does not compile, by file and line.
-    pub fn new(gpu: &Gpu, make: MakeGpuShadow) -> Result<Self, GpuError> {
-        Ok(Self { make, parallel: make(gpu, false)?, standing: None, stands: Vec::new() })
+    pub fn new(gpu: &Gpu, method: ShadowMethod, make: MakeGpuShadow) -> Result<Self, GpuError> {
+        Ok(Self { method, make, parallel: make(method, gpu, false)?, standing: None, stands: Vec::new() })
     }
 
     /// The shaders that no method has, with their labels.
@@ -113,10 +114,10 @@ fn source() -> ShaderSource {
 }
 
 impl Standing {
-    fn new(gpu: &Gpu, make: MakeGpuShadow) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, method: ShadowMethod, make: MakeGpuShadow) -> Result<Self, GpuError> {
         let kernel = |entry| Kernel::new(gpu, PROJECT_PASS, &source(), entry);
         Ok(Self {
-            maps: make(gpu, true)?,
+            maps: make(method, gpu, true)?,
             segments: kernel("project_segments")?,
             points: kernel("project_points")?,
             projected: Buffer::new(gpu, "projected strands"),
@@ -146,8 +147,10 @@ impl Standing {
         self.planes.resize(input.maps.max(1).max(slot as u32 + 1) as usize, None);
         self.planes[slot] = None;
         let faces = perspective.faces().len() as u32;
+        // As before: the list of a light with six planes has the share of one.
+        let lists = input.shared_list.map_or(1, |list| list.maps);
         let settings = &if faces > 1 { settings.for_sides() } else { *settings };
-        let mut list_of = None;
+        let mut list_of = input.shared_list.and_then(|list| self.planes(list.of).next()).map(|(_, at, _)| at);
         for (side, face) in perspective.faces().iter().enumerate() {
             let Some(face) = face else { continue };
             let at = SIDES * slot + side;
@@ -164,7 +167,6 @@ impl Standing {
             let projected = GpuProjected {
                 plane: face.plane,
                 start: face.offset.length(),
-                list_of: *list_of.get_or_insert(at),
                 slots: SIDES as u32 * input.maps.max(1),
             };
             let from = GpuShadowInput {
@@ -178,6 +180,7 @@ impl Standing {
                 light: PARALLEL,
                 anchor: Vec3::ZERO,
                 maps: input.maps.max(1).saturating_mul(faces),
+                shared_list: Some(SharedList { of: *list_of.get_or_insert(at), maps: lists }),
                 projected: Some(projected),
                 ..*input
             };
@@ -210,7 +213,7 @@ impl Standing {
                 sides,
                 side: side as u32,
                 lit,
-                slot: slot as u32,
+                slot: targets.byte.unwrap_or(slot as u32),
             };
             self.maps.look_up(at, gpu, commands, &GpuTargets { projected: Some(&projected), ..*targets });
             // Points of planes without hair are written once.
@@ -235,7 +238,7 @@ impl GpuShadow for GpuLightMaps {
         };
         let standing = match &mut self.standing {
             Some(standing) => standing,
-            none => none.insert(Box::new(Standing::new(gpu, self.make)?)),
+            none => none.insert(Box::new(Standing::new(gpu, self.method, self.make)?)),
         };
         standing.build(slot, gpu, commands, (input, perspective), settings)
     }

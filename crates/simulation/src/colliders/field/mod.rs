@@ -11,6 +11,7 @@
 mod affine;
 mod cells;
 mod deposit;
+mod device;
 mod measure;
 mod occupancy;
 mod planes;
@@ -27,9 +28,11 @@ use glam::{Affine3A, Vec3};
 use lovelock_base::simd::Width;
 use lovelock_motion::{BodyField, FIELD_JOINTS, FieldPose};
 
+use crate::contents::Stamp;
 use crate::lanes::{Lane, Lane3, at, put, splat3};
 use crate::motion::{HeadPose, substep};
 use affine::Affine;
+pub use device::FieldLattices;
 use occupancy::Occupancy;
 pub(crate) use planes::{FieldRow, PlaneRow};
 pub(crate) use search::Search;
@@ -60,9 +63,22 @@ const IMPLAUSIBLE_DEPTH: f32 = 0.02;
 /// Smallest determinant of the Newton matrix; below it the skin is folded too much to be inverted.
 const LEAST_DETERMINANT: f32 = 0.05;
 
+/// The constants of the field by name, for other devices.
+pub(crate) const CONSTANTS: [(&str, f64); 8] = [
+    ("CONVERGED", CONVERGED as f64),
+    ("ROUNDS", ROUNDS as f64),
+    ("FURTHEST_FROM_GUESS", FURTHEST_FROM_GUESS as f64),
+    ("SAME_START", SAME_START as f64),
+    ("GUESSED_DEPTH", GUESSED_DEPTH as f64),
+    ("IMPLAUSIBLE_DEPTH", IMPLAUSIBLE_DEPTH as f64),
+    ("LEAST_DETERMINANT", LEAST_DETERMINANT as f64),
+    ("NEAR", planes::NEAR as f64),
+];
+
 /// A field and its motion during the current step.
 #[derive(Clone, Debug)]
-pub(crate) struct MovingField {
+pub struct MovingField {
+    stamp: Stamp,
     field: Arc<BodyField>,
     lift: f32,
     weightings: Weightings,
@@ -87,6 +103,7 @@ impl MovingField {
         let (joints, mut now) = (Joints::default(), Vec::new());
         weightings.inverse_maps(Width::widest(), &joints, &mut now);
         Self {
+            stamp: Stamp::new(),
             lift,
             weightings,
             joints_before: joints.clone(),

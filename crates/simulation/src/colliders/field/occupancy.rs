@@ -182,6 +182,11 @@ impl Occupancy {
         longest_path_squared(wide, &self.ends).sqrt()
     }
 
+    /// Whether the head is tested in a cell only because culling is off.
+    pub(super) fn is_forced(&self, cell: usize) -> bool {
+        self.extra.get(cell) == Some(&true)
+    }
+
     /// Discards the end of the last step, because the next one starts elsewhere.
     pub(super) fn discard_end(&mut self) {
         self.ends[1].discard();

@@ -18,14 +18,17 @@ const SORT: ShaderPart = wgsl!("methods/exact/gpu/", "sort.wgsl");
 const SORT_LONG: ShaderPart = wgsl!("methods/exact/gpu/", "sort_long.wgsl");
 const QUERY: ShaderPart = wgsl!("methods/exact/gpu/", "query.wgsl");
 
+/// The passes that list all fragments of each texel, sorted by depth, with running sums of their weights.
+pub(crate) const SORTED_LIST: [Pass; 5] = [
+    Pass { name: "shadow/count", over: Over::Segments, parts: &[COUNT] },
+    Pass { name: "shadow/place", over: Over::Groups, parts: &[LIST_HEAD, PLACE] },
+    Pass { name: "shadow/scatter", over: Over::Segments, parts: &[LIST_BODY, SCATTER] },
+    Pass { name: "shadow/sort", over: Over::Texels, parts: &[LIST_BODY, ORDER, SORT] },
+    Pass { name: "shadow/sort", over: Over::Groups, parts: &[LIST_BODY, ORDER, SORT_LONG] },
+];
+
 impl GpuTexelMethod for SortedFragments {
-    const PASSES: &'static [Pass] = &[
-        Pass { name: "shadow/count", over: Over::Segments, parts: &[COUNT] },
-        Pass { name: "shadow/place", over: Over::Groups, parts: &[LIST_HEAD, PLACE] },
-        Pass { name: "shadow/scatter", over: Over::Segments, parts: &[LIST_BODY, SCATTER] },
-        Pass { name: "shadow/sort", over: Over::Texels, parts: &[LIST_BODY, ORDER, SORT] },
-        Pass { name: "shadow/sort", over: Over::Groups, parts: &[LIST_BODY, ORDER, SORT_LONG] },
-    ];
+    const PASSES: &'static [Pass] = &SORTED_LIST;
     const QUERY: &'static [ShaderPart] = &[QUERY];
     const LISTS: bool = true;
 

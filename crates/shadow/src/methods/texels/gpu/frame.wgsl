@@ -30,7 +30,16 @@ struct TexelUniform {
     // Of projected strands: distance of the plane, and distance from the light of depth 0, metres.
     @align(16) plane: f32,
     start: f32,
-    // Of deep opacity maps: the start of each layer relative to the first fragment, and 1 over its thickness.
+    // Of approximate deep shadow maps: optical depth for each unit of depth behind the first hair, and the most.
+    slope: f32,
+    most: f32,
+    // Of deep shadow maps: the largest error of a vertex.
+    tolerance: f32,
+    // Of moments: the share of even light that is mixed in, and the share of a point's own weight that lies before it.
+    bias: f32,
+    overestimation: f32,
+    // Of deep opacity maps: the start of each layer relative to the first fragment, and 1 over its thickness. Of Fourier opacity maps:
+    // the factor of each term.
     @align(16) starts: array<vec4f, 4>,
     per_depth: array<vec4f, 4>,
 }

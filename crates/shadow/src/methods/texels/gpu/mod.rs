@@ -4,6 +4,7 @@
 //! threads. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is `each_texel.wgsl` with its
 //! own `texel_pass`. A method is a list of passes and a query.
 
+pub(crate) mod curve;
 mod kernels;
 pub(crate) mod list;
 #[cfg(test)]
@@ -19,7 +20,8 @@ use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, Shader
 use self::kernels::KernelSets;
 use self::list::{List, Share};
 use super::gaussian::line_deviation;
-use super::{LineProfile, TexelFilter, TexelFrame, TexelMethod};
+use super::{LineProfile, MapScale, TexelFilter, TexelFrame, TexelMethod};
+use crate::cpu::safe_extinction;
 use crate::gpu::{
     Buffer, EXP, GpuColumns, GpuList, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup,
     RAY, fits_device, projected_constant, wgsl,
@@ -27,17 +29,28 @@ use crate::gpu::{
 use crate::methods::texels::map::depth_per_texel;
 use crate::{ShadowError, ShadowReport, ShadowSettings};
 
-const FRAME: ShaderPart = wgsl!("methods/texels/gpu/", "frame.wgsl");
-const BUILD: ShaderPart = wgsl!("methods/texels/gpu/", "build.wgsl");
-const THIN_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "thin_step.wgsl");
+/// The placement of texels.
+pub(crate) const FRAME: ShaderPart = wgsl!("methods/texels/gpu/", "frame.wgsl");
+/// The buffers that passes write.
+pub(crate) const BUILD: ShaderPart = wgsl!("methods/texels/gpu/", "build.wgsl");
+/// Lines one texel wide.
+pub(crate) const THIN_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "thin_step.wgsl");
 const FILTERED_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "filtered_step.wgsl");
-const LINES: ShaderPart = wgsl!("methods/texels/gpu/", "lines.wgsl");
-const EACH_TEXEL: ShaderPart = wgsl!("methods/texels/gpu/", "each_texel.wgsl");
-const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl");
+/// Calls `put` for every fragment.
+pub(crate) const LINES: ShaderPart = wgsl!("methods/texels/gpu/", "lines.wgsl");
+/// Calls `texel_pass` for every texel.
+pub(crate) const EACH_TEXEL: ShaderPart = wgsl!("methods/texels/gpu/", "each_texel.wgsl");
+/// Reads the texels around a point by `depth_before`.
+pub(crate) const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl");
 /// The depth range of each texel, the first pass of several methods.
 pub(crate) const RANGE: ShaderPart = wgsl!("methods/texels/gpu/", "range.wgsl");
 /// Reads the result of [`RANGE`].
 pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_read.wgsl");
+/// What methods share whose record is one function; see [`super::whole`].
+pub(crate) const WHOLE: ShaderPart = wgsl!("methods/texels/gpu/", "whole.wgsl");
+/// How such records are built of the result of [`RANGE`].
+pub(crate) const WHOLE_BUILD: [ShaderPart; 2] =
+    [RANGE_READ, wgsl!("methods/texels/gpu/", "whole_build.wgsl")];
 /// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
 pub(crate) const RANGE_WORDS: u64 = 4;
 
@@ -66,7 +79,12 @@ pub(crate) struct TexelUniform {
     line_deviation: f32,
     plane: f32,
     start: f32,
-    unused: [u32; 2],
+    slope: f32,
+    most: f32,
+    tolerance: f32,
+    bias: f32,
+    overestimation: f32,
+    unused: u32,
     starts: [f32; MAX_LAYERS],
     per_depth: [f32; MAX_LAYERS],
 }
@@ -129,6 +147,16 @@ pub(crate) struct Needs {
     /// See `seeds`.
     pub merged: u32,
     /// See `seeds`.
+    pub slope: f32,
+    /// See `seeds`.
+    pub most: f32,
+    /// See `seeds`.
+    pub tolerance: f32,
+    /// See `seeds`.
+    pub bias: f32,
+    /// See `seeds`.
+    pub overestimation: f32,
+    /// See `seeds`.
     pub starts: [f32; MAX_LAYERS],
     /// See `seeds`.
     pub per_depth: [f32; MAX_LAYERS],
@@ -142,6 +170,8 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
     const QUERY: &'static [ShaderPart];
     /// Whether its passes put fragments into a [`List`] at binding 5.
     const LISTS: bool = false;
+    /// Whether only the build needs the list.
+    const LIST_IS_SCRATCH: bool = false;
 
     fn needs(&self) -> Needs;
 
@@ -154,6 +184,16 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
     fn schedule(&self) -> Vec<usize> {
         (0..Self::PASSES.len()).collect()
     }
+}
+
+/// The value of `FILTER` in shaders.
+pub(crate) fn filter_constant(filter: TexelFilter) -> Constant {
+    let filter = match filter {
+        TexelFilter::Nearest => 0,
+        TexelFilter::Bilinear => 1,
+        TexelFilter::Jitter => 2,
+    };
+    ("FILTER", f64::from(filter))
 }
 
 /// Words of the map of `M` per texel.
@@ -211,12 +251,7 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
 
     /// The constants of all shaders.
     fn constants(method: &M, projected: bool) -> Vec<Constant> {
-        let filter = match method.filter() {
-            TexelFilter::Nearest => 0,
-            TexelFilter::Bilinear => 1,
-            TexelFilter::Jitter => 2,
-        };
-        let own = [("FILTER", f64::from(filter)), projected_constant(projected)];
+        let own = [filter_constant(method.filter()), projected_constant(projected)];
         own.into_iter().chain(method.constants()).collect()
     }
 
@@ -260,8 +295,23 @@ impl Map {
     }
 }
 
+impl Map {
+    /// Writes the memory of the map and of its builds into the report.
+    fn count_memory(&mut self, scratch: u64, has_list: bool, list_is_scratch: bool) {
+        let list = self.list.as_ref().filter(|_| has_list).map_or(0, List::memory_bytes);
+        let (kept, of_build) = if list_is_scratch { (0, list) } else { (list, 0) };
+        self.report.memory_bytes = self.words.bytes() + kept;
+        self.report.scratch_bytes = scratch + of_build;
+    }
+}
+
 impl TexelUniform {
-    fn new(frame: &TexelFrame, input: &GpuShadowInput, profile: LineProfile, needs: &Needs) -> Self {
+    pub(crate) fn new(
+        frame: &TexelFrame,
+        input: &GpuShadowInput,
+        profile: LineProfile,
+        needs: &Needs,
+    ) -> Self {
         let axes = frame.axes();
         let (prefiltered, line_deviation) = match profile {
             LineProfile::Thin => (0, 0.0),
@@ -287,7 +337,12 @@ impl TexelUniform {
             line_deviation,
             plane: input.projected.map_or(0.0, |projected| projected.plane),
             start: input.projected.map_or(0.0, |projected| projected.start),
-            unused: [0; 2],
+            slope: needs.slope,
+            most: needs.most,
+            tolerance: needs.tolerance,
+            bias: needs.bias,
+            overestimation: needs.overestimation,
+            unused: 0,
             starts: needs.starts,
             per_depth: needs.per_depth,
         }
@@ -312,7 +367,12 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             method.resolution(),
             &input.bounds,
         );
-        let method = method.within(&frame);
+        let scale = MapScale {
+            frame: &frame,
+            extinction_scale: safe_extinction(input.extinction_scale),
+            depth_per_texel: depth_per_texel(input.extinction_scale, input.strand_width, &frame),
+        };
+        let method = method.within(&scale);
         let needs = method.needs();
         let texels = u64::from(frame.resolution).pow(2);
         let (map_words, scratch_words) = (texels * needs.map_words, texels * needs.scratch_words);
@@ -331,9 +391,10 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method, self.projected))?;
 
         self.scratch.fit(gpu, scratch_words);
+        let scratch = self.scratch.bytes();
         let segments = input.strands.segment_count;
         let uniform = TexelUniform::new(&frame, input, method.profile(), &needs);
-        let list_of = input.projected.map_or(slot, |projected| projected.list_of);
+        let list_of = input.shared_list.map_or(slot, |list| list.of);
         let map = self.map(gpu, slot);
         map.list_of = list_of;
         map.words.fit(gpu, map_words);
@@ -351,11 +412,13 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         // A map that continues the list of another one adds its fragments to it.
         if let Some(list) = map.list.as_mut().filter(|_| list_of == slot) {
             let maps = input.maps.max(1);
-            let share = Share { method: M::METHOD, limit_bytes, other_bytes: needed_bytes, maps };
+            let times = u64::from(input.shared_list.map_or(1, |list| list.maps));
+            let [limit_bytes, other_bytes] =
+                [limit_bytes, needed_bytes].map(|bytes| bytes.saturating_mul(times));
+            let share = Share { method: M::METHOD, limit_bytes, other_bytes, maps };
             list.begin(gpu, encoder, share, segments);
-            map.report.memory_bytes += list.memory_bytes();
         }
-        self.maps[slot].report.scratch_bytes = self.scratch.bytes();
+        map.count_memory(scratch, list_of == slot, M::LIST_IS_SCRATCH);
 
         let map = &self.maps[slot];
         encoder.clear_buffer(map.words.raw(), 0, Some((4 * map_words).max(4)));
@@ -408,6 +471,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn settle(&mut self, gpu: &Gpu, heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {
         let mut again = false;
+        let scratch = self.scratch.bytes();
         for (slot, (map, &head)) in self.maps.iter_mut().zip(heads).enumerate() {
             let Some(list) = map.list.as_mut().filter(|_| map.list_of == slot) else { continue };
             match list.settle(gpu, head) {
@@ -416,7 +480,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
                     again |= short;
                     map.report.needed_bytes = needed_bytes;
                     map.report.samples = list.found();
-                    map.report.memory_bytes = map.words.bytes() + list.memory_bytes();
+                    map.count_memory(scratch, true, M::LIST_IS_SCRATCH);
                 }
                 Err(error) => {
                     *map = Map::new(gpu, slot, M::LISTS);
@@ -440,7 +504,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let Some(map) = self.maps.get(slot) else { return Ok(Vec::new()) };
         let mut words = vec![0; map.used as usize];
         read_buffer(gpu, map.words.raw(), &mut words)?;
-        if let Some(list) = &map.list {
+        if let Some(list) = map.list.as_ref().filter(|_| !M::LIST_IS_SCRATCH) {
             words.extend(list.words(gpu)?);
         }
         Ok(words)

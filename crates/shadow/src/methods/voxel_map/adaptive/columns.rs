@@ -5,7 +5,7 @@
 use lovelock_base::settings::Settings;
 
 use super::super::super::texels::{
-    Fragment, LineProfile, TEXEL_RESOLUTIONS, TexelFilter, TexelFrame, TexelMethod,
+    Fragment, LineProfile, MapScale, TEXEL_RESOLUTIONS, TexelFilter, TexelMethod,
 };
 use super::super::CELL;
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
@@ -137,8 +137,8 @@ impl TexelMethod for Columns {
     }
 
     /// As many slices as the memory of the uniform map has room for, but no more than that has.
-    fn within(self, frame: &TexelFrame) -> Self {
-        let words = u64::from(self.edge).pow(3) / u64::from(frame.resolution).pow(2);
+    fn within(self, scale: &MapScale) -> Self {
+        let words = u64::from(self.edge).pow(3) / u64::from(scale.frame.resolution).pow(2);
         let most = (self.edge as usize).max(LEAST_SLICES);
         Self { slices: (words as usize).saturating_sub(HEADER).clamp(LEAST_SLICES, most), ..self }
     }
@@ -206,6 +206,7 @@ impl TexelMethod for Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::methods::texels::TexelFrame;
 
     fn filled(slices: usize, fragments: &[(f32, f32)]) -> (Columns, Vec<u32>) {
         let method = Columns { edge: 32, slices };
@@ -293,7 +294,8 @@ mod tests {
                 [64, 112, 256, method.resolution()].into_iter().filter(|edge| *edge <= method.resolution())
             {
                 let frame = TexelFrame { resolution: edge, ..any_frame() };
-                let words = method.within(&frame).cells() as u64 * u64::from(edge).pow(2);
+                let scale = MapScale { frame: &frame, extinction_scale: 1.0, depth_per_texel: 1.0 };
+                let words = method.within(&scale).cells() as u64 * u64::from(edge).pow(2);
                 assert!(words <= u64::from(resolution).pow(3), "{resolution}: {edge}, {words}");
             }
             assert_eq!(method.words_per_cell(), 1, "{resolution}");

@@ -1,0 +1,190 @@
+//! Recordings that are being made, so that one that a crash interrupts is offered again.
+//!
+//! Each has a file in a folder of the user, which is locked while the recording runs and removed at its end.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use crate::date;
+use lovelock_record::{UnfinishedKind, claim, is_unfinished};
+use serde::{Deserialize, Serialize};
+
+use crate::Project;
+use crate::error::ProjectError;
+use crate::project::{project_in_memory, text_in_memory};
+use crate::state_folder::state_folder;
+
+/// The extension of the files.
+const EXTENSION: &str = "json";
+/// The longest file that is read, bytes.
+const LONGEST: u64 = 80 << 20;
+/// The most recordings that are listed.
+const MOST: usize = 200;
+
+/// What a recording needs to be made again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Job {
+    /// The film, folder or take.
+    pub out: PathBuf,
+    /// When it began, milliseconds since 1970.
+    pub since_ms: u64,
+    /// The project, as text with absolute paths.
+    project: String,
+    /// Whether the panes of the project are recorded beside each other.
+    pub panes: bool,
+    /// The command line, if it was recorded from there.
+    pub command: Option<Vec<String>>,
+}
+
+impl Job {
+    /// The recording of a project to `out`, from now on.
+    pub fn new(out: &Path, project: &Project, panes: bool) -> Self {
+        Self {
+            out: std::path::absolute(out).unwrap_or_else(|_| out.to_owned()),
+            since_ms: date::unix_ms(date::now()),
+            project: text_in_memory(project).unwrap_or_default(),
+            panes,
+            command: None,
+        }
+    }
+
+    /// The project.
+    ///
+    /// # Errors
+    /// If its text cannot be read.
+    pub fn project(&self) -> Result<Project, ProjectError> {
+        project_in_memory(&self.out, &self.project)
+    }
+
+    /// When it began.
+    pub fn since(&self) -> SystemTime {
+        date::of_unix_ms(self.since_ms)
+    }
+}
+
+/// The recordings of the user.
+#[derive(Clone, Debug, Default)]
+pub struct Recordings {
+    folder: Option<PathBuf>,
+}
+
+/// A recording that runs. Dropping it says that it has ended.
+#[derive(Debug)]
+pub struct Running {
+    path: PathBuf,
+    /// Locked as long as it is open.
+    _file: File,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // One that stays is not listed unless the recording has left something.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// A recording that was interrupted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interrupted {
+    /// Its file.
+    path: PathBuf,
+    /// What it needs.
+    pub job: Job,
+    /// Its kind.
+    pub kind: UnfinishedKind,
+}
+
+impl Interrupted {
+    /// Forgets it: it was kept, discarded or is recorded again.
+    pub fn forget(&self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+impl Recordings {
+    /// Those of the user: [`state_folder`]`/recordings`.
+    pub fn of_user() -> Self {
+        Self { folder: state_folder().map(|folder| folder.join("recordings")) }
+    }
+
+    /// Those in `folder`, which need not be there yet.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()) }
+    }
+
+    /// Notes a recording that begins. `None` if it would leave nothing, or if it cannot be noted: then it is not offered again.
+    pub fn begin(&self, job: &Job) -> Option<Running> {
+        UnfinishedKind::of(&job.out)?;
+        let folder = self.folder.as_ref()?;
+        fs::create_dir_all(folder).ok()?;
+        let name = crc32fast::hash(job.out.as_os_str().as_encoded_bytes());
+        let path = folder.join(format!("{}-{name:08x}-{}.{EXTENSION}", job.since_ms, std::process::id()));
+        let mut file = claim(&path).ok()?;
+        let running = Running { path, _file: file.try_clone().ok()? };
+        file.write_all(&serde_json::to_vec(job).ok()?).ok()?;
+        Some(running)
+    }
+
+    /// The recordings that were interrupted and have left something, the newest first. Files of the others are removed.
+    pub fn interrupted(&self) -> Vec<Interrupted> {
+        let entries = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok());
+        let paths = entries.into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+        let mut paths: Vec<PathBuf> =
+            paths.filter(|path| path.extension().is_some_and(|found| found == EXTENSION)).collect();
+        paths.sort();
+        paths.reverse();
+        let mut found: Vec<Interrupted> = Vec::new();
+        for path in paths.into_iter().take(MOST) {
+            // One that runs is locked.
+            let Ok(_lock) = claim(&path) else { continue };
+            let is_short = fs::metadata(&path).is_ok_and(|data| data.len() <= LONGEST);
+            let text = is_short.then(|| fs::read(&path).ok()).flatten();
+            let job: Option<Job> = text.and_then(|text| serde_json::from_slice(&text).ok());
+            let left = job
+                .filter(|job| is_unfinished(&job.out) && found.iter().all(|other| other.job.out != job.out));
+            match left.and_then(|job| Some((UnfinishedKind::of(&job.out)?, job))) {
+                Some((kind, job)) => found.push(Interrupted { path, job, kind }),
+                None => drop(fs::remove_file(&path)),
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_is_offered_if_it_was_interrupted_and_left_something() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let recordings = Recordings::new(folder.path().join("state"));
+        let film = folder.path().join("dance ü.mp4");
+        let mut project = Project::default();
+        project.camera.distance = 3.0;
+        let job = Job::new(&film, &project, true);
+        let running = recordings.begin(&job).expect("noted");
+        fs::write(folder.path().join("dance ü.mp4.partial"), b"x").expect("a file");
+        assert!(recordings.interrupted().is_empty(), "it runs");
+        // As a crash does: the lock goes, the file stays.
+        let copy = fs::read(&running.path).expect("a file");
+        let path = running.path.clone();
+        drop(running);
+        fs::write(&path, &copy).expect("a file");
+        let found = recordings.interrupted();
+        assert_eq!((found.len(), found[0].kind, &found[0].job), (1, UnfinishedKind::Film, &job));
+        assert_eq!(found[0].job.project().expect("a project"), project);
+        found[0].forget();
+        assert!(recordings.interrupted().is_empty());
+        // One that left nothing is not offered, nor is a damaged file.
+        fs::write(&path, &copy).expect("a file");
+        fs::write(path.with_file_name("x.json"), b"{").expect("a file");
+        fs::remove_file(folder.path().join("dance ü.mp4.partial")).expect("removed");
+        assert!(recordings.interrupted().is_empty());
+        assert_eq!(fs::read_dir(folder.path().join("state")).expect("a folder").count(), 0);
+        assert!(recordings.begin(&Job::new(Path::new("a.apng"), &project, false)).is_none());
+    }
+}

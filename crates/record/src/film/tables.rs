@@ -1,0 +1,139 @@
+//! The tables of a film that is being written, in a file beside it: with them, the images of an interrupted recording are a film.
+//!
+//! | bytes | contents |
+//! |---|---|
+//! | 8 | `LLFILMT1` |
+//! | 4 | CRC-32 of what follows, little endian |
+//! | 8 | offset of `mdat` in the film, little endian |
+//! | 8 | end of the images that the tables describe, little endian |
+//! | … | `moov` |
+
+use std::fs;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use lovelock_base::clock::Stopwatch;
+
+use crate::claim::claim;
+use crate::mp4::Tables;
+use crate::partial::{free_name, partial_path};
+use crate::{FilmInfo, RecordError, read_film};
+
+const MAGIC: &[u8; 8] = b"LLFILMT1";
+/// The longest file that is read, bytes: the tables of some days.
+const LONGEST: u64 = 1 << 30;
+/// Tables are written at most that often, seconds. They grow with the film.
+const EVERY_SECS: f64 = 1.0;
+
+/// `NAME.mp4.partial.tables` beside `NAME.mp4`.
+fn tables_path(film: &Path) -> PathBuf {
+    let mut name = film.file_name().unwrap_or_default().to_owned();
+    name.push(".partial.tables");
+    film.with_file_name(name)
+}
+
+/// The tables of a film that is being written. Their file is removed when it is dropped.
+pub(super) struct TablesFile {
+    path: PathBuf,
+    since: Option<Stopwatch>,
+}
+
+impl TablesFile {
+    /// Those of the film at `film`. What an earlier recording left is removed.
+    pub(super) fn new(film: &Path) -> Self {
+        let path = tables_path(film);
+        let _ = fs::remove_file(&path);
+        Self { path, since: None }
+    }
+
+    /// Whether they were not written for a while.
+    pub(super) fn is_due(&self) -> bool {
+        self.since.is_none_or(|since| since.secs() > EVERY_SECS)
+    }
+
+    /// Writes them under another name, then renames them, so that they are whole at every moment.
+    pub(super) fn write(&mut self, tables: &Tables) -> io::Result<()> {
+        self.since = Some(Stopwatch::start());
+        let mut body = tables.mdat_start.to_le_bytes().to_vec();
+        body.extend(tables.end.to_le_bytes());
+        body.extend(&tables.moov);
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(crc32fast::hash(&body).to_le_bytes());
+        bytes.extend(body);
+        let new = self.path.with_extension("tables-new");
+        let written = fs::write(&new, &bytes).and_then(|()| fs::rename(&new, &self.path));
+        if written.is_err() {
+            let _ = fs::remove_file(&new);
+        }
+        written
+    }
+}
+
+impl Drop for TablesFile {
+    fn drop(&mut self) {
+        // The film is complete or removed.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn read(film: &Path) -> Option<Tables> {
+    let path = tables_path(film);
+    let mut bytes = Vec::new();
+    fs::File::open(path).ok()?.take(LONGEST).read_to_end(&mut bytes).ok()?;
+    let (checksum, body) = bytes.strip_prefix(MAGIC)?.split_first_chunk::<4>()?;
+    if crc32fast::hash(body) != u32::from_le_bytes(*checksum) {
+        return None;
+    }
+    let (mdat_start, rest) = body.split_first_chunk::<8>()?;
+    let (end, moov) = rest.split_first_chunk::<8>()?;
+    let (mdat_start, end) = (u64::from_le_bytes(*mdat_start), u64::from_le_bytes(*end));
+    (mdat_start.checked_add(16)? <= end).then(|| Tables { mdat_start, end, moov: moov.to_vec() })
+}
+
+/// Makes a film of what an interrupted recording to `film` left. It gets that name, or `NAME-1.mp4` and so on if there is such a film.
+/// Returns its path and what is in it; `None` if there is not a second of images.
+///
+/// # Errors
+/// If another program writes it, or it cannot be written.
+pub fn keep_unfinished_film(film: &Path) -> Result<Option<(PathBuf, FilmInfo)>, RecordError> {
+    let partial = partial_path(film);
+    let failed = |error| RecordError::io(film, "keep the unfinished film", error);
+    let Some(tables) = read(film).filter(|_| partial.exists()) else { return Ok(None) };
+    let mut file = claim(&partial).map_err(failed)?;
+    if file.metadata().map_err(failed)?.len() < tables.end {
+        return Ok(None);
+    }
+    let mut finish = || {
+        file.set_len(tables.end)?;
+        file.seek(SeekFrom::Start(tables.mdat_start + 8))?;
+        file.write_all(&(tables.end - tables.mdat_start).to_be_bytes())?;
+        file.seek(SeekFrom::End(0))?;
+        file.write_all(&tables.moov)?;
+        file.sync_all()
+    };
+    finish().map_err(failed)?;
+    let info = read_film(&partial)?;
+    let kept = free_name(film);
+    fs::rename(&partial, &kept).map_err(failed)?;
+    let _ = fs::remove_file(tables_path(film));
+    Ok(Some((kept, info)))
+}
+
+/// Whether an interrupted recording to `film` left something.
+pub(crate) fn is_left(film: &Path) -> bool {
+    partial_path(film).exists()
+}
+
+/// Removes what an interrupted recording to `film` left.
+///
+/// # Errors
+/// If another program writes it, or it cannot be removed.
+pub(crate) fn discard(film: &Path) -> io::Result<()> {
+    let partial = partial_path(film);
+    if partial.exists() {
+        let _lock = claim(&partial)?;
+        fs::remove_file(&partial)?;
+    }
+    let _ = fs::remove_file(tables_path(film));
+    Ok(())
+}

@@ -1,0 +1,230 @@
+//! What interrupted recordings leave, and what can be made of it.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::film::tables;
+use crate::partial::free_name;
+use crate::sequence;
+use crate::take::part_path;
+use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeReader};
+
+/// What was recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnfinishedKind {
+    /// A film: it can be kept up to its last second, and recorded again.
+    Film,
+    /// A sequence of images: it can be kept, and continued.
+    Sequence,
+    /// A take: it can be kept.
+    Take,
+}
+
+impl UnfinishedKind {
+    /// The kind of the recording to `out`; `None` if such a recording leaves nothing.
+    pub fn of(out: &Path) -> Option<Self> {
+        if out.extension().is_some_and(|found| found.eq_ignore_ascii_case(TAKE_EXTENSION)) {
+            return Some(Self::Take);
+        }
+        match OutputKind::of(out) {
+            Ok(OutputKind::Film) => Some(Self::Film),
+            Ok(OutputKind::Sequence) => Some(Self::Sequence),
+            Ok(OutputKind::Preview) | Err(_) => None,
+        }
+    }
+
+    /// The name in sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Film => "film",
+            Self::Sequence => "sequence",
+            Self::Take => "take",
+        }
+    }
+}
+
+/// What was kept of an interrupted recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kept {
+    /// The file or the folder.
+    pub path: PathBuf,
+    /// Number of frames.
+    pub frames: u64,
+}
+
+/// Whether an interrupted recording to `out` left something.
+pub fn is_unfinished(out: &Path) -> bool {
+    match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => tables::is_left(out),
+        Some(UnfinishedKind::Sequence) => sequence::is_left(out),
+        Some(UnfinishedKind::Take) => part_path(out).exists(),
+        None => false,
+    }
+}
+
+/// Makes a film, sequence or take of what an interrupted recording to `out` left. A file of that name stays: then the kept one gets a number.
+/// Returns `None` if too little is there.
+///
+/// # Errors
+/// If another program writes it, or it cannot be read or written.
+pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
+    match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => {
+            let kept = tables::keep_unfinished_film(out)?;
+            Ok(kept.map(|(path, info)| Kept { path, frames: info.frames }))
+        }
+        Some(UnfinishedKind::Sequence) => {
+            let frames = sequence::keep_unfinished(out)?;
+            Ok((frames > 0).then(|| Kept { path: out.to_owned(), frames }))
+        }
+        Some(UnfinishedKind::Take) => {
+            let part = part_path(out);
+            // A take that is cut plays like any other.
+            let frames = TakeReader::open(&part).map_or(0, |take| take.frames());
+            if frames == 0 {
+                return Ok(None);
+            }
+            let path = free_name(out);
+            fs::rename(&part, &path)
+                .map_err(|error| RecordError::io(out, "keep the unfinished take", error))?;
+            Ok(Some(Kept { path, frames }))
+        }
+        None => Ok(None),
+    }
+}
+
+/// Removes what an interrupted recording to `out` left. Complete images of a sequence stay.
+///
+/// # Errors
+/// If another program writes it, or it cannot be removed.
+pub fn discard_unfinished(out: &Path) -> io::Result<()> {
+    match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => tables::discard(out),
+        Some(UnfinishedKind::Sequence) => sequence::discard_unfinished(out),
+        Some(UnfinishedKind::Take) => fs::remove_file(part_path(out)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        FilmQuality, FilmReader, FilmSettings, FilmWriter, SequenceFormat, SequenceSettings, SequenceWriter,
+        read_manifest,
+    };
+
+    const SIDE: u32 = 32;
+
+    fn picture(frame: u32) -> Vec<u8> {
+        (0..SIDE * SIDE).flat_map(|k| [(k % SIDE * 4) as u8, (frame * 9) as u8, 60, 255]).collect()
+    }
+
+    /// What a crash would leave of a folder: copies, which nobody has locked.
+    fn left_of(folder: &Path) -> tempfile::TempDir {
+        let left = tempfile::tempdir().unwrap();
+        for entry in fs::read_dir(folder).unwrap() {
+            let entry = entry.unwrap();
+            fs::copy(entry.path(), left.path().join(entry.file_name())).unwrap();
+        }
+        left
+    }
+
+    fn wait_for(is_so: impl Fn() -> bool) {
+        let since = lovelock_base::clock::Stopwatch::start();
+        while !is_so() {
+            assert!(since.secs() < 60.0, "it did not happen");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+    }
+
+    fn decoded(film: &Path) -> Vec<Vec<u8>> {
+        let mut reader = FilmReader::open(film).unwrap();
+        let mut frames = Vec::new();
+        let mut frame = Vec::new();
+        while reader.next_frame(&mut frame).unwrap() {
+            frames.push(frame.clone());
+        }
+        frames
+    }
+
+    #[test]
+    fn the_images_of_an_interrupted_film_are_a_film() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("dance ü.mp4");
+        let settings = FilmSettings { width: SIDE, height: SIDE, fps: 30.0, quality: FilmQuality::High };
+        let mut writer = FilmWriter::create(&film, settings).unwrap();
+        assert!(is_unfinished(&film));
+        (0..20).for_each(|frame| writer.push(&picture(frame)).unwrap());
+        wait_for(|| folder.path().join("dance ü.mp4.partial.tables").exists());
+        assert!(keep_unfinished(&film).is_err(), "it is still being written");
+        let left = left_of(folder.path());
+        (20..40).for_each(|frame| writer.push(&picture(frame)).unwrap());
+        writer.finish().unwrap();
+        assert!(!is_unfinished(&film));
+        assert_eq!(
+            fs::read_dir(folder.path()).unwrap().count(),
+            1,
+            "a film that is finished leaves nothing beside it"
+        );
+        let whole = decoded(&film);
+
+        let name = left.path().join("dance ü.mp4");
+        fs::write(&name, b"an older film").unwrap();
+        let kept = keep_unfinished(&name).unwrap().expect("a film");
+        assert_eq!((kept.frames, kept.path.as_path()), (16, left.path().join("dance ü-1.mp4").as_path()));
+        assert_eq!(decoded(&kept.path), whole[..16]);
+        assert!(!is_unfinished(&name) && fs::read(&name).unwrap() == b"an older film");
+        assert_eq!(fs::read_dir(left.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_film_without_tables_or_with_damaged_ones_is_not_kept_and_can_be_discarded() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("dance.mp4");
+        let partial = folder.path().join("dance.mp4.partial");
+        let tables = folder.path().join("dance.mp4.partial.tables");
+        fs::write(&partial, [7; 500]).unwrap();
+        for bytes in [None, Some(&b""[..]), Some(&b"LLFILMT1"[..]), Some(&[0xff; 300][..])] {
+            if let Some(bytes) = bytes {
+                fs::write(&tables, bytes).unwrap();
+            }
+            assert_eq!(keep_unfinished(&film).unwrap(), None);
+            assert!(partial.exists(), "nothing is lost by trying");
+        }
+        discard_unfinished(&film).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn the_images_of_an_interrupted_sequence_are_listed_or_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = folder.path().join("frames");
+        let settings = SequenceSettings {
+            width: SIDE,
+            height: SIDE,
+            fps: 30.0,
+            first_frame: 0,
+            format: SequenceFormat::Png,
+            alpha: true,
+            resume: true,
+            settings: serde_json::json!({}),
+        };
+        let mut writer = SequenceWriter::create(&frames, settings).unwrap();
+        (0..6).for_each(|frame| writer.push(&picture(frame)).unwrap());
+        let lines = || fs::read_to_string(frames.join("manifest.partial")).unwrap().lines().count();
+        wait_for(|| lines() == 7);
+        let (kept, discarded) = (left_of(&frames), left_of(&frames));
+        drop(writer);
+        assert!(is_unfinished(kept.path()));
+        assert_eq!(keep_unfinished(kept.path()).unwrap().expect("images").frames, 6);
+        let manifest = read_manifest(kept.path()).unwrap();
+        assert!(!manifest.complete && manifest.frames.len() == 6 && !is_unfinished(kept.path()));
+        discard_unfinished(discarded.path()).unwrap();
+        assert!(!discarded.path().exists());
+        // Control: a finished folder is left alone.
+        discard_unfinished(kept.path()).unwrap();
+        assert_eq!(fs::read_dir(kept.path()).unwrap().count(), 7);
+    }
+}

@@ -1,0 +1,43 @@
+//! How a renderer works: what it keeps and leaves out, and what ends it.
+
+use lovelock_base::simd::Width;
+
+use super::CpuRenderer;
+use crate::cpu::interrupt::Interrupt;
+use crate::cpu::placed::PlacedScene;
+
+impl CpuRenderer {
+    /// A renderer whose loops are compiled for `width`, which the CPU must support: for tests of equality.
+    ///
+    /// # Panics
+    /// If the CPU does not support such vectors.
+    pub fn with_width(width: Width) -> Self {
+        assert!(width.is_available(), "{width:?} on a processor without");
+        Self { placed: PlacedScene::new(width), ..Self::default() }
+    }
+
+    /// A renderer that computes everything anew for each picture, also what has not changed since the one before.
+    #[must_use]
+    pub fn keeping_nothing(self) -> Self {
+        Self { keeps: false, ..self }
+    }
+
+    /// A renderer that computes light at every strand point and the body's shadow at every pixel, also where they vary evenly: what others
+    /// are compared with.
+    #[must_use]
+    pub fn without_shortcuts(mut self) -> Self {
+        self.placed.is_exact = true;
+        self
+    }
+
+    /// Whether results are kept for the next picture while nothing moves, which is so at first. Times of repeated pictures only mean
+    /// something without.
+    pub fn set_keeping(&mut self, keeps: bool) {
+        self.keeps = keeps;
+    }
+
+    /// Sets what ends the following pictures early, with [`RenderError::Interrupted`](crate::RenderError::Interrupted); `None` at first.
+    pub fn set_interrupt(&mut self, interrupt: Option<Interrupt>) {
+        self.interrupt = interrupt;
+    }
+}

@@ -1,0 +1,297 @@
+//! What advances the guides of an engine: the CPU, or a graphics device.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+
+use lovelock_render::{Backend, Gpu, GpuError};
+use lovelock_simulation::{Simulation, SimulationSettings, StepInput, StepReport};
+use lovelock_simulation_gpu::{GuideDevice, GuideKernels, MIN_GUIDES};
+
+/// Advances guides on the CPU or on a graphics device, which it opens when it first needs it.
+#[derive(Debug, Default)]
+pub(super) struct Stepper {
+    choice: Option<Backend>,
+    /// Kept for other hair, so that the device is opened once.
+    kernels: Option<Arc<GuideKernels>>,
+    device: Option<GuideDevice>,
+    /// Whether the last step was that of the device.
+    on_device: bool,
+    /// Why the CPU goes on although a device was chosen.
+    failure: Option<Failure>,
+    note: Option<Arc<str>>,
+}
+
+/// How long the CPU goes on in place of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Failure {
+    /// Until the choice changes: there is no device, it was lost, or its driver failed.
+    Device,
+    /// While the hair has this many guides and points per guide, for which the device has no room.
+    Size([usize; 2]),
+}
+
+impl Stepper {
+    /// Sets the choice. Another one is tried even if the last device failed.
+    pub(super) fn choose(&mut self, choice: Backend) {
+        if self.choice != Some(choice) {
+            if self.choice.is_some() {
+                shared().has_no_card = false;
+            }
+            *self = Self { choice: Some(choice), ..Self::default() };
+        }
+    }
+
+    /// One with the same choice, for a copy of the simulation.
+    pub(super) fn copy(&self) -> Self {
+        Self {
+            choice: self.choice,
+            kernels: self.kernels.clone(),
+            device: None,
+            on_device: self.on_device,
+            failure: self.failure,
+            note: self.note.clone(),
+        }
+    }
+
+    /// Takes that of a copy whose simulation goes on here, unless the choice has changed meanwhile.
+    pub(super) fn take_settled(&mut self, aside: Self) {
+        if aside.choice == self.choice {
+            *self = aside;
+        }
+    }
+
+    /// Whether the last step was that of a graphics device, and why not if one was chosen.
+    pub(super) fn state(&self) -> (bool, Option<&Arc<str>>) {
+        (self.on_device, self.note.as_ref())
+    }
+
+    /// One step of `simulation`.
+    pub(super) fn step(
+        &mut self,
+        simulation: &mut Simulation,
+        input: &StepInput,
+        settings: &SimulationSettings,
+        secs: f32,
+    ) -> StepReport {
+        let guides = &simulation.style().guides;
+        let size = [guides.count(), guides.points_per_guide];
+        if matches!(self.failure, Some(Failure::Size(refused)) if refused != size) {
+            (self.failure, self.note) = (None, None);
+        }
+        let wanted = match self.choice.unwrap_or(Backend::Cpu) {
+            Backend::Cpu => false,
+            Backend::Gpu => true,
+            Backend::Auto => size[0] >= MIN_GUIDES,
+        };
+        self.on_device = false;
+        if !wanted || self.failure.is_some() {
+            self.device = None;
+            return simulation.step(input, settings, secs);
+        }
+        if self.device.is_none() {
+            self.device = self.open();
+        }
+        let Some(device) = &mut self.device else { return simulation.step(input, settings, secs) };
+        let (report, refusal) = simulation.step_on(device, input, settings, secs);
+        self.on_device = refusal.is_none();
+        if let Some(reason) = refusal {
+            let failure = if device.has_room() { Failure::Device } else { Failure::Size(size) };
+            self.fail(failure, &reason);
+        }
+        report
+    }
+
+    /// A device without guides. On failure, the CPU goes on.
+    fn open(&mut self) -> Option<GuideDevice> {
+        self.kernels.take_if(|kernels| kernels.gpu().is_lost());
+        if self.kernels.is_none() {
+            match kernels(self.choice == Some(Backend::Auto)) {
+                Ok(Some(kernels)) => self.kernels = Some(kernels),
+                // Automatic chooses the CPU then, which is no failure to tell.
+                Ok(None) => self.failure = Some(Failure::Device),
+                Err(reason) => self.fail(Failure::Device, &reason),
+            }
+        }
+        self.kernels.as_ref().map(|kernels| GuideDevice::new(Arc::clone(kernels)))
+    }
+
+    fn fail(&mut self, failure: Failure, reason: &str) {
+        let note = format!("{reason}; the CPU simulates the hair");
+        tracing::warn!("{note}");
+        if failure == Failure::Device {
+            self.kernels = None;
+        }
+        (self.device, self.failure, self.note) = (None, Some(failure), Some(note.into()));
+    }
+}
+
+/// What all engines of the program share.
+struct Shared {
+    /// The kernels, while one of the engines uses them.
+    kernels: Weak<GuideKernels>,
+    /// Whether there was no real graphics card when one was wanted last. Forgotten when a choice changes.
+    has_no_card: bool,
+}
+
+fn shared() -> MutexGuard<'static, Shared> {
+    static SHARED: Mutex<Shared> = Mutex::new(Shared { kernels: Weak::new(), has_no_card: false });
+    SHARED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The shared kernels; `None` if a real graphics card is wanted (`real`) and there is none.
+fn kernels(real: bool) -> Result<Option<Arc<GuideKernels>>, String> {
+    let mut shared = shared();
+    if real && shared.has_no_card {
+        return Ok(None);
+    }
+    let known = shared.kernels.upgrade().filter(|kernels| !kernels.gpu().is_lost());
+    let opened = match &known {
+        Some(kernels) => Ok(Arc::clone(kernels.gpu())),
+        None => Gpu::open(),
+    };
+    let gpu = match opened {
+        Ok(gpu) => Some(gpu).filter(|gpu| !(real && gpu.is_software())),
+        Err(GpuError::NoAdapter(_)) if real => None,
+        Err(error) => return Err(error.to_string()),
+    };
+    let Some(gpu) = gpu else {
+        shared.has_no_card = true;
+        return Ok(None);
+    };
+    let kernels = match known {
+        Some(kernels) => kernels,
+        None => Arc::new(GuideKernels::new(&gpu).map_err(|error| error.to_string())?),
+    };
+    shared.kernels = Arc::downgrade(&kernels);
+    Ok(Some(kernels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{farthest, load, scene, settled, small_project};
+
+    /// Whether there is an adapter; says so if not.
+    fn has_adapter() -> bool {
+        Gpu::open().inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).is_ok()
+    }
+
+    #[test]
+    fn the_host_may_change_during_playback() {
+        if !has_adapter() {
+            return;
+        }
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Cpu;
+        let mut cpu = settled(scene(), &project);
+        let mut mixed = cpu.copy();
+        for step in 0..12 {
+            project.picture.simulate = if step / 4 % 2 == 0 { Backend::Gpu } else { Backend::Cpu };
+            mixed.follow(&project);
+            mixed.step();
+            cpu.step();
+            assert_eq!(mixed.simulated_on_device(), (step / 4 % 2 == 0, None), "step {step}");
+        }
+        let apart = farthest(&cpu.snapshot(), &mixed.snapshot());
+        println!("{apart} m apart");
+        assert!(apart < 1e-4, "{apart} m");
+        // A copy, as a pre-roll is, simulates where the original does.
+        project.picture.simulate = Backend::Gpu;
+        mixed.follow(&project);
+        mixed.step();
+        let mut copy = mixed.copy();
+        copy.step();
+        mixed.step();
+        assert_eq!(copy.state_hash(), mixed.state_hash());
+        assert_ne!(cpu.state_hash(), mixed.state_hash(), "control: other steps");
+    }
+
+    #[test]
+    fn automatic_takes_the_cpu_for_little_hair() {
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Auto;
+        let mut engine = settled(scene(), &project);
+        engine.step();
+        assert_eq!(engine.simulated_on_device(), (false, None));
+        assert!(engine.scene().style.guides.count() < MIN_GUIDES);
+    }
+
+    #[test]
+    fn a_lost_device_leaves_a_sentence_and_the_motion_goes_on() {
+        let Some(gpu) = Gpu::open().inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).ok()
+        else {
+            return;
+        };
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Gpu;
+        let mut engine = settled(scene(), &project);
+        let kernels = Arc::new(GuideKernels::new(&gpu).expect("the kernels compile"));
+        engine.stepper.device = Some(GuideDevice::new(kernels));
+        engine.step();
+        assert_eq!(engine.simulated_on_device(), (true, None));
+        let before = engine.snapshot();
+        gpu.device.destroy();
+        engine.step();
+        let (on_device, note) = engine.simulated_on_device();
+        let note = note.expect("a sentence").to_string();
+        assert!(!on_device && note.contains("lost") && note.contains("the CPU simulates"), "{note}");
+        let after = engine.snapshot();
+        assert_eq!(after.device_refusal.as_deref(), Some(&*note));
+        let moved = farthest(&before, &after);
+        assert!(moved > 0.0 && moved < 0.1, "{moved} m in a step");
+        // Another choice, and back, tries again.
+        for choice in [Backend::Cpu, Backend::Gpu] {
+            project.picture.simulate = choice;
+            engine.follow(&project);
+            engine.step();
+        }
+        assert_eq!(engine.simulated_on_device(), (true, None));
+    }
+
+    #[test]
+    fn settled_hair_goes_on_where_it_was_settled() {
+        if !has_adapter() {
+            return;
+        }
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Gpu;
+        let mut engine = settled(scene(), &project);
+        assert!(engine.simulated_on_device().0 && engine.snapshot().on_device);
+        // Another choice during a pre-roll applies to the settled hair.
+        let mut preroll = engine.preroll();
+        project.picture.simulate = Backend::Cpu;
+        engine.follow(&project);
+        while !preroll.advance() {}
+        assert!(engine.take_settled(preroll), "it leads to this instant");
+        engine.step();
+        assert_eq!(engine.simulated_on_device(), (false, None));
+    }
+
+    #[test]
+    fn only_a_refusal_because_of_size_is_forgotten_for_hair_of_another_size() {
+        if !has_adapter() {
+            return;
+        }
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.1;
+        project.picture.simulate = Backend::Gpu;
+        let settled = settled(scene(), &project);
+        let guides = &settled.scene().style.guides;
+        let size = [guides.count(), guides.points_per_guide];
+        project.hair.groom.wisps = 12;
+        let fewer = load(&project).0;
+        for (failure, is_forgotten) in [(Failure::Size(size), true), (Failure::Device, false)] {
+            let mut engine = settled.copy();
+            engine.stepper.fail(failure, "for this test");
+            for (scene, on_device) in [(scene(), false), (Arc::clone(&fewer), is_forgotten)] {
+                engine.set_scene(scene);
+                engine.step();
+                let (found, note) = engine.simulated_on_device();
+                assert_eq!((found, note.is_none()), (on_device, on_device), "{failure:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Which method to take for which budget, in words.
+
+use std::fmt::Write as _;
+
+use super::names::Names;
+use super::words::{bytes, escaped, fixed};
+use crate::report::{BudgetReport, CompareReport, MethodReport};
+
+/// The sentences; empty if fewer than two methods have all numbers.
+pub(super) fn section(report: &CompareReport, names: &Names) -> String {
+    let choices: Vec<_> = report.budgets.iter().filter(|budget| budget.next.is_some()).collect();
+    let mut out = String::new();
+    if !choices.is_empty() {
+        out += "<h3>Which method for which budget</h3><ul class=\"notes\">";
+        for budget in choices {
+            let _ = write!(out, "<li>{}</li>", sentence(budget, report, names));
+        }
+        out += "</ul>";
+    }
+    if !report.beaten.is_empty() {
+        out += "<p>On this hair nobody needs: ";
+        let of = |(method, better): &(String, String)| {
+            format!(
+                "<b>{}</b> ({} is as accurate or more, as fast or faster, and no larger{})",
+                named(method, report, names),
+                named(better, report, names),
+                times_the_error(method, better, report)
+            )
+        };
+        let all: Vec<_> = report.beaten.iter().map(of).collect();
+        let _ = write!(out, "{}.</p>", all.join(", "));
+    }
+    if !out.is_empty() {
+        out += "<p class=\"note\">Computed from the tables. <i>Clear</i>: the error differs from that of the runner-up by more than twice the \
+                last change of the reference, and 9 of 10 measured times are within the budget.</p>";
+    }
+    out
+}
+
+fn sentence(budget: &BudgetReport, report: &CompareReport, names: &Names) -> String {
+    let limits: Vec<String> =
+        [budget.ms.map(|ms| format!("{ms} ms")), budget.memory_bytes.map(|memory| bytes(Some(memory)))]
+            .into_iter()
+            .flatten()
+            .collect();
+    let limits = if limits.is_empty() {
+        "Whatever it costs".to_owned()
+    } else {
+        format!("Up to {}", limits.join(" and "))
+    };
+    let before = |next| format!(", before {} ({})", named(next, report, names), fixed(budget.next_rmse, 4));
+    let next = budget.next.as_deref().map(before).unwrap_or_default();
+    format!(
+        "{limits}: <b>{}</b>, RMSE {}{next}. {}",
+        named(&budget.method, report, names),
+        fixed(Some(budget.rmse), 4),
+        if budget.certain { "Clear." } else { "Not clear." }
+    )
+}
+
+/// How many times as large the error of a method is as that of a better one, as the end of a sentence; empty below twice.
+fn times_the_error(method: &str, better: &str, report: &CompareReport) -> String {
+    let error = |name: &str| {
+        report.methods.iter().find(|method| method.name == name).and_then(MethodReport::front_error)
+    };
+    let factor = error(method).zip(error(better)).map_or(1.0, |(error, least)| error / least.max(1e-9));
+    if factor >= 2.0 { format!(", at 1/{factor:.1} of the error") } else { String::new() }
+}
+
+/// The name on the page of a method.
+fn named(name: &str, report: &CompareReport, names: &Names) -> String {
+    let method = report.methods.iter().find(|method| method.name == name);
+    escaped(&method.map_or_else(|| name.to_owned(), |method| names.full(method)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::TransmittanceError;
+
+    #[test]
+    fn twice_the_error_is_said() {
+        let method = |name: &str, rmse| MethodReport {
+            name: name.to_owned(),
+            transmittance_common: Some(TransmittanceError { rmse, ..TransmittanceError::default() }),
+            ..MethodReport::default()
+        };
+        let report = CompareReport {
+            methods: vec![method("a", 0.05), method("b", 0.02), method("c", 0.03)],
+            ..CompareReport::default()
+        };
+        assert_eq!(times_the_error("a", "b", &report), ", at 1/2.5 of the error");
+        assert_eq!(times_the_error("c", "b", &report), "");
+        assert_eq!(times_the_error("missing", "b", &report), "");
+    }
+}
