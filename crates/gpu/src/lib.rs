@@ -19,5 +19,5 @@ pub use layout::layout_in_shader;
 pub use readback::{Readback, read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
 pub use traffic::Traffic;
-pub use translate::to_hlsl;
+pub use translate::check_translations;
 pub use wgpu;

@@ -99,15 +99,15 @@ impl GuideKernels {
 
 #[cfg(test)]
 mod tests {
-    use lovelock_gpu::{check_shader, to_hlsl};
+    use lovelock_gpu::{check_shader, check_translations};
 
     use super::*;
 
     #[test]
-    fn every_shader_is_valid_and_has_a_translation_for_direct3d() {
+    fn every_shader_is_valid_and_has_translations_for_direct3d_and_metal() {
         for (name, source) in shaders() {
             check_shader(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
-            to_hlsl(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
+            check_translations(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
     }
 

@@ -162,7 +162,7 @@ fn run(wanted: Chore) -> anyhow::Result<()> {
             first.and_then(|()| if browser { chore("browser", []) } else { Ok(()) })
         }
         Chore::Test { filter, package, long, .. } => {
-            testing::run(&Suite { filter: filter.as_deref(), package: package.as_deref(), long })
+            testing::run(&Suite { filter: filter.as_deref(), package: package.as_deref(), long, names: &[] })
         }
         Chore::Fuzz { secs, seed, reader } => {
             fuzz::run(&fuzz::Wanted { secs, seed, reader: reader.as_deref() })

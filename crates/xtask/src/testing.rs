@@ -17,6 +17,8 @@ const LONG_ONLY: &str = "long_suite";
 pub(crate) struct Suite<'a> {
     /// Only tests whose name contains this.
     pub(crate) filter: Option<&'a str>,
+    /// Only tests with these names; all if there are none.
+    pub(crate) names: &'a [String],
     /// Only the tests of this package.
     pub(crate) package: Option<&'a str>,
     /// Dances of minutes in place of seconds, and the tests whose name contains [`LONG_ONLY`].
@@ -72,7 +74,7 @@ fn scope<'a>(suite: &Suite<'a>) -> Vec<&'a str> {
 
 /// Runs the tests and the examples in the documentation.
 pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
-    let Suite { filter, package, long } = *suite;
+    let Suite { filter, names, package, long } = *suite;
     let scope = scope(suite);
     let suite = if long { "long" } else { "short" };
     let (mut totals, mut times) = (Totals::default(), Times::default());
@@ -101,12 +103,15 @@ pub(crate) fn tests(suite: &Suite) -> anyhow::Result<Ran> {
         if !long {
             tests.args(["--skip", LONG_ONLY]);
         }
+        if !names.is_empty() {
+            tests.arg("--exact").args(names);
+        }
         watch(&mut tests, Stream::Out, &mut see)
     });
     good &= ran?;
     let cpu = cpu_before.zip(cpu_secs_of_children()).map(|(before, after)| after - before);
     // Without a library there are no examples in the documentation, and cargo objects.
-    if package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
+    if names.is_empty() && package.is_none_or(|package| !["lovelock", "lovelock-chores"].contains(&package)) {
         let mut examples = cargo(&["test", "--release", "--doc", "--no-fail-fast"]);
         good &= watch(examples.args(&scope).args(filter), Stream::Out, &mut see)?;
     }

@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_report_says_what_simulated() {
+    fn the_report_says_what_simulated_long_suite() {
         if let Err(error) = Gpu::open() {
             return lovelock_testkit::skip_without_adapter(&error);
         }

@@ -107,7 +107,8 @@ fn keeps(mut scene: Scene) {
         assert_eq!(is_kept, strands, "{name}: the time of interpolated strands");
         let is_map_kept = stats.kept.iter().any(|pass| pass.name == "shadow/build");
         // One of two lights changes, and the map of the other is kept.
-        let of_one = ["samples of a light", "a larger light", "a light turns", "a narrower cone"].contains(&name);
+        let of_one =
+            ["samples of a light", "a larger light", "a light turns", "a narrower cone"].contains(&name);
         assert_eq!(is_map_kept, maps || of_one, "{name}");
         assert!(whole.interpolate_ms >= stats.interpolate_ms, "{name}");
         before = kept;

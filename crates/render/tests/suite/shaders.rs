@@ -12,9 +12,9 @@ fn every_shader_is_valid() {
 }
 
 #[test]
-fn every_shader_has_a_translation_for_direct3d() {
+fn every_shader_has_translations_for_direct3d_and_metal() {
     for (label, source) in all_shaders() {
-        if let Err(error) = lovelock_gpu::to_hlsl(&source) {
+        if let Err(error) = lovelock_gpu::check_translations(&source) {
             panic!("{label}: {error}");
         }
     }

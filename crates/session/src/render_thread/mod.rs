@@ -13,8 +13,8 @@ use std::time::Duration;
 use lovelock_project::Project;
 use lovelock_project::project::backend_label;
 use lovelock_render::{
-    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, HairDrawing, Image, Interrupt, Picture,
-    PictureSettings, RenderError, Renderer, Transparency,
+    Backend, Camera, DeviceImages, FrameInput, FrameStats, Gpu, GpuError, HairDrawing, Image, Interrupt,
+    Picture, PictureSettings, RenderError, Renderer, Transparency,
 };
 
 use crate::latest::{Job, Latest, LatestJob};

@@ -35,9 +35,9 @@ fn every_composed_shader_is_valid_and_keeps_within_the_limits_of_webgpu() {
 }
 
 #[test]
-fn every_shader_has_a_translation_for_direct3d() {
+fn every_shader_has_translations_for_direct3d_and_metal() {
     for (label, source) in all_shaders() {
-        if let Err(error) = lovelock_gpu::to_hlsl(&source) {
+        if let Err(error) = lovelock_gpu::check_translations(&source) {
             panic!("{label}: {error}");
         }
     }

@@ -44,7 +44,11 @@ simd_versions! {
 
 /// Ambient light that reaches the skin through the hair around it, looked up a little above the skin.
 #[inline(always)]
-pub(super) fn light_inside(view: &View, position: &[[f32; LANES]; 3], normal: &[[f32; LANES]; 3]) -> [f32; LANES] {
+pub(super) fn light_inside(
+    view: &View,
+    position: &[[f32; LANES]; 3],
+    normal: &[[f32; LANES]; 3],
+) -> [f32; LANES] {
     let mut inside = [0.0; LANES];
     for lane in 0..LANES {
         let at = three(|axis| position[axis][lane] + ABOVE_SKIN * normal[axis][lane]);
