@@ -23,6 +23,7 @@ mod values;
 use std::process::ExitCode;
 
 use clap::Parser;
+use lovelock_glyphs::Script;
 use lovelock_project::error::ProjectError;
 
 use args::{Arguments, Task};
@@ -76,10 +77,11 @@ pub(crate) fn run() -> ExitCode {
     if let Some(note) = lovelock_satf::cache::note().filter(|_| !opens_window) {
         eprintln!("lovelock: {note}");
     }
-    if !opens_window && let Some(fonts) = lovelock_glyphs::Fonts::listed() {
-        for script in fonts.take_missing() {
-            eprintln!("lovelock: {}", script.missing_in_images());
-        }
+    if !opens_window
+        && let Some(fonts) = lovelock_glyphs::Fonts::listed()
+        && let Some(note) = Script::missing_in_images(&fonts.take_missing())
+    {
+        eprintln!("lovelock: {note}");
     }
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -89,7 +89,13 @@ pub(super) fn methods(text: &str) -> Result<Methods, String> {
 
 /// A folder with a shadow method of the user's own, which is read.
 pub(super) fn user_method(folder: &str) -> Result<UserMethod, String> {
-    UserMethod::load(Path::new(folder))
+    UserMethod::load(Path::new(folder)).map_err(|error| {
+        if ShadowMethod::ALL.iter().any(|method| method.to_string() == folder) {
+            format!("{error}. `{folder}` is built in: `record --shadow` and `compare --methods` choose it")
+        } else {
+            error
+        }
+    })
 }
 
 pub(super) fn backends(text: &str) -> Result<Backends, String> {
@@ -168,5 +174,12 @@ mod tests {
         for wrong in ["1280", "0x5", "x", "-1x2", "9999999999x1", "1.5x2"] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn the_name_of_a_method_that_is_built_in_is_no_folder() {
+        let of = |folder| user_method(folder).expect_err("no folder");
+        assert!(of("moments").contains("`record --shadow`"), "{}", of("moments"));
+        assert!(!of("no-method").contains("--shadow"), "control: {}", of("no-method"));
     }
 }

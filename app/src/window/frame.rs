@@ -65,7 +65,7 @@ impl Window {
             self.panels.picture.record.is_noted = true;
             self.warn(note.as_ref().map(ToString::to_string));
         }
-        self.warn(super::glyphs::missing().into_iter().map(Script::missing));
+        self.warn(Script::missing(&super::glyphs::missing()));
         if let Some(end) = self.media.recorder.update() {
             match end {
                 State::Done { what, out } => {

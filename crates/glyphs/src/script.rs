@@ -1,5 +1,7 @@
 //! Scripts: which characters belong to them, which fonts are preferred for them, and which package has one.
 
+use std::collections::BTreeSet;
+
 /// A group of characters that needs its own fonts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Script {
@@ -74,31 +76,40 @@ impl Script {
         }
     }
 
-    /// A sentence for the user that no font has characters of the script, so that boxes stand in their place.
-    pub fn missing(self) -> String {
-        format!(
-            "No font of this system has {}: boxes stand in their place. Install one and start Lovelock again, on Debian and Ubuntu with \
-             `apt install {}`.",
-            self.characters(),
-            self.package()
-        )
+    /// A sentence for the user that no font has characters of these scripts, so that boxes stand in their place; `None` for no scripts.
+    pub fn missing(scripts: &[Self]) -> Option<String> {
+        let (characters, packages) = Self::listed(scripts)?;
+        Some(format!(
+            "No font of this system has {characters}: boxes stand in their place. Install one and start Lovelock again, on Debian and Ubuntu \
+             with `apt install {packages}`."
+        ))
     }
 
     /// The same where question marks stand in their place.
-    pub fn missing_in_images(self) -> String {
-        format!(
-            "labels have question marks in place of {}, which no font of this system has; install one, on Debian and Ubuntu with \
-             `apt install {}`",
-            self.characters(),
-            self.package()
-        )
+    pub fn missing_in_images(scripts: &[Self]) -> Option<String> {
+        let (characters, packages) = Self::listed(scripts)?;
+        Some(format!(
+            "labels have question marks in place of {characters}, which no font of this system has; install one, on Debian and Ubuntu with \
+             `apt install {packages}`"
+        ))
     }
 
-    fn characters(self) -> String {
-        match self {
-            Self::Emoji => "emoji".to_owned(),
-            _ => format!("{} characters", self.name()),
+    /// What scripts have, as in "Chinese, Thai or other characters, or emoji", and the packages with fonts.
+    fn listed(scripts: &[Self]) -> Option<(String, String)> {
+        let name =
+            |script: &Self| if *script == Self::Other && scripts.len() > 1 { "other" } else { script.name() };
+        let names: Vec<_> = scripts.iter().filter(|script| **script != Self::Emoji).map(name).collect();
+        let mut characters = match &names[..] {
+            [] => String::new(),
+            [name] => format!("{name} characters"),
+            [first @ .., last] => format!("{} or {last} characters", first.join(", ")),
+        };
+        if scripts.contains(&Self::Emoji) {
+            characters.push_str(if characters.is_empty() { "emoji" } else { ", or emoji" });
         }
+        let packages: BTreeSet<_> = scripts.iter().map(|script| script.package()).collect();
+        let packages: Vec<_> = packages.into_iter().collect();
+        (!scripts.is_empty()).then(|| (characters, packages.join(" ")))
     }
 
     /// Families preferred for the script, the best first, by how their names start. `language` is that of the user, such as `ja_JP`.
@@ -165,6 +176,20 @@ mod tests {
         assert_eq!(Script::Chinese.families("zh_TW")[0], "Noto Sans CJK TC");
         assert_eq!(Script::Chinese.families("C")[0], "Noto Sans CJK JP");
         assert_eq!(Script::Korean.families("ja_JP")[0], "Noto Sans CJK KR");
-        assert!(Script::Thai.missing().contains("fonts-noto-core"));
+    }
+
+    #[test]
+    fn one_sentence_names_all_scripts_and_each_package_once() {
+        let said = |scripts: &[Script]| Script::missing(scripts).expect("a sentence");
+        let some = said(&[Script::Chinese, Script::Korean, Script::Thai, Script::Emoji, Script::Other]);
+        assert!(some.contains(" has Chinese, Korean, Thai or other characters, or emoji: "), "{some}");
+        assert!(
+            some.contains("`apt install fonts-noto-cjk fonts-noto-color-emoji fonts-noto-core`"),
+            "{some}"
+        );
+        assert!(said(&[Script::Thai]).contains(" has Thai characters: "));
+        assert!(said(&[Script::Emoji]).contains(" has emoji: "));
+        assert!(said(&[Script::Other]).contains(" has some characters: "));
+        assert_eq!((Script::missing(&[]), Script::missing_in_images(&[])), (None, None));
     }
 }

@@ -122,10 +122,12 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
 fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
     let Some((mut harness, at)) = brushing() else { return };
     let before = project(&harness);
-    let corner =
-        control(&harness, egui::accesskit::Role::Image, "Viewport").rect().right_bottom() - vec2(60.0, 60.0);
-    drag_over(&mut harness, corner, corner - vec2(20.0, 0.0));
-    assert!(project(&harness).camera != before.camera && edits(&harness).is_none());
+    // Notices lie on the right.
+    let viewport = control(&harness, egui::accesskit::Role::Image, "Viewport").rect();
+    let beside = viewport.left_center() + vec2(60.0, 0.0);
+    drag_over(&mut harness, beside, beside + vec2(20.0, 0.0));
+    assert_ne!(project(&harness).camera, before.camera);
+    assert!(edits(&harness).is_none());
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
     wait(&mut harness, "the image of before", |window| {

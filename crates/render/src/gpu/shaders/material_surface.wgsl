@@ -156,29 +156,22 @@ fn threshold(pixel: vec2u, k: u32) -> f32 {
     return (f32((layer << 4u) | place) + 0.5) / 64.0;
 }
 
-struct HoledSample {
-    @builtin(sample_mask) mask: u32,
-    @location(0) normal_hair: vec4u,
-    @location(1) color_scalp: vec4f,
-    @location(2) bump_material: vec4u,
-    @location(3) shade_emissive: vec4u,
-}
+// The standard positions of samples, relative to the centre.
+const OFFSETS = array<vec2f, 4>(vec2f(-0.125, -0.375), vec2f(0.375, -0.125), vec2f(-0.375, 0.125), vec2f(0.125, 0.375));
 
-// 1 if sample `k`, which is `offset` pixels from the centre, shows the surface.
-fn shows(in: Seen, c: Coordinates, opacity_step: vec2f, pixel: vec2u, k: u32, offset: vec2f) -> u32 {
-    let at = in.centre_coordinates + c.dx * offset.x + c.dy * offset.y;
-    let own = in.centre_opacity + dot(opacity_step, offset);
-    return select(0u, 1u << k, is_there(Coordinates(at, c.dx, c.dy), own, threshold(pixel, k)));
-}
-
+// Runs for each sample. Writing the mask of a pixel's samples at once would be less work, but naga declares the mask of SPIR-V as a number
+// in place of an array, which drivers may take wrongly (https://github.com/gfx-rs/wgpu/issues/7311).
 @fragment
-fn sample_with_holes(in: Seen, @builtin(front_facing) is_front: bool) -> HoledSample {
+fn sample_with_holes(in: Seen, @builtin(front_facing) is_front: bool, @builtin(sample_index) k: u32) -> Sample {
     let s = sample_of(in, is_front);
-    let c = Coordinates(in.centre_coordinates, dpdx(in.centre_coordinates), dpdy(in.centre_coordinates));
+    let dx = dpdx(in.centre_coordinates);
+    let dy = dpdy(in.centre_coordinates);
     let step = vec2f(dpdx(in.centre_opacity), dpdy(in.centre_opacity));
-    let pixel = vec2u(in.position.xy);
-    // The standard positions of samples, relative to the centre.
-    let mask = shows(in, c, step, pixel, 0u, vec2f(-0.125, -0.375)) | shows(in, c, step, pixel, 1u, vec2f(0.375, -0.125))
-        | shows(in, c, step, pixel, 2u, vec2f(-0.375, 0.125)) | shows(in, c, step, pixel, 3u, vec2f(0.125, 0.375));
-    return HoledSample(mask, s.normal_hair, s.color_scalp, s.bump_material, s.shade_emissive);
+    let offset = OFFSETS[k & 3u];
+    let at = in.centre_coordinates + dx * offset.x + dy * offset.y;
+    let own = in.centre_opacity + dot(step, offset);
+    if (!is_there(Coordinates(at, dx, dy), own, threshold(vec2u(in.position.xy), k))) {
+        discard;
+    }
+    return s;
 }
