@@ -78,7 +78,12 @@ pub(super) const RECIPES: &[Recipe] = &[
              --set camera.azimuth=-0.6 --set camera.follow_offset=0,-0.05,0",
         ),
     },
-    Recipe { name: "compare", source: Source::Page("--frame 45 --size 960x540 --backend cpu") },
+    Recipe {
+        name: "compare",
+        source: Source::Page(
+            "--frame 45 --size 960x540 --backend cpu --methods voxel-map,opacity-maps,deep-opacity-maps,moments,voxel-march,exact",
+        ),
+    },
     Recipe { name: "compare_window", source: Source::Window("--panes --after 12") },
     method(
         "method_none",
