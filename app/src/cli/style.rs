@@ -1,11 +1,10 @@
 //! `lovelock style`.
 
 use lovelock_base::words::counted;
-use lovelock_brush::StrokeFile;
 use lovelock_jobs::strokes::StrokeFilm;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::save_project;
-use lovelock_session::strokes::{PlayStrokes, SeeStrokes, play_strokes};
+use lovelock_session::strokes::{PlayStrokes, SeeStrokes, play_strokes, read_strokes};
 
 use super::args::StyleTask;
 use super::output::Output;
@@ -17,11 +16,7 @@ const MAX_SECS: f64 = 3600.0;
 
 /// Plays recorded strokes on the hair of a project and writes the project with them.
 pub(crate) fn run(task: &StyleTask, output: Output) -> Result<(), ProjectError> {
-    let name = task.strokes.display();
-    let text = std::fs::read_to_string(&task.strokes)
-        .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
-    let mut strokes = StrokeFile::from_text(&text)
-        .map_err(|error| ProjectError::input(&task.strokes, format!("{name}: {error}")))?;
+    let mut strokes = read_strokes(&task.strokes)?;
     strokes.strokes.truncate(task.count.unwrap_or(usize::MAX));
     let replaced = replace::check(&task.out, Holds::Work("a project"), task.force)?;
     let film_replaced =

@@ -1,5 +1,6 @@
 //! The effects of commands.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use lovelock_jobs::info::FileKind;
@@ -13,6 +14,7 @@ use lovelock_project::project::{
 use lovelock_project::styles::StyleParts;
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
+use lovelock_session::strokes::{PlayStrokes, STROKES_EXTENSION, play_strokes, read_strokes};
 
 use super::command::Command;
 use super::files::{Pending, place_of, set_part};
@@ -61,6 +63,14 @@ pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<
 fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
     let mut place = None;
     let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION)) {
+        // On the default hair: a new project, so that the strokes stay as they are.
+        let (strokes, access) = (read_strokes(path)?, Access::new());
+        let mut go_on = |_| ControlFlow::Continue(());
+        (opened.project, _, opened.problems) =
+            play_strokes(&opened.project, &access, &strokes, PlayStrokes::default(), &mut go_on)?;
+        return Ok((opened, None));
+    }
     match Found::of(path, &opened.project.hair)? {
         Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
         Found::Part(kind, unused) => {
@@ -78,7 +88,8 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
             let mut access = Access::for_project(path);
             Grants::of_user().allow(path, &mut access);
             (opened.project, opened.problems) = load_project_with(path, &mut access)?;
-            opened.project_path = Some(path.to_owned());
+            // Recent projects and the journal name it from any folder.
+            opened.project_path = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         }
         Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
     }

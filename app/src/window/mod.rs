@@ -328,6 +328,9 @@ impl Window {
         }
         let mut layout = layout;
         layout.dock.forget_unknown(Panels::usual());
+        if let Some(path) = &project_path {
+            remember(&mut layout.recent, path);
+        }
         let framing = files::Framing::at_start(&project, project_path.as_ref());
         let mut document = Document::new(project, project_path);
         if let Some((place, file, before)) = part {

@@ -8,6 +8,7 @@ use lovelock_session::render_thread::{RenderedImage, ShownMask};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_style::BrushMode;
 
+use super::keymap::Keymap;
 use super::overlay::colliders::Wires;
 use super::overlay::scissors::Scissors;
 use super::overlay::{self, View};
@@ -53,7 +54,8 @@ impl Window {
             let new = overlay::mask::changed(view, head, &mut self.panels.brushes.seen, painted, &shown);
             painter.set(colors, Shape::Vec(new));
         }
-        let cuts = tool == PointerTool::Scissors;
+        let held = ui.input(|input| input.modifiers);
+        let cuts = tool == PointerTool::Scissors && !Keymap::of(ui.ctx()).preset().keeps_from_tools(held);
         if !cuts {
             self.tools.scissors = Scissors::default();
         } else if let Some(line) = self.tools.scissors.drag(ui, view, response) {

@@ -3,6 +3,7 @@
 //! A project or take may read the files of its own folder. Others must be picked by the user, so that a file from an unknown source cannot read
 //! what its author guessed. What the user has picked is remembered here for the projects and takes that were made with it.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,9 @@ use crate::state_folder::state_folder;
 
 /// The most projects and takes that are remembered.
 const MOST: usize = 2000;
+
+/// The most files of one project or take that are remembered.
+const MOST_FILES: usize = 200;
 
 /// The longest list that is read, bytes.
 const LONGEST: u64 = 16 << 20;
@@ -26,6 +30,7 @@ pub struct Grants {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Grant {
     made: PathBuf,
+    /// The files, those that were used last at the end.
     from: Vec<PathBuf>,
 }
 
@@ -57,23 +62,24 @@ impl Grants {
 
     /// Remembers which of `files` the user has picked, for the project or take at `made` that reads them. Nothing is lost but a
     /// question later if it cannot be written.
+    ///
+    /// What was remembered for it before stays: edits that are never saved do not take files from the project on the disk.
     pub fn remember<'a>(&self, made: &Path, files: impl IntoIterator<Item = &'a FileRef>, access: &Access) {
         let made = canonical(made);
         let picked =
             files.into_iter().map(|file| canonical(&file.path)).filter(|file| access.is_picked(file));
-        let mut from: Vec<PathBuf> = picked.collect();
-        from.sort();
-        from.dedup();
+        let picked: BTreeSet<PathBuf> = picked.collect();
         let mut grants = self.read();
         let earlier = grants.iter().position(|grant| grant.made == made);
-        // A project or take that replaces another one has files of its own.
-        let earlier = earlier.map(|at| grants.remove(at));
-        if earlier.as_ref().map_or(&[][..], |grant| &grant.from) == from {
+        let earlier = earlier.map(|at| grants.remove(at).from).unwrap_or_default();
+        let mut from: Vec<PathBuf> =
+            earlier.iter().filter(|file| !picked.contains(*file)).cloned().chain(picked.clone()).collect();
+        let surplus = from.len().saturating_sub(MOST_FILES);
+        from.drain(..surplus);
+        if from == earlier {
             return;
         }
-        if !from.is_empty() {
-            grants.push(Grant { made, from });
-        }
+        grants.push(Grant { made, from });
         let surplus = grants.len().saturating_sub(MOST);
         grants.drain(..surplus);
         if let (Some(file), Ok(text)) = (&self.file, serde_json::to_vec_pretty(&grants)) {
@@ -115,15 +121,39 @@ mod tests {
         assert!(!allowed(&take, &body), "picked, and not a part of it");
         assert!(!allowed(&take, &secret), "a part of it that nobody picked");
         assert!(!allowed(&other, &hair), "another take that names the same file");
-        // What replaces it has grants of its own.
+        // Edits that may never be saved take nothing away.
         grants.remember(&take, &[FileRef::new(&body)], &access);
-        assert!(allowed(&take, &body) && !allowed(&take, &hair));
+        assert!(allowed(&take, &body) && allowed(&take, &hair) && !allowed(&take, &secret));
         grants.remember(&take, &[], &access);
-        assert!(!allowed(&take, &body));
+        assert!(allowed(&take, &body) && allowed(&take, &hair));
+        assert!(!allowed(&other, &body), "a name that nothing was remembered for");
         // A list that is damaged allows nothing, and is replaced.
         std::fs::write(folder.path().join("state/grants.json"), b"[{]").expect("a file");
         assert!(!allowed(&take, &hair));
         grants.remember(&take, &files, &access);
         assert!(allowed(&take, &hair));
+    }
+
+    #[test]
+    fn of_too_many_files_the_oldest_are_forgotten() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let grants = Grants::new(folder.path().join("grants.json"));
+        let project = folder.path().join("a.lovelock");
+        let mut access = Access::new();
+        let files: Vec<FileRef> = (0..=MOST_FILES)
+            .map(|k| FileRef::new(folder.path().join(format!("library/{k:04}.hair"))))
+            .collect();
+        for file in &files {
+            access.pick(&file.path);
+        }
+        let (last, others) = files.split_last().expect("files");
+        grants.remember(&project, others, &access);
+        // Used again, so that it is no longer the oldest.
+        grants.remember(&project, &files[..1], &access);
+        grants.remember(&project, [last], &access);
+        let mut granted = Access::new();
+        grants.allow(&project, &mut granted);
+        assert!(granted.is_picked(&files[0].path) && granted.is_picked(&last.path));
+        assert!(!granted.is_picked(&files[1].path) && granted.is_picked(&files[2].path));
     }
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::claim::claim;
 use crate::film::tables;
 use crate::partial::free_name;
 use crate::sequence;
@@ -58,7 +59,7 @@ pub fn is_unfinished(out: &Path) -> bool {
     match UnfinishedKind::of(out) {
         Some(UnfinishedKind::Film) => tables::is_left(out),
         Some(UnfinishedKind::Sequence) => sequence::is_left(out),
-        Some(UnfinishedKind::Take) => part_path(out).exists(),
+        Some(UnfinishedKind::Take) => is_take_left(&part_path(out)),
         None => false,
     }
 }
@@ -80,14 +81,18 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
         }
         Some(UnfinishedKind::Take) => {
             let part = part_path(out);
-            // A take that is cut plays like any other.
+            let failed = |error| RecordError::io(out, "keep the unfinished take", error);
+            if !part.exists() {
+                return Ok(None);
+            }
+            // Read before it is locked: some systems let nobody else read a locked file. A take that is cut plays like any other.
             let frames = TakeReader::open(&part).map_or(0, |take| take.frames());
+            let _lock = claim(&part).map_err(failed)?;
             if frames == 0 {
                 return Ok(None);
             }
             let path = free_name(out);
-            fs::rename(&part, &path)
-                .map_err(|error| RecordError::io(out, "keep the unfinished take", error))?;
+            fs::rename(&part, &path).map_err(failed)?;
             Ok(Some(Kept { path, frames }))
         }
         None => Ok(None),
@@ -102,9 +107,25 @@ pub fn discard_unfinished(out: &Path) -> io::Result<()> {
     match UnfinishedKind::of(out) {
         Some(UnfinishedKind::Film) => tables::discard(out),
         Some(UnfinishedKind::Sequence) => sequence::discard_unfinished(out),
-        Some(UnfinishedKind::Take) => fs::remove_file(part_path(out)),
+        Some(UnfinishedKind::Take) => discard_take(&part_path(out)),
         None => Ok(()),
     }
+}
+
+/// Whether an interrupted recording left the unfinished take. One that is being recorded is not left.
+fn is_take_left(part: &Path) -> bool {
+    // A claim would create a file that is missing.
+    part.exists() && !claim(part).is_err_and(|error| error.kind() == io::ErrorKind::ResourceBusy)
+}
+
+fn discard_take(part: &Path) -> io::Result<()> {
+    if !part.exists() {
+        return Ok(());
+    }
+    // A sentence that names the file, as other errors here do.
+    let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", part.display()));
+    let _lock = claim(part).map_err(named)?;
+    fs::remove_file(part)
 }
 
 #[cfg(test)]
@@ -112,7 +133,7 @@ mod tests {
     use super::*;
     use crate::{
         FilmQuality, FilmReader, FilmSettings, FilmWriter, SequenceFormat, SequenceSettings, SequenceWriter,
-        read_manifest,
+        TakeHeader, TakeWriter, read_manifest,
     };
 
     const SIDE: u32 = 32;
@@ -195,6 +216,29 @@ mod tests {
         }
         discard_unfinished(&film).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_take_that_is_being_recorded_is_neither_offered_nor_kept_nor_discarded() {
+        let folder = tempfile::tempdir().unwrap();
+        let take = folder.path().join("dance.take");
+        let part = folder.path().join("dance.take.part");
+        assert!(!is_unfinished(&take) && !part.exists(), "asking creates nothing");
+        let header = TakeHeader { guides: 3, points_per_guide: 4, ..TakeHeader::default() };
+        let recording = TakeWriter::create(&take, header).unwrap();
+        assert!(!is_unfinished(&take));
+        let kept = keep_unfinished(&take).unwrap_err().to_string();
+        assert!(kept.contains("dance.take: ") && kept.contains("another recording"), "{kept}");
+        let discarded = discard_unfinished(&take).unwrap_err().to_string();
+        assert!(discarded.contains("dance.take.part: "), "{discarded}");
+        assert!(part.exists());
+        // Control: one that a crash left, with nothing that plays.
+        drop(recording);
+        fs::write(&part, b"cut").unwrap();
+        assert!(is_unfinished(&take));
+        assert_eq!(keep_unfinished(&take).unwrap(), None);
+        discard_unfinished(&take).unwrap();
+        assert!(!part.exists() && !is_unfinished(&take));
     }
 
     #[test]

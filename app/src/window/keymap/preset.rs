@@ -98,6 +98,11 @@ impl Preset {
         self.table().iter().map(|(id, _)| *id)
     }
 
+    /// Whether a drag with these keys moves the camera even over what a tool would edit.
+    pub(crate) fn keeps_from_tools(self, held: Modifiers) -> bool {
+        self == Self::Maya && held.alt
+    }
+
     /// What a drag with a button does to the camera.
     pub(crate) fn navigation(self, button: PointerButton, held: Modifiers) -> Option<Navigation> {
         match (self, button) {

@@ -103,7 +103,9 @@ impl Window {
         self.keyboard = super::super::Keyboard::default();
         self.layout.page = Page::Image;
         self.layout.panels_hidden = true;
-        self.tools = super::super::Tools::default();
+        // The pen listens since the window was opened.
+        let pen = std::mem::take(&mut self.tools.pen);
+        self.tools = super::super::Tools { pen, ..super::super::Tools::default() };
     }
 
     /// Says what failed since the last pass.

@@ -38,8 +38,8 @@ pub(super) struct Safety {
     works: Works,
     /// The project in the last picture.
     pictured: Option<(Arc<Project>, Stopwatch)>,
-    /// What the user had picked, and the take that was recorded last, when they were remembered.
-    remembered: (Access, Option<PathBuf>),
+    /// What the user had picked, the take that was recorded last, and the file of the project, when they were remembered.
+    remembered: (Access, Option<PathBuf>, Option<PathBuf>),
     /// The file of the project when it was opened or saved last.
     stamp: Option<Stamp>,
     failures: failures::Failures,
@@ -136,6 +136,7 @@ impl Window {
             self.tell_journal(event, ctx);
         }
         self.follow_take();
+        self.follow_again();
         self.keep_picture();
         self.remember_picked();
     }
@@ -190,7 +191,10 @@ impl Window {
     /// Remembers what the user has picked for this project, and for a take that was recorded from it.
     fn remember_picked(&mut self) {
         let (access, take) = (self.session.access(), &self.session.saved_take);
-        if (access, take) == (&self.safety.remembered.0, &self.safety.remembered.1) {
+        let path = self.document.path().map(Path::to_owned);
+        let (known_access, known_take, known_path) = &self.safety.remembered;
+        // Saved under another name in the same folder, the access stays the same.
+        if (access, take, &path) == (known_access, known_take, known_path) {
             return;
         }
         let made = self.document.path().into_iter().chain(take.as_deref());
@@ -202,7 +206,7 @@ impl Window {
             let files = project.files().into_iter().map(|(_, file)| file);
             self.safety.grants.remember(made, files.chain(&methods), access);
         }
-        self.safety.remembered = (access.clone(), take.clone());
+        self.safety.remembered = (access.clone(), take.clone(), path);
     }
 
     /// Lets the project or take at `path` read what the user picked for it on an earlier day.

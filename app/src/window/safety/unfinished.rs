@@ -12,6 +12,7 @@ use lovelock_record::{UnfinishedKind, discard_unfinished, keep_unfinished};
 
 use super::ago::ago;
 use crate::window::control::HoverTooltip;
+use crate::window::recorder::State;
 use crate::window::{Window, theme};
 
 /// The most that are shown at once.
@@ -28,6 +29,8 @@ pub(super) struct Works {
     /// The one that shall be discarded, while the user is asked.
     asked: Option<usize>,
     take: Option<(Running, Stopwatch)>,
+    /// The one that is recorded again. Its note stays until that has ended well.
+    again: Option<Interrupted>,
 }
 
 /// An answer of the user.
@@ -54,6 +57,9 @@ impl Works {
     /// Looks for recordings that were interrupted. Returns whether there are some.
     pub(super) fn find(&mut self) -> bool {
         self.list = self.recordings.interrupted();
+        if let Some(again) = &self.again {
+            self.list.retain(|work| work.job.out != again.job.out);
+        }
         (self.is_open, self.asked) = (!self.list.is_empty(), None);
         self.is_open
     }
@@ -81,6 +87,17 @@ impl Window {
     pub(super) fn follow_take(&mut self) {
         let ended = self.session.worker().take_progress().is_none();
         self.safety.works.take.take_if(|(_, since)| ended && since.secs() > TAKE_BEGINS_SECS);
+    }
+
+    /// Forgets what was recorded again if that has ended well. Otherwise File, Recover offers it as before.
+    pub(super) fn follow_again(&mut self) {
+        if self.media.recorder.is_running() {
+            return;
+        }
+        let ended_well = matches!(self.media.recorder.state(), State::Done { .. });
+        if let Some(work) = self.safety.works.again.take().filter(|_| ended_well) {
+            work.forget();
+        }
     }
 
     /// Shows the dialog while it is open.
@@ -118,9 +135,12 @@ impl Window {
                 };
                 match done {
                     Ok(()) => {
-                        // A recording that begins again has noted itself anew.
-                        work.forget();
                         self.safety.works.list.retain(|other| *other != work);
+                        if matches!(answer, Answer::Record(_)) {
+                            self.safety.works.again = Some(work);
+                        } else {
+                            work.forget();
+                        }
                     }
                     Err(error) => self.fail(error),
                 }
@@ -141,6 +161,9 @@ impl Window {
         let panes = work.job.panes.then(|| self.layout.compare.sheet());
         let resume = work.kind == UnfinishedKind::Sequence;
         self.media.recorder.start(Arc::new(project.clone()), access, &work.job.out, panes, resume, ctx);
+        if let State::Failed(why) = self.media.recorder.state() {
+            return Err(ProjectError::work(why.clone()));
+        }
         self.note_recording(&work.job.out, &project, work.job.panes);
         Ok(())
     }
@@ -255,6 +278,26 @@ fn ask(ui: &mut Ui, k: usize, work: &Interrupted) -> Option<Answer> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_recorded_again_is_offered_again_unless_that_ended_well() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let notes = folder.path().join("recordings");
+        let mut works = Works::new(Recordings::new(&notes));
+        let out = folder.path().join("dance.mp4");
+        std::fs::write(folder.path().join("dance.mp4.partial"), b"x").expect("a file");
+        std::fs::create_dir(&notes).expect("a folder");
+        // As a crash leaves it: the note is there and not locked.
+        let note = serde_json::to_vec(&Job::new(&out, &Project::default(), false)).expect("text");
+        std::fs::write(notes.join("1.json"), note).expect("a note");
+        assert!(works.find());
+        works.again = works.list.first().cloned();
+        assert!(!works.find(), "it is being recorded");
+        works.again = None;
+        assert!(works.find(), "that failed");
+        works.list[0].forget();
+        assert!(!works.find(), "control: forgotten");
+    }
 
     #[test]
     fn a_command_is_quoted_for_the_shell_and_resumes_a_sequence() {

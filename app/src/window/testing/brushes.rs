@@ -12,6 +12,7 @@ use lovelock_testkit::suite::is_long;
 use super::tools::{drag_over, view, with_picture};
 use super::whole::{CTRL, Whole, go, key, of, project, wait};
 use super::{control, press};
+use crate::window::keymap::Preset;
 use crate::window::pointer_tool::PointerTool;
 
 /// The window with brushes on, and the place of hair in the image.
@@ -159,6 +160,25 @@ fn a_drag_beside_the_hair_moves_the_camera_and_an_undo_in_a_stroke_ends_it() {
     });
     assert_eq!(project(&harness), before, "nothing of the stroke is left");
     assert!(!of(&harness).panels.brushes.has_open_strokes());
+}
+
+#[test]
+fn alt_moves_the_camera_over_hair_as_in_maya() {
+    let Some((mut harness, at)) = brushing() else { return };
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.layout.keys.set_preset(Preset::Maya);
+    harness.run_steps(1);
+    let before = project(&harness);
+    let (to, button, modifiers) = (at + vec2(20.0, 0.0), PointerButton::Primary, Modifiers::ALT);
+    let click = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+    let events = [Event::PointerMoved(at), click(at, true), Event::PointerMoved(to), click(to, false)];
+    for event in events {
+        harness.event_modifiers(event, modifiers);
+        harness.run_steps(2);
+    }
+    go(&mut harness);
+    assert_ne!(project(&harness).camera, before.camera);
+    assert!(edits(&harness).is_none(), "the brush leaves the hair alone");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
 use lovelock_record::TAKE_EXTENSION;
+use lovelock_session::strokes::STROKES_EXTENSION;
 
 /// A kind of readable file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -97,6 +98,17 @@ impl FileKind {
         }
         let mut start = Vec::new();
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
+        let is_strokes =
+            path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION));
+        if is_strokes {
+            // Their text begins as that of a project, which would replace them when it is saved.
+            return Err(ProjectError::input(
+                path,
+                format!(
+                    "{name}: holds recorded strokes; `lovelock style --strokes FILE` plays them on a project"
+                ),
+            ));
+        }
         let by_name = Self::by_extension(path);
         // A style is a project with fewer sections: only its name tells it apart.
         // Motion of VRM is glTF without a body.

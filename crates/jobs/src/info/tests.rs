@@ -166,6 +166,11 @@ fn content_speaks_before_the_ending() {
             (other, _) => panic!("{name}: {other:?}"),
         }
     }
+    // Strokes would become an empty project, which replaces them when it is saved.
+    let strokes = dir.path().join("a.lovelockstrokes");
+    std::fs::write(&strokes, "(version: 1, strokes: [])").expect("a file");
+    let refused = FileKind::of(&strokes).expect_err("strokes");
+    assert!(refused.to_string().contains("lovelock style --strokes"), "{refused}");
     // A body with a clip is a body, and hair with a body is hair.
     for (name, content, kind) in [
         (

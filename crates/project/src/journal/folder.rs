@@ -122,9 +122,9 @@ impl Journals {
             }
             Err(error) => return Err(error),
         };
+        let is_in_folder = journal.parent() == self.folder();
         // One in the folder of a project names it. A foreign one that does not is not trusted with the files in it.
-        let is_own =
-            |contents: &Contents| journal.parent() == self.folder() || contents.last.project.is_some();
+        let is_own = |contents: &Contents| is_in_folder || contents.last.project.is_some();
         let contents =
             Contents::read(&mut file)?.filter(|contents| contents.last.modified && is_own(contents));
         let Some(contents) = contents else {
@@ -133,7 +133,13 @@ impl Journals {
             }
             return Ok(Aside::Nothing);
         };
-        let name = name_of(contents.last.project.as_deref(), &contents.owner);
+        let named = contents.last.project.clone();
+        // Beside a project, only the place counts: the folder may have been renamed or copied, and a foreign journal may name any file.
+        let project =
+            if is_in_folder { named.clone() } else { Some(project_beside(journal, named.as_deref())) };
+        let renamed = project.as_deref().filter(|project| Some(*project) != named.as_deref());
+        let renamed = renamed.map(|project| contents.of_project(project)).transpose()?;
+        let name = name_of(project.as_deref(), &contents.owner);
         let folder = self.folder.clone().or_else(|| journal.parent().map(Path::to_owned)).unwrap_or_default();
         fs::create_dir_all(&folder)?;
         let aside = |ms| folder.join(format!("{name}.{ms}.{EXTENSION}"));
@@ -144,10 +150,10 @@ impl Journals {
         let aside = times.find(|ms| !aside(*ms).exists()).map(aside).unwrap_or_default();
         let picture = folder.join(format!("{name}.{PICTURE}"));
         let _ = fs::rename(picture, aside.with_extension(PICTURE));
-        if stays || fs::rename(journal, &aside).is_err() {
-            // On another disk.
+        if stays || renamed.is_some() || fs::rename(journal, &aside).is_err() {
+            // It names another project now, stays, or is on another disk.
             let partial = aside.with_extension("partial");
-            fs::write(&partial, fs::read(journal)?)?;
+            fs::write(&partial, renamed.map_or_else(|| fs::read(journal), Ok)?)?;
             File::open(&partial)?.sync_all()?;
             fs::rename(&partial, &aside)?;
             if !stays {
@@ -228,6 +234,16 @@ fn open_dead(journal: &Path) -> io::Result<(File, bool)> {
 pub(super) fn beside(project: &Path) -> PathBuf {
     let name = project.file_name().unwrap_or_default().to_string_lossy();
     project.with_file_name(format!(".{name}.{EXTENSION}"))
+}
+
+/// The project that a journal lies beside. `named` is the one it names: names that are not Unicode can be taken from there only.
+fn project_beside(journal: &Path, named: Option<&Path>) -> PathBuf {
+    let journal = std::path::absolute(journal).unwrap_or_else(|_| journal.to_owned());
+    if let Some(named) = named.filter(|named| beside(named) == journal) {
+        return named.to_owned();
+    }
+    let name = journal.file_stem().unwrap_or_default().to_string_lossy();
+    journal.with_file_name(name.strip_prefix('.').unwrap_or(&name))
 }
 
 /// Whether a journal is one that was set aside: its name ends in a time.

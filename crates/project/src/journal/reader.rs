@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::owner::Owner;
 use super::patch::unpack;
-use super::record::{Kind, Records};
+use super::record::{Kind, Records, append};
 use super::shape::{Change, Shape, Step};
 use crate::error::ProjectError;
 use crate::history::{History, HistoryMark};
@@ -20,6 +20,8 @@ const LONGEST: u64 = 512 << 20;
 /// What a journal holds.
 pub(super) struct Contents {
     bytes: Vec<u8>,
+    /// Where the last change that is whole ends.
+    end: usize,
     /// Who wrote it.
     pub owner: Owner,
     /// The last change that is whole.
@@ -41,8 +43,9 @@ impl Contents {
 
     fn of(bytes: Vec<u8>) -> Option<Self> {
         let (mut owner, mut last, mut shape) = (Owner::default(), None, Shape::default());
-        let mut states = 0;
-        for (kind, contents) in Records::of(&bytes)? {
+        let (mut states, mut end) = (0, 0);
+        let mut records = Records::of(&bytes)?;
+        while let Some((kind, contents)) = records.next() {
             match kind {
                 Kind::Owner => owner = serde_json::from_slice(contents).ok()?,
                 Kind::State => states += 1,
@@ -57,11 +60,25 @@ impl Contents {
                     if after.states().any(|number| number >= states) {
                         break;
                     }
-                    (last, shape) = (Some(change), after);
+                    (last, shape, end) = (Some(change), after, bytes.len() - records.left());
                 }
             }
         }
-        Some(Self { owner, last: last?, shape, bytes })
+        Some(Self { owner, last: last?, shape, end, bytes })
+    }
+
+    /// The bytes of a journal that holds the same and names another project.
+    ///
+    /// # Errors
+    /// If the path is not Unicode.
+    pub(super) fn of_project(&self, project: &Path) -> io::Result<Vec<u8>> {
+        let mut change = Change::between(&self.shape, &self.shape);
+        (change.time_ms, change.modified) = (self.last.time_ms, self.last.modified);
+        change.project = Some(project.to_owned());
+        // What follows the last whole change would hide a record behind it.
+        let mut bytes = self.bytes[..self.end].to_vec();
+        append(&mut bytes, Kind::Change, &[&serde_json::to_vec(&change)?]);
+        Ok(bytes)
     }
 
     /// The number of steps that can be undone.

@@ -62,6 +62,11 @@ impl<'a> Records<'a> {
     pub(super) fn of(bytes: &'a [u8]) -> Option<Self> {
         Some(Self { rest: bytes.strip_prefix(MAGIC)? })
     }
+
+    /// The number of bytes after the records that were read.
+    pub(super) fn left(&self) -> usize {
+        self.rest.len()
+    }
 }
 
 impl<'a> Iterator for Records<'a> {

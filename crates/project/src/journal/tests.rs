@@ -194,6 +194,35 @@ fn unsaved_changes_of_a_project_that_is_opened_again_are_set_aside_and_announced
     assert_eq!(place.journals().unsaved(Some(&place.project())).len(), 2, "neither replaces the other");
 }
 
+#[test]
+fn a_journal_beside_a_project_belongs_to_the_project_where_it_lies() {
+    let place = Place::new();
+    let (mut document, journal) = place.open();
+    distance(&mut document, 2.5);
+    crash(&document, journal);
+    let (work, copy) = (place.folder.path().join("work"), place.folder.path().join("copy"));
+    fs::create_dir(&copy).expect("a folder");
+    for name in place.files("work") {
+        fs::copy(work.join(&name), copy.join(&name)).expect("copied");
+    }
+    let copied = copy.join("red hair.lovelock");
+    // A crash can cut the last record: what names the place is not behind it.
+    let mut bytes = fs::read(beside(&copied)).expect("a journal");
+    bytes.extend([7; 20]);
+    fs::write(beside(&copied), bytes).expect("a journal");
+    let journals = Journals::new(place.folder.path().join("other"));
+    for opened in [Some(copied.as_path()), None] {
+        let found = journals.unsaved(opened);
+        assert_eq!((found.len(), found[0].project.as_deref()), (1, Some(copied.as_path())));
+        let history = found[0].history().expect("a history");
+        assert_eq!((history.project().camera.distance, history.undo_len()), (2.5, 1));
+    }
+    assert!(!beside(&copied).exists());
+    // Control: the one that nobody moved.
+    let found = place.journals().unsaved(None);
+    assert_eq!((found.len(), found[0].project.as_deref()), (1, Some(place.project().as_path())));
+}
+
 /// For a user who may write everything, as tests in containers have, it is moved as any other.
 #[cfg(unix)]
 #[test]

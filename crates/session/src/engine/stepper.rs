@@ -137,7 +137,8 @@ fn shared() -> MutexGuard<'static, Shared> {
     SHARED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The shared kernels; `None` if a real graphics card is wanted (`real`) and there is none.
+/// The shared kernels; `None` if a real graphics card is wanted (`real`) and there is none. They have a device beside that of the window,
+/// because a step is read back, and would wait behind the images in the window's queue.
 fn kernels(real: bool) -> Result<Option<Arc<GuideKernels>>, String> {
     let mut shared = shared();
     if real && shared.has_no_card {

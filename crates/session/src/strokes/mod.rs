@@ -9,4 +9,6 @@ mod live_tests;
 mod played;
 
 pub use live::{Stroke, StrokeReport, StrokeStart};
-pub use played::{PlayStrokes, PlayedBrush, SeeStrokes, StrokesReport, play_strokes};
+pub use played::{
+    PlayStrokes, PlayedBrush, STROKES_EXTENSION, SeeStrokes, StrokesReport, play_strokes, read_strokes,
+};

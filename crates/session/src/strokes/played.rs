@@ -1,6 +1,7 @@
 //! Playing recorded strokes on the hair of a project.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use glam::{Affine3A, Vec3};
 use lovelock_brush::{RecordedStroke, StrokeFile, Tool};
@@ -60,6 +61,20 @@ pub struct PlayStrokes<'a> {
     pub dance_from_secs: Option<f64>,
     /// Follows the hair; then it is simulated for a while after the last stroke, too.
     pub see: Option<SeeStrokes<'a>>,
+}
+
+/// The extension of files of recorded strokes, without the dot.
+pub const STROKES_EXTENSION: &str = StrokeFile::EXTENSION;
+
+/// Reads recorded strokes.
+///
+/// # Errors
+/// The file cannot be read, or holds something else.
+pub fn read_strokes(path: &Path) -> Result<StrokeFile, ProjectError> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| ProjectError::input(path, format!("{name}: {error}")))?;
+    StrokeFile::from_text(&text).map_err(|error| ProjectError::input(path, format!("{name}: {error}")))
 }
 
 /// Plays strokes at their times and returns the project with what they did, in its last layer of edits by hand or in a new one.

@@ -146,6 +146,11 @@ fn problems_of_the_files_are_one_sentence_with_file_and_line() {
             "var<workgroup> shared_words: array<u32, 64>;\n// ",
             "`shared_words` needs a resource",
         ),
+        (
+            "// The second pass",
+            "fn again() { turns = 0u; }\n// ",
+            "line 22: `turns` is a variable of the program",
+        ),
         ("// The second pass", "var<private> big: array<u32, 100000>;\n// ", "400012 bytes in each thread"),
         ("// The second pass", "fn f(a: f32) -> f32 { return f(a); }\n// ", "method.wgsl, line"),
         ("scratch = 0", "scratches = 0", "method.toml, line 11: unknown field `scratches`"),
@@ -270,6 +275,16 @@ fn the_last_version_that_worked_stays() {
     assert!(user.follow() && user.problem().is_none() && UserMethod::revision() > before);
     assert_eq!(map.build(0, &input, &own), Ok(1));
     assert_ne!(map.look_up(&asked), first);
+}
+
+#[test]
+fn a_method_that_lost_the_device_is_drawn_again_once_it_is_saved() {
+    let dir = method(&[]);
+    let user = UserMethod::load(dir.path()).expect("the template");
+    user.distrust();
+    assert!(!user.works() && user.problem().is_some_and(|problem| problem.contains("was lost while")));
+    change(dir.path(), &[("record_add(texel, ", "record_add(texel, 2u * ")]);
+    assert!(user.follow() && user.works() && user.problem().is_none());
 }
 
 #[test]

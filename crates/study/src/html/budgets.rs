@@ -8,10 +8,11 @@ use crate::report::{BudgetReport, CompareReport, MethodReport};
 
 /// The sentences; empty if fewer than two methods have all numbers.
 pub(super) fn section(report: &CompareReport, names: &Names) -> String {
-    let choices: Vec<_> = report.budgets.iter().filter(|budget| budget.next.is_some()).collect();
+    let choices = &report.budgets;
     let mut out = String::new();
-    if !choices.is_empty() {
-        out += "<h3>Which method for which budget</h3><ul class=\"notes\">";
+    // One method alone is no choice.
+    if choices.iter().any(|budget| budget.next.is_some() || budget.method != choices[0].method) {
+        out += "<h3>Which method for which budget</h3><ul class=\"tests\">";
         for budget in choices {
             let _ = write!(out, "<li>{}</li>", sentence(budget, report, names));
         }
@@ -49,7 +50,7 @@ fn sentence(budget: &BudgetReport, report: &CompareReport, names: &Names) -> Str
         format!("Up to {}", limits.join(" and "))
     };
     let before = |next| format!(", before {} ({})", named(next, report, names), fixed(budget.next_rmse, 4));
-    let next = budget.next.as_deref().map(before).unwrap_or_default();
+    let next = budget.next.as_deref().map_or_else(|| ", the only one that fits".to_owned(), before);
     format!(
         "{limits}: <b>{}</b>, RMSE {}{next}. {}",
         named(&budget.method, report, names),

@@ -13,10 +13,14 @@ const COLORS: [&str; 16] = [
     "#7a3b1d", "#4f7a1c", "#b3367a", "#3d5a80", "#202124", "#c2185b", "#00838f",
 ];
 
+/// Colours that are left for methods of users.
+const OF_USERS: usize = COLORS.len() - ShadowMethod::ALL.len();
+
 /// The colour of a method, the same in every plot of every report.
 pub(super) fn color(method: &MethodReport) -> &'static str {
-    let index =
-        ShadowMethod::ALL.iter().position(|known| known.id() == method.id).unwrap_or(COLORS.len() - 1);
+    // Those of users are told apart as far as colours are left.
+    let of_user = || ShadowMethod::ALL.len() + method.id.bytes().map(usize::from).sum::<usize>() % OF_USERS;
+    let index = ShadowMethod::ALL.iter().position(|known| known.id() == method.id).unwrap_or_else(of_user);
     COLORS[index % COLORS.len()]
 }
 
@@ -25,6 +29,8 @@ pub(super) struct Names {
     backends: bool,
     pub(super) draws: bool,
     transparencies: bool,
+    /// Names that methods with other ids have too, such as those of users.
+    repeated: Vec<String>,
 }
 
 impl Names {
@@ -32,7 +38,12 @@ impl Names {
         let differ = |key: fn(&MethodReport) -> &str| {
             report.methods.windows(2).any(|pair| key(&pair[0]) != key(&pair[1]))
         };
+        let is_repeated = |method: &MethodReport| {
+            report.methods.iter().any(|other| other.label == method.label && other.id != method.id)
+        };
+        let repeated = report.methods.iter().filter(|method| is_repeated(method));
         Self {
+            repeated: repeated.map(|method| method.label.clone()).collect(),
             backends: differ(|method| &method.backend),
             draws: differ(|method| &method.draw),
             transparencies: differ(|method| &method.transparency),
@@ -55,9 +66,11 @@ impl Names {
     }
 
     /// The name among those of one backend, drawing and transparency.
-    #[expect(clippy::unused_self, reason = "read beside `full`")]
     pub(super) fn within_group(&self, method: &MethodReport) -> String {
         let mut name = if method.label.is_empty() { method.id.clone() } else { method.label.clone() };
+        if !method.label.is_empty() && self.repeated.contains(&method.label) {
+            let _ = write!(name, " ({})", method.id);
+        }
         for (setting, value) in &method.sweep {
             let _ = write!(name, " · {} {value}", setting.replace('_', " "));
         }

@@ -18,6 +18,8 @@ const GIVEN_IN_QUERY: ShaderPart = wgsl!("methods/user/", "given_in_query.wgsl")
 /// The function that every method has, and its parameters.
 const QUERY: [&str; 2] = ["optical_depth", "(texel: u32, depth: f32) -> f32"];
 
+/// Variables of the program that would let a method count its turns anew or write past its record.
+const OF_THE_PROGRAM: [&str; 3] = ["turns", "fault", "map"];
 /// Memory of the variables of the method per thread, bytes.
 const MAX_VARIABLES: u64 = 16 << 10;
 
@@ -267,6 +269,18 @@ impl Composed {
         for (_, function) in functions {
             for (_, variable) in function.local_variables.iter() {
                 all = all.saturating_add(bytes(variable.ty));
+            }
+            for (at, expression) in function.expressions.iter() {
+                let naga::Expression::GlobalVariable(variable) = *expression else { continue };
+                let name = module.global_variables[variable].name.as_deref().unwrap_or_default();
+                let is_own = place(module.global_variables.get_span(variable)).is_some();
+                if !is_own && OF_THE_PROGRAM.contains(&name) {
+                    let line = place(function.expressions.get_span(at)).unwrap_or_default();
+                    return Err(format!(
+                        "{}, line {line}: `{name}` is a variable of the program, which a method may not use",
+                        self.path
+                    ));
+                }
             }
         }
         if all > MAX_VARIABLES {

@@ -242,6 +242,17 @@ impl UserMethod {
         state.current.ok_or_else(missing)
     }
 
+    /// Takes the version in use out of use, because the graphics device was lost while this method was drawn. Saving it tries it again.
+    pub fn distrust(self) {
+        if let Ok(definition) = self.definition() {
+            let problem = format!(
+                "{}: the graphics device was lost while it was drawn; save it to try it again",
+                self.0.folder.display()
+            );
+            self.refuse(definition.version, &problem);
+        }
+    }
+
     /// Takes a version out of use because of a problem, and returns to the one before it. Returns whether there is one.
     pub(super) fn refuse(self, version: u32, problem: &str) -> bool {
         let mut state = self.0.state();
