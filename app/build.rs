@@ -1,5 +1,6 @@
 //! Tells the program its version with the commit and its date, where the source is a checkout.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
@@ -7,7 +8,9 @@ fn main() {
     // Packagers that build from an archive state the commit themselves.
     println!("cargo::rerun-if-env-changed=LOVELOCK_COMMIT");
     let stated = std::env::var("LOVELOCK_COMMIT").ok();
-    let commit = stated.or_else(|| git(&["show", "--no-patch", "--abbrev=8", "--format=%h, %cs", "HEAD"]));
+    let commit = stated.or_else(|| {
+        if is_own() { git(&["show", "--no-patch", "--abbrev=8", "--format=%h, %cs", "HEAD"]) } else { None }
+    });
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={log}");
     }
@@ -16,7 +19,15 @@ fn main() {
     println!("cargo::rustc-env=LOVELOCK_VERSION={version}");
 }
 
-/// What git prints, or nothing outside a checkout of this program.
+/// Whether the checkout is that of this program, and not one that an archive of it was unpacked in.
+fn is_own() -> bool {
+    let root =
+        std::env::var_os("CARGO_MANIFEST_DIR").and_then(|app| Path::new(&app).parent()?.canonicalize().ok());
+    let top = git(&["rev-parse", "--show-toplevel"]).and_then(|top| Path::new(&top).canonicalize().ok());
+    root.is_some() && root == top
+}
+
+/// What git prints, or nothing outside a checkout.
 fn git(arguments: &[&str]) -> Option<String> {
     let output =
         Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;

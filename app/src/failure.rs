@@ -102,7 +102,7 @@ fn text_of(panic: &PanicHookInfo, at: &str) -> String {
         before(|before| (before.adapter.clone(), Vec::from(before.commands.clone()).join(", ")));
     let mut text = String::new();
     let rows = [
-        ("Program", format!("Lovelock {}", env!("CARGO_PKG_VERSION"))),
+        ("Program", format!("Lovelock {}", env!("LOVELOCK_VERSION"))),
         ("System", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ("Adapter", if adapter.is_empty() { "not known".to_owned() } else { adapter }),
         ("Thread", std::thread::current().name().unwrap_or("without a name").to_owned()),
