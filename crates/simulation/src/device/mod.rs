@@ -46,7 +46,7 @@ pub trait StepDevice: Send {
 /// What a device returns about a step.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOutcome {
-    /// The rows of [`DeviceStep::state`] at the end of the step.
+    /// The rows of [`DeviceStep::write_state`] at the end of the step.
     pub state: Vec<f32>,
     /// The contacts of each slot.
     pub contacts: Vec<SlotContact>,
