@@ -11,6 +11,7 @@ use lovelock_testkit::wait::HANG;
 
 use super::*;
 use crate::scene::SceneLoader;
+use crate::snapshot::FrameSnapshot;
 use crate::testing::{settled, small_project};
 
 /// A render thread with the renderers of a test, one instant, and the backends that were requested.
