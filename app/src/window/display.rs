@@ -8,7 +8,6 @@ use std::time::Duration;
 use lovelock_base::clock::Stopwatch;
 use lovelock_project::error::ProjectError;
 use lovelock_project::project::{PROJECT_EXTENSION, save_project};
-use lovelock_render::ShadowMethod;
 use lovelock_session::window_device::WindowDevice;
 
 use super::dock::SecondWindow;
@@ -229,12 +228,8 @@ impl Window {
         self.media.thumbnails.forget();
         self.panels.hair.styles.forget_images();
         // A method of the user's own that takes too long would be lost again and again.
-        let project = self.document.project();
-        let panes = project.compare.panes.iter().map(|pane| pane.shadow.method);
-        for method in panes.chain([project.shadow.method]) {
-            if let ShadowMethod::User(method) = method {
-                method.distrust();
-            }
+        for method in self.document.project().user_methods() {
+            method.distrust();
         }
         self.session.draw_again();
         self.notices.push(

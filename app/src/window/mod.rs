@@ -175,6 +175,8 @@ struct Pages {
 struct Tools {
     /// The tool that has the pointer.
     active: PointerTool,
+    /// Whether the button was pressed with keys for the camera, so that the drag is not the tool's.
+    navigates: bool,
     scissors: Scissors,
     /// The stroke that paints a mask.
     mask_stroke: overlay::brush::Stroke,

@@ -18,6 +18,15 @@ use super::{Window, notices, theme};
 impl Window {
     /// Runs the tools and paints their overlays. Returns whether the pointer is free to move the camera.
     pub(super) fn tools(&mut self, ui: &Ui, response: &Response, project: &mut Project) -> bool {
+        // Decided when the button goes down: keys may change during a drag.
+        let (pressed, down, held) = ui
+            .input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down(), input.modifiers));
+        if pressed {
+            self.tools.navigates = Keymap::of(ui.ctx()).preset().keeps_from_tools(held);
+        } else if !down {
+            self.tools.navigates = false;
+        }
+        let navigates = self.tools.navigates;
         let painted = self.session.painted.clone();
         let view = painted.as_ref().zip(self.pages.image.place(response.rect));
         let Some((painted, view)) =
@@ -54,8 +63,7 @@ impl Window {
             let new = overlay::mask::changed(view, head, &mut self.panels.brushes.seen, painted, &shown);
             painter.set(colors, Shape::Vec(new));
         }
-        let held = ui.input(|input| input.modifiers);
-        let cuts = tool == PointerTool::Scissors && !Keymap::of(ui.ctx()).preset().keeps_from_tools(held);
+        let cuts = tool == PointerTool::Scissors && !navigates;
         if !cuts {
             self.tools.scissors = Scissors::default();
         } else if let Some(line) = self.tools.scissors.drag(ui, view, response) {
@@ -80,7 +88,7 @@ impl Window {
             && let Some(skull) = &snapshot.scene.skull
         {
             let head = overlay::head::Head { world_from_head, scalp: &snapshot.scene.style.scalp };
-            let paints = tool == PointerTool::Scalp;
+            let paints = tool == PointerTool::Scalp && !navigates;
             let edited = (self.panels.scalp.tool, paints, &mut project.body.scalp);
             free &= !overlay::scalp::edit(ui, response, view, head, skull, edited);
         }
@@ -96,7 +104,8 @@ impl Window {
         project: &mut Project,
     ) -> bool {
         let layer = self.panels.layers.selected.and_then(|id| project.hair.stack.layer_mut(id));
-        let Some(layer) = layer.filter(|_| self.tools.active == PointerTool::Mask) else {
+        let paints = self.tools.active == PointerTool::Mask && !self.tools.navigates;
+        let Some(layer) = layer.filter(|_| paints) else {
             self.tools.mask_stroke.end();
             return false;
         };

@@ -201,6 +201,36 @@ mod tests {
     }
 
     #[test]
+    fn an_interrupted_film_survives_a_recording_of_the_same_name_that_is_cancelled() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("dance.mp4");
+        let files = ["dance.mp4.partial", "dance.mp4.partial.tables"].map(|name| folder.path().join(name));
+        for path in &files {
+            fs::write(path, b"left by a crash").unwrap();
+        }
+        let settings = FilmSettings { width: SIDE, height: SIDE, fps: 30.0, quality: FilmQuality::High };
+        let record = || {
+            let mut writer = FilmWriter::create(&film, settings).unwrap();
+            (0..3).for_each(|frame| writer.push(&picture(frame)).unwrap());
+            writer
+        };
+        drop(record());
+        wait_for(|| fs::read_dir(folder.path()).unwrap().count() == 2);
+        assert!(files.iter().all(|path| fs::read(path).unwrap() == b"left by a crash"));
+        // A crash of the second recording leaves both: the older one comes back when the newer one is gone.
+        for (path, aside) in files.iter().zip(["dance.mp4.partial-before", "dance.mp4.partial.tables-before"])
+        {
+            fs::rename(path, folder.path().join(aside)).unwrap();
+        }
+        assert!(is_unfinished(&film));
+        assert_eq!(keep_unfinished(&film).unwrap(), None, "nothing that plays");
+        assert!(files.iter().all(|path| path.exists()));
+        // Control: one that ends well replaces it.
+        record().finish().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
     fn a_film_without_tables_or_with_damaged_ones_is_not_kept_and_can_be_discarded() {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("dance.mp4");

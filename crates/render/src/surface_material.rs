@@ -32,7 +32,7 @@ pub(crate) const UNLIT: u32 = 1;
 /// The model of a drawing.
 pub(crate) const TOON: u32 = 2;
 
-/// A material. Twin of `SurfaceMaterial` in `surface_materials.wgsl`.
+/// A material. Twin of `SurfaceMaterial` in `material_shading.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SurfaceMaterial {

@@ -44,11 +44,6 @@ impl GuideDevice {
         }
     }
 
-    /// The kernels, for another device that advances other guides.
-    pub fn kernels(&self) -> &Arc<GuideKernels> {
-        &self.kernels
-    }
-
     /// Whether the graphics device was lost. It then advances nothing any more.
     pub fn is_lost(&self) -> bool {
         self.is_lost

@@ -44,15 +44,12 @@ fn groups(methods: &[MethodReport]) -> Vec<Vec<Offer<'_>>> {
         let of = |text: &String| text.clone();
         [of(&method.backend), of(&method.adapter), of(&method.draw), of(&method.transparency)]
     };
-    let mut keys: Vec<_> = methods.iter().map(key).collect();
-    keys.dedup();
-    let mut known = Vec::new();
-    keys.retain(|key| {
-        !known.contains(key) && {
-            known.push(key.clone());
-            true
+    let mut keys = Vec::new();
+    for key in methods.iter().map(key) {
+        if !keys.contains(&key) {
+            keys.push(key);
         }
-    });
+    }
     let of = |wanted: &[String; 4]| {
         let same = methods.iter().filter(|method| key(method) == *wanted);
         same.filter_map(Offer::of).collect()

@@ -9,7 +9,6 @@ use lovelock_session::snapshot::FrameSnapshot;
 
 use super::circle::{self, Look};
 use super::strokes;
-use crate::window::keymap::Keymap;
 use crate::window::overlay::View;
 use crate::window::overlay::head::Head;
 use crate::window::{Window, notices, theme};
@@ -68,7 +67,7 @@ impl Window {
             circle::paint(ui, view, snapshot, &settings, place, look);
         }
         let begins = pressed
-            && !Keymap::of(ui.ctx()).preset().keeps_from_tools(modifiers)
+            && !self.tools.navigates
             && response.contains_pointer()
             && resizing.is_none()
             && self.panels.brushes.held.is_none();

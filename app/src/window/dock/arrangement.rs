@@ -213,7 +213,7 @@ impl Arrangement {
         self.forget_empty_second();
     }
 
-    fn forget_empty_second(&mut self) {
+    pub(super) fn forget_empty_second(&mut self) {
         self.second.take_if(|tree| tree.root.is_none() || panes(tree).next().is_none());
     }
 }

@@ -9,7 +9,7 @@ use super::Arrangement;
 use crate::window::command::Command;
 use crate::window::control;
 use crate::window::gesture::Gestures;
-use crate::window::shelf::{Panels, Shelf};
+use crate::window::shelf::Shelf;
 
 /// Whether and where a window was opened.
 #[derive(Clone, Copy, Default)]
@@ -96,7 +96,7 @@ pub(crate) fn second_window(
         arrangement.close_second();
     }
     // A tab may have been closed.
-    arrangement.forget_unknown(Panels::usual());
+    arrangement.forget_empty_second();
     commands
 }
 

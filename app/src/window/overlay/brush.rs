@@ -8,7 +8,6 @@ use lovelock_style::{BrushMode, HeadBox, Layer, Mask, MaskBrush};
 
 use super::View;
 use super::head::Head;
-use crate::window::keymap::Keymap;
 use crate::window::theme;
 
 /// Hair within this distance of the pointer is under it, points.
@@ -111,8 +110,7 @@ impl Stroke {
             show(ui, view, head, brush, (*at, spot), mode);
         }
         let mut painted = Painted::default();
-        let navigates = Keymap::of(ui.ctx()).preset().keeps_from_tools(modifiers);
-        if pressed && !navigates && response.contains_pointer() && under.is_some() {
+        if pressed && response.contains_pointer() && under.is_some() {
             let [left, mask] = [layer.mask.clone(), layer.mask.clone()];
             self.active = Some(Active { layer: layer.id, last: None, left, mask, acts: false, mode });
             painted.begins = true;

@@ -2,9 +2,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use egui::Ui;
 use lovelock_base::clock::Stopwatch;
+use lovelock_session::render_thread::Adapter;
 
 use crate::failure;
 use crate::window::Window;
@@ -28,12 +30,15 @@ pub(super) struct Failures {
     /// Passes that failed one after another.
     in_row: u32,
     fails: Option<(Stopwatch, f64)>,
+    /// The device that reports name.
+    adapter: Option<Arc<Adapter>>,
 }
 
 impl Failures {
     pub(super) fn of_user() -> Self {
         let secs = std::env::var(FAIL).ok().and_then(|secs| secs.parse().ok());
-        Self { folder: failure::folder(), in_row: 0, fails: secs.map(|secs| (Stopwatch::start(), secs)) }
+        let fails = secs.map(|secs| (Stopwatch::start(), secs));
+        Self { folder: failure::folder(), fails, ..Self::default() }
     }
 
     /// Whether the window closes because it fails again and again.
@@ -111,7 +116,10 @@ impl Window {
     /// Says what failed since the last pass.
     pub(super) fn tell_failures(&mut self) {
         let adapter = self.session.painter().adapter();
-        if let Some(adapter) = adapter {
+        if let Some(adapter) = adapter
+            && self.safety.failures.adapter.as_ref().is_none_or(|noted| !Arc::ptr_eq(noted, &adapter))
+        {
+            self.safety.failures.adapter = Some(Arc::clone(&adapter));
             failure::note_adapter(&format!("{} ({})", adapter.name, adapter.backend_label()));
         }
         if self.safety.journal.is_none() {

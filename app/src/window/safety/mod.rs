@@ -191,10 +191,10 @@ impl Window {
     /// Remembers what the user has picked for this project, and for a take that was recorded from it.
     fn remember_picked(&mut self) {
         let (access, take) = (self.session.access(), &self.session.saved_take);
-        let path = self.document.path().map(Path::to_owned);
+        let path = self.document.path();
         let (known_access, known_take, known_path) = &self.safety.remembered;
         // Saved under another name in the same folder, the access stays the same.
-        if (access, take, &path) == (known_access, known_take, known_path) {
+        if (access, take, path) == (known_access, known_take, known_path.as_deref()) {
             return;
         }
         let made = self.document.path().into_iter().chain(take.as_deref());
@@ -206,7 +206,7 @@ impl Window {
             let files = project.files().into_iter().map(|(_, file)| file);
             self.safety.grants.remember(made, files.chain(&methods), access);
         }
-        self.safety.remembered = (access.clone(), take.clone(), path);
+        self.safety.remembered = (access.clone(), take.clone(), path.map(Path::to_owned));
     }
 
     /// Lets the project or take at `path` read what the user picked for it on an earlier day.

@@ -36,6 +36,9 @@ const RPM: Packager = Packager { name: "cargo-generate-rpm", version: "0.21.1" }
 /// Makes the packages and prints their paths.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     system::prepare()?;
+    if arguments.tries {
+        system::prepare_trial()?;
+    }
     let out = tool::root().join(&arguments.out);
     fs::create_dir_all(&out).with_context(|| format!("--out {}: could not be created", out.display()))?;
     write_pages(&tool::target().join("release").join("pages"))?;

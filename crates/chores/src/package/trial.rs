@@ -24,7 +24,7 @@ pub(super) fn run(deb: &Path) -> anyhow::Result<()> {
         .arg(&root)
         .stdout(Stdio::null())
         .status()
-        .context("--try: could not start debootstrap; must be installed")?;
+        .context("--try: could not start debootstrap")?;
     ensure!(started.success(), "--try: debootstrap failed ({started}); must be run as root");
     // The registry may need what this machine's apt is told. Its sources replace those of debootstrap.
     if fs::read_dir("/etc/apt/sources.list.d").is_ok_and(|mut entries| entries.next().is_some()) {

@@ -18,6 +18,7 @@ pub use folder::{Journals, Unsaved};
 pub use owner::Owner;
 pub use writer::{Event, Picture};
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -41,7 +42,7 @@ pub struct Journal {
     to: Option<SyncSender<Message>>,
     thread: Option<JoinHandle<()>>,
     events: Receiver<Event>,
-    sent: Option<(Box<Marked>, Stopwatch)>,
+    sent: Option<(Arc<Marked>, Stopwatch)>,
 }
 
 impl Journal {
@@ -79,8 +80,8 @@ impl Journal {
         }
         let project =
             document.path().map(|path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
-        let marked = Box::new(Marked { history: document.history().mark(), project });
-        match self.to.as_ref()?.try_send(Message::Mark(marked.clone())) {
+        let marked = Arc::new(Marked { history: document.history().mark(), project });
+        match self.to.as_ref()?.try_send(Message::Mark(Arc::clone(&marked))) {
             Ok(()) => {
                 self.sent = Some((marked, Stopwatch::start()));
                 None

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender};
 use std::time::Duration;
 
@@ -32,8 +33,7 @@ pub(super) struct Marked {
 
 impl Marked {
     fn is_modified(&self) -> bool {
-        !std::sync::Arc::ptr_eq(&self.history.present, &self.history.saved)
-            && self.history.present != self.history.saved
+        !Arc::ptr_eq(&self.history.present, &self.history.saved) && self.history.present != self.history.saved
     }
 }
 
@@ -50,7 +50,7 @@ pub struct Picture {
 
 /// What the thread is told.
 pub(super) enum Message {
-    Mark(Box<Marked>),
+    Mark(Arc<Marked>),
     Picture(Picture),
     /// Remove it once the changes are in the new journal.
     Replaces(Box<Unsaved>),
@@ -106,7 +106,7 @@ pub(super) struct Writer {
     slot: Option<Slot>,
     /// A file of this program that could not be written any further. What is in it stays until another one has all.
     broken: Option<Slot>,
-    marked: Option<Box<Marked>>,
+    marked: Option<Arc<Marked>>,
     replaced: Vec<Unsaved>,
     /// The number of those whose changes are in the newest mark.
     covered: usize,

@@ -27,9 +27,60 @@ const EVERY_SECS: f64 = 1.0;
 
 /// `NAME.mp4.partial.tables` beside `NAME.mp4`.
 fn tables_path(film: &Path) -> PathBuf {
-    let mut name = film.file_name().unwrap_or_default().to_owned();
-    name.push(".partial.tables");
-    film.with_file_name(name)
+    with_suffix(film, ".partial.tables")
+}
+
+fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(suffix);
+    path.with_file_name(name)
+}
+
+/// What an interrupted recording left, set aside while the same film is recorded again: a recording that is cancelled or fails must
+/// not cost what could be kept. Dropped, it is put back.
+pub(super) struct Before {
+    /// The files of the interrupted recording.
+    left: [PathBuf; 2],
+}
+
+impl Before {
+    /// Sets aside what was left of the film at `film`, if anything was. What another program is writing stays where it is.
+    pub(super) fn set_aside(film: &Path) -> Self {
+        let left = [partial_path(film), tables_path(film)];
+        // A claim would create a file that is missing.
+        if left[0].exists() && claim(&left[0]).is_ok() {
+            for path in &left {
+                let _ = fs::rename(path, before_path(path));
+            }
+        }
+        Self { left }
+    }
+
+    /// Removes it: the film is complete.
+    pub(super) fn done(self) {
+        for path in &self.left {
+            let _ = fs::remove_file(before_path(path));
+        }
+    }
+}
+
+impl Drop for Before {
+    fn drop(&mut self) {
+        put_back(&self.left);
+    }
+}
+
+fn before_path(path: &Path) -> PathBuf {
+    with_suffix(path, "-before")
+}
+
+/// Gives what was set aside its names back, unless a newer recording has left something under them.
+fn put_back(left: &[PathBuf; 2]) {
+    if before_path(&left[0]).exists() && !left[0].exists() {
+        for path in left {
+            let _ = fs::rename(before_path(path), path);
+        }
+    }
 }
 
 /// The tables of a film that is being written. Their file is removed when it is dropped.
@@ -97,6 +148,7 @@ fn read(film: &Path) -> Option<Tables> {
 /// If another program writes it, or it cannot be written.
 pub fn keep_unfinished_film(film: &Path) -> Result<Option<(PathBuf, FilmInfo)>, RecordError> {
     let partial = partial_path(film);
+    put_back(&[partial.clone(), tables_path(film)]);
     let failed = |error| RecordError::io(film, "keep the unfinished film", error);
     let Some(tables) = read(film).filter(|_| partial.exists()) else { return Ok(None) };
     let mut file = claim(&partial).map_err(failed)?;
@@ -121,7 +173,8 @@ pub fn keep_unfinished_film(film: &Path) -> Result<Option<(PathBuf, FilmInfo)>, 
 
 /// Whether an interrupted recording to `film` left something.
 pub(crate) fn is_left(film: &Path) -> bool {
-    partial_path(film).exists()
+    let partial = partial_path(film);
+    partial.exists() || before_path(&partial).exists()
 }
 
 /// Removes what an interrupted recording to `film` left.
@@ -134,6 +187,8 @@ pub(crate) fn discard(film: &Path) -> io::Result<()> {
         let _lock = claim(&partial)?;
         fs::remove_file(&partial)?;
     }
-    let _ = fs::remove_file(tables_path(film));
+    for path in [before_path(&partial), tables_path(film), before_path(&tables_path(film))] {
+        let _ = fs::remove_file(path);
+    }
     Ok(())
 }

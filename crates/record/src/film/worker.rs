@@ -1,7 +1,7 @@
 //! The thread that encodes frames and writes them.
 
 use super::encoder::FrameEncoder;
-use super::tables::TablesFile;
+use super::tables::{Before, TablesFile};
 use super::{FilmReport, FilmSettings, give_back};
 use crate::dither::Dither;
 use crate::mp4::{Mp4Writer, SoundTrack, Track};
@@ -31,6 +31,8 @@ pub(super) struct Film {
     tables: TablesFile,
     sound: Option<OpusEncoding>,
     frames: u64,
+    /// Dropped last, when the files of this recording are gone.
+    before: Before,
 }
 
 impl Film {
@@ -47,9 +49,10 @@ impl Film {
             ticks_per_second,
             ticks_per_frame,
         };
+        let before = Before::set_aside(path);
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
         let tables = TablesFile::new(path);
-        Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0 })
+        Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0, before })
     }
 
     /// Works until [`Job::Finish`] (returns the report), until the channel closes (returns `None`), or until an error.
@@ -116,7 +119,8 @@ impl Film {
 
     fn finish(mut self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
         self.add_sound()?;
-        let Self { path, rate, writer, frames, .. } = self;
+        // In this order: what was set aside is dropped after the files of this recording.
+        let Self { before, tables: _tables, path, rate, writer, frames, .. } = self;
         if frames == 0 {
             return Err(RecordError::request(format!("{}: a film needs at least one frame", path.display())));
         }
@@ -124,6 +128,7 @@ impl Film {
             .finish(encoder.config())
             .map_err(|error| RecordError::io(&path, "finish the film", error))?;
         file.commit(true).map_err(|error| RecordError::io(&path, "finish the film", error))?;
+        before.done();
         Ok(FilmReport { path, frames, bytes, duration_secs: frames as f64 / rate.as_f64() })
     }
 

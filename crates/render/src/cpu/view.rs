@@ -4,10 +4,11 @@
 
 use glam::{Mat4, Vec2, Vec3};
 use lovelock_appearance::fibre::FibreTables;
+use lovelock_groom::HairLook;
 use lovelock_shadow::ColumnMap;
 
 use super::body_depth::DepthMap;
-use super::math::{max, min, most, three};
+use super::math::{exp, max, min, most, pow, three};
 use super::standing::{StandingLight, light_behind};
 use crate::MAX_LIGHTS;
 use crate::ambient::AmbientGrid;
@@ -35,6 +36,8 @@ pub(super) struct View<'a> {
     pub shading: ShadingView<'a>,
     /// The light from all directions on surfaces: [`FrameUniform::surround`] as plain numbers, so that loops over them vectorise.
     surround: [[f32; 3]; 9],
+    /// The colour of skin where hair has its roots.
+    pub root: [f32; 3],
 }
 
 /// How strands are shaded, with what that needs: see [`lovelock_groom::HairShading`].
@@ -112,7 +115,11 @@ impl<'a> View<'a> {
             .collect();
         let surround = uniform.surround.map(|of| [of.x, of.y, of.z]);
         let (surface_disc, wide_disc, strand_disc) = (disc(), disc(), disc());
-        Self { uniform, lights, surface_disc, wide_disc, strand_disc, grid, shading, surround }
+        let root = uniform.root_absorption.to_array().map(|absorption| {
+            let stretched = pow(max(absorption, 0.0), HairLook::STRETCH);
+            0.3 * (exp(-HairLook::BODY_PATH * stretched) + HairLook::SURFACE_SHARE)
+        });
+        Self { uniform, lights, surface_disc, wide_disc, strand_disc, grid, shading, surround, root }
     }
 
     /// The taps of the soft shadow of a light on the body.

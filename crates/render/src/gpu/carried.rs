@@ -73,19 +73,13 @@ impl CarriedBuffers {
         };
         own.write(gpu, commands, input, height)?;
         self.offset = of_hair.make_room(gpu, own.drawn().point_count as usize);
-        self.join(gpu, commands, input, (of_hair, &own));
+        self.join(gpu, input, (of_hair, &own));
         self.hair = Some(own);
         Ok(())
     }
 
     /// Puts the segments of both into one buffer, if they have changed.
-    fn join(
-        &mut self,
-        gpu: &Gpu,
-        commands: &mut Commands,
-        input: &FrameInput,
-        (of_hair, own): (&HairBuffers, &HairBuffers),
-    ) {
+    fn join(&mut self, gpu: &Gpu, input: &FrameInput, (of_hair, own): (&HairBuffers, &HairBuffers)) {
         let strands = of_hair.drawn();
         let is_known = self.joined.as_ref().is_some_and(|joined| {
             joined.hair_segments == strands.segment_count
@@ -99,15 +93,8 @@ impl CarriedBuffers {
         let hair_bytes = 4 * u64::from(strands.segment_count);
         let behind: Vec<u32> = own.segment_list().iter().map(|first| first + strands.point_count).collect();
         self.segments.reserve(gpu, strands.segment_count as usize + behind.len());
-        if hair_bytes > 0 {
-            commands.encoder().copy_buffer_to_buffer(
-                strands.segments,
-                0,
-                self.segments.raw(),
-                0,
-                Some(hair_bytes),
-            );
-        }
+        // Not by a command, which a frame that fails would drop.
+        gpu.upload(self.segments.raw(), 0, &of_hair.segment_list()[..strands.segment_count as usize]);
         gpu.upload(self.segments.raw(), hair_bytes, &behind);
         self.joined = Some(Joined {
             of_hair: Arc::downgrade(of_hair.segment_list()),

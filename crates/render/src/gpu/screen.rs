@@ -178,6 +178,11 @@ impl Screen {
         input: &ScreenInput,
     ) -> Result<(), GpuError> {
         let ScreenInput { targets, area, figure, picture, .. } = *input;
+        // First, because a frame that fails encodes nothing and must not be remembered.
+        let has_materials = input.materials.is_some();
+        let lit_kernels = (0..LISTS)
+            .map(|list| lit.picture_lit(gpu, list, has_materials))
+            .collect::<Result<Vec<_>, _>>()?;
         if let Some(picture) = picture.filter(|picture| picture.number != self.picture_number) {
             self.picture.write(gpu, &picture.pixels);
             self.picture_number = picture.number;
@@ -225,13 +230,9 @@ impl Screen {
                 kernel.run(pass, group, *threads);
             }
         });
-        let kernels = (0..LISTS).map(|list| {
-            let kernel = lit.picture_lit(gpu, list, input.materials.is_some())?;
-            Ok((kernel, kernel.bind(gpu, &own)))
-        });
-        let kernels = kernels.collect::<Result<Vec<_>, GpuError>>()?;
+        let bound = lit_kernels.iter().map(|kernel| (kernel, kernel.bind(gpu, &own))).collect::<Vec<_>>();
         commands.compute("draw/lit", |pass| {
-            for (list, (kernel, group)) in kernels.iter().enumerate() {
+            for (list, (kernel, group)) in bound.iter().enumerate() {
                 self.run_list(pass, kernel, group, list);
             }
         });

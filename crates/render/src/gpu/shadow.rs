@@ -7,8 +7,8 @@ use std::fmt;
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
-    Bounds, GpuColumns, GpuList, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
-    gpu_shadow,
+    Bounds, GpuColumns, GpuList, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, MapKind, SUM_WORDS,
+    ShadowMethod, gpu_shadow,
 };
 
 use super::hair::HairBuffers;
@@ -115,6 +115,8 @@ impl GpuShadowStage {
             let samples = frame.samples(anchor);
             let sample_bounds: Vec<_> = match &samples[..] {
                 [_] => Vec::new(),
+                // Rays sample the area themselves.
+                _ if method.map_kind() == MapKind::Rays => Vec::new(),
                 all => all.iter().map(|&light| hair.bounds(input, light, anchor).0).collect(),
             };
             let from = GpuShadowInput {

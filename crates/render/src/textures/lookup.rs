@@ -31,7 +31,7 @@ pub(crate) fn share(of: &[f32], vertex: usize) -> f32 {
 }
 
 /// The level of detail where the coordinates change by `dx` and `dy` from pixel to pixel, on an image of `size` texels: the logarithm
-/// to base 2 of the longer step in texels. Twin of `level_of_detail` in `surface_textures.wgsl`.
+/// to base 2 of the longer step in texels. Twin of `level_of_detail` in `material_draw.wgsl`.
 pub(crate) fn level_of_detail(dx: Vec2, dy: Vec2, size: [u32; 2]) -> f32 {
     let size = Vec2::new(size[0] as f32, size[1] as f32);
     let longest = (dx * size).length_squared().max((dy * size).length_squared());

@@ -285,6 +285,11 @@ fn a_method_that_lost_the_device_is_drawn_again_once_it_is_saved() {
     assert!(!user.works() && user.problem().is_some_and(|problem| problem.contains("was lost while")));
     change(dir.path(), &[("record_add(texel, ", "record_add(texel, 2u * ")]);
     assert!(user.follow() && user.works() && user.problem().is_none());
+    // With a version before it, that one is drawn.
+    change(dir.path(), &[("2u * ", "3u * ")]);
+    assert!(user.follow() && user.problem().is_none());
+    user.distrust();
+    assert!(user.works() && user.problem().is_some());
 }
 
 #[test]

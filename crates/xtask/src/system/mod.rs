@@ -5,7 +5,7 @@ mod plan;
 mod probe;
 
 use anyhow::bail;
-use needs::{BROWSER, COUNT, FILM, INTERCHANGE, NEEDS, Need, SCREEN};
+use needs::{BROWSER, COUNT, FILM, INTERCHANGE, NEEDS, Need, SCREEN, TRIAL};
 use plan::{Plan, Rights, Step, plan};
 use probe::ThisMachine;
 use std::process::Command;
@@ -52,6 +52,14 @@ pub fn prepare_screen() -> anyhow::Result<()> {
 /// If ffmpeg is missing and cannot be installed.
 pub fn prepare_film() -> anyhow::Result<()> {
     get(&FILM)
+}
+
+/// Installs the system packages for `cargo xtask package --try`.
+///
+/// # Errors
+/// If debootstrap is missing and cannot be installed.
+pub fn prepare_trial() -> anyhow::Result<()> {
+    get(&TRIAL)
 }
 
 /// Installs the system packages for `cargo xtask count`.

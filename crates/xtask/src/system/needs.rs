@@ -91,6 +91,14 @@ pub(crate) const FILM: [Need; 1] = [Need {
     packages: ["ffmpeg", "ffmpeg-free", "ffmpeg", "ffmpeg", "ffmpeg"],
 }];
 
+/// The additional requirement of `cargo xtask package --try`.
+pub(crate) const TRIAL: [Need; 1] = [Need {
+    what: "debootstrap",
+    test: Test::Program("debootstrap"),
+    to_build: true,
+    packages: ["debootstrap", "debootstrap", "debootstrap", "debootstrap", "debootstrap"],
+}];
+
 /// The additional requirement of `cargo xtask count`.
 pub(crate) const COUNT: [Need; 1] = [Need {
     what: "valgrind",

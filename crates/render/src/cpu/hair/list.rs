@@ -166,6 +166,9 @@ impl Fragments {
     /// Groups the fragments by pixel and calls `visit` for each pixel that has any, with its index in the planes and its fragments in
     /// the order of their segments.
     pub fn each_pixel(&mut self, mut visit: impl FnMut(usize, &mut [Fragment])) {
+        if self.found.is_empty() {
+            return;
+        }
         self.by_pixel.resize(self.found.len(), Fragment::default());
         let by_pixel = &mut self.by_pixel;
         place_by_pixel(&self.found, &mut self.starts, |slot, _, fragment| by_pixel[slot] = *fragment);
@@ -174,6 +177,9 @@ impl Fragments {
 
     /// As [`Fragments::each_pixel`], with the fragments of each pixel in the order of [`nearest_first`].
     pub fn each_pixel_nearest_first(&mut self, mut visit: impl FnMut(usize, &[Fragment])) {
+        if self.found.is_empty() {
+            return;
+        }
         self.keys.resize(self.found.len(), 0);
         // Eight bytes per fragment are placed and sorted, and a fragment is copied once.
         let Self { found, starts, by_pixel, keys } = self;

@@ -5,7 +5,7 @@
 use glam::{Affine2, Vec2};
 use lovelock_motion::Wrap;
 
-use crate::cpu::math::{clamp, floor, log2, max, min};
+use crate::cpu::math::{clamp, floor, log2, max, min, most};
 use crate::textures::{Chain, Content, Sampling};
 
 /// Texture coordinates of places, and how they change from pixel to pixel.
@@ -49,7 +49,7 @@ impl Chain {
             part[lane] = lod - whole;
             finer[lane] = whole as usize;
         }
-        let is_far = max(max(most_of(&uv[0]), most_of(&uv[1])), 0.0) > FARTHEST;
+        let is_far = max(most_of(&uv[0]), most_of(&uv[1])) > FARTHEST;
         if sampling.is_nearest || is_far {
             let mut out = [[0.0; N]; 4];
             for lane in 0..count.min(N) {
@@ -175,11 +175,12 @@ fn moved<const N: usize>(transform: &Affine2, at: &[[f32; N]; 2]) -> [[f32; N]; 
 /// The largest size of numbers; infinity for NaN.
 #[inline(always)]
 fn most_of<const N: usize>(of: &[f32; N]) -> f32 {
-    let mut most = 0.0;
-    for value in of {
-        most = if value.abs() <= f32::MAX { max(value.abs(), most) } else { f32::INFINITY };
+    let mut sizes = [0.0; N];
+    for lane in 0..N {
+        let size = of[lane].abs();
+        sizes[lane] = if size <= f32::MAX { size } else { f32::INFINITY };
     }
-    most
+    most(&sizes)
 }
 
 /// The texels around coordinates of an axis of images of `size` texels, for coordinates within [`FARTHEST`].

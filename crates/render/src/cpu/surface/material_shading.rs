@@ -1,13 +1,11 @@
-//! Shading of surfaces with materials, several pixels at a time: the twin of `surface_materials.wgsl`.
+//! Shading of surfaces with materials, several pixels at a time: the twin of `material_shading.wgsl`.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use lovelock_groom::HairLook;
-
 use super::reflectance::{bumped, fresnel, lobe, reflected_share, rim, spread, toon_ramp};
-use super::shading::{LANES, light_inside};
+use super::shading::{LANES, light_inside, painted};
 use crate::MAX_LIGHTS;
-use crate::cpu::math::{exp, max, mix, most, pow, saturate, smoothstep, three};
+use crate::cpu::math::{max, mix, most, pow, saturate, three};
 use crate::cpu::view::View;
 use crate::surface_material::{LEAST_ROUGHNESS, SurfaceMaterial, TOON, UNLIT};
 
@@ -107,7 +105,7 @@ fn dot(a: &[Lane; 3], b: &[Lane; 3], lane: usize) -> f32 {
 #[inline(always)]
 pub(super) fn shade_materials(view: &View, batch: &mut MaterialBatch) {
     let uniform = view.uniform;
-    paint_scalp(view, batch);
+    batch.albedo = painted(view, &batch.albedo, &batch.scalp);
     let mut toward_eye = [[0.0; LANES]; 3];
     for (c, eye) in uniform.eye.to_array().into_iter().enumerate() {
         for lane in 0..LANES {
@@ -235,23 +233,6 @@ pub(super) fn shade_materials(view: &View, batch: &mut MaterialBatch) {
                 + (matt + mirrored[c][lane] * glossy[lane]) * inside
                 + batch.emissive[c][lane]
                 + drawn;
-        }
-    }
-}
-
-/// Skin under hair has the colour of the roots, so that gaps do not look bald.
-#[inline(always)]
-fn paint_scalp(view: &View, batch: &mut MaterialBatch) {
-    let absorption = view.uniform.root_absorption.to_array();
-    let mut paint = [0.0; LANES];
-    for lane in 0..LANES {
-        paint[lane] = 0.88 * smoothstep(0.15, 0.75, batch.scalp[lane]);
-    }
-    for c in 0..3 {
-        let stretched = pow(max(absorption[c], 0.0), HairLook::STRETCH);
-        let root = 0.3 * (exp(-HairLook::BODY_PATH * stretched) + HairLook::SURFACE_SHARE);
-        for lane in 0..LANES {
-            batch.albedo[c][lane] = mix(batch.albedo[c][lane], root, paint[lane]);
         }
     }
 }

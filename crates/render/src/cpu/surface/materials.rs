@@ -195,12 +195,12 @@ impl CutTriangle<'_> {
     }
 }
 
-/// The opacity from which a blended surface blocks light. Twin of the constant in `surface_textures.wgsl`.
+/// The opacity from which a blended surface blocks light. Twin of the constant in `material_depth.wgsl`.
 const BLOCKING: f32 = 0.5;
 
 /// The opacity above which a blended surface is seen in sample `k` of a pixel: all 64 thresholds stand in each square of 4 by 4 pixels
 /// (Bayer 1973), so that a surface of an even opacity covers just that share of it. Surfaces of several materials have other orders, so
-/// that one does not hide always the same samples as the other. Twin of the function in `surface_textures.wgsl`.
+/// that one does not hide always the same samples as the other. Twin of the function in `material_surface.wgsl`.
 fn threshold([x, y]: [u32; 2], k: usize, material: usize) -> f32 {
     let shift = material as u32;
     let (x, y) = ((x + shift) & 3, (y + (shift >> 2) + shift) & 3);

@@ -1,4 +1,4 @@
-//! How surfaces with materials reflect light: the twin of the functions of `surface_materials.wgsl`.
+//! How surfaces with materials reflect light: the twin of the functions of `material_shading.wgsl`.
 //!
 //! No surface reflects more light than arrives: diffuse light gets what highlights leave over, and light that spreads below the surface
 //! past the edge of shade is taken from the rest.

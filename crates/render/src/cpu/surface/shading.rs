@@ -3,9 +3,8 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use lovelock_base::simd_versions;
-use lovelock_groom::HairLook;
 
-use crate::cpu::math::{exp, exp2, log2, max, mix, most, pow, saturate, smoothstep, three};
+use crate::cpu::math::{exp2, log2, max, mix, most, saturate, smoothstep, three};
 use crate::cpu::view::View;
 
 /// Height over the skin at which light from all directions is looked up, metres: hair that lies on skin shadows it.
@@ -57,25 +56,28 @@ pub(super) fn light_inside(
     inside
 }
 
+/// The colours of skin: under hair that of the roots, so that gaps do not look bald.
+#[inline(always)]
+pub(super) fn painted(view: &View, albedo: &[[f32; LANES]; 3], scalp: &[f32; LANES]) -> [[f32; LANES]; 3] {
+    let mut paint = [0.0; LANES];
+    for lane in 0..LANES {
+        paint[lane] = 0.88 * smoothstep(0.15, 0.75, scalp[lane]);
+    }
+    let mut out = [[0.0; LANES]; 3];
+    for c in 0..3 {
+        for lane in 0..LANES {
+            out[c][lane] = mix(albedo[c][lane], view.root[c], paint[lane]);
+        }
+    }
+    out
+}
+
 /// Shades the positions of `batch`.
 #[inline(always)]
 fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     let uniform = view.uniform;
     let eye = uniform.eye.to_array();
-    // Skin under hair has the colour of the roots, so that gaps do not look bald.
-    let absorption = uniform.root_absorption.to_array();
-    let mut paint = [0.0; LANES];
-    for lane in 0..LANES {
-        paint[lane] = 0.88 * smoothstep(0.15, 0.75, batch.scalp[lane]);
-    }
-    let mut albedo = [[0.0; LANES]; 3];
-    for c in 0..3 {
-        let stretched = pow(max(absorption[c], 0.0), HairLook::STRETCH);
-        let root = 0.3 * (exp(-HairLook::BODY_PATH * stretched) + HairLook::SURFACE_SHARE);
-        for lane in 0..LANES {
-            albedo[c][lane] = mix(batch.albedo[c][lane], root, paint[lane]);
-        }
-    }
+    let albedo = painted(view, &batch.albedo, &batch.scalp);
     let mut toward_eye = [[0.0; LANES]; 3];
     let mut normal = [[0.0; LANES]; 3];
     let mut eye_length = [0.0; LANES];
