@@ -69,8 +69,8 @@ pub(crate) struct PaneReading {
     pub(crate) pane: usize,
     /// The panes on the screen.
     pub(crate) visible: Vec<usize>,
-    /// Memory of its shadow maps if it is drawn, bytes.
-    pub(crate) shadow_bytes: Option<u64>,
+    /// Memory of its shadow maps if it is drawn, bytes, and the records that are read in a simpler way.
+    pub(crate) maps: Option<(u64, u64)>,
 }
 
 /// What the panels show besides the project.
@@ -97,8 +97,8 @@ pub(crate) struct Readings<'a> {
     pub(crate) is_replaced: &'a dyn Fn(&ColliderEdits, usize) -> bool,
     /// The newest frame of the simulation.
     pub(crate) frame: Option<&'a FrameSnapshot>,
-    /// Memory of the shadow maps of the single image, bytes.
-    pub(crate) shadow_bytes: Option<u64>,
+    /// Memory of the shadow maps of the single image, bytes, and the records that are read in a simpler way.
+    pub(crate) maps: Option<(u64, u64)>,
     /// The times of the stages of the last images.
     pub(crate) stages: &'a StageHistory,
     /// The times of the passes of the last images.

@@ -43,7 +43,10 @@ impl Window {
                 .collect(),
             is_replaced: &is_replaced,
             frame: session_now.frame.as_deref(),
-            shadow_bytes: session_now.painted.as_ref().map(|painted| painted.stats.shadow_bytes),
+            maps: session_now
+                .painted
+                .as_ref()
+                .map(|painted| (painted.stats.shadow_bytes, painted.stats.shadow_fallbacks)),
             stages: &session_now.stages,
             passes: &session_now.passes,
             facts: &facts,

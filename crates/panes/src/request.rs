@@ -129,6 +129,8 @@ pub struct LivePane {
     pub times: LiveTimes,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
+    /// Records of the shadow maps that are read in a simpler way.
+    pub shadow_fallbacks: u64,
     /// Bytes of the rendered strands and of the pixel buffers.
     pub draw_bytes: u64,
     /// The device that rendered it.

@@ -283,6 +283,7 @@ mod tests {
             time_secs: 0.0,
             times: LiveTimes::default(),
             shadow_bytes: 1 << 20,
+            shadow_fallbacks: 0,
             draw_bytes: 0,
             adapter: Adapter { name: String::new(), backend: Backend::Cpu, software: true },
             error: LiveError::NotMeasured,

@@ -145,6 +145,8 @@ pub struct FrameStats {
     pub segments: u64,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
+    /// Records of the shadow maps that cannot be read as the method is defined, and are read in a simpler way.
+    pub shadow_fallbacks: u64,
     /// Bytes of the shaded strands and of the buffers that blend them per pixel.
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.

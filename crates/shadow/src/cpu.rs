@@ -81,8 +81,18 @@ pub struct ShadowReport {
     /// 0 if the method has no limit.
     pub needed_bytes: u64,
     /// Records of the map that cannot be read as the method is defined, and are read in a simpler way: moments of which no distribution
-    /// can be computed. Only the CPU counts them.
+    /// can be computed. On the GPU they are known when the frame has been read, and those of soft lights are of one sample.
     pub fallbacks: u64,
+}
+
+/// What to tell about [`ShadowReport::fallbacks`], if there are any.
+pub fn fallbacks_sentence(fallbacks: u64) -> Option<String> {
+    let texels = if fallbacks == 1 { "1 texel has".to_owned() } else { format!("{fallbacks} texels have") };
+    (fallbacks > 0).then(|| {
+        format!(
+            "{texels} moments that no hair can have; there the hair counts as even. A larger bias avoids it."
+        )
+    })
 }
 
 impl ShadowReport {

@@ -23,7 +23,7 @@ pub mod methods;
 pub use area::LightArea;
 pub use bounds::Bounds;
 pub use converged::{CONVERGED_CHANGE, Converged, MAX_CONVERGED_SAMPLES, converged};
-pub use cpu::{ColumnMap, CpuShadow, ProjectedStrands, ShadowInput, ShadowReport};
+pub use cpu::{ColumnMap, CpuShadow, ProjectedStrands, ShadowInput, ShadowReport, fallbacks_sentence};
 pub use error::ShadowError;
 pub use gpu::{
     GpuColumns, GpuList, GpuProjected, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets,
@@ -39,7 +39,7 @@ pub use methods::density_clustering::{
 };
 pub use methods::exact::{ExactMap, ExactSettings};
 pub use methods::fourier::FourierSettings;
-pub use methods::moments::MomentsSettings;
+pub use methods::moments::{MomentKind, MomentsSettings};
 pub use methods::occupancy_maps::OccupancyMapsSettings;
 pub use methods::opacity_maps::OpacityMapsSettings;
 pub use methods::ray_traced::RayTracedSettings;

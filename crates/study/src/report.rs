@@ -243,6 +243,9 @@ pub struct MethodReport {
     pub times: Vec<TimeSpread>,
     /// Bytes of the shadow maps of all lights.
     pub memory_bytes: Option<u64>,
+    /// Records of the shadow maps that cannot be read as the method is defined, and are read in a simpler way.
+    #[serde(default)]
+    pub fallbacks: u64,
     /// Bytes of pixel buffers and rendered strands.
     pub draw_bytes: Option<u64>,
     /// Errors of transmittance of every frame against the method's own texels; empty for a single frame.

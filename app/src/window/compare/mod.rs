@@ -211,8 +211,10 @@ impl Compare {
     pub(super) fn reading(&self, layout: &CompareLayout, project: &Project) -> PaneReading {
         let pane = self.edited_pane(layout, project);
         let drawn = self.panes.get(pane).and_then(Option::as_ref);
-        let shadow_bytes = drawn.filter(|drawn| drawn.problem.is_none()).map(|drawn| drawn.shadow_bytes);
-        PaneReading { pane, visible: layout.visible(project.compare.panes.len()), shadow_bytes }
+        let maps = drawn
+            .filter(|drawn| drawn.problem.is_none())
+            .map(|drawn| (drawn.shadow_bytes, drawn.shadow_fallbacks));
+        PaneReading { pane, visible: layout.visible(project.compare.panes.len()), maps }
     }
 }
 

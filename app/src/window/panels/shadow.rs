@@ -38,9 +38,11 @@ impl Panel for ShadowPanel {
             setting(ui, "extinction_scale", look, &hair.groom.look);
         }
         of_method(ui, shadow);
-        let memory_bytes = pane.map_or(readings.shadow_bytes, |pane| pane.shadow_bytes);
-        if let Some(bytes) = memory_bytes {
+        if let Some((bytes, fallbacks)) = pane.map_or(readings.maps, |pane| pane.maps) {
             note(ui, format!("{:.1} MiB for the maps of all lights", bytes as f64 / (1024.0 * 1024.0)));
+            if let Some(sentence) = lovelock_shadow::fallbacks_sentence(fallbacks) {
+                note(ui, sentence);
+            }
         }
         if pane.is_some() {
             shared(ui);

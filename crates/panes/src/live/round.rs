@@ -46,6 +46,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 pub(super) fn take_stats(pane: &mut LivePane, stats: &FrameStats) {
     pane.times = LiveTimes::of(stats);
     (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
+    pane.shadow_fallbacks = stats.shadow_fallbacks;
 }
 
 impl Rounds {
@@ -123,6 +124,7 @@ impl Rounds {
             time_secs: snapshot.time_secs,
             times: LiveTimes::default(),
             shadow_bytes: 0,
+            shadow_fallbacks: 0,
             draw_bytes: 0,
             adapter: Adapter { name: String::new(), backend: contender.backend, software: true },
             error: LiveError::NotMeasured,

@@ -447,6 +447,7 @@ impl CpuRenderer {
             kept,
             segments: self.placed.hair_segments() as u64,
             shadow_bytes: self.shadow.bytes,
+            shadow_fallbacks: self.shadow.fallbacks,
             draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
             clusters: self.placed.clusters.hair().map(|hair| ClusterStats::of(&hair)),

@@ -30,6 +30,8 @@ pub(crate) struct ShadowStage {
     pub mean: f32,
     /// Bytes of all maps.
     pub bytes: u64,
+    /// Records of all maps that are read in a simpler way.
+    pub fallbacks: u64,
     /// The times of builds and lookups, added up over lights: the time of the stage, divided in proportion to what each took on its thread.
     pub passes: Vec<PassTime>,
     /// The same of what was kept, when it was last run.
@@ -250,7 +252,9 @@ impl ShadowStage {
             self.packed_ms = stage.ms() - lights_ms;
         }
         self.take_times(lights_ms, packed_anew);
-        self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
+        let reports = || self.lights.iter().map(|light| light.shadow.report());
+        self.bytes = reports().map(|report| report.memory_bytes).sum();
+        self.fallbacks = reports().map(|report| report.fallbacks).sum();
         self.is_whole = true;
         Ok(())
     }

@@ -67,7 +67,7 @@ impl Present {
         encoder.clear_buffer(&self.heads, 0, None);
         for (at, list) in (0..MAX_LISTS as u64).zip(lists) {
             if let Some(list) = list {
-                encoder.copy_buffer_to_buffer(list.buffer, 0, &self.heads, HEAD_BYTES * at, HEAD_BYTES);
+                encoder.copy_buffer_to_buffer(list.buffer, list.at, &self.heads, HEAD_BYTES * at, HEAD_BYTES);
             }
         }
     }

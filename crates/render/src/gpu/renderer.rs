@@ -195,6 +195,7 @@ impl GpuRenderer {
             shadow_ms: of("shadow/"),
             segments: if self.seen.has_strands { u64::from(self.hair.drawn().segment_count) } else { 0 },
             shadow_bytes: self.shadow.memory_bytes(),
+            shadow_fallbacks: self.shadow.fallbacks(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
                 + self.carried.memory_bytes()
@@ -369,7 +370,7 @@ impl GpuRenderer {
         output: Output,
         pixels: u64,
     ) -> Option<wgpu::Buffer> {
-        let image_list = self.eye.list().map(|(buffer, room)| GpuList { buffer, room });
+        let image_list = self.eye.list().map(|(buffer, room)| GpuList { buffer, at: 0, room });
         let lists: Vec<_> = std::iter::once(image_list).chain(self.shadow.lists().map(Some)).collect();
         let present = &self.pipelines.present;
         present.collect(commands.encoder(), &lists);

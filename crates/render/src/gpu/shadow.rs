@@ -257,6 +257,13 @@ impl GpuShadowStage {
         (0..self.lights.count).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
     }
 
+    /// Records of the maps that were read in a simpler way in the last frame whose counts have come back; see
+    /// [`ShadowReport::fallbacks`](lovelock_shadow::ShadowReport::fallbacks).
+    pub fn fallbacks(&self) -> u64 {
+        let Some(shadow) = self.methods.get(&self.method) else { return 0 };
+        (0..self.lights.count).map(|slot| shadow.report(slot).fallbacks).sum()
+    }
+
     /// Words whose total is the sum of the first light's transmittance bytes over strand points.
     pub fn sum(&self) -> &wgpu::Buffer {
         &self.sum

@@ -137,11 +137,13 @@ pub struct GpuColumns {
     pub uv_from_world: Mat4,
 }
 
-/// A list of fragments on the device.
+/// A list of fragments on the device, or another count that comes back with a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuList<'a> {
-    /// Its first two words are its head: the number of fragments modulo 2³², and a multiple of 2¹⁶ below the number, divided by 2¹⁶.
+    /// Holds its head: the number of fragments modulo 2³², and a multiple of 2¹⁶ below the number, divided by 2¹⁶.
     pub buffer: &'a wgpu::Buffer,
+    /// The first byte of the head.
+    pub at: u64,
     /// The number of fragments that it can hold.
     pub room: u64,
 }

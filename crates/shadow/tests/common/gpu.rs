@@ -139,9 +139,9 @@ impl Built {
         let lists = (0..).map_while(|slot| self.shadow.list(slot));
         lists
             .map(|list| {
-                let mut head = [0; 2];
-                read_buffer(self.gpu, list.buffer, &mut head).expect("read back");
-                head
+                let mut words = vec![0; list.at as usize / 4 + 2];
+                read_buffer(self.gpu, list.buffer, &mut words).expect("read back");
+                [words[words.len() - 2], words[words.len() - 1]]
             })
             .collect()
     }

@@ -10,7 +10,7 @@ use glam::Vec3;
 use lovelock_groom::{Preset, Strands};
 use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelSlices};
 use lovelock_shadow::{
-    DepthRange, LineFilter, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow,
+    DepthRange, LineFilter, MomentKind, ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow,
 };
 use lovelock_testkit::suite::sample;
 
@@ -149,7 +149,18 @@ fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
             let (mut short, mut of_map) = (ShadowSettings::default(), ShadowSettings::default());
             short.moments.bits = 16;
             (of_map.moments.depth_range, of_map.moments.overestimation) = (DepthRange::Map, 1.0);
-            TexelFilter::ALL.map(with_filter).into_iter().chain([short, of_map]).collect()
+            let more = [
+                (MomentKind::Power, 6, 32),
+                (MomentKind::Power, 8, 16),
+                (MomentKind::Trigonometric, 4, 16),
+                (MomentKind::Trigonometric, 8, 32),
+            ];
+            let more = more.map(|(kind, count, bits)| {
+                let mut settings = ShadowSettings::default();
+                (settings.moments.kind, settings.moments.count, settings.moments.bits) = (kind, count, bits);
+                settings
+            });
+            TexelFilter::ALL.map(with_filter).into_iter().chain([short, of_map]).chain(more).collect()
         }
         ShadowMethod::VoxelMarch => {
             let with = |resolution, step, jitter| {

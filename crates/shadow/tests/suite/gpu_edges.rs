@@ -7,7 +7,8 @@ use glam::Vec3;
 use lovelock_gpu::{PassTimer, read_buffer, read_texture_rgba8, wgpu};
 use lovelock_groom::Strands;
 use lovelock_shadow::{
-    GpuTargets, LightFrame, SUM_WORDS, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow,
+    GpuTargets, LightFrame, MomentKind, SUM_WORDS, ShadowError, ShadowInput, ShadowMethod, ShadowSettings,
+    cpu_shadow,
 };
 use lovelock_testkit::suite::sample;
 
@@ -383,4 +384,27 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
         "{report:?}"
     );
     assert!(built.look_up(&at).iter().all(|t| *t == 1.0), "lit until it fits");
+}
+
+#[test]
+fn moments_that_no_distribution_has_are_counted_on_the_device() {
+    let Some(gpu) = device() else { return };
+    let hair = hair(30, 2);
+    let mut built = Built::empty(gpu, ShadowMethod::Moments);
+    for (kind, count, bits) in [(MomentKind::Power, 4, 16), (MomentKind::Trigonometric, 8, 32)] {
+        let mut settings = coarse();
+        (settings.moments.kind, settings.moments.count, settings.moments.bits) = (kind, count, bits);
+        let mut counted = |bias: f32| {
+            settings.moments.bias = bias;
+            built.build(0, &input(&hair), &settings).expect("it fits");
+            let mut cpu = cpu_shadow(ShadowMethod::Moments);
+            cpu.build(&input(&hair), &settings).expect("it fits");
+            [built.shadow.report(0).fallbacks, cpu.report().fallbacks]
+        };
+        let (usual, unbiased) = (counted(1.0), counted(0.0));
+        println!("{count} {kind:?}, {bits} bits: {usual:?} with the bias, {unbiased:?} without");
+        // Which of the singular systems count as solvable is a matter of rounding.
+        assert!(usual == [0, 0] && unbiased[0] > 20 && unbiased[1] > 20, "{usual:?}, {unbiased:?}");
+        assert!(unbiased[0].abs_diff(unbiased[1]) <= unbiased[1] / 3, "{unbiased:?}");
+    }
 }

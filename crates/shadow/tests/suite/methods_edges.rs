@@ -6,11 +6,11 @@ use crate::common::{
     EXTINCTION, HEAD, SMOOTH, SplitMix64, Style, grow, set_resolution, strands, texel_methods,
 };
 use glam::Vec3;
-use lovelock_base::settings::Settings;
+use lovelock_base::settings::{Choices, Settings};
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::{VoxelDeposit, VoxelSlices};
 use lovelock_shadow::{
-    ClusterDeviation, ClusterSeeds, DepthRange, LayerGrowth, LightFrame, LineFilter, ShadowError,
+    ClusterDeviation, ClusterSeeds, DepthRange, LayerGrowth, LightFrame, LineFilter, MomentKind, ShadowError,
     ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
 };
 use lovelock_testkit::suite::sample;
@@ -94,6 +94,7 @@ fn hostile(of: u32) -> ShadowSettings {
     (s.fourier.terms, s.fourier.window, s.fourier.depth_range) = (n, true, DepthRange::Map);
     s.adaptive.nodes = n;
     (s.moments.bits, s.moments.bias, s.moments.overestimation) = (n, x, x);
+    (s.moments.count, s.moments.kind) = (n, MomentKind::ALL[of as usize % 2]);
     s.voxel_march.resolution = if n == u32::MAX { 64 } else { n };
     (s.voxel_march.step, s.voxel_march.jitter) = (x, true);
     s.voxel_march.memory_limit_bytes = u64::MAX;
@@ -238,20 +239,22 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
 fn numbers_beyond_their_limits_become_the_nearest() {
     let mut least = ShadowSettings::default();
     (least.adaptive.nodes, least.deep_shadow_maps.nodes, least.fourier.terms) = (0, 0, 0);
+    least.moments.count = 0;
     (least.moments.bits, least.ray_traced.rays, least.voxel_march.resolution) = (0, 0, 0);
     least.voxel_march.step = -1.0;
     let least = least.clamped();
     assert_eq!((least.adaptive.nodes, least.deep_shadow_maps.nodes, least.fourier.terms), (4, 8, 3));
     assert_eq!((least.moments.bits, least.ray_traced.rays, least.voxel_march.resolution), (16, 1, 16));
-    assert_eq!(least.voxel_march.step, 0.25);
+    assert_eq!((least.voxel_march.step, least.moments.count), (0.25, 4));
     let mut most = ShadowSettings::default();
     (most.adaptive.nodes, most.deep_shadow_maps.nodes, most.fourier.terms) = (u32::MAX, u32::MAX, u32::MAX);
+    most.moments.count = u32::MAX;
     (most.moments.bits, most.ray_traced.rays, most.voxel_march.resolution) = (u32::MAX, u32::MAX, u32::MAX);
     most.voxel_march.step = f32::INFINITY;
     let most = most.clamped();
     assert_eq!((most.adaptive.nodes, most.deep_shadow_maps.nodes, most.fourier.terms), (32, 32, 15));
     assert_eq!((most.moments.bits, most.ray_traced.rays, most.voxel_march.resolution), (32, 256, 512));
-    assert!(most.voxel_march.step <= 4.0);
+    assert!(most.voxel_march.step <= 4.0 && most.moments.count == 8);
 }
 
 #[test]
@@ -351,18 +354,25 @@ fn a_map_that_is_built_again_remembers_nothing() {
 #[test]
 fn moments_that_no_distribution_has_are_counted() {
     let hair = strands(&grow(Style { wisps: 20, ..SMOOTH }, 1));
-    let counted = |bits: u32, bias: f32| {
+    let counted = |(kind, count, bits): (MomentKind, u32, u32), bias: f32| {
         let mut settings = ShadowSettings::default();
+        (settings.moments.kind, settings.moments.count) = (kind, count);
         (settings.moments.bits, settings.moments.bias) = (bits, bias);
         let mut map = cpu_shadow(ShadowMethod::Moments);
         map.build(&input(&hair), &settings).expect("fits");
         (map.report().fallbacks, map.report().cells_touched)
     };
-    for bits in [16, 32] {
-        let (usual, unbiased) = (counted(bits, 1.0), counted(bits, 0.0));
-        println!("{bits} bits: {usual:?} with the bias, {unbiased:?} without");
-        // Without the bias, texels with few hairs have no room for rounding.
-        assert!(usual.0 < usual.1 / 100 && unbiased.0 > unbiased.1 / 20, "{bits}: {usual:?}, {unbiased:?}");
+    for kind in [MomentKind::Power, MomentKind::Trigonometric] {
+        for case in [(kind, 4, 16), (kind, 4, 32), (kind, 6, 16), (kind, 6, 32), (kind, 8, 16), (kind, 8, 32)]
+        {
+            let (usual, unbiased) = (counted(case, 1.0), counted(case, 0.0));
+            println!("{case:?}: {usual:?} with the bias, {unbiased:?} without");
+            // Without the bias, texels with few hairs have no room for rounding.
+            assert!(
+                usual.0 <= usual.1 / 100 && unbiased.0 > unbiased.1 / 20,
+                "{case:?}: {usual:?}, {unbiased:?}"
+            );
+        }
     }
 }
 

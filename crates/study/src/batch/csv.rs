@@ -65,6 +65,7 @@ fn row(report: &CompareReport, method: &MethodReport) -> Vec<(&'static str, Stri
     row.extend([
         ("draws", whole(method.times.first().map(|time| u64::from(time.count)))),
         ("memory_bytes", whole(method.memory_bytes)),
+        ("fallbacks", whole(Some(method.fallbacks))),
         ("draw_bytes", whole(method.draw_bytes)),
         ("swim", number(stability.and_then(|s| s.swim))),
         ("swim_p99", number(stability.and_then(|s| s.swim_p99))),

@@ -68,6 +68,7 @@ pub(super) fn draw(
         whole: median("whole").unwrap_or(0.0),
     });
     report.memory_bytes = stats.iter().map(|stats| stats.shadow_bytes).max();
+    report.fallbacks = stats.iter().map(|stats| stats.shadow_fallbacks).max().unwrap_or(0);
     report.draw_bytes = stats.iter().map(|stats| stats.draw_bytes).max();
     Ok(Drawn { picture, transmittance })
 }

@@ -92,6 +92,10 @@ pub fn compare(
         }
         Err(error) => return Err(error),
     }
+    for method in &report.methods {
+        let sentence = lovelock_shadow::fallbacks_sentence(method.fallbacks);
+        report.notes.extend(sentence.map(|sentence| format!("{}: {sentence}", method.name)));
+    }
     folder.report(&report)?;
     folder.tidy(&report);
     Ok(report)

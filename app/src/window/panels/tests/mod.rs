@@ -126,7 +126,7 @@ impl Bench {
             colliders: vec!["neck", "upper arm left of a rather long name", "skull"],
             is_replaced: &is_replaced,
             frame: None,
-            shadow_bytes: Some(1 << 21),
+            maps: Some((1 << 21, 0)),
             stages: &self.stages,
             passes: &self.passes,
             facts: &facts,

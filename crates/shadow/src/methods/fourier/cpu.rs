@@ -4,10 +4,10 @@
 
 use lovelock_base::settings::Settings;
 
+use super::super::texels::turn::{turn, turn_on};
 use super::super::texels::whole::{HEADER, part_of};
 use super::super::texels::{ALL_HAIR, DepthRange, Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::FourierSettings;
-use super::turn::{turn, turn_on};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::Fourier`].

@@ -7,7 +7,6 @@
 mod cpu;
 mod gpu;
 mod table;
-mod turn;
 
 pub use cpu::{Fourier, Series};
 

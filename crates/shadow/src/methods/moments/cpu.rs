@@ -6,24 +6,38 @@ use lovelock_base::settings::Settings;
 
 use super::super::texels::whole::{HEADER, part_of};
 use super::super::texels::{ALL_HAIR, DepthRange, Fragment, TexelFilter, TexelMap, TexelMethod};
-use super::MomentsSettings;
-use super::pack::{pack, unpack};
+use super::means::{MOST_MEANS, each_function, from_short, to_short};
 use super::solve::System;
+use super::{MomentKind, MomentsSettings};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::Moments`].
-pub type Moments = TexelMap<PowerMoments>;
+pub type Moments = TexelMap<DepthMoments>;
 
-/// A record is a depth range, the optical depth of all hair, and four moments, in a cell each or two in one: the bits of floats, or
-/// integers of 16 bits.
+/// The published shares of even hair, by kind, bits (16, 32) and number of moments (4, 6, 8).
+const PUBLISHED_BIAS: [[[f32; 3]; 2]; 2] =
+    [[[6e-5, 6e-4, 2.5e-3], [5e-7, 5e-6, 5e-5]], [[4e-4, 6.5e-4, 8.5e-4], [4e-7, 8e-7, 1.5e-6]]];
+
+/// A record is a depth range, the optical depth of all hair, and the means of [`each_function`], in a cell each or two in one: the bits of
+/// floats, or integers of 16 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PowerMoments {
+pub struct DepthMoments {
     settings: MomentsSettings,
     /// The share of even hair.
     pub(super) bias: f32,
 }
 
-impl PowerMoments {
+impl DepthMoments {
+    /// The number of moments.
+    pub(super) fn count(&self) -> usize {
+        self.settings.count as usize
+    }
+
+    /// Whether moments are trigonometric.
+    pub(super) fn is_trigonometric(&self) -> bool {
+        self.settings.kind == MomentKind::Trigonometric
+    }
+
     /// Whether moments have 16 bits.
     pub(super) fn is_short(&self) -> bool {
         self.settings.bits == 16
@@ -39,16 +53,50 @@ impl PowerMoments {
         self.settings.overestimation
     }
 
-    /// The system of a record.
+    /// The means of a record of `COUNT` moments.
     #[inline(always)]
-    fn system(&self, record: &[u32]) -> System {
+    fn means<const COUNT: usize>(&self, record: &[u32]) -> [f32; MOST_MEANS] {
         let words = &record[HEADER..];
-        let moments = if self.is_short() {
-            unpack([words[0], words[1]])
+        let mut means = [0.0; MOST_MEANS];
+        if self.is_short() {
+            for k in 0..COUNT / 2 {
+                means[2 * k] = from_short(words[k] & 0xffff);
+                means[2 * k + 1] = from_short(words[k] >> 16);
+            }
         } else {
-            [words[0], words[1], words[2], words[3]].map(f32::from_bits)
-        };
-        System::new(moments, self.bias)
+            for k in 0..COUNT {
+                means[k] = f32::from_bits(words[k]);
+            }
+        }
+        means
+    }
+
+    /// The share of hair before `z` by the means of a record; `None` if no distribution has them.
+    #[inline(always)]
+    fn share<const M: usize, const TURNED: bool>(&self, means: &[f32; MOST_MEANS], z: f32) -> Option<f32> {
+        let system = System::<M, TURNED>::new(means, self.bias);
+        system.is_solvable().then(|| system.share_before(z, self.settings.overestimation))
+    }
+
+    /// The share for every kind but four powers: not inlined into each loop that looks up points, which it would make very long.
+    #[inline(never)]
+    fn share_of_more(&self, record: &[u32], z: f32) -> Option<f32> {
+        match (self.settings.kind, self.settings.count) {
+            (MomentKind::Power, 6) => self.share::<3, false>(&self.means::<6>(record), z),
+            (MomentKind::Power, _) => self.share::<4, false>(&self.means::<8>(record), z),
+            (MomentKind::Trigonometric, 4) => self.share::<2, true>(&self.means::<4>(record), z),
+            (MomentKind::Trigonometric, 6) => self.share::<3, true>(&self.means::<6>(record), z),
+            (MomentKind::Trigonometric, _) => self.share::<4, true>(&self.means::<8>(record), z),
+        }
+    }
+
+    #[inline(always)]
+    fn share_before(&self, record: &[u32], z: f32) -> Option<f32> {
+        if self.settings.count == 4 && self.settings.kind == MomentKind::Power {
+            self.share::<2, false>(&self.means::<4>(record), z)
+        } else {
+            self.share_of_more(record, z)
+        }
     }
 }
 
@@ -58,14 +106,15 @@ fn warped(near: f32, far: f32, depth: f32) -> f32 {
     part_of(near, far, depth) * 2.0 - 1.0
 }
 
-impl TexelMethod for PowerMoments {
+impl TexelMethod for DepthMoments {
     type Cell = u32;
 
     const METHOD: ShadowMethod = ShadowMethod::Moments;
 
     fn new(settings: &ShadowSettings) -> Self {
         let settings = settings.moments.clamped();
-        let published = if settings.bits == 16 { 6e-5 } else { 5e-7 };
+        let of_kind = PUBLISHED_BIAS[usize::from(settings.kind == MomentKind::Trigonometric)];
+        let published = of_kind[usize::from(settings.bits == 32)][settings.count as usize / 2 - 2];
         Self { settings, bias: published * settings.bias }
     }
 
@@ -78,27 +127,31 @@ impl TexelMethod for PowerMoments {
     }
 
     fn cells(&self) -> usize {
-        HEADER + if self.is_short() { 2 } else { 4 }
+        HEADER + if self.is_short() { self.count() / 2 } else { self.count() }
     }
 
     fn fill(&self, fragments: &mut [Fragment], record: &mut [u32]) {
         let [near, far] = self.settings.depth_range.ends(fragments);
-        let mut sums = [0.0_f64; 5];
+        let (mut all, mut sums) = (0.0_f64, [0.0_f64; MOST_MEANS]);
         for fragment in fragments.iter() {
-            let (z, mut power) =
-                (f64::from(warped(near, far, fragment.depth())), f64::from(fragment.optical_depth()));
-            for sum in &mut sums {
-                *sum += power;
-                power *= z;
-            }
+            let weight = f64::from(fragment.optical_depth());
+            all += weight;
+            let z = warped(near, far, fragment.depth());
+            each_function(self.is_trigonometric(), self.count(), z, |k, value| {
+                sums[k] += weight * f64::from(value);
+            });
         }
-        let per_depth = if sums[0] > 0.0 { 1.0 / sums[0] } else { 0.0 };
-        let moments = [1, 2, 3, 4].map(|k| (sums[k] * per_depth) as f32);
-        record[..HEADER].copy_from_slice(&[near, far, sums[0] as f32].map(f32::to_bits));
+        let per_depth = if all > 0.0 { 1.0 / all } else { 0.0 };
+        let means = sums.map(|sum| (sum * per_depth) as f32);
+        record[..HEADER].copy_from_slice(&[near, far, all as f32].map(f32::to_bits));
         if self.is_short() {
-            record[HEADER..].copy_from_slice(&pack(moments));
+            for (word, pair) in record[HEADER..].iter_mut().zip(means.chunks_exact(2)) {
+                *word = to_short(pair[0]) | to_short(pair[1]) << 16;
+            }
         } else {
-            record[HEADER..].copy_from_slice(&moments.map(f32::to_bits));
+            for (word, mean) in record[HEADER..].iter_mut().zip(means) {
+                *word = mean.to_bits();
+            }
         }
     }
 
@@ -112,19 +165,13 @@ impl TexelMethod for PowerMoments {
             return all;
         }
         let z = warped(near, far, depth);
-        let system = self.system(record);
         // Without a distribution, even hair between the ends.
-        let share = if system.is_solvable() {
-            system.share_before(z, self.settings.overestimation)
-        } else {
-            0.5 * (z + 1.0)
-        };
-        all * share
+        all * self.share_before(record, z).unwrap_or(0.5 * (z + 1.0))
     }
 
     /// All hair in one place is a step, for which no system is solved.
     fn falls_back(&self, record: &[u32]) -> bool {
-        record[0] != record[1] && !self.system(record).is_solvable()
+        record[0] != record[1] && self.share_before(record, 0.0).is_none()
     }
 
     fn pieces(
@@ -142,17 +189,24 @@ impl TexelMethod for PowerMoments {
 mod tests {
     use super::*;
 
-    fn method(change: impl FnOnce(&mut MomentsSettings)) -> PowerMoments {
+    fn method(change: impl FnOnce(&mut MomentsSettings)) -> DepthMoments {
         let mut settings = ShadowSettings::default();
         change(&mut settings.moments);
-        PowerMoments::new(&settings)
+        DepthMoments::new(&settings)
     }
 
-    fn filled(method: &PowerMoments, fragments: &[(f32, f32)]) -> Vec<u32> {
+    fn filled(method: &DepthMoments, fragments: &[(f32, f32)]) -> Vec<u32> {
         let mut record = vec![u32::MAX; method.cells()];
         let mut fragments: Vec<_> = fragments.iter().map(|(z, b)| Fragment::new(*z, *b)).collect();
         method.fill(&mut fragments, &mut record);
         record
+    }
+
+    /// Every kind and number of moments, with 16 and 32 bits.
+    fn every_kind() -> impl Iterator<Item = (MomentKind, u32, u32)> {
+        [MomentKind::Power, MomentKind::Trigonometric].into_iter().flat_map(|kind| {
+            [4, 6, 8].into_iter().flat_map(move |count| [16, 32].map(|bits| (kind, count, bits)))
+        })
     }
 
     /// A slab as fragments.
@@ -162,17 +216,23 @@ mod tests {
 
     #[test]
     fn one_slab_is_between_the_bounds() {
-        for bits in [16, 32] {
+        for (kind, count, bits) in every_kind() {
             let bounds = [0.0, 0.25, 1.0].map(|overestimation| {
-                let method = method(|s| (s.bits, s.overestimation) = (bits, overestimation));
+                let method = method(|s| {
+                    (s.kind, s.count, s.bits, s.overestimation) = (kind, count, bits, overestimation);
+                });
                 let record = filled(&method, &slab(0.2, 0.7, 3.0).collect::<Vec<_>>());
                 assert!(!method.falls_back(&record));
                 [0.1, 0.3, 0.45, 0.6, 0.8].map(|depth| method.depth_before(&[], &record, depth))
             });
             for (at, truth) in [0.0, 0.6, 1.5, 2.4, 3.0].into_iter().enumerate() {
                 let [low, used, high] = bounds.map(|bound| bound[at]);
-                assert!(low <= truth + 1e-3 && truth <= high + 1e-3, "{bits}: {low}, {truth}, {high}");
-                assert!((used - truth).abs() < 0.55, "{bits}: {used}, not {truth}");
+                let case =
+                    format!("{count} {kind:?} moments of {bits} bits: {low}, {used}, {high}, not {truth}");
+                // Where trigonometric moments place hair in the wrapping zone, a part of it lies on the wrong side.
+                let beyond = if kind == MomentKind::Power { 1e-3 } else { 0.02 };
+                assert!(low <= truth + beyond && truth <= high + beyond, "{case}");
+                assert!((used - truth).abs() < 0.55, "{case}");
             }
         }
     }
@@ -180,20 +240,20 @@ mod tests {
     #[test]
     fn two_slabs_with_a_gap_keep_the_gap_lit() {
         let slabs: Vec<_> = slab(0.1, 0.2, 1.0).chain(slab(0.8, 0.9, 2.0)).collect();
-        for bits in [16, 32] {
-            let method = method(|s| s.bits = bits);
+        for (kind, count, bits) in every_kind() {
+            let method = method(|s| (s.kind, s.count, s.bits) = (kind, count, bits));
             let record = filled(&method, &slabs);
             for depth in [0.4, 0.5, 0.6] {
                 let before = method.depth_before(&[], &record, depth);
-                assert!((before - 1.0).abs() < 0.1, "{bits}: {before} at {depth}");
+                assert!((before - 1.0).abs() < 0.1, "{count} {kind:?} of {bits}: {before} at {depth}");
             }
         }
     }
 
     #[test]
     fn a_card_is_a_step_and_two_cards_are_two() {
-        for bits in [16, 32] {
-            let method = method(|s| s.bits = bits);
+        for (kind, count, bits) in every_kind() {
+            let method = method(|s| (s.kind, s.count, s.bits) = (kind, count, bits));
             let record = filled(&method, &[(0.5, 3.0)]);
             assert!(!method.falls_back(&record));
             for (depth, before) in [(0.4, 0.0), (0.5, 0.0), (0.500_1, 3.0)] {
@@ -209,8 +269,13 @@ mod tests {
     /// The depth range of the map leaves room before and behind the hair, in which moments of 16 bits are at their worst.
     #[test]
     fn one_strand_and_one_opaque_card_in_16_bits_keep_their_order() {
-        let method = method(|s| (s.bits, s.depth_range) = (16, DepthRange::Map));
-        for all in [1e-3, 0.15, 16.0, 1e4] {
+        for (kind, count, all) in [(MomentKind::Power, 4, 1e-3), (MomentKind::Power, 4, 1e4)]
+            .into_iter()
+            .chain(every_kind().map(|(kind, count, _)| (kind, count, 0.15)))
+        {
+            let method = method(|s| {
+                (s.kind, s.count, s.bits, s.depth_range) = (kind, count, 16, DepthRange::Map);
+            });
             for place in [0.1, 0.5, 0.9] {
                 let record = filled(&method, &[(place, all)]);
                 assert!(!method.falls_back(&record), "{all} at {place}");

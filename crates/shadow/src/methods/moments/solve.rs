@@ -1,115 +1,272 @@
-//! From four power moments to the share of hair before a depth. Twin of solve.wgsl.
+//! From moments to the share of hair before a depth. Twin of solve.wgsl.
+//!
+//! Of all distributions with the same 2M moments, exactly one has hair at a given depth and at only M others. The hair of that one
+//! before the depth is the least that can be there, and with the depth's own hair it is the most (Münstermann and others 2018, section 3).
+//! Its depths are z and the roots of K(x, z) = v(x)ᵀ H⁻¹ v(z), where v(x) holds the powers of x and H is the Hankel matrix of the
+//! moments; the hair at each of them is 1 / K(x, x).
+//!
+//! Depths are points s : c of a line, x = s / c. For trigonometric moments s and c are sine and cosine of half of an angle: then the
+//! same equations hold, because their moments are power moments of the tangent. The published solution has complex numbers there.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
+// Indices as in the shader.
+#![allow(clippy::needless_range_loop)]
 
-/// The even distribution that is mixed in: its moments, which are far from the border of what moments can be.
-const EVEN: [f32; 4] = [0.0, 0.375, 0.0, 0.375];
+use super::means::{Hankel, MOST_MEANS, WRAPPING, half_turn, power_moments, turned_moments};
+use super::roots::real_roots;
 
-/// The least variance and pivot with which the system counts as solvable.
+/// The least pivot with which the system counts as solvable.
 const LEAST_PIVOT: f32 = 1e-12;
 
-/// Biased moments and the Cholesky factors of their Hankel matrix, B = L D Lᵀ.
+/// The Cholesky factors of a Hankel matrix with M + 1 rows, H = L D Lᵀ. `TURNED` for trigonometric moments.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct System {
-    moments: [f32; 4],
-    /// The entries of L below its diagonal that are not moments.
-    l21: f32,
-    /// The second and third entry of D.
-    d: [f32; 2],
+pub(super) struct System<const M: usize, const TURNED: bool> {
+    /// L below its diagonal.
+    l: [[f32; 5]; 5],
+    /// The inverse of D.
+    inverse: [f32; 5],
+    is_solvable: bool,
 }
 
-impl System {
-    /// The system of the means of z, z², z³ and z⁴.
+impl<const M: usize, const TURNED: bool> System<M, TURNED> {
+    /// The system of the means of a record; see [`super::means`].
     #[inline(always)]
-    pub(super) fn new(moments: [f32; 4], bias: f32) -> Self {
-        let mixed = |k: usize| moments[k] + (EVEN[k] - moments[k]) * bias;
-        let b = [mixed(0), mixed(1), mixed(2), mixed(3)];
-        let variance = b[1] - b[0] * b[0];
-        let covariance = b[2] - b[0] * b[1];
-        let l21 = covariance / variance;
-        let last = (b[3] - b[1] * b[1]) - covariance * l21;
-        Self { moments: b, l21, d: [variance, last] }
+    pub(super) fn new(means: &[f32; MOST_MEANS], bias: f32) -> Self {
+        let moments: Hankel =
+            if TURNED { turned_moments::<M>(means, bias) } else { power_moments::<M>(means, bias) };
+        let (mut l, mut inverse, mut is_solvable) = ([[0.0; 5]; 5], [0.0; 5], true);
+        for row in 0..=M {
+            // Until the end of the row, L times D.
+            for column in 0..row {
+                let mut entry = moments[row + column];
+                for k in 0..column {
+                    entry -= l[row][k] * l[column][k];
+                }
+                l[row][column] = entry;
+            }
+            let mut pivot = moments[2 * row];
+            for k in 0..row {
+                let entry = l[row][k] * inverse[k];
+                pivot -= entry * l[row][k];
+                l[row][k] = entry;
+            }
+            is_solvable &= pivot > LEAST_PIVOT;
+            inverse[row] = 1.0 / pivot;
+        }
+        Self { l, inverse, is_solvable }
     }
 
-    /// Whether the matrix is positive definite. Rounding to 16 bits and a small bias may make it indefinite: then no distribution has
-    /// these moments. False for NaN.
+    /// Whether the matrix is positive definite. Rounding and a small bias may make it indefinite: then no distribution has these
+    /// moments. False for NaN.
     #[inline(always)]
     pub(super) fn is_solvable(&self) -> bool {
-        self.d[0] > LEAST_PIVOT && self.d[1] > LEAST_PIVOT
+        self.is_solvable
     }
 
     /// The share of hair before `z`, of which a point's own depth counts by `overestimation`. Only of a solvable system.
-    ///
-    /// The distribution with the given moments that has hair at `z` has it at two more depths, the roots of a polynomial; the
-    /// polynomial of degree 2 through the wanted values at the three depths, applied to the moments, is the share.
     #[inline(always)]
     pub(super) fn share_before(&self, z: f32, overestimation: f32) -> f32 {
-        let b = self.moments;
-        // B c = (1, z, z²).
-        let mut c = [1.0, z - b[0], 0.0];
-        c[2] = z * z - b[1] - self.l21 * c[1];
-        c[1] /= self.d[0];
-        c[2] /= self.d[1];
-        c[1] -= self.l21 * c[2];
-        c[0] -= c[1] * b[0] + c[2] * b[1];
-        let (linear, constant) = (c[1] / c[2], c[0] / c[2]);
-        let square = linear * linear * 0.25 - constant;
-        let root = (if square > 0.0 { square } else { 0.0 }).sqrt();
-        let (near, far) = (-0.5 * linear - root, -0.5 * linear + root);
-        let value = |at: f32| if at < z { 1.0 } else { 0.0 };
-        let (f0, f1, f2) = (overestimation, value(near), value(far));
-        let f01 = (f1 - f0) / (near - z);
-        let f12 = (f2 - f1) / (far - near);
-        let f012 = (f12 - f01) / (far - z);
-        // The Newton form at z, near and far.
-        let linear = f01 - f012 * near;
-        let constant = f0 - linear * z;
-        let share = constant + (linear - f012 * z) * b[0] + f012 * b[1];
-        // NaN, where roots coincide, becomes 0.
-        let share = if share > 0.0 { share } else { 0.0 };
-        if share < 1.0 { share } else { 1.0 }
+        let [s, c] = if TURNED { half_turn(z) } else { [z, 1.0] };
+        let reduced = self.reduced(s, c);
+        let own = self.weight(&reduced);
+        // The coefficients of K, and then those of the polynomial whose root t stands for the depth t s + u : t c + v.
+        let mut k = [0.0; 5];
+        for row in (0..=M).rev() {
+            let mut entry = reduced[row] * self.inverse[row];
+            for below in row + 1..=M {
+                entry -= self.l[below][row] * k[below];
+            }
+            k[row] = entry;
+        }
+        let [u, v] = if TURNED { [c, -s] } else { [1.0, 0.0] };
+        let a = if TURNED { turned::<M>(&k, [s, c], own) } else { shifted::<M>(&k, z, own) };
+        let (mut all, mut before) = (own, own * overestimation);
+        for t in &real_roots::<M>(&a)[..M] {
+            let (s, c) = (t * s + u, t * c + v);
+            let (weight, part) = if TURNED {
+                let length = 1.0 / (s * s + c * c).sqrt();
+                let (s, c) = (s * length, c * length);
+                (self.weight(&self.reduced(s, c)), before_at(s, c))
+            } else {
+                // Hair infinitely far away has no weight.
+                let near = if c.abs() < 1e-6 { 1e-6 } else { c };
+                (self.weight(&self.reduced(s / near, 1.0)), if c < 0.0 { 1.0 } else { 0.0 })
+            };
+            all += weight;
+            before += weight * part;
+        }
+        before / all
+    }
+
+    /// L⁻¹ v of a depth.
+    #[inline(always)]
+    fn reduced(&self, s: f32, c: f32) -> [f32; 5] {
+        let mut entries = [1.0; 5];
+        for k in 1..=M {
+            entries[k] = entries[k - 1] * s;
+        }
+        if TURNED {
+            let mut power = c;
+            for k in (0..M).rev() {
+                entries[k] *= power;
+                power *= c;
+            }
+        }
+        for row in 1..=M {
+            for column in 0..row {
+                entries[row] -= self.l[row][column] * entries[column];
+            }
+        }
+        entries
+    }
+
+    /// 1 / K(x, x) of L⁻¹ v(x).
+    #[inline(always)]
+    fn weight(&self, reduced: &[f32; 5]) -> f32 {
+        let mut sum = 0.0;
+        for (entry, inverse) in reduced[..=M].iter().zip(&self.inverse) {
+            sum += entry * entry * inverse;
+        }
+        1.0 / sum
+    }
+}
+
+/// The coefficients of K(z + 1/t) tᴹ / K(z), from t⁰'s place downward: 1, a₁, …, with `own` = 1 / K(z).
+#[inline(always)]
+fn shifted<const M: usize>(k: &[f32; 5], z: f32, own: f32) -> [f32; 5] {
+    let mut a = *k;
+    for first in 0..M {
+        for at in (first..M).rev() {
+            a[at] += a[at + 1] * z;
+        }
+    }
+    a.map(|entry| entry * own)
+}
+
+/// The same for a turn by a right angle: K(t s + c : t c − s).
+#[inline(always)]
+fn turned<const M: usize>(k: &[f32; 5], [s, c]: [f32; 2], own: f32) -> [f32; 5] {
+    // By powers of t, the highest first: the sum of k[i] (t s + c)ⁱ (t c − s)ᴹ⁻ⁱ, as by Horner.
+    let (mut sum, mut power) = ([0.0; 5], [0.0; 5]);
+    (sum[0], power[0]) = (k[M], 1.0);
+    for row in (0..M).rev() {
+        for at in (0..M - row).rev() {
+            (sum[at + 1], power[at + 1]) = (sum[at + 1] * s + sum[at] * c, power[at + 1] * c - power[at] * s);
+        }
+        (sum[0], power[0]) = (sum[0] * s, power[0] * c);
+        for at in 0..=M - row {
+            sum[at] += k[row] * power[at];
+        }
+    }
+    sum.map(|entry| entry * own)
+}
+
+/// How much hair of a depth counts as before another one: 1 or 0, by its side of it, and a part in the wrapping zone.
+#[inline(always)]
+fn before_at(s: f32, c: f32) -> f32 {
+    if c.abs() < WRAPPING {
+        let from_far_end = if s < 0.0 { -c } else { c };
+        0.5 - 0.5 * from_far_end / WRAPPING
+    } else if c < 0.0 {
+        1.0
+    } else {
+        0.0
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::means::each_function;
     use super::*;
 
-    /// The moments of hair at depths with weights that add up to 1.
-    fn moments(of: &[(f32, f32)]) -> [f32; 4] {
-        [1, 2, 3, 4].map(|k| {
-            of.iter().map(|(z, weight)| f64::from(*weight) * f64::from(*z).powi(k)).sum::<f64>() as f32
-        })
-    }
-
-    #[test]
-    fn three_cards_are_told_apart_but_for_the_bias() {
-        let cards = [(-0.7, 0.25), (0.1, 0.5), (0.8, 0.25)];
-        let system = System::new(moments(&cards), 5e-7);
-        assert!(system.is_solvable());
-        for (z, share) in [(-0.7, 0.25 * 0.25), (0.1, 0.25 + 0.25 * 0.5), (0.8, 0.75 + 0.25 * 0.25)] {
-            let found = system.share_before(z, 0.25);
-            assert!((found - share).abs() < 2e-3, "at {z}: {found}, not {share}");
+    /// The means of hair at depths with weights that add up to 1.
+    fn means(is_trigonometric: bool, m: usize, hair: &[(f32, f32)]) -> [f32; MOST_MEANS] {
+        let mut sums = [0.0_f64; MOST_MEANS];
+        for (z, weight) in hair {
+            each_function(is_trigonometric, 2 * m, *z, |k, value| {
+                sums[k] += f64::from(*weight) * f64::from(value);
+            });
         }
+        sums.map(|sum| sum as f32)
+    }
+
+    /// The share before `z`; `None` if no distribution has the moments.
+    fn share<const M: usize>(
+        is_trigonometric: bool,
+        means: &[f32; MOST_MEANS],
+        bias: f32,
+        (z, own): (f32, f32),
+    ) -> Option<f32> {
+        if is_trigonometric {
+            let system = System::<M, true>::new(means, bias);
+            return system.is_solvable().then(|| system.share_before(z, own));
+        }
+        let system = System::<M, false>::new(means, bias);
+        system.is_solvable().then(|| system.share_before(z, own))
+    }
+
+    /// [`share`] for all kinds: whether they are trigonometric, M, and the share.
+    fn shares(hair: &[(f32, f32)], bias: f32, at: (f32, f32)) -> Vec<(bool, usize, Option<f32>)> {
+        let of = |is_trigonometric: bool| {
+            let means = |m| means(is_trigonometric, m, hair);
+            [
+                (is_trigonometric, 2, share::<2>(is_trigonometric, &means(2), bias, at)),
+                (is_trigonometric, 3, share::<3>(is_trigonometric, &means(3), bias, at)),
+                (is_trigonometric, 4, share::<4>(is_trigonometric, &means(4), bias, at)),
+            ]
+        };
+        [false, true].into_iter().flat_map(of).collect()
+    }
+
+    /// Hair at M + 1 depths is the only distribution with its moments that has hair at one of them.
+    #[test]
+    fn one_card_more_than_half_of_the_moments_are_told_apart() {
+        let cards = [(-0.9_f32, 0.2), (-0.4, 0.1), (0.05, 0.3), (0.5, 0.15), (0.85, 0.25)];
+        let mut worst = 0.0_f32;
+        for m in [2, 3, 4] {
+            let hair = &cards[..m + 1];
+            let all: f32 = hair.iter().map(|card| card.1).sum();
+            let hair: Vec<_> = hair.iter().map(|(z, weight)| (*z, weight / all)).collect();
+            for (at, (z, weight)) in hair.iter().enumerate() {
+                let before: f32 = hair[..at].iter().map(|card| card.1).sum();
+                for (is_trigonometric, of, found) in shares(&hair, 1e-6, (*z, 0.25)) {
+                    if of == m {
+                        let error = (found.expect("solvable") - (before + 0.25 * weight)).abs();
+                        assert!(error < 1e-4, "{m}, {is_trigonometric}: {found:?} at {z}");
+                        worst = worst.max(error);
+                    }
+                }
+            }
+        }
+        println!("largest error {worst}");
     }
 
     #[test]
-    fn bounds_hold_the_truth_between_them() {
-        // Even hair between −1 and 1: the moments are 0, 1/3, 0, 1/5.
-        let system = System::new([0.0, 1.0 / 3.0, 0.0, 0.2], 5e-7);
+    fn bounds_hold_the_truth_between_them_and_more_moments_bring_them_together() {
+        let even: Vec<_> =
+            (0..2000_u16).map(|i| ((f32::from(i) + 0.5) / 1000.0 - 1.0, 1.0 / 2000.0)).collect();
         for i in -9_i16..=9 {
             let z = f32::from(i) * 0.1;
-            let share = 0.5 * (z + 1.0);
-            let [low, high] = [0.0, 1.0].map(|own| system.share_before(z, own));
-            assert!(low <= share && share <= high && high - low < 0.6, "at {z}: {low} to {high}");
+            let truth = 0.5 * (z + 1.0);
+            let [low, high] = [0.0, 1.0].map(|own| shares(&even, 1e-6, (z, own)));
+            let mut widths = Vec::new();
+            for ((is_trigonometric, m, low), (.., high)) in low.iter().zip(&high) {
+                let (low, high) = (low.expect("solvable"), high.expect("solvable"));
+                // Trigonometric moments may place hair in the wrapping zone: then a part of it lies on the wrong side.
+                let beyond = if *is_trigonometric { 0.03 } else { 1e-4 };
+                let case = format!("{m}, {is_trigonometric}, at {z}: {low} to {high}, not {truth}");
+                assert!(low <= truth + beyond && truth <= high + beyond && high - low < 0.6, "{case}");
+                widths.push(high - low);
+            }
+            assert!(widths[2] < widths[0] && widths[5] < widths[3], "at {z}: {widths:?}");
         }
     }
 
     #[test]
-    fn a_single_card_needs_the_bias() {
-        let card = moments(&[(0.5, 1.0)]);
-        assert!(System::new(card, 5e-7).is_solvable());
-        assert!(!System::new(card, 0.0).is_solvable(), "control");
-        assert!(!System::new([f32::NAN; 4], 5e-7).is_solvable());
+    fn a_single_card_needs_the_bias_and_nan_has_no_distribution() {
+        let card = [(0.5, 1.0)];
+        assert!(shares(&card, 5e-5, (0.1, 0.25)).iter().all(|(.., share)| share.is_some()));
+        assert!(shares(&card, 0.0, (0.1, 0.25)).iter().all(|(.., share)| share.is_none()), "control");
+        assert!(shares(&[(f32::NAN, 1.0)], 5e-5, (0.1, 0.25)).iter().all(|(.., share)| share.is_none()));
     }
 }

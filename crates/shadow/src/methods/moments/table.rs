@@ -4,12 +4,23 @@ use lovelock_base::field;
 use lovelock_base::settings::{Setting, Settings, Unit};
 
 use super::super::texels;
-use super::MomentsSettings;
+use super::{MomentKind, MomentsSettings};
 
 impl Settings for MomentsSettings {
     const TABLE: &'static [Setting<Self>] = &[
         texels::resolution(field!(Self, resolution)),
         texels::filter(field!(Self, filter)),
+        Setting::one_of(
+            field!(Self, count),
+            &[4, 6, 8],
+            "Moments",
+            "Numbers that describe the hair of a texel. More of them follow the hair more closely and need more memory and time.",
+        ),
+        Setting::choice::<MomentKind>(
+            field!(Self, kind),
+            "Kind",
+            "Functions of depth whose means are stored. Trigonometric ones err less in the mean and take more time.",
+        ),
         Setting::one_of(
             field!(Self, bits),
             &[16, 32],

@@ -13,6 +13,7 @@ pub(crate) mod lines;
 mod lookup;
 pub(crate) mod map;
 mod method;
+pub(crate) mod turn;
 pub(crate) mod whole;
 
 pub use curve::{Curve, CurveMethod, Nodes};

@@ -1,5 +1,7 @@
 //! A user's method on the GPU: the passes of its current version, as `TexelShadow` runs those of the program's own methods.
 
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
 use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, read_buffer, wgpu};
 
 use super::UserMethod;
@@ -18,21 +20,26 @@ pub(super) struct UserShadow {
     method: UserMethod,
     /// Whether strands are projected.
     projected: bool,
-    kernels: Option<Kernels>,
+    kernels: Option<Arc<Kernels>>,
     /// See turns.wgsl. It stands where other methods have the head of a list, so that a frame brings it back.
     fault: wgpu::Buffer,
     scratch: Buffer,
     maps: Vec<Map>,
 }
 
-/// The kernels of one version and one filter.
+/// The kernels of one version and one filter on one device.
 #[derive(Debug)]
 struct Kernels {
+    device: wgpu::Device,
+    projected: bool,
     definition: &'static Definition,
     filter: TexelFilter,
     passes: Vec<Kernel>,
     lookup: PointLookup,
 }
+
+/// All kernels in use. A soft light has many maps, which may be built at the same time: one of them compiles for all.
+static IN_USE: Mutex<Vec<Weak<Kernels>>> = Mutex::new(Vec::new());
 
 /// The map of one light.
 #[derive(Debug)]
@@ -85,7 +92,30 @@ impl Kernels {
         };
         let passes = definition.passes.iter().map(pass).collect::<Result<_, _>>()?;
         let lookup = PointLookup::new(gpu, &definition.query, true, &constants)?;
-        Ok(Self { definition, filter, passes, lookup })
+        Ok(Self { device: gpu.device.clone(), projected, definition, filter, passes, lookup })
+    }
+
+    /// Those in use, or new ones.
+    fn shared(
+        gpu: &Gpu,
+        definition: &'static Definition,
+        filter: TexelFilter,
+        projected: bool,
+    ) -> Result<Arc<Self>, GpuError> {
+        // Held while kernels are compiled, so that others wait for them.
+        let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
+        in_use.retain(|kernels| kernels.strong_count() > 0);
+        let found = in_use.iter().filter_map(Weak::upgrade).find(|kernels| {
+            std::ptr::eq(kernels.definition, definition)
+                && (kernels.filter, kernels.projected) == (filter, projected)
+                && kernels.device == gpu.device
+        });
+        if let Some(kernels) = found {
+            return Ok(kernels);
+        }
+        let kernels = Arc::new(Self::new(gpu, definition, filter, projected)?);
+        in_use.push(Arc::downgrade(&kernels));
+        Ok(kernels)
     }
 }
 
@@ -120,13 +150,13 @@ impl UserShadow {
     fn compile(&mut self, gpu: &Gpu, filter: TexelFilter) -> Result<&'static Definition, GpuShadowError> {
         loop {
             let definition = self.method.definition().map_err(|problem| self.error(problem))?;
-            let is_current = |kernels: &Kernels| {
+            let is_current = |kernels: &Arc<Kernels>| {
                 kernels.definition.version == definition.version && kernels.filter == filter
             };
             if self.kernels.as_ref().is_some_and(is_current) {
                 return Ok(definition);
             }
-            match Kernels::new(gpu, definition, filter, self.projected) {
+            match Kernels::shared(gpu, definition, filter, self.projected) {
                 Ok(kernels) => {
                     self.kernels = Some(kernels);
                     // A new one, because frames in flight still write the one before.
@@ -267,7 +297,7 @@ impl GpuShadow for UserShadow {
 
     /// No list, but the word of the fault in its place: with room for nothing, so that a frame with a fault is not shown.
     fn list(&self, slot: usize) -> Option<GpuList<'_>> {
-        self.maps.get(slot).map(|_| GpuList { buffer: &self.fault, room: 0 })
+        self.maps.get(slot).map(|_| GpuList { buffer: &self.fault, at: 0, room: 0 })
     }
 
     fn settle(&mut self, gpu: &Gpu, heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {

@@ -9,10 +9,9 @@ use super::Series;
 use crate::gpu::wgsl;
 use crate::methods::texels::TexelMethod;
 use crate::methods::texels::gpu::{
-    GpuTexelMethod, Needs, Over, Pass, RANGE, RANGE_WORDS, WHOLE, WHOLE_BUILD,
+    GpuTexelMethod, Needs, Over, Pass, RANGE, RANGE_WORDS, TURN, WHOLE, WHOLE_BUILD,
 };
 
-const TURN: ShaderPart = wgsl!("methods/fourier/gpu/", "turn.wgsl");
 const SERIES: ShaderPart = wgsl!("methods/fourier/gpu/", "series.wgsl");
 const ADD: ShaderPart = wgsl!("methods/fourier/gpu/", "add.wgsl");
 const SEAL: ShaderPart = wgsl!("methods/fourier/gpu/", "seal.wgsl");

@@ -4,44 +4,55 @@
 
 use lovelock_gpu::{Constant, ShaderPart};
 
-use super::PowerMoments;
+use super::DepthMoments;
 use crate::gpu::wgsl;
 use crate::methods::texels::TexelMethod;
 use crate::methods::texels::gpu::{
-    GpuTexelMethod, Needs, Over, Pass, RANGE, RANGE_WORDS, WHOLE, WHOLE_BUILD,
+    FALLBACKS, GpuTexelMethod, Needs, Over, Pass, RANGE, RANGE_WORDS, TURN, WHOLE, WHOLE_BUILD,
 };
 
 const MOMENTS: ShaderPart = wgsl!("methods/moments/gpu/", "moments.wgsl");
 const SUMS: ShaderPart = wgsl!("methods/moments/gpu/", "sums.wgsl");
 const ADD: ShaderPart = wgsl!("methods/moments/gpu/", "add.wgsl");
-const PACK: ShaderPart = wgsl!("methods/moments/gpu/", "pack.wgsl");
+const MEANS: ShaderPart = wgsl!("methods/moments/gpu/", "means.wgsl");
+const ROOTS: ShaderPart = wgsl!("methods/moments/gpu/", "roots.wgsl");
 const SEAL: ShaderPart = wgsl!("methods/moments/gpu/", "seal.wgsl");
 const SOLVE: ShaderPart = wgsl!("methods/moments/gpu/", "solve.wgsl");
 const QUERY: ShaderPart = wgsl!("methods/moments/gpu/", "query.wgsl");
 
-/// Words of scratch memory for the integer sums of a texel.
-const SUM_WORDS: u64 = 4;
-
-impl GpuTexelMethod for PowerMoments {
+impl GpuTexelMethod for DepthMoments {
     const PASSES: &'static [Pass] = &[
         Pass { name: "shadow/range", over: Over::Segments, parts: &[RANGE] },
         Pass {
             name: "shadow/moments",
             over: Over::Segments,
-            parts: &[WHOLE, WHOLE_BUILD[0], WHOLE_BUILD[1], MOMENTS, SUMS, ADD],
+            parts: &[WHOLE, WHOLE_BUILD[0], WHOLE_BUILD[1], TURN, MOMENTS, MEANS, SUMS, ADD],
         },
         Pass {
             name: "shadow/seal",
             over: Over::Texels,
-            parts: &[WHOLE, WHOLE_BUILD[0], WHOLE_BUILD[1], MOMENTS, SUMS, PACK, SEAL],
+            parts: &[
+                WHOLE,
+                WHOLE_BUILD[0],
+                WHOLE_BUILD[1],
+                TURN,
+                MOMENTS,
+                MEANS,
+                SUMS,
+                ROOTS,
+                SOLVE,
+                FALLBACKS,
+                SEAL,
+            ],
         },
     ];
-    const QUERY: &'static [ShaderPart] = &[WHOLE, MOMENTS, PACK, SOLVE, QUERY];
+    const QUERY: &'static [ShaderPart] = &[WHOLE, TURN, MOMENTS, MEANS, ROOTS, SOLVE, QUERY];
+    const COUNTS_FALLBACKS: bool = true;
 
     fn needs(&self) -> Needs {
         Needs {
             map_words: self.cells() as u64,
-            scratch_words: RANGE_WORDS + SUM_WORDS,
+            scratch_words: RANGE_WORDS + self.count() as u64,
             bias: self.bias,
             overestimation: self.overestimation(),
             ..Needs::default()
@@ -49,7 +60,10 @@ impl GpuTexelMethod for PowerMoments {
     }
 
     fn constants(&self) -> Vec<Constant> {
-        let constants = [("SHORT", self.is_short()), ("OF_MAP", self.is_of_map())];
-        constants.map(|(name, value)| (name, f64::from(u8::from(value)))).to_vec()
+        let mut constants = vec![("ORDER", (self.count() / 2) as f64)];
+        let flags =
+            [("TURNED", self.is_trigonometric()), ("SHORT", self.is_short()), ("OF_MAP", self.is_of_map())];
+        constants.extend(flags.map(|(name, value)| (name, f64::from(u8::from(value)))));
+        constants
     }
 }

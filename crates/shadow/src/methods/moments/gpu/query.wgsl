@@ -7,16 +7,21 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     // 0 without hair.
     let all = depth_of_weight(bitcast<f32>(map[record + 2u]));
     let first = record + HEADER;
-    var moments: vec4f;
-    if (SHORT) {
-        moments = unpack_moments(vec2u(map[first], map[first + 1u]));
-    } else {
-        moments = bitcast<vec4f>(vec4u(map[first], map[first + 1u], map[first + 2u], map[first + 3u]));
+    var means: array<f32, 8>;
+    for (var k = 0u; k < ORDER; k++) {
+        if (SHORT) {
+            let words = map[first + k];
+            means[2u * k] = from_short(words & 0xffffu);
+            means[2u * k + 1u] = from_short(words >> 16u);
+        } else {
+            means[2u * k] = bitcast<f32>(map[first + 2u * k]);
+            means[2u * k + 1u] = bitcast<f32>(map[first + 2u * k + 1u]);
+        }
     }
     let z = warped(near, far, depth);
-    let system = system_of(moments);
+    var system = system_of(means);
     // Without a distribution, even hair between the ends.
-    var share = select(0.5 * (z + 1.0), share_before(system, z), is_solvable(system));
+    var share = select(0.5 * (z + 1.0), share_before(&system, z), system.is_solvable);
     share = select(share, 1.0, depth > far);
     return select(all * share, 0.0, depth <= near);
 }

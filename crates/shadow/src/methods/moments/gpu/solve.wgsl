@@ -1,57 +1,165 @@
-// From four power moments to the share of hair before a depth. Twin of solve.rs.
+// From moments to the share of hair before a depth. Twin of solve.rs.
 
-// The even distribution that is mixed in.
-const EVEN: vec4f = vec4f(0.0, 0.375, 0.0, 0.375);
-
-// The least variance and pivot with which the system counts as solvable.
+// The least pivot with which the system counts as solvable.
 const LEAST_PIVOT: f32 = 1e-12;
 
-// Biased moments and the Cholesky factors of their Hankel matrix.
+// The Cholesky factors of a Hankel matrix with ORDER + 1 rows.
 struct System {
-    moments: vec4f,
-    // The entry of L below its diagonal that is no moment.
-    low: f32,
-    // The second and third entry of D.
-    pivots: vec2f,
+    // Below the diagonal, row after row, five numbers each.
+    l: array<f32, 25>,
+    inverse: array<f32, 5>,
+    // False for NaN.
+    is_solvable: bool,
 }
 
-fn system_of(moments: vec4f) -> System {
-    let b = moments + (EVEN - moments) * texels.bias;
-    let variance = b.y - b.x * b.x;
-    let covariance = b.z - b.x * b.y;
-    let low = covariance / variance;
-    let last = (b.w - b.y * b.y) - covariance * low;
-    return System(b, low, vec2f(variance, last));
-}
-
-// Whether the matrix is positive definite. False for NaN.
-fn is_solvable(system: System) -> bool {
-    return system.pivots.x > LEAST_PIVOT && system.pivots.y > LEAST_PIVOT;
+fn system_of(means: array<f32, 8>) -> System {
+    var moments: array<f32, 9>;
+    if (TURNED) {
+        moments = turned_moments(means);
+    } else {
+        moments = power_moments(means);
+    }
+    var system: System;
+    system.is_solvable = true;
+    for (var row = 0u; row <= ORDER; row++) {
+        // Until the end of the row, L times D.
+        for (var column = 0u; column < row; column++) {
+            var entry = moments[row + column];
+            for (var k = 0u; k < column; k++) {
+                entry -= system.l[5u * row + k] * system.l[5u * column + k];
+            }
+            system.l[5u * row + column] = entry;
+        }
+        var pivot = moments[2u * row];
+        for (var k = 0u; k < row; k++) {
+            let entry = system.l[5u * row + k] * system.inverse[k];
+            pivot -= entry * system.l[5u * row + k];
+            system.l[5u * row + k] = entry;
+        }
+        system.is_solvable = system.is_solvable && pivot > LEAST_PIVOT;
+        system.inverse[row] = 1.0 / pivot;
+    }
+    return system;
 }
 
 // The share of hair before `z`. Only of a solvable system.
-fn share_before(system: System, z: f32) -> f32 {
-    let b = system.moments;
-    let second = z - b.x;
-    let third = (z * z - b.y - system.low * second) / system.pivots.y;
-    let c1 = second / system.pivots.x - system.low * third;
-    let c0 = 1.0 - (c1 * b.x + third * b.y);
-    let p = c1 / third;
-    let q = c0 / third;
-    let square = p * p * 0.25 - q;
-    let root = sqrt(select(0.0, square, square > 0.0));
-    let near = -0.5 * p - root;
-    let far = -0.5 * p + root;
-    let f0 = texels.overestimation;
-    let f1 = select(0.0, 1.0, near < z);
-    let f2 = select(0.0, 1.0, far < z);
-    let f01 = (f1 - f0) / (near - z);
-    let f12 = (f2 - f1) / (far - near);
-    let f012 = (f12 - f01) / (far - z);
-    let linear = f01 - f012 * near;
-    let constant = f0 - linear * z;
-    var share = constant + (linear - f012 * z) * b.x + f012 * b.y;
-    // NaN, where roots coincide, becomes 0.
-    share = select(0.0, share, share > 0.0);
-    return select(1.0, share, share < 1.0);
+fn share_before(system: ptr<function, System>, z: f32) -> f32 {
+    var own_place = vec2f(z, 1.0);
+    var aside = vec2f(1.0, 0.0);
+    if (TURNED) {
+        own_place = half_turn(z);
+        aside = vec2f(own_place.y, -own_place.x);
+    }
+    var reduced = reduced_of(system, own_place);
+    let own = weight_at(system, &reduced);
+    var k: array<f32, 5>;
+    for (var up = 0u; up <= ORDER; up++) {
+        let row = ORDER - up;
+        var entry = reduced[row] * (*system).inverse[row];
+        for (var below = row + 1u; below <= ORDER; below++) {
+            entry -= (*system).l[5u * below + row] * k[below];
+        }
+        k[row] = entry;
+    }
+    var a: array<f32, 5>;
+    if (TURNED) {
+        a = turned(k, own_place, own);
+    } else {
+        a = shifted(k, z, own);
+    }
+    let roots = real_roots(a);
+    var all = own;
+    var before = own * texels.overestimation;
+    for (var i = 0u; i < ORDER; i++) {
+        var place = roots[i] * own_place + aside;
+        var part: f32;
+        if (TURNED) {
+            place *= 1.0 / sqrt(place.x * place.x + place.y * place.y);
+            part = before_at(place);
+        } else {
+            part = select(0.0, 1.0, place.y < 0.0);
+            // Hair infinitely far away has no weight.
+            place = vec2f(place.x / select(place.y, 1e-6, abs(place.y) < 1e-6), 1.0);
+        }
+        reduced = reduced_of(system, place);
+        let weight = weight_at(system, &reduced);
+        all += weight;
+        before += weight * part;
+    }
+    return before / all;
+}
+
+// L⁻¹ v of a depth.
+fn reduced_of(system: ptr<function, System>, place: vec2f) -> array<f32, 5> {
+    var entries: array<f32, 5>;
+    entries[0] = 1.0;
+    for (var k = 1u; k <= ORDER; k++) {
+        entries[k] = entries[k - 1u] * place.x;
+    }
+    if (TURNED) {
+        var power = place.y;
+        for (var up = 1u; up <= ORDER; up++) {
+            entries[ORDER - up] *= power;
+            power *= place.y;
+        }
+    }
+    for (var row = 1u; row <= ORDER; row++) {
+        for (var column = 0u; column < row; column++) {
+            entries[row] -= (*system).l[5u * row + column] * entries[column];
+        }
+    }
+    return entries;
+}
+
+// 1 / K(x, x) of L⁻¹ v(x).
+fn weight_at(system: ptr<function, System>, reduced: ptr<function, array<f32, 5>>) -> f32 {
+    var sum = 0.0;
+    for (var k = 0u; k <= ORDER; k++) {
+        sum += (*reduced)[k] * (*reduced)[k] * (*system).inverse[k];
+    }
+    return 1.0 / sum;
+}
+
+fn shifted(k: array<f32, 5>, z: f32, own: f32) -> array<f32, 5> {
+    var a = k;
+    for (var first = 0u; first < ORDER; first++) {
+        for (var up = 1u; up <= ORDER - first; up++) {
+            let at = ORDER - up;
+            a[at] += a[at + 1u] * z;
+        }
+    }
+    for (var at = 0u; at <= ORDER; at++) {
+        a[at] *= own;
+    }
+    return a;
+}
+
+fn turned(k: array<f32, 5>, place: vec2f, own: f32) -> array<f32, 5> {
+    var sum: array<f32, 5>;
+    var power: array<f32, 5>;
+    sum[0] = k[ORDER];
+    power[0] = 1.0;
+    for (var degree = 1u; degree <= ORDER; degree++) {
+        for (var up = 1u; up <= degree; up++) {
+            let at = degree - up;
+            sum[at + 1u] = sum[at + 1u] * place.x + sum[at] * place.y;
+            power[at + 1u] = power[at + 1u] * place.y - power[at] * place.x;
+        }
+        sum[0] *= place.x;
+        power[0] *= place.y;
+        for (var at = 0u; at <= degree; at++) {
+            sum[at] += k[ORDER - degree] * power[at];
+        }
+    }
+    for (var at = 0u; at <= ORDER; at++) {
+        sum[at] *= own;
+    }
+    return sum;
+}
+
+// How much hair of a depth counts as before another one.
+fn before_at(place: vec2f) -> f32 {
+    let from_far_end = select(place.y, -place.y, place.x < 0.0);
+    let side = select(0.0, 1.0, place.y < 0.0);
+    return select(side, 0.5 - 0.5 * from_far_end / WRAPPING, abs(place.y) < WRAPPING);
 }

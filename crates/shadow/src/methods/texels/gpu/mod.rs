@@ -46,13 +46,20 @@ pub(crate) const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl"
 pub(crate) const RANGE: ShaderPart = wgsl!("methods/texels/gpu/", "range.wgsl");
 /// Reads the result of [`RANGE`].
 pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_read.wgsl");
+/// Sine and cosine; see [`super::turn`].
+pub(crate) const TURN: ShaderPart = wgsl!("methods/texels/gpu/", "turn.wgsl");
 /// What methods share whose record is one function; see [`super::whole`].
 pub(crate) const WHOLE: ShaderPart = wgsl!("methods/texels/gpu/", "whole.wgsl");
 /// How such records are built of the result of [`RANGE`].
 pub(crate) const WHOLE_BUILD: [ShaderPart; 2] =
     [RANGE_READ, wgsl!("methods/texels/gpu/", "whole_build.wgsl")];
+/// Counts records in [`ShadowReport::fallbacks`], behind the records of all texels.
+pub(crate) const FALLBACKS: ShaderPart = wgsl!("methods/texels/gpu/", "fallbacks.wgsl");
 /// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
 pub(crate) const RANGE_WORDS: u64 = 4;
+
+/// Words of the head that comes back with a frame; see [`GpuList`].
+const HEAD_WORDS: u64 = 2;
 
 /// The most layers of deep opacity maps.
 const MAX_LAYERS: usize = 16;
@@ -170,6 +177,8 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
     const QUERY: &'static [ShaderPart];
     /// Whether its passes put fragments into a [`List`] at binding 5.
     const LISTS: bool = false;
+    /// Whether [`FALLBACKS`] is a part of its passes.
+    const COUNTS_FALLBACKS: bool = false;
     /// Whether only the build needs the list.
     const LIST_IS_SCRATCH: bool = false;
 
@@ -375,7 +384,9 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let method = method.within(&scale);
         let needs = method.needs();
         let texels = u64::from(frame.resolution).pow(2);
-        let (map_words, scratch_words) = (texels * needs.map_words, texels * needs.scratch_words);
+        let used = texels * needs.map_words;
+        let map_words = used + if M::COUNTS_FALLBACKS { HEAD_WORDS } else { 0 };
+        let scratch_words = texels * needs.scratch_words;
         let needed_bytes = 4 * (map_words + scratch_words);
         let limit_bytes = method.memory_limit_bytes() / u64::from(input.maps.max(1));
         let fits = if needed_bytes > limit_bytes {
@@ -398,7 +409,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let map = self.map(gpu, slot);
         map.list_of = list_of;
         map.words.fit(gpu, map_words);
-        map.used = map_words;
+        map.used = used;
         map.frame = Some(frame);
         map.report = ShadowReport {
             memory_bytes: map.words.bytes(),
@@ -465,14 +476,22 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
     }
 
     fn list(&self, slot: usize) -> Option<GpuList<'_>> {
-        let list = self.maps.get(slot)?.list.as_ref()?;
-        Some(GpuList { buffer: list.raw(), room: list.room() })
+        let map = self.maps.get(slot)?;
+        if M::COUNTS_FALLBACKS {
+            let built = map.frame.is_some();
+            return built.then(|| GpuList { buffer: map.words.raw(), at: 4 * map.used, room: u64::MAX });
+        }
+        let list = map.list.as_ref()?;
+        Some(GpuList { buffer: list.raw(), at: 0, room: list.room() })
     }
 
     fn settle(&mut self, gpu: &Gpu, heads: &[[u32; 2]]) -> Result<bool, GpuShadowError> {
         let mut again = false;
         let scratch = self.scratch.bytes();
         for (slot, (map, &head)) in self.maps.iter_mut().zip(heads).enumerate() {
+            if M::COUNTS_FALLBACKS {
+                map.report.fallbacks = GpuList::fragments(head);
+            }
             let Some(list) = map.list.as_mut().filter(|_| map.list_of == slot) else { continue };
             match list.settle(gpu, head) {
                 Ok(None) => {}

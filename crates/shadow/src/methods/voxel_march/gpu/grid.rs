@@ -126,7 +126,7 @@ impl GpuGrid {
     }
 
     pub fn list(&self) -> GpuList<'_> {
-        GpuList { buffer: self.list.raw(), room: self.room() }
+        GpuList { buffer: self.list.raw(), at: 0, room: self.room() }
     }
 
     /// Takes the head of a finished build. Returns the bytes that the grid needs, and whether the list was too short and has been enlarged.

@@ -12,14 +12,14 @@ fn quarter_sine(x: f32) -> f32 {
     return p * x;
 }
 
-// The sine of `x` turns, 0 to 2.
+// The sine of `x` turns, −1 to 2.
 fn sine(x: f32) -> f32 {
     let part = x - floor(x + 0.5);
     let folded = select(part, 0.5 - part, part > 0.25);
     return quarter_sine(select(folded, -0.5 - folded, folded < -0.25));
 }
 
-// Cosine and sine of `x` turns, 0 to 1.
+// Cosine and sine of `x` turns, −1 to 1.
 fn turn(x: f32) -> vec2f {
     return vec2f(sine(x + 0.25), sine(x));
 }

@@ -15,7 +15,7 @@ fn quarter_sine(x: f32) -> f32 {
     p * x
 }
 
-/// The sine of `x` turns, 0 to 2.
+/// The sine of `x` turns, −1 to 2.
 #[inline(always)]
 fn sine(x: f32) -> f32 {
     let part = x - (x + 0.5).floor();
@@ -23,15 +23,15 @@ fn sine(x: f32) -> f32 {
     quarter_sine(if folded < -0.25 { -0.5 - folded } else { folded })
 }
 
-/// Cosine and sine of `x` turns, 0 to 1.
+/// Cosine and sine of `x` turns, −1 to 1.
 #[inline(always)]
-pub(super) fn turn(x: f32) -> [f32; 2] {
+pub(crate) fn turn(x: f32) -> [f32; 2] {
     [sine(x + 0.25), sine(x)]
 }
 
 /// Cosine and sine of the sum of two angles.
 #[inline(always)]
-pub(super) fn turn_on(a: [f32; 2], by: [f32; 2]) -> [f32; 2] {
+pub(crate) fn turn_on(a: [f32; 2], by: [f32; 2]) -> [f32; 2] {
     [a[0] * by[0] - a[1] * by[1], a[1] * by[0] + a[0] * by[1]]
 }
 
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn sine_and_cosine_are_those_of_double_precision() {
-        for step in 0..=1000 {
+        for step in -1000..=1000 {
             let x = step as f32 / 1000.0;
             let angle = std::f64::consts::TAU * f64::from(x);
             let one = turn(x);
