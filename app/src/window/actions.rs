@@ -1,24 +1,16 @@
 //! The effects of commands.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
-use lovelock_project::files::Access;
-use lovelock_project::grants::Grants;
-use lovelock_project::project::{
-    Assignment, CameraMode, CameraSection, Marker, TimelineSection, load_project_with,
-};
-use lovelock_project::styles::StyleParts;
+use lovelock_project::error::Place;
+use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection};
 use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
-use lovelock_session::strokes::{PlayStrokes, STROKES_EXTENSION, play_strokes, read_strokes};
 
 use super::command::Command;
-use super::files::{Pending, place_of, set_part};
-use super::opening::{Aim, Found};
+use super::files::Pending;
+use super::opening::Aim;
 use super::page::Page;
 use super::pointer_tool::PointerTool;
 use super::purpose::Purpose;
@@ -34,66 +26,6 @@ pub(super) enum Used {
     Done,
     /// A thread looks into the file.
     Waits,
-}
-
-/// A project to start with.
-#[derive(Debug, Default)]
-pub(super) struct Opened {
-    pub(super) project: Project,
-    pub(super) project_path: Option<PathBuf>,
-    pub(super) picked: Vec<PathBuf>,
-    pub(super) problems: Vec<Problem>,
-    /// The file that it was started with as a part of the project, and the project without it.
-    pub(super) part: Option<(Place, PathBuf, Project)>,
-}
-
-/// Opens the file that is named on the command line, or the default project, and changes settings of it.
-pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
-    let (mut opened, place) = path.map_or_else(|| Ok((Opened::default(), None)), open_file)?;
-    opened.project.assign(set)?;
-    if let (Some(place), Some(path)) = (place, path) {
-        let mut before = Project::default();
-        before.assign(set)?;
-        opened.part = Some((place, path.to_owned(), before));
-    }
-    Ok(opened)
-}
-
-/// Opens a file; also returns the part of the project that it becomes, if it is one.
-fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
-    let mut place = None;
-    let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION)) {
-        // On the default hair: a new project, so that the strokes stay as they are.
-        let (strokes, access) = (read_strokes(path)?, Access::new());
-        let mut go_on = |_| ControlFlow::Continue(());
-        (opened.project, _, opened.problems) =
-            play_strokes(&opened.project, &access, &strokes, PlayStrokes::default(), &mut go_on)?;
-        return Ok((opened, None));
-    }
-    match Found::of(path, &opened.project.hair)? {
-        Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
-        Found::Part(kind, unused) => {
-            let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
-            opened.problems.extend(unused);
-            set_part(&mut opened.project, kind, path);
-            place = Some(place_of(kind));
-        }
-        Found::Document(FileKind::Style) => {
-            let listed = lovelock_jobs::presets::style_in(path)?;
-            opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
-            opened.project.apply_style(&listed.style, StyleParts::ALL);
-        }
-        Found::Document(_) => {
-            let mut access = Access::for_project(path);
-            Grants::of_user().allow(path, &mut access);
-            (opened.project, opened.problems) = load_project_with(path, &mut access)?;
-            // Recent projects and the journal name it from any folder.
-            opened.project_path = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
-        }
-        Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
-    }
-    Ok((opened, place))
 }
 
 impl Window {

@@ -3,6 +3,7 @@
 mod about;
 mod actions;
 mod aim;
+mod begin;
 mod brushes;
 mod camera_control;
 mod command;
@@ -66,10 +67,10 @@ mod viewport;
 mod wall;
 mod work;
 
-use lovelock_base::words::counted;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub(crate) use begin::{Shows, open};
 use command::Command;
 use compare::{Compare, CompareLayout};
 use display::Display;
@@ -82,7 +83,6 @@ use lovelock_project::document::Document;
 use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_project::grants::Grants;
-use lovelock_project::project::Assignment;
 use lovelock_session::health::Gauge;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
@@ -234,62 +234,10 @@ pub(crate) struct Window {
     display: Display,
 }
 
-/// What the window shows when it opens.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Shows {
-    /// The panes of a comparison.
-    pub(crate) panes: bool,
-    /// The mask of a layer, by its place in the list from 1.
-    pub(crate) mask: Option<u32>,
-    /// A shadow method of the user's own.
-    pub(crate) method: Option<lovelock_render::UserMethod>,
-}
-
-/// Opens the window with the file at `path`, if there is one.
-pub(crate) fn open(
-    path: Option<&Path>,
-    set: &[Assignment],
-    shows: Shows,
-    screenshot: Option<(PathBuf, f64)>,
-) -> Result<(), ProjectError> {
-    // A file that cannot be opened is an error of the command line, reported without opening the window.
-    let mut opened = actions::open_for_start(path, set)?;
-    if let Some(method) = shows.method {
-        methods::show(&mut opened.project, method, shows.panes);
-    }
-    let layers = &opened.project.hair.stack.layers;
-    let shown = shows.mask.map(|place| {
-        let layer = layers.get(place as usize - 1);
-        layer.map(|layer| layer.id).ok_or_else(|| {
-            let found = counted(layers.len(), "layer", "layers");
-            ProjectError::option(format!(
-                "--mask {place}: found {found}; must be the position of a layer, from 1"
-            ))
-        })
-    });
-    let shown = shown.transpose()?;
-    let is_bare = path.is_none() && set.is_empty() && !shows.panes && shown.is_none() && screenshot.is_none();
-    display::run(move |creation| {
-        let mut window = Window::new(creation, opened, screenshot)?;
-        window.panels.layers.reveal(shown);
-        if shows.panes {
-            window.layout.page = Page::Compare;
-        } else if window.layout.page == Page::Wall {
-            // Nine simulations are not what a program should start with.
-            window.layout.page = Page::Image;
-        }
-        // What the command line names is what the user wants to see; and what was lost comes first.
-        if is_bare && window.layout.starts_with_page && !window.safety.is_asking() {
-            window.start.open(&creation.egui_ctx, &window.layout);
-        }
-        Ok(window)
-    })
-}
-
 impl Window {
     fn new(
         creation: &eframe::CreationContext,
-        opened: actions::Opened,
+        opened: begin::Opened,
         picture: Option<(PathBuf, f64)>,
     ) -> Result<Self, ProjectError> {
         let ctx = &creation.egui_ctx;
@@ -317,8 +265,8 @@ impl Window {
     }
 
     /// Starts the session behind the window.
-    fn start(ctx: &egui::Context, layout: Layout, opened: actions::Opened) -> Result<Self, ProjectError> {
-        let actions::Opened { project, project_path, picked, problems, part } = opened;
+    fn start(ctx: &egui::Context, layout: Layout, opened: begin::Opened) -> Result<Self, ProjectError> {
+        let begin::Opened { project, project_path, picked, problems, part } = opened;
         let mut access = Access::new();
         for path in &picked {
             access.pick(path);

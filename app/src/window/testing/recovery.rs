@@ -16,7 +16,7 @@ use lovelock_render::Backend;
 
 use super::whole::{Whole, go, of, press_button, project, wait, window};
 use super::{control, screen_of};
-use crate::window::actions::Opened;
+use crate::window::begin::Opened;
 use crate::window::command::Command;
 use crate::window::{Layout, Window};
 

@@ -17,7 +17,7 @@ use lovelock_testkit::wait::wait_until;
 use super::super::command::Command;
 use super::keyboard::entry;
 use super::{Shown, control, controls, drag, screen_of};
-use crate::window::actions::Opened;
+use crate::window::begin::Opened;
 use crate::window::page::Page;
 use crate::window::pointer_tool::PointerTool;
 use crate::window::{Layout, Window};

@@ -1,0 +1,131 @@
+//! What the window begins with: the file of the command line, and what is shown of it.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use lovelock_base::words::counted;
+use lovelock_jobs::info::FileKind;
+use lovelock_project::Project;
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
+use lovelock_project::files::Access;
+use lovelock_project::grants::Grants;
+use lovelock_project::project::{Assignment, load_project_with};
+use lovelock_project::styles::StyleParts;
+use lovelock_session::strokes::{PlayStrokes, STROKES_EXTENSION, play_strokes, read_strokes};
+
+use super::files::{place_of, set_part};
+use super::opening::Found;
+use super::page::Page;
+use super::{Window, display, methods};
+
+/// What the window shows when it opens.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shows {
+    /// The panes of a comparison.
+    pub(crate) panes: bool,
+    /// The mask of a layer, by its place in the list from 1.
+    pub(crate) mask: Option<u32>,
+    /// A shadow method of the user's own.
+    pub(crate) method: Option<lovelock_render::UserMethod>,
+}
+
+/// Opens the window with the file at `path`, if there is one.
+pub(crate) fn open(
+    path: Option<&Path>,
+    set: &[Assignment],
+    shows: Shows,
+    screenshot: Option<(PathBuf, f64)>,
+) -> Result<(), ProjectError> {
+    // A file that cannot be opened is an error of the command line, reported without opening the window.
+    let mut opened = open_for_start(path, set)?;
+    if let Some(method) = shows.method {
+        methods::show(&mut opened.project, method, shows.panes);
+    }
+    let layers = &opened.project.hair.stack.layers;
+    let shown = shows.mask.map(|place| {
+        let layer = layers.get(place as usize - 1);
+        layer.map(|layer| layer.id).ok_or_else(|| {
+            let found = counted(layers.len(), "layer", "layers");
+            ProjectError::option(format!(
+                "--mask {place}: found {found}; must be the position of a layer, from 1"
+            ))
+        })
+    });
+    let shown = shown.transpose()?;
+    let is_bare = path.is_none() && set.is_empty() && !shows.panes && shown.is_none() && screenshot.is_none();
+    display::run(move |creation| {
+        let mut window = Window::new(creation, opened, screenshot)?;
+        window.panels.layers.reveal(shown);
+        if shows.panes {
+            window.layout.page = Page::Compare;
+        } else if window.layout.page == Page::Wall {
+            // Nine simulations are not what a program should start with.
+            window.layout.page = Page::Image;
+        }
+        // What the command line names is what the user wants to see; and what was lost comes first.
+        if is_bare && window.layout.starts_with_page && !window.safety.is_asking() {
+            window.start.open(&creation.egui_ctx, &window.layout);
+        }
+        Ok(window)
+    })
+}
+
+/// A project to start with.
+#[derive(Debug, Default)]
+pub(super) struct Opened {
+    pub(super) project: Project,
+    pub(super) project_path: Option<PathBuf>,
+    pub(super) picked: Vec<PathBuf>,
+    pub(super) problems: Vec<Problem>,
+    /// The file that it was started with as a part of the project, and the project without it.
+    pub(super) part: Option<(Place, PathBuf, Project)>,
+}
+
+/// Opens the file that is named on the command line, or the default project, and changes settings of it.
+pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
+    let (mut opened, place) = path.map_or_else(|| Ok((Opened::default(), None)), open_file)?;
+    opened.project.assign(set)?;
+    if let (Some(place), Some(path)) = (place, path) {
+        let mut before = Project::default();
+        before.assign(set)?;
+        opened.part = Some((place, path.to_owned(), before));
+    }
+    Ok(opened)
+}
+
+/// Opens a file; also returns the part of the project that it becomes, if it is one.
+fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
+    let mut place = None;
+    let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION)) {
+        // On the default hair: a new project, so that the strokes stay as they are.
+        let (strokes, access) = (read_strokes(path)?, Access::new());
+        let mut go_on = |_| ControlFlow::Continue(());
+        (opened.project, _, opened.problems) =
+            play_strokes(&opened.project, &access, &strokes, PlayStrokes::default(), &mut go_on)?;
+        return Ok((opened, None));
+    }
+    match Found::of(path, &opened.project.hair)? {
+        Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
+        Found::Part(kind, unused) => {
+            let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
+            opened.problems.extend(unused);
+            set_part(&mut opened.project, kind, path);
+            place = Some(place_of(kind));
+        }
+        Found::Document(FileKind::Style) => {
+            let listed = lovelock_jobs::presets::style_in(path)?;
+            opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
+            opened.project.apply_style(&listed.style, StyleParts::ALL);
+        }
+        Found::Document(_) => {
+            let mut access = Access::for_project(path);
+            Grants::of_user().allow(path, &mut access);
+            (opened.project, opened.problems) = load_project_with(path, &mut access)?;
+            // Recent projects and the journal name it from any folder.
+            opened.project_path = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+        }
+        Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
+    }
+    Ok((opened, place))
+}
