@@ -20,7 +20,7 @@ use super::values::{
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version = env!("LOVELOCK_VERSION"), subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, take, hair, character, motion, surroundings or sound file to open in the window.
+    /// A project, take, strokes, hair, character, motion, surroundings or sound file to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -60,7 +60,7 @@ pub(crate) enum Task {
     Bench(Bench),
     /// Draws and measures the figures and tables of the papers that the methods come from, beside the published ones, as a page.
     Papers(Papers),
-    /// Describes the contents of a hair, character, motion, project, take, surroundings or sound file.
+    /// Describes the contents of a hair, character, motion, project, take, strokes, surroundings or sound file.
     Info(Info),
     /// Converts a hair file to another format.
     Convert(Convert),

@@ -39,8 +39,18 @@ impl Source {
         if let Some(path) = &task.project {
             Grants::of_user().allow(path, &mut access);
         }
+        // A file that cannot be read is one for its reader, which says why.
+        let kind = task.project.as_deref().and_then(|path| FileKind::of(path).ok());
         let (mut project, problems) = match &task.project {
-            Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
+            Some(path) if kind == Some(FileKind::Strokes) => {
+                let message = format!(
+                    "{}: found recorded strokes; must be a project or a take (`lovelock style --strokes FILE` plays strokes on a \
+                     project)",
+                    path.display()
+                );
+                return Err(ProjectError::input(path, message));
+            }
+            Some(path) if kind == Some(FileKind::Take) => {
                 access.pick(path);
                 project_of_take(path)?
             }

@@ -369,6 +369,7 @@ impl Window {
                     self.fail(error);
                 }
             }
+            Pending::Strokes(played) => self.open_played(&played),
         }
     }
 

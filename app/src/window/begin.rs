@@ -1,8 +1,8 @@
 //! What the window begins with: the file of the command line, and what is shown of it.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use lovelock_base::watch::Watch;
 use lovelock_base::words::counted;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
@@ -11,10 +11,9 @@ use lovelock_project::files::Access;
 use lovelock_project::grants::Grants;
 use lovelock_project::project::{Assignment, load_project_with};
 use lovelock_project::styles::StyleParts;
-use lovelock_session::strokes::{PlayStrokes, STROKES_EXTENSION, play_strokes, read_strokes};
 
 use super::files::{place_of, set_part};
-use super::opening::Found;
+use super::opening::{Found, Played};
 use super::page::Page;
 use super::{Window, display, methods};
 
@@ -36,8 +35,10 @@ pub(crate) fn open(
     shows: Shows,
     screenshot: Option<(PathBuf, f64)>,
 ) -> Result<(), ProjectError> {
+    // A screenshot has nobody who waits, and the layer of a mask must be known.
+    let at_once = screenshot.is_some() || shows.mask.is_some();
     // A file that cannot be opened is an error of the command line, reported without opening the window.
-    let mut opened = open_for_start(path, set)?;
+    let mut opened = open_for_start(path, set, at_once)?;
     if let Some(method) = shows.method {
         methods::show(&mut opened.project, method, shows.panes);
     }
@@ -79,17 +80,32 @@ pub(super) struct Opened {
     pub(super) problems: Vec<Problem>,
     /// The file that it was started with as a part of the project, and the project without it.
     pub(super) part: Option<(Place, PathBuf, Project)>,
+    /// Strokes that are played on the hair of the project once the window is there.
+    pub(super) strokes: Option<PathBuf>,
 }
 
-/// Opens the file that is named on the command line, or the default project, and changes settings of it.
-pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<Opened, ProjectError> {
-    let (mut opened, place) = path.map_or_else(|| Ok((Opened::default(), None)), open_file)?;
-    opened.project.assign(set)?;
-    if let (Some(place), Some(path)) = (place, path) {
-        let mut before = Project::default();
-        before.assign(set)?;
-        opened.part = Some((place, path.to_owned(), before));
+/// Opens the file that is named on the command line, or the default project, and changes settings of it. Strokes are played `at_once`, or once
+/// the window is there.
+fn open_for_start(path: Option<&Path>, set: &[Assignment], at_once: bool) -> Result<Opened, ProjectError> {
+    let new = || {
+        let mut project = Project::default();
+        project.assign(set).map(|()| project)
+    };
+    let Some(path) = path else { return Ok(Opened { project: new()?, ..Opened::default() }) };
+    // The ending first: to find the kind, large files are read as a whole.
+    if FileKind::by_extension(path) == Some(FileKind::Strokes) && FileKind::of(path)? == FileKind::Strokes {
+        let mut opened = Opened { project: new()?, ..Opened::default() };
+        if at_once {
+            let played = Played::of(path, &opened.project, &Watch::default())?;
+            (opened.project, opened.problems) = (played.project, played.problems);
+        } else {
+            opened.strokes = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
+        }
+        return Ok(opened);
     }
+    let (mut opened, place) = open_file(path)?;
+    opened.project.assign(set)?;
+    opened.part = place.map(|place| new().map(|before| (place, path.to_owned(), before))).transpose()?;
     Ok(opened)
 }
 
@@ -97,15 +113,7 @@ pub(super) fn open_for_start(path: Option<&Path>, set: &[Assignment]) -> Result<
 fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
     let mut place = None;
     let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION)) {
-        // On the default hair: a new project, so that the strokes stay as they are.
-        let (strokes, access) = (read_strokes(path)?, Access::new());
-        let mut go_on = |_| ControlFlow::Continue(());
-        (opened.project, _, opened.problems) =
-            play_strokes(&opened.project, &access, &strokes, PlayStrokes::default(), &mut go_on)?;
-        return Ok((opened, None));
-    }
-    match Found::of(path, &opened.project.hair)? {
+    match Found::of(path, &opened.project.hair, Some(&opened.project), &Watch::default())? {
         Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
         Found::Part(kind, unused) => {
             let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
@@ -126,6 +134,35 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
             opened.project_path = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         }
         Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
+        Found::Strokes(played) => {
+            (opened.project, opened.problems) = (played.project.clone(), played.problems.clone());
+        }
     }
     Ok((opened, place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_wait_for_the_window_and_come_after_the_settings_of_the_command_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("combed ü.lovelockstrokes");
+        std::fs::write(&path, "(version: 1, strokes: [])").expect("a file");
+        let set = [("hair.groom.wisps", "16"), ("timeline.preroll_secs", "0.1")]
+            .map(|(name, value)| Assignment { name: name.to_owned(), value: value.to_owned() });
+        let waits = open_for_start(Some(&path), &set, false).expect("a project");
+        let mut wanted = Project::default();
+        wanted.assign(&set).expect("settings");
+        assert_eq!((waits.strokes.as_ref(), &waits.project), (Some(&path), &wanted));
+        let played = open_for_start(Some(&path), &set, true).expect("a project");
+        assert!(played.strokes.is_none() && played.project_path.is_none() && played.picked.is_empty());
+        assert_eq!(played.project.hair.stack.layers.len(), wanted.hair.stack.layers.len() + 1);
+        assert_eq!(played.project.hair.groom.wisps, 16);
+        for at_once in [false, true] {
+            let gone = open_for_start(Some(&folder.path().join("gone.lovelockstrokes")), &[], at_once);
+            assert!(gone.is_err_and(|error| error.to_string().contains("gone.lovelockstrokes")));
+        }
+    }
 }

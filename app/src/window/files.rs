@@ -14,18 +14,20 @@ use lovelock_project::project::{
 use lovelock_project::styles::Style;
 use lovelock_session::scene::{Scene, camera_for_size};
 
-use super::opening::{Aim, Found, Opened, Openings};
+use super::opening::{Aim, Found, Opened, Openings, Played};
 use super::page::Page;
 use super::path_dialog::PathDialog;
 use super::up_axis::UpQuestion;
 use super::{Window, notices, remember};
 
 /// The action that waits for the confirmation that unsaved changes may be lost.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Pending {
     Quit,
     New,
     Open(PathBuf),
+    /// Opens the new project in which strokes were played.
+    Strokes(Arc<Played>),
     /// Makes an example and shows it.
     Example(lovelock_jobs::examples::Example),
     /// Recovers the unsaved project in a journal.
@@ -103,7 +105,9 @@ pub(super) fn place_of(kind: FileKind) -> Place {
         FileKind::Character => Place::Body,
         FileKind::Surroundings => Place::Surroundings,
         FileKind::Sound => Place::Sound,
-        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => Place::Motion,
+        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take | FileKind::Strokes => {
+            Place::Motion
+        }
     }
 }
 
@@ -114,7 +118,7 @@ pub(super) fn set_part(project: &mut Project, kind: FileKind, path: &Path) {
         FileKind::Character => project.set_body_file(path),
         FileKind::Surroundings => project.set_surroundings_file(path),
         FileKind::Sound => project.set_sound_file(path),
-        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take => {
+        FileKind::Motion | FileKind::Project | FileKind::Style | FileKind::Take | FileKind::Strokes => {
             project.set_motion_file(path);
         }
     }
@@ -137,13 +141,19 @@ impl Window {
     /// Starts to look into a file that a dialog has picked.
     pub(super) fn look_into(&mut self, path: &Path, aim: Aim) -> Result<(), String> {
         let hair = self.document.project().hair.clone();
+        let new = match aim {
+            Aim::Open | Aim::PlayTake => Some(Arc::default()),
+            // The command line may have set something.
+            Aim::Start => Some(Arc::clone(self.document.project())),
+            Aim::Beside | Aim::Part(_) => None,
+        };
         self.files
             .openings
-            .start(path, aim, hair, &self.files.ctx)
+            .start(path, aim, (hair, new), &self.files.ctx)
             .map_err(|error| format!("{}: could not start a thread to read it: {error}", path.display()))
     }
 
-    fn look_into_or_tell(&mut self, path: &Path, aim: Aim) {
+    pub(super) fn look_into_or_tell(&mut self, path: &Path, aim: Aim) {
         if let Err(error) = self.look_into(path, aim) {
             self.fail(error);
         }
@@ -162,13 +172,18 @@ impl Window {
                 .and_then(|found| self.open_found(&path, aim, found))
             {
                 Ok(()) => remember(&mut self.layout.files, &path),
-                Err(error) => match dialog {
-                    Some(mut dialog) => {
-                        dialog.refuse(error);
-                        self.files.dialog = Some(dialog);
+                Err(error) => {
+                    if aim == Aim::Start {
+                        eprintln!("lovelock: {error}");
                     }
-                    None => self.fail(error),
-                },
+                    match dialog {
+                        Some(mut dialog) => {
+                            dialog.refuse(error);
+                            self.files.dialog = Some(dialog);
+                        }
+                        None => self.fail(error),
+                    }
+                }
             }
         }
     }
@@ -188,16 +203,21 @@ impl Window {
                 project.recording.record_all();
                 self.play(path, |_| project);
                 self.warn(problems.into_iter().map(|problem| problem.message));
-                if aim == Aim::Open {
+                if aim == Aim::PlayTake {
+                    // Not sooner: the dance would go on until the take is found.
+                    self.session.set_playing(true);
+                } else {
                     // Saving must not write the take's project to the file of the previous project.
                     self.document.detach();
                     self.follow_path();
-                } else {
-                    // Not sooner: the dance would go on until the take is found.
-                    self.session.set_playing(true);
                 }
             }
             (_, Found::Curves(curves)) => self.play(path, |project| curves.played_in(project)),
+            // Asked after they were played: the user may change something meanwhile.
+            (_, Found::Strokes(played)) if self.document.is_modified() => {
+                self.files.pending = Some(Pending::Strokes(played));
+            }
+            (_, Found::Strokes(played)) => self.open_played(&played),
             (_, Found::Document(FileKind::Style)) => self.open_style(path)?,
             (_, Found::Document(_)) if self.document.is_modified() => {
                 self.files.pending = Some(Pending::Open(path.to_owned()));
@@ -316,6 +336,13 @@ impl Window {
         remember(&mut self.layout.recent, path);
         self.warn(problems.into_iter().map(|problem| problem.message));
         Ok(())
+    }
+
+    /// Puts the new project in which strokes were played in place of this one.
+    pub(super) fn open_played(&mut self, played: &Played) {
+        self.replace_document(played.project.clone(), None);
+        self.notices.push(notices::Kind::Done, played.said.clone());
+        self.warn(played.problems.iter().map(|problem| problem.message.clone()));
     }
 
     /// Puts another project in place of this one.

@@ -25,6 +25,8 @@ use crate::window::control::HoverTooltip;
 
 /// Files and sounds that are read faster show no progress bar, seconds.
 const SHOW_READING_SECS: f64 = 0.15;
+/// How often the progress of a file is drawn.
+const DRAW_READING: std::time::Duration = std::time::Duration::from_millis(100);
 
 impl Window {
     /// One pass.
@@ -421,7 +423,9 @@ impl Window {
                     ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
                 } else {
                     let tip = "Cancels opening this file. The project stays unchanged.";
-                    if progress_overlay(ui, rect, row, 0.0, &format!("Opening {name}"), tip) {
+                    let done = self.files.openings.done();
+                    ui.request_repaint_after(DRAW_READING);
+                    if progress_overlay(ui, rect, row, done, &format!("Opening {name}"), tip) {
                         self.files.openings.cancel_first();
                     }
                     row += 1;

@@ -88,6 +88,7 @@ use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 use lovelock_session::window_device::WindowDevice;
 use notices::Notices;
+use opening::Aim;
 use overlay::scissors::Scissors;
 use page::Page;
 use palette::Palette;
@@ -266,7 +267,7 @@ impl Window {
 
     /// Starts the session behind the window.
     fn start(ctx: &egui::Context, layout: Layout, opened: begin::Opened) -> Result<Self, ProjectError> {
-        let begin::Opened { project, project_path, picked, problems, part } = opened;
+        let begin::Opened { project, project_path, picked, problems, part, strokes } = opened;
         let mut access = Access::new();
         for path in &picked {
             access.pick(path);
@@ -319,6 +320,9 @@ impl Window {
             eprintln!("lovelock: {}", problem.message);
         }
         window.warn(problems.into_iter().map(|problem| problem.message));
+        if let Some(path) = strokes {
+            window.look_into_or_tell(&path, Aim::Start);
+        }
         Ok(window)
     }
 

@@ -1,20 +1,27 @@
 //! Files that the user opens: what they are is found out on a thread, because a large one takes seconds to read.
 
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::watch::Watch;
+use lovelock_base::words::counted;
 use lovelock_groom::CurveMotion;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
+use lovelock_project::files::Access;
 use lovelock_project::project::HairSection;
+use lovelock_session::progress::Progress;
+use lovelock_session::strokes::{PlayStrokes, play_strokes, read_strokes};
 use lovelock_session::take::{CurvesToPlay, project_of_take};
 
 /// What a file is.
 pub(super) enum Found {
-    /// A project or a style, which are small.
+    /// A project or a style, which are small, or strokes that are not to be played.
     Document(FileKind),
     /// A part of the project, and a sentence about what of it is not used.
     Part(FileKind, Option<String>),
@@ -22,11 +29,19 @@ pub(super) enum Found {
     Take(Box<Project>, Vec<Problem>),
     /// Curves over time.
     Curves(CurvesToPlay),
+    /// Strokes that were played in a new project.
+    Strokes(Arc<Played>),
 }
 
 impl Found {
-    /// Looks into a file. Curves are read in the unit and up axis of `hair`.
-    pub(super) fn of(path: &Path, hair: &HairSection) -> Result<Self, ProjectError> {
+    /// Looks into a file. Curves are read in the unit and up axis of `hair`. Strokes are played on the hair of `new`, if there is one; `watch`
+    /// has their progress and cancels them.
+    pub(super) fn of(
+        path: &Path,
+        hair: &HairSection,
+        new: Option<&Project>,
+        watch: &Watch,
+    ) -> Result<Self, ProjectError> {
         Ok(match FileKind::of(path)? {
             kind @ (FileKind::Project | FileKind::Style) => Self::Document(kind),
             FileKind::Take => {
@@ -36,6 +51,10 @@ impl Found {
             FileKind::Hair => match CurveMotion::of(path) {
                 CurveMotion::Moving(_) => Self::Curves(CurvesToPlay::read(path, hair)?),
                 motion => Self::Part(FileKind::Hair, motion.problem()),
+            },
+            FileKind::Strokes => match new {
+                Some(new) => Self::Strokes(Arc::new(Played::of(path, new, watch)?)),
+                None => Self::Document(FileKind::Strokes),
             },
             kind => Self::Part(kind, None),
         })
@@ -47,7 +66,42 @@ impl Found {
             Self::Document(kind) | Self::Part(kind, _) => kind.label(),
             Self::Take(..) => FileKind::Take.label(),
             Self::Curves(_) => FileKind::Hair.label(),
+            Self::Strokes(_) => FileKind::Strokes.label(),
         }
+    }
+}
+
+/// Strokes that were played on the hair of a new project. The file stays as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Played {
+    /// The project with them.
+    pub(super) project: Project,
+    /// What of the project could not be loaded.
+    pub(super) problems: Vec<Problem>,
+    /// What was done, in a sentence.
+    pub(super) said: String,
+}
+
+impl Played {
+    /// Plays the strokes in a file on the hair of a project.
+    pub(super) fn of(path: &Path, new: &Project, watch: &Watch) -> Result<Self, ProjectError> {
+        let strokes = read_strokes(path)?;
+        let mut follow = |progress: Progress| {
+            let done = match progress {
+                Progress::Simulating { done, total } => done as f32 / total.max(1) as f32,
+                _ => 0.0,
+            };
+            if watch.at(done).is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        let (project, report, problems) =
+            play_strokes(new, &Access::new(), &strokes, PlayStrokes::default(), &mut follow)?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let missed = match report.missed {
+            0 => String::new(),
+            missed => format!("; {} no hair", counted(missed, "stroke touched", "strokes touched")),
+        };
+        let count = counted(report.strokes, "stroke", "strokes");
+        Ok(Self { project, problems, said: format!("Played {count} of {name} as a new project{missed}.") })
     }
 }
 
@@ -56,6 +110,8 @@ impl Found {
 pub(super) enum Aim {
     /// To become the project, or a part of it.
     Open,
+    /// As `Open`, because the command line names it: an error is printed too.
+    Start,
     /// To play the take that was recorded last, in the same project.
     PlayTake,
     /// For a pane beside the project.
@@ -76,6 +132,16 @@ struct Opening {
     aim: Aim,
     found: Receiver<Result<Found, ProjectError>>,
     since: Stopwatch,
+    reader: Reader,
+}
+
+/// The watch of a thread that looks into a file. The thread stops when nobody waits for the file any more.
+struct Reader(Watch);
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        self.0.cancel();
+    }
 }
 
 /// The files that are looked into, in the order in which the user opened them.
@@ -83,22 +149,23 @@ struct Opening {
 pub(super) struct Openings(VecDeque<Opening>);
 
 impl Openings {
-    /// Looks into a file on a thread of its own, which requests a repaint at its end.
+    /// Looks into a file on a thread of its own, which requests a repaint at its end. Strokes are played on the hair of `new`, if there is one.
     pub(super) fn start(
         &mut self,
         path: &Path,
         aim: Aim,
-        hair: HairSection,
+        (hair, new): (HairSection, Option<Arc<Project>>),
         ctx: &egui::Context,
     ) -> std::io::Result<()> {
         let (sender, found) = sync_channel(1);
-        let (file, wake) = (path.to_owned(), ctx.clone());
+        let (file, wake, watch) = (path.to_owned(), ctx.clone(), Watch::default());
+        let reader = Reader(watch.clone());
         std::thread::Builder::new().name("lovelock file".to_owned()).spawn(move || {
             // The window may be closed already, or the user may have lost patience.
-            let _ = sender.send(Found::of(&file, &hair));
+            let _ = sender.send(Found::of(&file, &hair, new.as_deref(), &watch));
             super::images::wake(&wake);
         })?;
-        self.0.push_back(Opening { path: path.to_owned(), aim, found, since: Stopwatch::start() });
+        self.0.push_back(Opening { path: path.to_owned(), aim, found, since: Stopwatch::start(), reader });
         Ok(())
     }
 
@@ -120,6 +187,11 @@ impl Openings {
         let first = self.0.front()?;
         let name = first.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Some((name, first.since.secs()))
+    }
+
+    /// The part of that file that is done, 0 to 1.
+    pub(super) fn done(&self) -> f32 {
+        self.0.front().map_or(0.0, |first| first.reader.0.done())
     }
 
     /// Does not open the file that [`Self::running`] names. Its thread ends by itself.

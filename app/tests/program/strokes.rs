@@ -45,6 +45,9 @@ fn strokes_are_written_into_a_project() {
         style("hair.lovelock", "missing.lovelockstrokes", "none.lovelock").refused(2).contains("missing")
     );
     assert!(!dir.path().join("none.lovelock").exists());
+    // They are no project: their text would be one without any settings.
+    let recorded = run(dir.path(), ["record", "a.lovelockstrokes", "-o", "none.mp4"]);
+    assert!(recorded.refused(2).contains("a.lovelockstrokes: found recorded strokes"));
     // A project that is there is kept, whatever it is.
     let kept = std::fs::read(dir.path().join("hair.lovelock")).expect("a project");
     let line = style("combed.lovelock", "a.lovelockstrokes", "hair.lovelock").refused(2).to_owned();

@@ -8,13 +8,17 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lovelock_base::clock::Stopwatch;
+use lovelock_base::watch::Watch;
 use lovelock_groom::UpAxis;
-use lovelock_project::error::Place;
+use lovelock_project::Project;
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::project::{BodySource, CameraSection, HairSource};
 use lovelock_testkit::wait::wait_until;
 
-use super::whole::{CTRL, go, key, of, project, wait, window};
+use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use crate::window::Window;
+use crate::window::opening::{Aim, Played};
+use crate::window::purpose::Purpose;
 use crate::window::session::LoadEnd;
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
@@ -160,6 +164,73 @@ fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     end_pipe(&path);
     go(&mut harness);
     assert_eq!(project(&harness), before);
+}
+
+/// A stroke of a wide brush through the head.
+const STROKES: &str = "(version: 1, strokes: [(tool: comb, settings: (radius: 0.5, front_only: false), samples: [\
+    (position: (0.0, 1.55, 0.0), view: (0.0, 0.0, -1.0), drag: (0.0, 0.0, 0.0), pressure: 1.0, time_secs: 0.0), \
+    (position: (0.2, 1.55, 0.0), view: (0.0, 0.0, -1.0), drag: (0.2, 0.0, 0.0), pressure: 1.0, time_secs: 0.0)])])";
+
+#[test]
+fn strokes_become_a_new_project_after_a_question_about_unsaved_changes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("combed ü.lovelockstrokes");
+    std::fs::write(&path, STROKES).expect("a file");
+    let mut harness = window();
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.document.mark_saved(&folder.path().join("hair.lovelock"));
+    window.change("camera", |project| project.camera.distance *= 0.5);
+    let changed = project(&harness);
+    assert!(changed.hair.stack.layers.is_empty());
+    for answer in ["Cancel", "Discard changes"] {
+        // As the command line opens it: on the hair of the window, of which there is little here.
+        let window = harness.state_mut().state.as_mut().expect("a window");
+        window.look_into(&path, Aim::Start).expect("a thread");
+        assert!(!is_idle(of(&harness)), "the window goes on");
+        wait(&mut harness, "the question", |window| window.files.pending.is_some());
+        assert_eq!(project(&harness), changed);
+        press_button(&mut harness, answer);
+        assert!(of(&harness).files.pending.is_none() && is_idle(of(&harness)));
+        assert_eq!(project(&harness) == changed, answer == "Cancel");
+    }
+    let window = of(&harness);
+    assert_eq!(window.document.project().hair.stack.layers.len(), 1);
+    assert!(window.document.path().is_none() && !window.document.is_modified());
+    assert_eq!(window.document.history().undo_len(), 0);
+    let said = "Played 1 stroke of combed ü.lovelockstrokes as a new project";
+    assert!(harness.query_by_label_contains(said).is_some());
+    assert_eq!(std::fs::read_to_string(&path).expect("the file"), STROKES);
+    // Control: without changes there is no question.
+    let before = project(&harness);
+    harness.state_mut().state.as_mut().expect("a window").look_into(&path, Aim::Start).expect("a thread");
+    wait(&mut harness, "the strokes", |window| {
+        assert!(window.files.pending.is_none());
+        !Arc::ptr_eq(window.document.project(), &before)
+    });
+}
+
+#[test]
+fn strokes_are_listed_and_broken_or_cancelled_ones_leave_the_project() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, broken] = ["a.lovelockstrokes", "b.lovelockstrokes"].map(|name| folder.path().join(name));
+    std::fs::write(&path, STROKES).expect("a file");
+    std::fs::write(&broken, STROKES.replace("version: 1", "version: 7")).expect("a file");
+    assert!(Purpose::Open.lists(&path) && !Purpose::Beside.lists(&path));
+    let watch = Watch::default();
+    watch.cancel();
+    let cancelled = Played::of(&path, &Project::default(), &watch);
+    assert!(matches!(cancelled, Err(ProjectError::Cancelled)));
+    let mut harness = window();
+    let before = project(&harness);
+    harness.state_mut().state.as_mut().expect("a window").open_any(&broken);
+    wait(&mut harness, "the error", |window| !window.notices.errors().is_empty());
+    let errors = of(&harness).notices.errors().join("\n");
+    assert!(errors.contains("b.lovelockstrokes: strokes: found version 7; must be 1"), "{errors}");
+    // A pane cannot show them, and nothing is played to find that out.
+    harness.state_mut().state.as_mut().expect("a window").look_into(&path, Aim::Beside).expect("a thread");
+    wait(&mut harness, "the error", |window| window.notices.errors().len() == 2);
+    assert!(of(&harness).notices.errors()[1].contains("found a strokes file; must be a take"));
+    assert!(Arc::ptr_eq(&project(&harness), &before));
 }
 
 #[test]

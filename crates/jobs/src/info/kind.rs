@@ -27,6 +27,8 @@ pub enum FileKind {
     Style,
     /// A take.
     Take,
+    /// Recorded strokes of brushes.
+    Strokes,
     /// A picture of the surroundings: Radiance or `OpenEXR`.
     Surroundings,
     /// A sound: WAV, MP3, Ogg Vorbis or FLAC.
@@ -41,13 +43,14 @@ fn readable() -> String {
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Hair,
         Self::Character,
         Self::Motion,
         Self::Project,
         Self::Style,
         Self::Take,
+        Self::Strokes,
         Self::Surroundings,
         Self::Sound,
     ];
@@ -61,6 +64,7 @@ impl FileKind {
             Self::Project => "project",
             Self::Style => "style",
             Self::Take => "take",
+            Self::Strokes => "strokes",
             Self::Surroundings => "surroundings",
             Self::Sound => "sound",
         }
@@ -75,6 +79,7 @@ impl FileKind {
             Self::Project => vec![PROJECT_EXTENSION, "ron"],
             Self::Style => vec![STYLE_EXTENSION],
             Self::Take => vec![TAKE_EXTENSION],
+            Self::Strokes => vec![STROKES_EXTENSION],
             Self::Surroundings => vec!["hdr", "exr"],
             Self::Sound => lovelock_sound::SOUND_EXTENSIONS.to_vec(),
         }
@@ -98,22 +103,12 @@ impl FileKind {
         }
         let mut start = Vec::new();
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
-        let is_strokes =
-            path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(STROKES_EXTENSION));
-        if is_strokes {
-            // Their text begins as that of a project, which would replace them when it is saved.
-            return Err(ProjectError::input(
-                path,
-                format!(
-                    "{name}: holds recorded strokes; `lovelock style --strokes FILE` plays them on a project"
-                ),
-            ));
-        }
         let by_name = Self::by_extension(path);
-        // A style is a project with fewer sections: only its name tells it apart.
+        // A style is a project with fewer sections, and strokes begin as a project does: only their names tell them apart.
         // Motion of VRM is glTF without a body.
         let kind = match (Self::by_content(&start), by_name) {
-            (Some(Self::Project), Some(Self::Style)) | (Some(Self::Character), Some(Self::Motion)) => by_name,
+            (Some(Self::Project), Some(Self::Style | Self::Strokes))
+            | (Some(Self::Character), Some(Self::Motion)) => by_name,
             (by_content, _) => match by_content.or(by_name) {
                 Some(kind @ (Self::Character | Self::Hair)) => Some(Self::of_parts(path, &start, kind)?),
                 kind => kind,

@@ -4,6 +4,7 @@ mod character_text;
 mod kind;
 mod lines;
 mod sound;
+mod strokes;
 mod style;
 mod surroundings;
 mod take;
@@ -11,6 +12,7 @@ mod text;
 
 pub use kind::FileKind;
 pub use sound::SoundInfo;
+pub use strokes::StrokesInfo;
 pub use style::StyleInfo;
 pub use surroundings::SurroundingsInfo;
 pub use take::{RegrownInfo, TakeInfo};
@@ -52,6 +54,8 @@ pub enum Content {
     Style(StyleInfo),
     /// A recorded simulation.
     Take(TakeInfo),
+    /// Recorded strokes of brushes.
+    Strokes(StrokesInfo),
     /// A picture of the surroundings.
     Surroundings(SurroundingsInfo),
     /// A sound.
@@ -93,7 +97,8 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Describes a hair, character, motion, project, style or take file, a picture of the surroundings, a sound, or a database of hair clusters.
+/// Describes a hair, character, motion, project, style or take file, recorded strokes, a picture of the surroundings, a sound, or a database
+/// of hair clusters.
 ///
 /// # Errors
 /// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
@@ -136,6 +141,7 @@ pub fn info_as(path: &Path, import: &ImportSettings) -> Result<Info, ProjectErro
         FileKind::Project => Content::Project(project_info(path)?),
         FileKind::Style => Content::Style(StyleInfo::of(path)?),
         FileKind::Take => Content::Take(TakeInfo::of(path)?),
+        FileKind::Strokes => Content::Strokes(StrokesInfo::of(path)?),
         FileKind::Surroundings => Content::Surroundings(SurroundingsInfo::of(path)?),
         FileKind::Sound => Content::Sound(SoundInfo::of(path)?),
     };

@@ -8,6 +8,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Project(_) => "project",
         Content::Style(_) => "style",
         Content::Take(_) => "take",
+        Content::Strokes(_) => "strokes",
         Content::Surroundings(_) => "surroundings",
         Content::Sound(_) => "sound",
         Content::HairClusters(_) => "hair-clusters",
@@ -114,6 +115,29 @@ fn a_style_is_described() {
 }
 
 #[test]
+fn strokes_are_described() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a ü.lovelockstrokes");
+    let text = "(version: 1, strokes: [(tool: comb, samples: [(time_secs: 0.5), (time_secs: 2.0)]), \
+                (tool: curl, samples: [(time_secs: 0.25)]), (tool: comb)])";
+    std::fs::write(&path, text).expect("a file");
+    let found = info(&path).expect("strokes");
+    assert_eq!(kind_of(&found), "strokes");
+    let json = serde_json::to_value(&found).expect("JSON");
+    assert_eq!((&json["kind"], &json["format"]), (&"strokes".into(), &"Lovelock strokes 1".into()));
+    assert_eq!((&json["strokes"], &json["samples"]), (&3.into(), &3.into()));
+    assert_eq!(json["tools"], serde_json::json!(["comb", "curl"]));
+    assert_eq!((&json["start_secs"], &json["end_secs"]), (&0.25.into(), &2.0.into()));
+    assert!(found.to_string().contains("0.25 s to 2.00 s"), "{found}");
+    std::fs::write(&path, "(version: 1, strokes: [])").expect("a file");
+    let json = serde_json::to_value(info(&path).expect("no strokes")).expect("JSON");
+    assert!(json["strokes"] == 0 && json["start_secs"].is_null(), "{json}");
+    std::fs::write(&path, "(version: 7, strokes: [])").expect("a file");
+    let error = info(&path).expect_err("another version");
+    assert!(error.exit_code() == 2 && error.to_string().contains("a ü.lovelockstrokes"), "{error}");
+}
+
+#[test]
 fn curves_whose_motion_is_refused_are_described_with_the_reason() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = dir.path().join("grows.usda");
@@ -145,6 +169,9 @@ fn content_speaks_before_the_ending() {
         ("d.dat", b"\xef\xbb\xbf(\n version: 1)", Some(FileKind::Project)),
         ("d.lovelockstyle", b"(version: 3)", Some(FileKind::Style)),
         ("e.lovelockstyle", b"HAIR....", Some(FileKind::Hair)),
+        // Their text would be an empty project, which replaces them when it is saved.
+        ("e.lovelockstrokes", b"(version: 1, strokes: [])", Some(FileKind::Strokes)),
+        ("e.ron", b"(version: 1, strokes: [])", Some(FileKind::Project)),
         ("e.HAIR", b"nonsense", Some(FileKind::Hair)),
         ("f.gltf", b"{\"asset\":{},\"meshes\":[{\"primitives\":[{\"mode\":3}]}]}", Some(FileKind::Hair)),
         ("g.gltf", b"{\"asset\":{},\"meshes\":[{\"primitives\":[{\"mode\":4}]}]}", Some(FileKind::Character)),
@@ -166,11 +193,6 @@ fn content_speaks_before_the_ending() {
             (other, _) => panic!("{name}: {other:?}"),
         }
     }
-    // Strokes would become an empty project, which replaces them when it is saved.
-    let strokes = dir.path().join("a.lovelockstrokes");
-    std::fs::write(&strokes, "(version: 1, strokes: [])").expect("a file");
-    let refused = FileKind::of(&strokes).expect_err("strokes");
-    assert!(refused.to_string().contains("lovelock style --strokes"), "{refused}");
     // A body with a clip is a body, and hair with a body is hair.
     for (name, content, kind) in [
         (

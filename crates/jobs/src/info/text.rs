@@ -88,6 +88,17 @@ impl fmt::Display for Info {
                 line(f, "layers", style.layers.join(", "))?;
                 remarks(f, &style.dropped, &style.notes)
             }
+            Content::Strokes(strokes) => {
+                line(f, "kind", &strokes.format)?;
+                line(f, "strokes", format_args!("{}, {} samples", strokes.strokes, strokes.samples))?;
+                if !strokes.tools.is_empty() {
+                    line(f, "tools", strokes.tools.join(", "))?;
+                }
+                if let (Some(start), Some(end)) = (strokes.start_secs, strokes.end_secs) {
+                    line(f, "time", format_args!("{start:.2} s to {end:.2} s of the dance"))?;
+                }
+                remarks(f, &strokes.dropped, &strokes.notes)
+            }
             Content::Surroundings(picture) => {
                 line(f, "kind", format_args!("surroundings, {}", picture.format))?;
                 line(f, "size", format_args!("{} x {} pixels", picture.width, picture.height))?;
