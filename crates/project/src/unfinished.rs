@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use crate::date;
-use lovelock_record::{UnfinishedKind, claim, is_unfinished};
+use lovelock_record::{UnfinishedKind, claim, is_unfinished, unfinished_outs};
 use serde::{Deserialize, Serialize};
 
 use crate::Project;
@@ -75,12 +75,17 @@ pub struct Recordings {
 #[derive(Debug)]
 pub struct Running {
     path: PathBuf,
+    out: PathBuf,
     /// Locked as long as it is open.
     _file: File,
 }
 
 impl Drop for Running {
     fn drop(&mut self) {
+        // A take that could not be written to its end, as on a full disk, is offered like one that a crash left.
+        if UnfinishedKind::of(&self.out) == Some(UnfinishedKind::Take) && is_unfinished(&self.out) {
+            return;
+        }
         // One that stays is not listed unless the recording has left something.
         let _ = fs::remove_file(&self.path);
     }
@@ -91,6 +96,8 @@ impl Drop for Running {
 pub struct Interrupted {
     /// Its file.
     path: PathBuf,
+    /// The name that was recorded. A take has another one by now if that name was recorded again.
+    noted: PathBuf,
     /// What it needs.
     pub job: Job,
     /// Its kind.
@@ -100,7 +107,11 @@ pub struct Interrupted {
 impl Interrupted {
     /// Forgets it: it was kept, discarded or is recorded again.
     pub fn forget(&self) {
-        let _ = fs::remove_file(&self.path);
+        // Another part of a take may have no note but this one.
+        let is_other = |out: &PathBuf| *out != self.job.out;
+        if self.kind != UnfinishedKind::Take || !unfinished_outs(&self.noted).iter().any(is_other) {
+            let _ = fs::remove_file(&self.path);
+        }
     }
 }
 
@@ -123,7 +134,7 @@ impl Recordings {
         let name = crc32fast::hash(job.out.as_os_str().as_encoded_bytes());
         let path = folder.join(format!("{}-{name:08x}-{}.{EXTENSION}", job.since_ms, std::process::id()));
         let mut file = claim(&path).ok()?;
-        let running = Running { path, _file: file.try_clone().ok()? };
+        let running = Running { path, out: job.out.clone(), _file: file.try_clone().ok()? };
         file.write_all(&serde_json::to_vec(job).ok()?).ok()?;
         Some(running)
     }
@@ -136,19 +147,37 @@ impl Recordings {
             paths.filter(|path| path.extension().is_some_and(|found| found == EXTENSION)).collect();
         paths.sort();
         paths.reverse();
-        let mut found: Vec<Interrupted> = Vec::new();
+        // Locked until all are known.
+        let mut notes: Vec<(PathBuf, Job, File)> = Vec::new();
         for path in paths.into_iter().take(MOST) {
             // One that runs is locked.
-            let Ok(_lock) = claim(&path) else { continue };
+            let Ok(lock) = claim(&path) else { continue };
             let is_short = fs::metadata(&path).is_ok_and(|data| data.len() <= LONGEST);
             let text = is_short.then(|| fs::read(&path).ok()).flatten();
-            let job: Option<Job> = text.and_then(|text| serde_json::from_slice(&text).ok());
-            let left = job
-                .filter(|job| is_unfinished(&job.out) && found.iter().all(|other| other.job.out != job.out));
-            match left.and_then(|job| Some((UnfinishedKind::of(&job.out)?, job))) {
-                Some((kind, job)) => found.push(Interrupted { path, job, kind }),
+            match text.and_then(|text| serde_json::from_slice(&text).ok()) {
+                Some(job) => notes.push((path, job, lock)),
                 None => drop(fs::remove_file(&path)),
             }
+        }
+        let mut found: Vec<Interrupted> = Vec::new();
+        for (k, (path, job, _)) in notes.iter().enumerate() {
+            let mut outs = unfinished_outs(&job.out);
+            outs.retain(|out| found.iter().all(|other| other.job.out != *out));
+            let Some(kind) = UnfinishedKind::of(&job.out).filter(|_| !outs.is_empty()) else {
+                let _ = fs::remove_file(path);
+                continue;
+            };
+            // An older note of the same name is that of an older part; the oldest has all that are left.
+            if notes[k + 1..].iter().any(|(_, older, _)| older.out == job.out) {
+                outs.truncate(1);
+            }
+            let of = |out| Interrupted {
+                path: path.clone(),
+                noted: job.out.clone(),
+                job: Job { out, ..job.clone() },
+                kind,
+            };
+            found.extend(outs.into_iter().map(of));
         }
         found
     }
@@ -156,6 +185,8 @@ impl Recordings {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     #[test]
@@ -186,5 +217,49 @@ mod tests {
         assert!(recordings.interrupted().is_empty());
         assert_eq!(fs::read_dir(folder.path().join("state")).expect("a folder").count(), 0);
         assert!(recordings.begin(&Job::new(Path::new("a.apng"), &project, false)).is_none());
+    }
+
+    #[test]
+    fn every_part_of_a_take_is_offered_until_it_is_kept_or_discarded() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let recordings = Recordings::new(folder.path().join("state"));
+        let notes = || fs::read_dir(folder.path().join("state")).map_or(0, Iterator::count);
+        let at = |name: &str| folder.path().join(name);
+        let fail = |out: &str, since_ms| {
+            let job = Job { since_ms, ..Job::new(&at(out), &Project::default(), false) };
+            drop(recordings.begin(&job).expect("noted"));
+        };
+        let offered = || -> Vec<(PathBuf, u64)> {
+            recordings.interrupted().into_iter().map(|work| (work.job.out, work.job.since_ms)).collect()
+        };
+        let (take, cut) = (at("dance.take"), at("dance-cut1.take"));
+        // Control: a take that ended well leaves no note, and neither does a film that failed.
+        fail("dance.take", 1);
+        fs::write(at("film.mp4.partial"), b"x").expect("a file");
+        fail("film.mp4", 1);
+        assert_eq!(notes(), 0);
+        fs::write(at("dance.take.part"), b"x").expect("a file");
+        fail("dance.take", 2);
+        assert_eq!(offered(), [(take.clone(), 2)]);
+        // Recorded again, which renames the part, and interrupted again.
+        fs::rename(at("dance.take.part"), at("dance-cut1.take.part")).expect("renamed");
+        assert_eq!(offered(), [(cut.clone(), 2)]);
+        fs::write(at("dance.take.part"), b"x").expect("a file");
+        fail("dance.take", 3);
+        assert_eq!(offered(), [(take.clone(), 3), (cut.clone(), 2)]);
+        // What is discarded takes no other part along.
+        let found = recordings.interrupted();
+        fs::remove_file(at("dance.take.part")).expect("removed");
+        found[0].forget();
+        fs::write(at("dance-cut2.take.part"), b"x").expect("a file");
+        let outs = offered().into_iter().map(|(out, _)| out);
+        assert_eq!(outs.collect::<BTreeSet<_>>(), BTreeSet::from([cut, at("dance-cut2.take")]));
+        for part in ["dance-cut1.take.part", "dance-cut2.take.part"] {
+            let found = recordings.interrupted();
+            fs::remove_file(at(part)).expect("removed");
+            found[0].forget();
+        }
+        assert!(offered().is_empty());
+        assert_eq!(notes(), 0);
     }
 }

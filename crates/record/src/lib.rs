@@ -62,4 +62,6 @@ pub use take::{
     TakeAsset, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport,
     TakeWriter, hairstyle_fingerprint, mix_guides,
 };
-pub use unfinished::{Kept, UnfinishedKind, discard_unfinished, is_unfinished, keep_unfinished};
+pub use unfinished::{
+    Kept, UnfinishedKind, discard_unfinished, is_unfinished, keep_unfinished, unfinished_outs,
+};

@@ -1,5 +1,6 @@
 //! What interrupted recordings leave, and what can be made of it.
 
+use std::cmp::Reverse;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use crate::claim::claim;
 use crate::film::tables;
 use crate::partial::free_name;
 use crate::sequence;
-use crate::take::part_path;
+use crate::take::{cut_takes, part_path};
 use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeReader};
 
 /// What was recorded.
@@ -18,7 +19,7 @@ pub enum UnfinishedKind {
     Film,
     /// A sequence of images: it can be kept, and continued.
     Sequence,
-    /// A take: it can be kept.
+    /// A take: it can be kept. It cannot be continued: what the user did while it was recorded is gone.
     Take,
 }
 
@@ -62,6 +63,18 @@ pub fn is_unfinished(out: &Path) -> bool {
         Some(UnfinishedKind::Take) => is_take_left(&part_path(out)),
         None => false,
     }
+}
+
+/// The recordings that interrupted recordings to `out` left, the newest first, each to be kept or discarded by its name: `out` itself, and
+/// takes whose unfinished files were renamed when `out` was recorded again.
+pub fn unfinished_outs(out: &Path) -> Vec<PathBuf> {
+    let is_take = UnfinishedKind::of(out) == Some(UnfinishedKind::Take);
+    let mut cuts = if is_take { cut_takes(out) } else { Vec::new() };
+    cuts.sort();
+    cuts.sort_by_cached_key(|cut| {
+        Reverse(fs::metadata(part_path(cut)).and_then(|data| data.modified()).ok())
+    });
+    std::iter::once(out.to_owned()).chain(cuts).filter(|out| is_unfinished(out)).collect()
 }
 
 /// Makes a film, sequence or take of what an interrupted recording to `out` left. A file of that name stays: then the kept one gets a number.
@@ -269,6 +282,38 @@ mod tests {
         assert_eq!(keep_unfinished(&take).unwrap(), None);
         discard_unfinished(&take).unwrap();
         assert!(!part.exists() && !is_unfinished(&take));
+    }
+
+    #[test]
+    fn takes_whose_files_were_renamed_are_found_by_the_name_that_was_recorded_again() {
+        use std::time::{Duration, SystemTime};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let (take, part) = (at("dance ü.take"), at("dance ü.take.part"));
+        fs::write(&part, b"left by a crash").unwrap();
+        assert_eq!(unfinished_outs(&take), [take.as_path()]);
+        let header = TakeHeader { guides: 3, points_per_guide: 4, ..TakeHeader::default() };
+        let recording = TakeWriter::create(&take, header).unwrap();
+        assert_eq!(unfinished_outs(&take), [at("dance ü-cut1.take")], "the new one is being recorded");
+        drop(recording);
+        // A second crash, whose file is renamed by a third recording, and others of similar names.
+        fs::write(at("dance ü-cut2.take.part"), b"left").unwrap();
+        let first = fs::File::options().write(true).open(at("dance ü-cut1.take.part")).unwrap();
+        first.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000)).unwrap();
+        for other in
+            ["dance ü-cut.take.part", "dance ü-cutx.take.part", "dance-cut1.take.part", "dance ü-cut3.take"]
+        {
+            fs::write(at(other), b"other").unwrap();
+        }
+        fs::write(&part, b"left").unwrap();
+        let cuts = [at("dance ü-cut2.take"), at("dance ü-cut1.take")];
+        assert_eq!(unfinished_outs(&take), [&take, &cuts[0], &cuts[1]].map(PathBuf::clone));
+        discard_unfinished(&cuts[0]).unwrap();
+        discard_unfinished(&take).unwrap();
+        assert_eq!(unfinished_outs(&take), [cuts[1].as_path()]);
+        // Control: films have no such names.
+        fs::write(at("film-cut1.mp4.part"), b"other").unwrap();
+        assert!(unfinished_outs(&at("film.mp4")).is_empty());
     }
 
     #[test]

@@ -122,6 +122,27 @@ fn interrupted_recordings_are_offered() {
 }
 
 #[test]
+fn a_take_that_a_crash_left_is_offered_by_its_name_of_now_and_not_recorded_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let recordings = Recordings::new(folder.path().join("recordings"));
+    let [part, cut] = ["dance.take.part", "dance-cut1.take.part"].map(|name| folder.path().join(name));
+    fs::write(&part, b"x").expect("a file");
+    drop(recordings.begin(&Job::new(&folder.path().join("dance.take"), &Project::default(), false)));
+    // The name was recorded again since.
+    fs::rename(&part, &cut).expect("renamed");
+    let mut harness = safe_window(folder.path());
+    assert!(harness.query_by_label("dance-cut1.take, a take").is_some());
+    for missing in ["Record again", "Continue"] {
+        assert!(harness.query_by_role_and_label(Role::Button, missing).is_none(), "{missing}");
+    }
+    let _ = control(&harness, Role::Button, "Keep what is there");
+    press_button(&mut harness, "Discard…");
+    press_button(&mut harness, "Discard for good");
+    assert!(!of(&harness).safety.is_asking() && !cut.exists());
+    assert!(recordings.interrupted().is_empty());
+}
+
+#[test]
 fn a_pass_that_fails_leaves_the_window_open_and_the_changes_on_the_disk() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path().to_owned();

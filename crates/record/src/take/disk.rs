@@ -34,6 +34,30 @@ pub(crate) fn part_path(target: &Path) -> PathBuf {
     target.with_file_name(name)
 }
 
+/// The takes that unfinished files were kept for when their name was recorded again, in no order: `NAME-cut1.take` and so on for `NAME.take`,
+/// whose unfinished file is now `NAME-cut1.take.part`.
+pub(crate) fn cut_takes(target: &Path) -> Vec<PathBuf> {
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let stem = target.file_stem().unwrap_or_default().as_encoded_bytes();
+    let is_cut = |take: &Path| {
+        let number = take.file_stem().unwrap_or_default().as_encoded_bytes().strip_prefix(stem);
+        let number = number.and_then(|rest| rest.strip_prefix(CUT.as_bytes()));
+        let is_same_kind = take.extension() == target.extension();
+        is_same_kind
+            && number.is_some_and(|number| !number.is_empty() && number.iter().all(u8::is_ascii_digit))
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+    entries
+        .map(|entry| entry.path())
+        .filter(|part| part.extension().is_some_and(|found| found == "part"))
+        .map(|part| part.with_extension(""))
+        .filter(|take| is_cut(take))
+        .collect()
+}
+
+/// What the name of an unfinished take gets, with a number, when another one of that name is recorded.
+const CUT: &str = "-cut";
+
 /// Most unfinished takes of one name that are kept.
 const MAX_KEPT: u32 = 10_000;
 
@@ -87,13 +111,13 @@ fn set_aside(old: &File, target: &Path, part: &Path) -> Result<(), TakeError> {
     let stem = target.file_stem().unwrap_or_default();
     for number in 1..=MAX_KEPT {
         let mut name = stem.to_owned();
-        name.push(format!("-cut{number}"));
+        name.push(CUT);
+        name.push(number.to_string());
         if let Some(extension) = target.extension() {
             name.push(".");
             name.push(extension);
         }
-        name.push(".part");
-        let kept = part.with_file_name(name);
+        let kept = part_path(&part.with_file_name(name));
         if !kept.exists() {
             return fs::rename(part, &kept)
                 .map_err(|error| TakeError::io(part, format!("keep it as {}", kept.display()), error));

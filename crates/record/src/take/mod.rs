@@ -36,7 +36,7 @@ mod worker;
 mod writer;
 
 pub use condition::TakeCondition;
-pub(crate) use disk::part_path;
+pub(crate) use disk::{cut_takes, part_path};
 pub use error::TakeError;
 pub use frame::TakeFrame;
 pub use header::{AssetState, MAX_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint};
