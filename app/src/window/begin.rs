@@ -1,6 +1,8 @@
 //! What the window begins with: the file of the command line, and what is shown of it.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use lovelock_base::watch::Watch;
 use lovelock_base::words::counted;
@@ -37,8 +39,7 @@ pub(crate) fn open(
 ) -> Result<(), ProjectError> {
     // A screenshot has nobody who waits, and the layer of a mask must be known.
     let at_once = screenshot.is_some() || shows.mask.is_some();
-    // A file that cannot be opened is an error of the command line, reported without opening the window.
-    let mut opened = open_for_start(path, set, at_once)?;
+    let (mut opened, refused) = open_or_refuse(path, set, at_once)?;
     if let Some(method) = shows.method {
         methods::show(&mut opened.project, method, shows.panes);
     }
@@ -54,8 +55,11 @@ pub(crate) fn open(
     });
     let shown = shown.transpose()?;
     let is_bare = path.is_none() && set.is_empty() && !shows.panes && shown.is_none() && screenshot.is_none();
-    display::run(move |creation| {
+    let has_opened = Rc::new(Cell::new(false));
+    let opens = Rc::clone(&has_opened);
+    let ended = display::run(move |creation| {
         let mut window = Window::new(creation, opened, screenshot)?;
+        opens.set(true);
         window.panels.layers.reveal(shown);
         if shows.panes {
             window.layout.page = Page::Compare;
@@ -68,7 +72,12 @@ pub(crate) fn open(
             window.start.open(&creation.egui_ctx, &window.layout);
         }
         Ok(window)
-    })
+    });
+    match refused {
+        // Without a display the file is what is wrong with the command.
+        Some(refused) if ended.is_err() && !has_opened.get() => Err(refused),
+        _ => ended,
+    }
 }
 
 /// A project to start with.
@@ -82,6 +91,26 @@ pub(super) struct Opened {
     pub(super) part: Option<(Place, PathBuf, Project)>,
     /// Strokes that are played on the hair of the project once the window is there.
     pub(super) strokes: Option<PathBuf>,
+    /// Why the file of the command line could not be opened.
+    pub(super) refused: Option<String>,
+}
+
+/// As [`open_for_start`]. A file that cannot be opened is told in the window, with a new project: nobody reads what a program prints that a
+/// desktop has started. The error is for the case that no window opens.
+fn open_or_refuse(
+    path: Option<&Path>,
+    set: &[Assignment],
+    at_once: bool,
+) -> Result<(Opened, Option<ProjectError>), ProjectError> {
+    match open_for_start(path, set, at_once) {
+        Ok(opened) => Ok((opened, None)),
+        // Desktops give no options.
+        Err(error) if at_once || matches!(error, ProjectError::Request { file: None, .. }) => Err(error),
+        Err(error) => {
+            let refused = Some(error.to_string());
+            Ok((Opened { refused, ..Opened::default() }, Some(error)))
+        }
+    }
 }
 
 /// Opens the file that is named on the command line, or the default project, and changes settings of it. Strokes are played `at_once`, or once
@@ -164,5 +193,26 @@ mod tests {
             let gone = open_for_start(Some(&folder.path().join("gone.lovelockstrokes")), &[], at_once);
             assert!(gone.is_err_and(|error| error.to_string().contains("gone.lovelockstrokes")));
         }
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_opened_is_told_beside_a_new_project() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (gone, broken) = (folder.path().join("gone.lovelock"), folder.path().join("broken.take"));
+        std::fs::write(&broken, b"no take").expect("a file");
+        let wrong = [Assignment { name: "sparkle".to_owned(), value: "1".to_owned() }];
+        for (path, name) in [(&gone, "gone.lovelock"), (&broken, "broken.take")] {
+            let (opened, error) = open_or_refuse(Some(path), &[], false).expect("a new project");
+            assert_eq!(opened.project, Project::default());
+            let said = error.expect("an error").to_string();
+            assert!(said.contains(name) && opened.refused.as_ref() == Some(&said), "{said}");
+            assert!(open_or_refuse(Some(path), &[], true).is_err(), "a picture of it is waited for");
+        }
+        // Controls: a wrong option, and a file that can be opened.
+        assert!(open_or_refuse(None, &wrong, false).is_err());
+        lovelock_project::project::save_project(&gone, &Project::default()).expect("saved");
+        let (opened, error) = open_or_refuse(Some(&gone), &[], false).expect("a project");
+        assert!(error.is_none() && opened.refused.is_none() && opened.project_path.is_some());
+        assert!(open_or_refuse(Some(&gone), &wrong, false).is_err());
     }
 }

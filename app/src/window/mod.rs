@@ -267,7 +267,7 @@ impl Window {
 
     /// Starts the session behind the window.
     fn start(ctx: &egui::Context, layout: Layout, opened: begin::Opened) -> Result<Self, ProjectError> {
-        let begin::Opened { project, project_path, picked, problems, part, strokes } = opened;
+        let begin::Opened { project, project_path, picked, problems, part, strokes, refused } = opened;
         let mut access = Access::new();
         for path in &picked {
             access.pick(path);
@@ -322,6 +322,10 @@ impl Window {
         window.warn(problems.into_iter().map(|problem| problem.message));
         if let Some(path) = strokes {
             window.look_into_or_tell(&path, Aim::Start);
+        }
+        if let Some(why) = refused {
+            eprintln!("lovelock: {why}");
+            window.fail(why);
         }
         Ok(window)
     }

@@ -47,7 +47,7 @@ fn wrong_options_are_rejected_in_one_line() {
         (vec!["record"], "--out"),
         (vec!["p.lovelock", "record", "-o", "a.mp4"], "p.lovelock"),
         (vec!["sparkle", "twice"], "twice"),
-        (vec!["no such project.lovelock"], "no such project.lovelock"),
+        (vec!["no such project.lovelock", "--screenshot", "a.png"], "no such project.lovelock"),
         (vec!["info"], "FILE"),
         (vec!["satf", "build"], "--out"),
         (vec!["info", "no such.hair"], "no such.hair"),
@@ -105,6 +105,9 @@ fn a_window_without_a_display_is_an_error() {
             line.contains("lovelock record"),
             "the command that works without a display is missing: {line}"
         );
+        // The window would tell it. Without one, the file is the error of the command.
+        let ran = run(dir.path(), ["no such project.lovelock"]);
+        assert!(ran.refused(2).contains("no such project.lovelock"), "{ran:?}");
     }
 }
 

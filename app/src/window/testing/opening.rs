@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use egui::Key;
 use egui::accesskit::Role;
+use egui::{Key, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::watch::Watch;
@@ -13,13 +13,16 @@ use lovelock_groom::UpAxis;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::project::{BodySource, CameraSection, HairSource};
+use lovelock_render::Backend;
 use lovelock_testkit::wait::wait_until;
 
+use super::screen_of;
 use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
-use crate::window::Window;
+use crate::window::begin::Opened;
 use crate::window::opening::{Aim, Played};
 use crate::window::purpose::Purpose;
 use crate::window::session::LoadEnd;
+use crate::window::{Layout, Window};
 
 /// Strands beside the head of the dancer at two times; `grows` gives the last one a point more at the second.
 fn write_curves(path: &Path, grows: bool) {
@@ -164,6 +167,26 @@ fn the_window_lives_while_a_file_is_read_and_can_leave_it() {
     end_pipe(&path);
     go(&mut harness);
     assert_eq!(project(&harness), before);
+}
+
+#[test]
+fn a_window_whose_file_was_refused_says_why_and_works() {
+    let mut project = Project::default();
+    project.picture.backend = Backend::Cpu;
+    (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (16, 8);
+    let why = "/gone/hair.lovelock: cannot be read: No such file";
+    let mut opened = Some(Opened { project, refused: Some(why.to_owned()), ..Opened::default() });
+    let mut harness = screen_of(vec2(1200.0, 900.0), None, move |ui, window: &mut Option<Window>| {
+        let window = window.get_or_insert_with(|| {
+            let opened = opened.take().unwrap_or_default();
+            Window::start(ui.ctx(), Layout::default(), opened).expect("the threads start")
+        });
+        window.pass(ui);
+    });
+    wait(&mut harness, "the scene", |window| window.session.scene.is_some());
+    assert_eq!(of(&harness).notices.errors(), [why], "nothing else failed");
+    assert!(harness.query_by_label(why).is_some());
+    assert!(of(&harness).document.path().is_none() && !of(&harness).document.is_modified());
 }
 
 /// A stroke of a wide brush through the head.
