@@ -61,9 +61,13 @@ impl Stamp {
 }
 
 impl Safety {
-    /// That of a user's window, with the journals and grants of `folder`.
-    fn start(journals: Journals, grants: Grants, recordings: Recordings) -> Result<Self, ProjectError> {
-        let journal = Some(Journal::new(journals.clone())?);
+    /// That of a user's window, which is woken when there is something to tell.
+    fn start(
+        (journals, grants, recordings): (Journals, Grants, Recordings),
+        ctx: &Context,
+    ) -> Result<Self, ProjectError> {
+        let wake = ctx.clone();
+        let journal = Some(Journal::waking(journals.clone(), move || super::images::wake(&wake))?);
         let works = Works::new(recordings);
         Ok(Self { journals, grants, journal, works, ..Self::default() })
     }
@@ -115,10 +119,10 @@ impl Window {
 
     pub(super) fn begin_safety_in(
         &mut self,
-        (journals, grants, recordings): (Journals, Grants, Recordings),
+        kept: (Journals, Grants, Recordings),
         ctx: &Context,
     ) -> Result<(), ProjectError> {
-        self.safety = Safety::start(journals, grants, recordings)?;
+        self.safety = Safety::start(kept, ctx)?;
         self.safety.stamp(self.document.path());
         self.find_unsaved(ctx);
         self.safety.works.find();
@@ -154,15 +158,17 @@ impl Window {
             Event::Found => {
                 self.find_unsaved(ctx);
             }
-            Event::KeptElsewhere { folder, error, kept_in } => self.notices.push(
-                Kind::Failed,
-                format!(
-                    "{} cannot be written ({error}). Your changes are kept in {} until you save the project elsewhere with \
-                     Ctrl+Shift+S.",
-                    folder.display(),
-                    kept_in.display()
-                ),
-            ),
+            Event::KeptElsewhere { folder, error, kept_in } => {
+                // Nothing is at risk before the first change.
+                let kind = if self.document.is_modified() { Kind::Failed } else { Kind::Warning };
+                let (folder, kept_in) = (folder.display(), kept_in.display());
+                self.notices.push(
+                    kind,
+                    format!(
+                        "{folder} cannot be written ({error}). Your changes are kept in {kept_in}, and Save asks for another place."
+                    ),
+                );
+            }
             Event::NotKept { folder, error } => self.fail(format!(
                 "Unsaved changes are not kept safe: {} cannot be written ({error}). You can go on; save the project elsewhere \
                  with Ctrl+Shift+S.",

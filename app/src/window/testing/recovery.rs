@@ -13,6 +13,7 @@ use lovelock_project::grants::Grants;
 use lovelock_project::journal::Journals;
 use lovelock_project::unfinished::{Job, Recordings};
 use lovelock_render::Backend;
+use lovelock_testkit::wait::wait_until;
 
 use super::whole::{Whole, go, of, press_button, project, wait, window};
 use super::{control, screen_of};
@@ -140,6 +141,25 @@ fn a_take_that_a_crash_left_is_offered_by_its_name_of_now_and_not_recorded_again
     press_button(&mut harness, "Discard for good");
     assert!(!of(&harness).safety.is_asking() && !cut.exists());
     assert!(recordings.interrupted().is_empty());
+}
+
+#[test]
+fn a_project_whose_folder_cannot_be_written_says_so_when_it_is_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("hair.lovelock");
+    let mut harness = safe_window(folder.path());
+    lovelock_project::project::save_project(&path, &project(&harness)).expect("saved");
+    // What a user meets who may write everything: no journal can lie here.
+    fs::create_dir(folder.path().join(".hair.lovelock.journal-partial")).expect("a folder");
+    with(&mut harness, |window, _| window.open_any(&path));
+    wait_until("the message", || {
+        harness.step();
+        harness.query_by_label_contains("and Save asks for another place").is_some()
+    });
+    let told = format!("{} cannot be written", folder.path().display());
+    assert!(harness.query_by_label_contains(&told).is_some());
+    assert!(harness.query_by_label_contains(&folder.path().join("journals").display().to_string()).is_some());
+    assert!(of(&harness).notices.errors().is_empty(), "nothing is lost yet");
 }
 
 #[test]

@@ -51,9 +51,17 @@ impl Journal {
     /// # Errors
     /// If no thread can be started.
     pub fn new(journals: Journals) -> Result<Self, ProjectError> {
+        Self::waking(journals, || ())
+    }
+
+    /// As [`Journal::new`]. Its thread calls `wake` when [`Journal::events`] has something new.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn waking(journals: Journals, wake: impl Fn() + Send + 'static) -> Result<Self, ProjectError> {
         let (to, messages) = sync_channel(QUEUE);
         let (told, events) = sync_channel(QUEUE);
-        let writer = Writer::new(journals, told);
+        let writer = Writer::new(journals, told, Box::new(wake));
         let thread = std::thread::Builder::new()
             .name("lovelock-journal".to_owned())
             .spawn(move || writer.run(&messages))

@@ -278,6 +278,52 @@ fn a_folder_that_cannot_be_written_or_is_gone_is_reported_and_changes_are_kept_e
     assert_eq!(found[0].history().expect("a history").project().camera.distance, 2.5);
 }
 
+/// A user who may write everything, as tests in containers have, meets a folder where the journal should be.
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_written_is_told_once_when_its_project_is_opened() {
+    use std::os::unix::fs::PermissionsExt;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    for can_be_written in [true, false] {
+        let place = Place::new();
+        let work = place.folder.path().join("work");
+        let set = |mode| fs::set_permissions(&work, fs::Permissions::from_mode(mode)).expect("a mode");
+        if !can_be_written {
+            set(0o555);
+            if fs::create_dir(work.join("probe")).is_ok() {
+                fs::create_dir(beside(&place.project()).with_extension("journal-partial")).expect("a folder");
+            }
+        }
+        let (mut document, _) = place.open();
+        let woken = Arc::new(AtomicUsize::new(0));
+        let count = Arc::clone(&woken);
+        let wake = move || {
+            count.fetch_add(1, Ordering::Relaxed);
+        };
+        let mut journal = Journal::waking(place.journals(), wake).expect("a thread");
+        assert!(journal.flush(&document, WITHIN));
+        let events = journal.events();
+        let told = usize::from(!can_be_written);
+        assert_eq!((events.len(), woken.load(Ordering::Relaxed)), (told, told), "{events:?}");
+        if let Some(event) = events.first() {
+            let kept = place.folder.path().join("state/journals");
+            assert!(
+                matches!(event, Event::KeptElsewhere { folder, kept_in, .. } if *folder == work && *kept_in == kept),
+                "{event:?}"
+            );
+        }
+        distance(&mut document, 2.5);
+        assert!(journal.flush(&document, WITHIN));
+        assert!(journal.events().is_empty(), "once");
+        crash(&document, journal);
+        let found = place.journals().unsaved(Some(&place.project()));
+        set(0o755);
+        assert_eq!(found.len(), 1, "{:?}", place.files("state/journals"));
+        assert_eq!(found[0].history().expect("a history").project().camera.distance, 2.5);
+    }
+}
+
 #[test]
 fn nowhere_to_write_is_reported_once_and_again_when_it_ends() {
     let folder = tempfile::tempdir().expect("a folder");

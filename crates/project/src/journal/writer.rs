@@ -67,7 +67,7 @@ pub enum Event {
     OpenElsewhere(Owner),
     /// The project that was opened has unsaved changes of an earlier run. They are among [`Journals::unsaved`].
     Found,
-    /// The folder of the project cannot be written. Changes are kept in another one.
+    /// The folder of the project cannot be written. Changes are kept in another one. Told when the project is opened, before there are any.
     KeptElsewhere {
         /// The folder that cannot be written.
         folder: PathBuf,
@@ -103,6 +103,8 @@ pub(super) struct Writer {
     journals: Journals,
     owner: Owner,
     events: SyncSender<Event>,
+    /// Called when there is an event.
+    wake: Box<dyn Fn() + Send>,
     slot: Option<Slot>,
     /// A file of this program that could not be written any further. What is in it stays until another one has all.
     broken: Option<Slot>,
@@ -117,11 +119,12 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    pub(super) fn new(journals: Journals, events: SyncSender<Event>) -> Self {
+    pub(super) fn new(journals: Journals, events: SyncSender<Event>, wake: Box<dyn Fn() + Send>) -> Self {
         Self {
             journals,
             owner: Owner::this(),
             events,
+            wake,
             slot: None,
             broken: None,
             marked: None,
@@ -183,6 +186,7 @@ impl Writer {
     fn tell(&self, event: Event) {
         // If nobody reads them, nobody needs more of them.
         let _ = self.events.try_send(event);
+        (self.wake)();
     }
 
     fn sync(&mut self) {
@@ -292,8 +296,10 @@ impl Writer {
                 Ok(slot) => {
                     let kept_in = folder_of(&slot.path);
                     self.slot = Some(slot);
-                    let elsewhere = failed.filter(|_| marked.is_modified()).map(|(folder, error)| {
-                        Event::KeptElsewhere { folder, error: error.to_string(), kept_in }
+                    let elsewhere = failed.map(|(folder, error)| Event::KeptElsewhere {
+                        folder,
+                        error: error.to_string(),
+                        kept_in,
                     });
                     self.report(elsewhere);
                     return;
