@@ -8,6 +8,7 @@ use std::time::SystemTime;
 use crate::date;
 use lovelock_record::claim;
 
+use super::note;
 use super::owner::Owner;
 use super::reader::Contents;
 use crate::error::ProjectError;
@@ -110,6 +111,7 @@ impl Journals {
     /// If it cannot be moved or copied.
     pub(super) fn set_aside_dead(&self, journal: &Path) -> io::Result<Aside> {
         if !journal.exists() {
+            note::forget(journal);
             return Ok(Aside::Nothing);
         }
         let (mut file, stays) = match open_dead(journal) {
@@ -122,6 +124,7 @@ impl Journals {
             }
             Err(error) => return Err(error),
         };
+        note::forget(journal);
         let is_in_folder = journal.parent() == self.folder();
         // One in the folder of a project names it. A foreign one that does not is not trusted with the files in it.
         let is_own = |contents: &Contents| is_in_folder || contents.last.project.is_some();

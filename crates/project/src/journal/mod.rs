@@ -3,10 +3,12 @@
 //! A [`Journal`] follows a document. Its thread appends every change to a file: each new state of the project as what differs from the state
 //! before it, and how the undo history changed. The file lies beside the project as `.NAME.lovelock.journal`, or in the folder of [`Journals`]
 //! for a project without a file and where the folder of the project cannot be written. It is locked while the program runs, so that a second
-//! program on the same project is noticed, and removed when the project is closed. [`Journals::unsaved`] finds those that a crash left.
+//! program on the same project is noticed; that one leaves a note beside it, so that the first is told, too. It is removed when the project is
+//! closed. [`Journals::unsaved`] finds those that a crash left.
 
 mod encoder;
 mod folder;
+mod note;
 mod owner;
 mod patch;
 mod reader;

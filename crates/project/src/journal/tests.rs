@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
 use super::folder::beside;
@@ -158,13 +159,57 @@ fn an_untitled_project_is_kept_in_the_users_folder_and_moves_when_it_is_saved() 
     assert_eq!(found[0].history().expect("a history").undo_len(), 2, "steps before the project was saved");
 }
 
+/// As another program does: in this process they differ by the time at which they began.
+fn open_second(place: &Place) -> (Document, Journal) {
+    std::thread::sleep(Duration::from_millis(3));
+    place.open()
+}
+
+#[test]
+fn both_programs_on_a_project_are_told_once_and_leave_nothing() {
+    let place = Place::new();
+    let note = beside(&place.project()).with_extension("opened");
+    let (first, _) = place.open();
+    let (wakes, woken) = sync_channel(8);
+    let wake = move || {
+        let _ = wakes.try_send(());
+    };
+    let mut journal = Journal::waking(place.journals(), wake).expect("a thread");
+    assert!(journal.flush(&first, WITHIN));
+    assert!(journal.events().is_empty(), "control: it is alone");
+    let (mut second, mut other) = open_second(&place);
+    assert!(other.flush(&second, WITHIN));
+    assert!(matches!(&other.events()[..], [Event::OpenElsewhere(_)]));
+    // Nothing changes in the first program, and it is told.
+    woken.recv_timeout(WITHIN).expect("it looks now and then");
+    let told = journal.events();
+    assert!(matches!(&told[..], [Event::OpenElsewhere(_)]), "{told:?}");
+    distance(&mut second, 3.5);
+    assert!(journal.flush(&first, WITHIN) && other.flush(&second, WITHIN) && !note.exists());
+    assert!(journal.events().is_empty() && other.events().is_empty(), "once");
+    other.close();
+    // A note that nobody has read goes with its reader, and is none for the next one.
+    fs::write(&note, b"{\"process\": 7}").expect("a file");
+    journal.close();
+    assert_eq!(place.files("work"), ["red hair.lovelock"]);
+    assert_eq!(place.files("state/journals"), [""; 0]);
+    fs::write(&note, b"{\"process\": 7}").expect("a file");
+    let (third, mut journal) = place.open();
+    assert!(journal.flush(&third, WITHIN));
+    assert!(journal.events().is_empty() && !note.exists(), "the note was for an earlier one");
+    // Control: one that is left now is read.
+    fs::write(&note, b"{\"process\": 7}").expect("a file");
+    assert!(journal.flush(&third, WITHIN) && !note.exists());
+    assert!(matches!(&journal.events()[..], [Event::OpenElsewhere(owner)] if owner.process == 7));
+}
+
 #[test]
 fn a_second_program_on_the_same_project_is_noticed_and_keeps_its_own_journal() {
     let place = Place::new();
     let (mut first, mut journal) = place.open();
     assert!(journal.flush(&first, WITHIN));
     // The lock is one of a file that is open, so that a second journal in this process meets it too.
-    let (mut second, mut other) = place.open();
+    let (mut second, mut other) = open_second(&place);
     assert!(other.flush(&second, WITHIN));
     distance(&mut first, 2.5);
     distance(&mut second, 3.5);

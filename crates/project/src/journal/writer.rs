@@ -12,6 +12,7 @@ use lovelock_record::{claim, is_still};
 
 use super::encoder::Encoder;
 use super::folder::{Aside, Journals, Unsaved};
+use super::note;
 use super::owner::Owner;
 use crate::history::HistoryMark;
 
@@ -21,6 +22,8 @@ const SYNC_IDLE: Duration = Duration::from_millis(900);
 const SYNC_EVERY_SECS: f64 = 2.0;
 /// How long after a failure it tries again.
 const RETRY: Duration = Duration::from_secs(5);
+/// How often it looks whether another program has opened the project, too.
+const LOOK: Duration = Duration::from_secs(1);
 /// A journal that has grown by that many bytes, and by twice its first length, is written anew.
 const GROWS_BY: u64 = 8 << 20;
 
@@ -63,7 +66,7 @@ pub(super) enum Message {
 /// What happened to a journal that the user should know.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// Another program has the project open.
+    /// Another program has the project open, whichever of the two was first.
     OpenElsewhere(Owner),
     /// The project that was opened has unsaved changes of an earlier run. They are among [`Journals::unsaved`].
     Found,
@@ -116,6 +119,11 @@ pub(super) struct Writer {
     unsynced: Option<Stopwatch>,
     /// Why the last attempt failed.
     trouble: Option<Event>,
+    /// The journal of another program that had the project open first. That program has a note.
+    met: Option<PathBuf>,
+    /// The program that has opened the project after this one.
+    joined: Option<Owner>,
+    looked: Stopwatch,
 }
 
 impl Writer {
@@ -132,6 +140,9 @@ impl Writer {
             covered: 0,
             unsynced: None,
             trouble: None,
+            met: None,
+            joined: None,
+            looked: Stopwatch::start(),
         }
     }
 
@@ -139,7 +150,11 @@ impl Writer {
     pub(super) fn run(mut self, messages: &Receiver<Message>) {
         loop {
             let fails = matches!(self.trouble, Some(Event::NotKept { .. }));
-            let wait = if self.unsynced.is_some() { SYNC_IDLE } else { RETRY };
+            let wait = match self.project_slot() {
+                _ if self.unsynced.is_some() => SYNC_IDLE,
+                Some(_) => LOOK,
+                None => RETRY,
+            };
             let first = match messages.recv_timeout(wait) {
                 Ok(message) => Some(message),
                 Err(RecvTimeoutError::Timeout) => None,
@@ -171,6 +186,9 @@ impl Writer {
             if let Some(picture) = picture {
                 self.write_picture(&picture);
             }
+            if self.looked.elapsed() >= LOOK || !flushes.is_empty() {
+                self.look();
+            }
             let often = self.unsynced.is_some_and(|since| since.secs() > SYNC_EVERY_SECS);
             if is_idle || often || !flushes.is_empty() {
                 self.sync();
@@ -181,6 +199,21 @@ impl Writer {
             }
         }
         self.sync();
+    }
+
+    /// The file that is written, if it is that of a project with a file, which other programs may open.
+    fn project_slot(&self) -> Option<&Slot> {
+        self.slot.as_ref().filter(|slot| slot.project.is_some())
+    }
+
+    /// Tells if another program has opened the project, once for each.
+    fn look(&mut self) {
+        self.looked = Stopwatch::start();
+        let joined = self.project_slot().and_then(|slot| note::take(&slot.path));
+        if let Some(owner) = joined.filter(|owner| self.joined.as_ref() != Some(owner)) {
+            self.joined = Some(owner.clone());
+            self.tell(Event::OpenElsewhere(owner));
+        }
     }
 
     fn tell(&self, event: Event) {
@@ -228,6 +261,9 @@ impl Writer {
         let is_gone = self.slot.as_ref().is_some_and(|slot| !is_still(&slot.file, &slot.path));
         // The project was saved elsewhere or replaced. The old journal stays until there is a new one.
         let before = if moves { self.slot.take() } else { None };
+        if moves {
+            (self.met, self.joined) = (None, None);
+        }
         if is_gone {
             self.slot = None;
         }
@@ -278,7 +314,10 @@ impl Writer {
             let opened = match self.journals.set_aside_dead(&place) {
                 Ok(Aside::Busy(_)) if is_own => self.begin(place.clone(), marked),
                 Ok(Aside::Busy(owner)) => {
-                    if !is_busy && owner.process != self.owner.process {
+                    // Not again when it tries again after a failure.
+                    if !is_busy && owner != self.owner && self.met.as_ref() != Some(&place) {
+                        note::leave(&place, &self.owner);
+                        self.met = Some(place.clone());
                         self.tell(Event::OpenElsewhere(owner));
                     }
                     is_busy = true;
@@ -352,6 +391,7 @@ impl Writer {
     fn remove(&self, slot: Slot) {
         // What cannot be removed holds a saved state, or is offered again.
         let _ = fs::remove_file(&slot.path);
+        note::forget(&slot.path);
         slot.pointer.map(fs::remove_file);
         self.journals.picture(slot.project.as_deref(), &self.owner).map(fs::remove_file);
     }
