@@ -29,8 +29,8 @@ pub(crate) struct BlendTile<'a> {
 /// The state of a tile during blending, in blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct BlendState {
-    color: [[[f32; BLOCK_LANES]; BLOCKS]; 3],
-    through: [[f32; BLOCK_LANES]; BLOCKS],
+    pub(super) color: [[[f32; BLOCK_LANES]; BLOCKS]; 3],
+    pub(super) through: [[f32; BLOCK_LANES]; BLOCKS],
     /// Blocks that are opaque: nothing behind them is visible.
     closed: [bool; BLOCKS],
     /// The number of other blocks in each row of blocks, and in the tile.
@@ -63,6 +63,28 @@ impl BlendState {
     /// Whether all blocks are opaque.
     pub fn is_full(&self) -> bool {
         self.open == 0
+    }
+
+    /// Whether a row of blocks is not yet opaque.
+    #[inline(always)]
+    pub(super) fn is_row_open(&self, row: usize) -> bool {
+        self.open_in_row[row] > 0
+    }
+
+    /// Whether a block is not yet opaque.
+    #[inline(always)]
+    pub(super) fn is_open(&self, block: usize) -> bool {
+        !self.closed[block]
+    }
+
+    /// Closes a block that was open, if no pixel of it lets through more than is seen. `most` has the largest transmittance.
+    #[inline(always)]
+    pub(super) fn close_if_opaque(&mut self, block: usize, most: Vec4) {
+        if most.max_element() <= UNSEEN {
+            self.closed[block] = true;
+            self.open_in_row[block / BLOCKS_IN_ROW] -= 1;
+            self.open -= 1;
+        }
     }
 
     /// Copies the blocks into rows of pixels.
@@ -107,12 +129,34 @@ fn blend_segments(input: &BlendTile, out: &mut BlendState) {
 }
 
 /// Segments whose points are fetched together.
-const FETCHED: usize = 16;
+pub(super) const FETCHED: usize = 16;
 
 /// The ends of a segment of the order.
 #[inline(always)]
-fn ends_of<'a>(input: &BlendTile<'a>, entry: u64) -> Option<&'a [ShadedPoint; 2]> {
+pub(super) fn ends_of<'a>(input: &BlendTile<'a>, entry: u64) -> Option<&'a [ShadedPoint; 2]> {
     input.points.get(entry as u32 as usize..).and_then(|points| points.first_chunk())
+}
+
+/// What the pixels of a block let through before a span, what they take of it, and what they let through afterwards, which is written to
+/// `through`: four lanes from `from` on.
+#[inline(always)]
+pub(super) fn take_four(
+    hidden: &Occlusion,
+    through: &mut [f32; BLOCK_LANES],
+    span: &Span,
+    from: usize,
+) -> [Vec4; 3] {
+    let at = span.block;
+    let Occlusion { near, far, share: hidden } = hidden;
+    let four = |of: &[f32; BLOCK_LANES]| Vec4::from_slice(&of[from..from + 4]);
+    let z = four(&span.depth);
+    let seen = Vec4::select(z.cmpge(four(&near[at])), Vec4::ONE, Vec4::ONE - four(&hidden[at]));
+    let alpha = Vec4::select(z.cmpge(four(&far[at])), four(&span.alpha) * seen, Vec4::ZERO);
+    let before = four(through);
+    let taken = alpha * before;
+    let left = before - taken;
+    left.write_to_slice(&mut through[from..from + 4]);
+    [before, taken, left]
 }
 
 struct Blend<'a> {
@@ -123,31 +167,23 @@ struct Blend<'a> {
 impl SpanSink for Blend<'_> {
     #[inline(always)]
     fn is_row_open(&self, row: usize) -> bool {
-        self.out.open_in_row[row] > 0
+        self.out.is_row_open(row)
     }
 
     #[inline(always)]
     fn is_open(&self, block: usize) -> bool {
-        !self.out.closed[block]
+        self.out.is_open(block)
     }
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
         // In fours, because the compiler does not turn this into vectors by itself.
         let at = span.block;
-        let Occlusion { near, far, share: hidden } = self.hidden;
-        let through = &mut self.out.through[at];
         let mut most = Vec4::ZERO;
         for from in (0..BLOCK_LANES).step_by(4) {
             let four = |of: &[f32; BLOCK_LANES]| Vec4::from_slice(&of[from..from + 4]);
-            let z = four(&span.depth);
-            let seen = Vec4::select(z.cmpge(four(&near[at])), Vec4::ONE, Vec4::ONE - four(&hidden[at]));
-            let alpha = Vec4::select(z.cmpge(four(&far[at])), four(&span.alpha) * seen, Vec4::ZERO);
-            let before = four(through);
-            let taken = alpha * before;
+            let [_, taken, left] = take_four(self.hidden, &mut self.out.through[at], span, from);
             let share = taken * four(&span.gain);
-            let left = before - taken;
-            left.write_to_slice(&mut through[from..from + 4]);
             most = most.max(left);
             let along = four(&span.along);
             for (c, plane) in self.out.color.iter_mut().enumerate() {
@@ -157,10 +193,6 @@ impl SpanSink for Blend<'_> {
                 sum.write_to_slice(&mut color[from..from + 4]);
             }
         }
-        if most.max_element() <= UNSEEN {
-            self.out.closed[at] = true;
-            self.out.open_in_row[at / BLOCKS_IN_ROW] -= 1;
-            self.out.open -= 1;
-        }
+        self.out.close_if_opaque(at, most);
     }
 }
