@@ -14,10 +14,14 @@ use crate::MAX_LIGHTS;
 use crate::strand_details::PointColours;
 use crate::uniform::{FrameUniform, MAX_LIGHT};
 
+mod chosen;
 mod fibre;
 mod kajiya_kay;
 mod sparse;
 mod two_highlights;
+
+pub(super) use chosen::{light_chosen_simd, place_all};
+pub(super) use sparse::{curve_through, decided_by, halfway};
 
 /// Points that are shaded together.
 const LANES: usize = 16;
@@ -76,8 +80,7 @@ pub(super) fn shade_all(
 ) {
     out.resize(out_of(input), ShadedPoint::default());
     let points = view.points_per_strand();
-    let is_sparse =
-        shaded != ShadedPoints::All && points > 2 && matches!(view.shading, ShadingView::Fibre(_));
+    let is_sparse = is_sparse(view, shaded);
     let piece = if is_sparse { points * (PIECE / points).max(1) } else { PIECE };
     out.par_chunks_mut(piece).enumerate().for_each(|(k, out)| {
         if is_sparse {
@@ -87,6 +90,13 @@ pub(super) fn shade_all(
             shade_points_simd(width, view, input, k * piece, out);
         }
     });
+}
+
+/// Whether light is computed at every second point of fine strands, and between them where that is needed.
+pub(super) fn is_sparse(view: &View, shaded: ShadedPoints) -> bool {
+    shaded != ShadedPoints::All
+        && view.points_per_strand() > 2
+        && matches!(view.shading, ShadingView::Fibre(_))
 }
 
 type Lane = [f32; LANES];
@@ -292,6 +302,13 @@ impl Group {
         [tangent, to_eye]
     }
 
+    /// Whether the neighbours of a point are finitely far from each other. Between others there is no direction, and so no light.
+    #[inline(always)]
+    fn is_straight(&self, lane: usize) -> bool {
+        let [x, y, z] = three(|axis| self.after[axis][lane] - self.before[axis][lane]);
+        (x + y + z) * 0.0 == 0.0
+    }
+
     /// See [`turn_variance`].
     #[inline(always)]
     fn turns(&self) -> Lane {
@@ -421,7 +438,11 @@ fn shade_group<const COLORED: bool, const N: usize>(
         let width = uniform.strand_width * taper * share * uniform.pixels_per_metre / max(w, 1e-3);
         let wide = 0.5 * thin(width, uniform.opacity, fine);
         // A NaN point is not drawn: every comparison with it is false.
-        let known = !(sum[0][lane] + sum[1][lane] + sum[2][lane]).is_nan();
+        let known = if COLORED {
+            !(sum[0][lane] + sum[1][lane] + sum[2][lane]).is_nan()
+        } else {
+            group.is_straight(lane)
+        };
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & known;
         half_width[lane] = if drawn { wide } else { -1.0 };
     }

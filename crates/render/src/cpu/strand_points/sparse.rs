@@ -2,6 +2,8 @@
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
+use std::ops::RangeInclusive;
+
 use lovelock_base::simd_versions;
 
 use super::{LANES, PointsIn, ShadedPoint, shade_group};
@@ -116,8 +118,36 @@ fn place_strand(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPo
 /// The mean light of the points before and after.
 #[inline(always)]
 fn mean(strand: &[ShadedPoint], k: usize) -> [f32; 3] {
-    let (a, b) = (strand[k - 1].color, strand[k + 1].color);
+    halfway(strand[k - 1].color, strand[k + 1].color)
+}
+
+/// The mean of the light of two points.
+#[inline(always)]
+pub(in crate::cpu) fn halfway(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     three(|c| 0.5 * (a[c] + b[c]))
+}
+
+/// The points, every second one of a range, whose light decides that of the point `i` of fine strands: of `points` points each and `count` in
+/// all. `None` if its own light is always computed.
+pub(in crate::cpu) fn decided_by(
+    i: usize,
+    (points, count): (usize, usize),
+    is_draft: bool,
+) -> Option<RangeInclusive<usize>> {
+    let start = i - i % points;
+    let (k, len) = (i - start, points.min(count - start));
+    let reach = if is_draft { 1 } else { 3 };
+    let is_between = k % 2 == 1 && k >= reach && k + reach < len;
+    is_between.then(|| i - reach..=i + reach)
+}
+
+/// Marks the points between two others as not drawn if one of these is not: in a draft they have no light of their own.
+pub(super) fn hide_between(strand: &mut [ShadedPoint]) {
+    for k in (1..strand.len().saturating_sub(1)).step_by(2) {
+        if strand[k - 1].half_width < 0.0 || strand[k + 1].half_width < 0.0 {
+            strand[k].half_width = -1.0;
+        }
+    }
 }
 
 /// The light of a point on the cubic curve through that of its neighbours and of the next ones, with their transmittances `lit`; `None` if
@@ -127,21 +157,28 @@ fn curve(strand: &[ShadedPoint], lit: &[u32], k: usize) -> Option<[f32; 3]> {
     if k < 3 || k + 3 >= strand.len() {
         return None;
     }
-    let [a, b, c, d] = [k - 3, k - 1, k + 1, k + 3].map(|at| &strand[at]);
+    let around = [k - 3, k - 1, k + 1, k + 3].map(|at| &strand[at]);
     // A point that is not drawn has no light.
-    if [a, b, c, d].iter().any(|point| point.half_width < 0.0) {
+    if around.iter().any(|point| point.half_width < 0.0) {
         return None;
     }
-    let [before, here, after] = [k - 1, k, k + 1].map(|at| lit[at].to_le_bytes().map(i32::from));
+    curve_through(around.map(|point| point.color), [k - 1, k, k + 1].map(|at| lit[at]))
+}
+
+/// The light in the middle of four points on the cubic curve through theirs; `None` if it does not vary evenly there. `lit` are the
+/// transmittances of the second, of the middle, and of the third.
+#[inline(always)]
+pub(in crate::cpu) fn curve_through([a, b, c, d]: [[f32; 3]; 4], lit: [u32; 3]) -> Option<[f32; 3]> {
+    let [before, here, after] = lit.map(|packed| packed.to_le_bytes().map(i32::from));
     let is_even =
         (0..4).all(|light| (2 * here[light] - before[light] - after[light]).abs() <= 2 * EVEN_BYTES);
     if !is_even {
         return None;
     }
-    let found = three(|i| (9.0 * (b.color[i] + c.color[i]) - (a.color[i] + d.color[i])) * (1.0 / 16.0));
+    let found = three(|i| (9.0 * (b[i] + c[i]) - (a[i] + d[i])) * (1.0 / 16.0));
     // Both second differences: at an edge between the middle two they cancel each other in the curve.
     let is_near = |i: usize| {
-        let (a, b, c, d) = (a.color[i], b.color[i], c.color[i], d.color[i]);
+        let (a, b, c, d) = (a[i], b[i], c[i], d[i]);
         let bent = (a - 2.0 * b + c).abs() + (b - 2.0 * c + d).abs();
         bent * (1.0 / 16.0) <= EVEN * max(0.5 * (b + c), DARK)
     };
@@ -179,5 +216,31 @@ mod tests {
         let mut hidden = arch;
         hidden[6].half_width = -1.0;
         assert_eq!(curve(&hidden, &open, 5), None);
+    }
+
+    #[test]
+    fn points_between_others_are_decided_by_them_and_the_ends_of_strands_are_not() {
+        // Two strands of nine points, of which the second is cut off after six.
+        let between = |is_draft: bool| -> Vec<_> {
+            (0..15).filter_map(|i| Some((i, decided_by(i, (9, 15), is_draft)?))).collect()
+        };
+        assert_eq!(between(false), [(3, 0..=6), (5, 2..=8)]);
+        let draft = [1_usize, 3, 5, 7, 10, 12].map(|i| (i, i - 1..=i + 1));
+        assert_eq!(between(true), draft);
+        assert!((0..9).all(|i| decided_by(i, (1, 9), false).is_none()), "stored strands");
+        // As where light is computed for whole strands.
+        let arch = strand(|k| 0.5 + 0.01 * k);
+        let decided = |k: &usize| curve(&arch, &[u32::MAX; 9], *k).is_some();
+        assert_eq!((1..8).step_by(2).filter(decided).collect::<Vec<_>>(), [3, 5]);
+    }
+
+    #[test]
+    fn in_a_draft_points_beside_one_that_is_not_drawn_are_not_drawn_either() {
+        let mut points = strand(|_| 1.0);
+        points[4].half_width = -1.0;
+        hide_between(&mut points);
+        let hidden = points.iter().enumerate().filter(|(_, point)| point.half_width < 0.0);
+        assert_eq!(hidden.map(|(k, _)| k).collect::<Vec<_>>(), [3, 4, 5]);
+        hide_between(&mut []);
     }
 }
