@@ -13,7 +13,7 @@ use crate::strand_values::at_points;
 const TARGET_PIXELS: f32 = 0.7;
 /// The same in a draft.
 const DRAFT_PIXELS: f32 = 1.4;
-/// The most points of fine strands: 100 bytes each with everything that drawing keeps of them.
+/// The most points of fine strands: about 110 bytes each with everything that drawing keeps of them.
 const MAX_POINTS: u64 = 1 << 22;
 
 /// The strands that an image draws, for other programs.

@@ -42,7 +42,7 @@ pub(super) fn paint_values(
             if placed.segment_bins.of(tile).is_empty() {
                 scratch.hair.clear();
             } else {
-                placed.draw_tile(view, grid, input, tile, scratch);
+                placed.draw_tile((view, None), grid, input, tile, scratch);
             }
             paint_tile(&scratch.hair, scale, out);
         },

@@ -79,7 +79,7 @@ impl LayerTiles {
                     return;
                 }
                 let scratch = lease.get();
-                placed.draw_tile(view, grid, input, tile, scratch);
+                placed.draw_tile((view, None), grid, input, tile, scratch);
                 let nearest = nearest_of(view, grid, placed, (tile, posed_body(input)), &scratch.samples);
                 for (i, (depth, transmittance)) in depth.iter_mut().zip(transmittance).enumerate() {
                     let at = i / TILE * STRIDE + i % TILE;

@@ -40,6 +40,7 @@ mod tone_map;
 mod transparency;
 mod values;
 mod view;
+mod visible;
 
 pub use drawn::DrawnHair;
 pub use interrupt::Interrupt;

@@ -15,6 +15,7 @@ use super::hair::blend::{BlendState, BlendTile, blend_segments_simd};
 use super::hair::fragments::{bounds, is_drawn};
 use super::hair::list::{Fragments, ListTile, list_segments_simd};
 use super::hair::order::{Pieces, SegmentKeys};
+use super::hair::weigh::{Weighed, add_light_simd, weigh_segments_simd};
 use super::strand_points::{PointsIn, ShadedPoint, ShadedPoints, shade_all};
 use super::surface::PlacedSurface;
 use super::surface::materials::Cutouts;
@@ -22,6 +23,7 @@ use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile, raster_tri
 use super::tile::{Grid, HairPlanes, TILE};
 use super::transparency::resolve_tile;
 use super::view::View;
+use super::visible::{LateInput, LateLight, Wanted};
 use crate::closed::{Closedness, encloses};
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, Transparency};
@@ -32,7 +34,11 @@ pub(super) struct PlacedScene {
     pub width: Width,
     /// Whether light is computed at every strand point and the body's shadow at every pixel, also where they vary evenly.
     pub is_exact: bool,
+    /// Whether light is computed at every strand point, also at those that show in no pixel.
+    pub lights_hidden: bool,
     pub points: Vec<ShadedPoint>,
+    /// The light of points, where it is computed after it is known which of them show.
+    late: LateLight,
     /// First points of segments, in the order of points; see [`PlacedScene::segments`].
     all_segments: Arc<Vec<u32>>,
     whole: usize,
@@ -55,13 +61,20 @@ pub(super) struct TileScratch {
     blend: BlendState,
     order: Vec<u64>,
     pieces: Pieces,
+    weighed: Weighed,
+    wanted: Wanted,
     fragments: Fragments,
 }
 
 impl TileScratch {
     /// Its memory, bytes.
     pub fn bytes(&self) -> u64 {
-        size_of_val(self) as u64 + list_bytes(&self.order) + self.pieces.bytes() + self.fragments.bytes()
+        size_of_val(self) as u64
+            + list_bytes(&self.order)
+            + self.pieces.bytes()
+            + self.weighed.bytes()
+            + self.wanted.bytes()
+            + self.fragments.bytes()
     }
 }
 
@@ -73,7 +86,9 @@ impl PlacedScene {
         Self {
             width,
             is_exact: false,
+            lights_hidden: false,
             points: Vec::new(),
+            late: LateLight::default(),
             all_segments: Arc::default(),
             whole: 0,
             carried: None,
@@ -88,6 +103,7 @@ impl PlacedScene {
     /// Its memory, bytes.
     pub fn bytes(&self) -> u64 {
         list_bytes(&self.points)
+            + self.late.bytes()
             + self.surface.bytes()
             + self.segment_bins.bytes()
             + self.keys.bytes()
@@ -108,17 +124,52 @@ impl PlacedScene {
         is_draft: bool,
     ) {
         let from = PointsIn { strands, details: &details.words, transmittance, colours: details.colours() };
-        let shaded = if is_draft {
+        shade_all(self.width, view, &from, self.shaded_points(is_draft), &mut self.points);
+        self.late.leave();
+        self.follow_segments(details);
+    }
+
+    /// Whether the light of strand points can wait until tiles show which of them are seen: where segments are blended from near to far. Other
+    /// modes list the colours of all fragments first.
+    pub fn is_late(&self, input: &FrameInput) -> bool {
+        let is_whole = self.lights_hidden || self.is_exact;
+        input.picture.transparency == Transparency::Sorted && !is_whole && self.clusters.ribs().is_none()
+    }
+
+    /// As [`PlacedScene::shade`], but light is computed while tiles are drawn with what is returned, at the points that show.
+    pub fn place<'a>(
+        &mut self,
+        view: &'a View<'a>,
+        (strands, details): (&'a Strands, &'a StrandDetails),
+        transmittance: &'a [u32],
+        is_draft: bool,
+    ) -> LateInput<'a> {
+        let from = PointsIn { strands, details: &details.words, transmittance, colours: details.colours() };
+        let input = LateInput::new(view, from, self.shaded_points(is_draft));
+        self.late.place(self.width, &input, &mut self.points);
+        self.follow_segments(details);
+        input
+    }
+
+    fn shaded_points(&self, is_draft: bool) -> ShadedPoints {
+        if is_draft {
             ShadedPoints::Second
         } else if self.is_exact {
             ShadedPoints::All
         } else {
             ShadedPoints::Needed
-        };
-        shade_all(self.width, view, &from, shaded, &mut self.points);
+        }
+    }
+
+    fn follow_segments(&mut self, details: &StrandDetails) {
         self.all_segments = Arc::clone(&details.segments);
         self.whole = details.segments.partition_point(|&first| (first as usize + 1) < self.points.len());
         self.carried = None;
+    }
+
+    /// The number of points whose light was computed, and of all.
+    pub fn lit_points(&self) -> [usize; 2] {
+        [self.points.len() - self.late.unlit(), self.points.len()]
     }
 
     /// Adds shaded points of carried hair. `segments` are those of the hairstyle and then those of the new points.
@@ -147,6 +198,7 @@ impl PlacedScene {
     /// Draws no strand.
     pub fn clear_strands(&mut self) {
         self.points.clear();
+        self.late.leave();
         (self.whole, self.carried) = (0, None);
     }
 
@@ -201,10 +253,10 @@ impl PlacedScene {
             && self.clusters.is_empty(tile)
     }
 
-    /// Rasterises the body in a tile, and the hair in front of it.
+    /// Rasterises the body in a tile, and the hair in front of it. Points have their colours, or their light is computed from `late`.
     pub fn draw_tile(
         &self,
-        view: &View,
+        (view, late): (&View, Option<&LateInput>),
         grid: &Grid,
         input: &FrameInput,
         tile: usize,
@@ -217,7 +269,7 @@ impl PlacedScene {
         if !self.clusters.is_empty(tile) {
             self.draw_mixed(view, transparency, grid.origin(tile), (tile, segments), scratch);
         } else if !segments.is_empty() {
-            self.draw_hair(view, transparency, grid.origin(tile), segments, scratch);
+            self.draw_hair((view, late), transparency, grid.origin(tile), segments, scratch);
         }
     }
 
@@ -238,26 +290,67 @@ impl PlacedScene {
 
     fn draw_hair(
         &self,
-        view: &View,
+        (view, late): (&View, Option<&LateInput>),
         transparency: Transparency,
         origin: [f32; 2],
         segments: &[u32],
         scratch: &mut TileScratch,
     ) {
-        let opacity = view.uniform.opacity;
         if transparency == Transparency::Sorted {
-            let TileScratch { blend, hidden, pieces, .. } = scratch;
-            blend.clear();
-            self.keys.each_piece(segments, self.segments(), pieces, |order| {
-                let input = BlendTile { origin, points: &self.points, order, hidden, opacity };
-                blend_segments_simd(self.width.for_eight(), &input, blend);
-                !blend.is_full()
-            });
+            match late {
+                Some(late) => self.weigh_and_light(late, origin, segments, scratch),
+                None => self.blend(view, origin, segments, scratch),
+            }
             scratch.blend.write(&mut scratch.hair);
         } else {
             scratch.fragments.clear();
             self.list_strands(view, origin, segments, scratch);
             resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
+        }
+    }
+
+    /// Blends segments whose points have colours.
+    fn blend(&self, view: &View, origin: [f32; 2], segments: &[u32], scratch: &mut TileScratch) {
+        let opacity = view.uniform.opacity;
+        let TileScratch { blend, hidden, pieces, .. } = scratch;
+        blend.clear();
+        self.keys.each_piece(segments, self.segments(), pieces, |order| {
+            let input = BlendTile { origin, points: &self.points, order, hidden, opacity };
+            blend_segments_simd(self.width.for_eight(), &input, blend);
+            !blend.is_full()
+        });
+    }
+
+    /// Blends segments, and computes the light of their points where that is needed first.
+    fn weigh_and_light(
+        &self,
+        late: &LateInput,
+        origin: [f32; 2],
+        segments: &[u32],
+        scratch: &mut TileScratch,
+    ) {
+        let opacity = late.opacity();
+        let TileScratch { blend, hidden, pieces, weighed, wanted, .. } = scratch;
+        blend.clear();
+        weighed.clear();
+        let mut add = |weighed: &mut Weighed, blend: &mut BlendState| {
+            self.late.light(self.width, late, &self.points, weighed, wanted);
+            add_light_simd(self.width.for_eight(), weighed, blend);
+            weighed.clear();
+        };
+        self.keys.each_piece(segments, self.segments(), pieces, |order| {
+            let mut input = BlendTile { origin, points: &self.points, order, hidden, opacity };
+            while !input.order.is_empty() {
+                let done = weigh_segments_simd(self.width.for_eight(), &input, blend, weighed);
+                input.order = &input.order[done..];
+                if weighed.is_full() {
+                    add(weighed, blend);
+                }
+            }
+            !blend.is_full()
+        });
+        if !weighed.is_empty() {
+            add(weighed, blend);
         }
     }
 

@@ -31,6 +31,7 @@ use super::surface::materials::Cutouts;
 use super::tile::{Grid, SurfacePlanes, TILE};
 use super::tone_map::encode;
 use super::view::{FibreView, ShadingView, View};
+use super::visible::LateInput;
 use crate::backdrop::{Backdrop, LaidBackdrop};
 use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
@@ -290,11 +291,16 @@ impl CpuRenderer {
         let details = &hair.drawn.details;
         let stored = without_strands(input.picture);
         let of_carried = input.of_carried(&stored).filter(|_| hair.share > 0.0);
-        if hair.share > 0.0 {
-            self.placed.shade(&view, (strands, details), &self.shadow.at_points, input.is_draft);
-        } else {
+        let (points, at_points) = ((strands, details), &self.shadow.at_points);
+        let mut late = None;
+        if hair.share <= 0.0 {
             self.placed.clear_strands();
+        } else if self.placed.is_late(input) {
+            late = Some(self.placed.place(&view, points, at_points, input.is_draft));
+        } else {
+            self.placed.shade(&view, points, at_points, input.is_draft);
         }
+        let lit = (&view, late.as_ref());
         if let Some(of_carried) = &of_carried {
             let uniform =
                 FrameUniform::new(of_carried, None, light, (width, height), &self.maps, DEPTH_TEXELS);
@@ -329,7 +335,7 @@ impl CpuRenderer {
                 let part = Stopwatch::start();
                 let mut held = std::mem::take(&mut self.layers);
                 held.fit(&grid);
-                self.draw_light(&view, &grid, input, over_background, &mut held.light);
+                self.draw_light(lit, &grid, input, over_background, &mut held.light);
                 if !with_values {
                     held.write_light(&grid, layers);
                     layers.behind = self.behind.clone().filter(|_| over_background);
@@ -358,7 +364,7 @@ impl CpuRenderer {
         tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         self.plain.follow(&uniform, &grid, self.behind.as_ref().map_or(0, |behind| behind.number));
         let mut plain = std::mem::take(&mut self.plain);
-        let drawn = self.draw_tiles(&view, &grid, input, &mut tiles, &mut plain);
+        let drawn = self.draw_tiles(lit, &grid, input, &mut tiles, &mut plain);
         self.plain = plain;
         if drawn.is_err() {
             self.tiles = tiles;
@@ -378,7 +384,7 @@ impl CpuRenderer {
     /// The light of all tiles, linear, for layers.
     fn draw_light(
         &self,
-        view: &View,
+        (view, late): (&View, Option<&LateInput>),
         grid: &Grid,
         input: &FrameInput,
         over_background: bool,
@@ -389,7 +395,7 @@ impl CpuRenderer {
             |lease, (tile, out)| {
                 let ground = ground_simd(self.placed.width, view, grid.origin(tile));
                 let scratch = lease.get();
-                self.draw_seen(view, grid, input, tile, scratch);
+                self.draw_seen((view, late), grid, input, tile, scratch);
                 let seen = scratch.seen(grid.origin(tile), ground.as_ref(), self.behind.as_deref());
                 finish_light(view, &seen, over_background, out);
             },
@@ -402,7 +408,7 @@ impl CpuRenderer {
     /// The picture must end.
     fn draw_tiles(
         &self,
-        view: &View,
+        (view, late): (&View, Option<&LateInput>),
         grid: &Grid,
         input: &FrameInput,
         tiles: &mut [u8],
@@ -423,7 +429,7 @@ impl CpuRenderer {
                         out.copy_from_slice(plain);
                         return Ok(());
                     }
-                    self.draw_tile(view, grid, input, (tile, ground.as_ref()), lease.get(), out);
+                    self.draw_tile((view, late), grid, input, (tile, ground.as_ref()), lease.get(), out);
                     if is_plain {
                         plain.copy_from_slice(out);
                         *known = true;
@@ -499,22 +505,29 @@ impl CpuRenderer {
 
     fn draw_tile(
         &self,
-        view: &View,
+        (view, late): (&View, Option<&LateInput>),
         grid: &Grid,
         input: &FrameInput,
         (tile, ground): (usize, Option<&Ground>),
         scratch: &mut Scratch,
         out: &mut [u8],
     ) {
-        self.draw_seen(view, grid, input, tile, scratch);
+        self.draw_seen((view, late), grid, input, tile, scratch);
         let seen = scratch.seen(grid.origin(tile), ground, self.behind.as_deref());
         finish_pixels_simd(self.placed.width, view, &seen, out);
     }
 
     /// Draws the body and the hair of a tile.
-    fn draw_seen(&self, view: &View, grid: &Grid, input: &FrameInput, tile: usize, scratch: &mut Scratch) {
+    fn draw_seen(
+        &self,
+        (view, late): (&View, Option<&LateInput>),
+        grid: &Grid,
+        input: &FrameInput,
+        tile: usize,
+        scratch: &mut Scratch,
+    ) {
         let (placed, origin) = (&self.placed, grid.origin(tile));
-        placed.draw_tile(view, grid, input, tile, &mut scratch.tile);
+        placed.draw_tile((view, late), grid, input, tile, &mut scratch.tile);
         scratch.surface.clear();
         if let Some(body) = posed_body(input)
             && !placed.surface.bins.of(tile).is_empty()

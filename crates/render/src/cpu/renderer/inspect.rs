@@ -22,6 +22,12 @@ impl CpuRenderer {
         self.shadow.transmittance_at(light, points)
     }
 
+    /// The number of strand points of the last picture whose light was computed, and of all. Light waits until it is known which points show
+    /// where segments are blended in order; in other modes it is computed for all.
+    pub fn lit_points(&self) -> [usize; 2] {
+        self.placed.lit_points()
+    }
+
     /// What the map of a light of the last picture holds along the light through `p` (world space, metres).
     ///
     /// # Errors

@@ -30,6 +30,14 @@ impl CpuRenderer {
         self
     }
 
+    /// A renderer that computes the light of every strand point before any is drawn, also of those that show in no pixel: what others are
+    /// compared with.
+    #[must_use]
+    pub fn lighting_hidden_points(mut self) -> Self {
+        self.placed.lights_hidden = true;
+        self
+    }
+
     /// Whether results are kept for the next picture while nothing moves, which is so at first. Times of repeated pictures only mean
     /// something without.
     pub fn set_keeping(&mut self, keeps: bool) {

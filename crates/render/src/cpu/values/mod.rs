@@ -137,7 +137,7 @@ impl ValueRenderer {
                     return;
                 }
                 let scratch = lease.get();
-                self.placed.draw_tile(&view, &grid, input, tile, scratch);
+                self.placed.draw_tile((&view, None), &grid, input, tile, scratch);
                 finish(&scratch.hair, out);
             },
         );
