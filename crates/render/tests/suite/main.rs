@@ -24,4 +24,5 @@ mod receding;
 mod shaders;
 mod surfaces;
 mod values;
+mod visible;
 mod window;
