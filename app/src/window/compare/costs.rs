@@ -170,6 +170,7 @@ pub(super) mod tests {
             time_secs: 0.0,
             times: LiveTimes { build: Some(ms), ask: Some(0.0), draw: Some(1.0), whole: ms + 1.0 },
             shadow_bytes: u64::from(resolution).pow(3),
+            shadow_fallbacks: 0,
             draw_bytes: 0,
             error: LiveError::Measured { rmse, bias: 0.0, p99: rmse },
             flip: None,

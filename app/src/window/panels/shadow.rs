@@ -5,7 +5,7 @@ use lovelock_base::settings::AnySettings;
 use lovelock_project::Project;
 use lovelock_render::{
     MapExtent, MapForm, MapValue, MapView, ShadowMethod, ShadowSettings, VoxelDeposit, VoxelMapSettings,
-    VoxelSlices,
+    VoxelSlices, fallbacks_sentence,
 };
 
 use crate::window::command::Command;
@@ -40,7 +40,7 @@ impl Panel for ShadowPanel {
         of_method(ui, shadow);
         if let Some((bytes, fallbacks)) = pane.map_or(readings.maps, |pane| pane.maps) {
             note(ui, format!("{:.1} MiB for the maps of all lights", bytes as f64 / (1024.0 * 1024.0)));
-            if let Some(sentence) = lovelock_shadow::fallbacks_sentence(fallbacks) {
+            if let Some(sentence) = fallbacks_sentence(fallbacks) {
                 note(ui, sentence);
             }
         }

@@ -79,7 +79,7 @@ impl<const M: usize, const TURNED: bool> System<M, TURNED> {
             k[row] = entry;
         }
         let [u, v] = if TURNED { [c, -s] } else { [1.0, 0.0] };
-        let a = if TURNED { turned::<M>(&k, [s, c], own) } else { shifted::<M>(&k, z, own) };
+        let a = if TURNED { rotated::<M>(&k, [s, c], own) } else { shifted::<M>(&k, z, own) };
         let (mut all, mut before) = (own, own * overestimation);
         for t in &real_roots::<M>(&a)[..M] {
             let (s, c) = (t * s + u, t * c + v);
@@ -145,7 +145,7 @@ fn shifted<const M: usize>(k: &[f32; 5], z: f32, own: f32) -> [f32; 5] {
 
 /// The same for a turn by a right angle: K(t s + c : t c − s).
 #[inline(always)]
-fn turned<const M: usize>(k: &[f32; 5], [s, c]: [f32; 2], own: f32) -> [f32; 5] {
+fn rotated<const M: usize>(k: &[f32; 5], [s, c]: [f32; 2], own: f32) -> [f32; 5] {
     // By powers of t, the highest first: the sum of k[i] (t s + c)ⁱ (t c − s)ᴹ⁻ⁱ, as by Horner.
     let (mut sum, mut power) = ([0.0; 5], [0.0; 5]);
     (sum[0], power[0]) = (k[M], 1.0);

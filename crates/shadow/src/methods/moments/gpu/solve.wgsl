@@ -63,7 +63,7 @@ fn share_before(system: ptr<function, System>, z: f32) -> f32 {
     }
     var a: array<f32, 5>;
     if (TURNED) {
-        a = turned(k, own_place, own);
+        a = rotated(k, own_place, own);
     } else {
         a = shifted(k, z, own);
     }
@@ -134,7 +134,7 @@ fn shifted(k: array<f32, 5>, z: f32, own: f32) -> array<f32, 5> {
     return a;
 }
 
-fn turned(k: array<f32, 5>, place: vec2f, own: f32) -> array<f32, 5> {
+fn rotated(k: array<f32, 5>, place: vec2f, own: f32) -> array<f32, 5> {
     var sum: array<f32, 5>;
     var power: array<f32, 5>;
     sum[0] = k[ORDER];
