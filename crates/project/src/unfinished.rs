@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use crate::date;
-use lovelock_record::{UnfinishedKind, claim, is_unfinished, unfinished_outs};
+use lovelock_record::{UnfinishedKind, claim, is_unfinished, tidy_finished, unfinished_outs};
 use serde::{Deserialize, Serialize};
 
 use crate::Project;
@@ -162,6 +162,9 @@ impl Recordings {
         let mut found: Vec<Interrupted> = Vec::new();
         for (k, (path, job, _)) in notes.iter().enumerate() {
             let mut outs = unfinished_outs(&job.out);
+            if outs.is_empty() {
+                tidy_finished(&job.out);
+            }
             outs.retain(|out| found.iter().all(|other| other.job.out != *out));
             let Some(kind) = UnfinishedKind::of(&job.out).filter(|_| !outs.is_empty()) else {
                 let _ = fs::remove_file(path);
@@ -210,11 +213,12 @@ mod tests {
         assert_eq!(found[0].job.project().expect("a project"), project);
         found[0].forget();
         assert!(recordings.interrupted().is_empty());
-        // One that left nothing is not offered, nor is a damaged file.
+        // One that left nothing is not offered, nor is a damaged file. A film that got its name may have left its tables.
         fs::write(&path, &copy).expect("a file");
         fs::write(path.with_file_name("x.json"), b"{").expect("a file");
-        fs::remove_file(folder.path().join("dance ü.mp4.partial")).expect("removed");
-        assert!(recordings.interrupted().is_empty());
+        let tables = folder.path().join("dance ü.mp4.partial.tables");
+        fs::rename(folder.path().join("dance ü.mp4.partial"), &tables).expect("renamed");
+        assert!(recordings.interrupted().is_empty() && !tables.exists());
         assert_eq!(fs::read_dir(folder.path().join("state")).expect("a folder").count(), 0);
         assert!(recordings.begin(&Job::new(Path::new("a.apng"), &project, false)).is_none());
     }

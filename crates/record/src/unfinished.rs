@@ -125,6 +125,14 @@ pub fn discard_unfinished(out: &Path) -> io::Result<()> {
     }
 }
 
+/// Removes what a recording to `out` that got its name could not remove any more, because its program was killed at that moment. What
+/// [`is_unfinished`] finds stays.
+pub fn tidy_finished(out: &Path) {
+    if UnfinishedKind::of(out) == Some(UnfinishedKind::Film) {
+        tables::tidy(out);
+    }
+}
+
 /// Whether an interrupted recording left the unfinished take. One that is being recorded is not left.
 fn is_take_left(part: &Path) -> bool {
     // A claim would create a file that is missing.
@@ -316,10 +324,15 @@ mod tests {
         assert!(unfinished_outs(&at("film.mp4")).is_empty());
     }
 
-    #[test]
-    fn the_images_of_an_interrupted_sequence_are_listed_or_removed() {
-        let folder = tempfile::tempdir().unwrap();
-        let frames = folder.path().join("frames");
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<_> = entries.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// A sequence of which `count` images have their names.
+    fn begun(frames: &Path, count: u32) -> SequenceWriter {
         let settings = SequenceSettings {
             width: SIDE,
             height: SIDE,
@@ -330,10 +343,23 @@ mod tests {
             resume: true,
             settings: serde_json::json!({}),
         };
-        let mut writer = SequenceWriter::create(&frames, settings).unwrap();
-        (0..6).for_each(|frame| writer.push(&picture(frame)).unwrap());
-        let lines = || fs::read_to_string(frames.join("manifest.partial")).unwrap().lines().count();
-        wait_for(|| lines() == 7);
+        let mut writer = SequenceWriter::create(frames, settings).unwrap();
+        (0..count).for_each(|frame| writer.push(&picture(frame)).unwrap());
+        wait_for(|| {
+            // With the journal.
+            let names = names(frames);
+            names.len() == count as usize + 1 && !names.iter().any(|name| name.ends_with(".png.partial"))
+        });
+        writer
+    }
+
+    #[test]
+    fn the_images_of_an_interrupted_sequence_are_listed_or_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = folder.path().join("frames");
+        let writer = begun(&frames, 6);
+        let lines = fs::read_to_string(frames.join("manifest.partial")).unwrap().lines().count();
+        assert_eq!(lines, 7, "an image is in the journal before it has its name");
         let (kept, discarded) = (left_of(&frames), left_of(&frames));
         drop(writer);
         assert!(is_unfinished(kept.path()));
@@ -345,5 +371,57 @@ mod tests {
         // Control: a finished folder is left alone.
         discard_unfinished(kept.path()).unwrap();
         assert_eq!(fs::read_dir(kept.path()).unwrap().count(), 7);
+    }
+
+    #[test]
+    fn a_killed_recording_leaves_nothing_beside_what_is_kept_or_discarded() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("dance ü.mp4");
+        let write =
+            |names: &[&str]| names.iter().for_each(|name| fs::write(folder.path().join(name), b"x").unwrap());
+        // Killed while tables were written.
+        write(&["dance ü.mp4.partial", "dance ü.mp4.partial.tables-new"]);
+        tidy_finished(&film);
+        assert_eq!(names(folder.path()).len(), 2, "control: it is not finished");
+        discard_unfinished(&film).unwrap();
+        assert!(names(folder.path()).is_empty());
+        // Killed when the film had its name.
+        write(&["dance ü.mp4", "dance ü.mp4.partial.tables", "dance ü.mp4.partial.tables-new"]);
+        assert!(!is_unfinished(&film));
+        tidy_finished(&film);
+        assert_eq!(names(folder.path()), ["dance ü.mp4"]);
+
+        let frames = folder.path().join("frames");
+        let at = |name: &str| frames.join(name);
+        let writer = begun(&frames, 3);
+        let journal = fs::read(at("manifest.partial")).unwrap();
+        writer.finish().unwrap();
+        let whole = names(&frames);
+        assert_eq!(whole, ["frame_000000.png", "frame_000001.png", "frame_000002.png", "manifest.json"]);
+        // Killed before the next recording had begun its journal.
+        for keeps in [true, false] {
+            fs::write(at("manifest.partial"), b"").unwrap();
+            assert!(is_unfinished(&frames));
+            if keeps {
+                assert_eq!(keep_unfinished(&frames).unwrap(), None);
+            } else {
+                discard_unfinished(&frames).unwrap();
+            }
+            assert!(names(&frames) == whole && read_manifest(&frames).unwrap().complete);
+        }
+        // Killed when all was written but the journal was there, with files that have no name yet, and one of the user.
+        let leave = || {
+            fs::write(at("manifest.partial"), &journal).unwrap();
+            for name in ["frame_000003.png.partial", "manifest.json.partial", "notes.partial"] {
+                fs::write(at(name), b"x").unwrap();
+            }
+        };
+        leave();
+        assert_eq!(keep_unfinished(&frames).unwrap().expect("images").frames, 3);
+        assert!(read_manifest(&frames).unwrap().complete);
+        assert_eq!(names(&frames), [&whole[..], &["notes.partial".to_owned()]].concat());
+        leave();
+        discard_unfinished(&frames).unwrap();
+        assert_eq!(names(&frames), ["notes.partial"]);
     }
 }

@@ -30,6 +30,11 @@ fn tables_path(film: &Path) -> PathBuf {
     with_suffix(film, ".partial.tables")
 }
 
+/// The name under which tables are written until they are whole.
+fn new_tables_path(film: &Path) -> PathBuf {
+    with_suffix(film, ".partial.tables-new")
+}
+
 fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(suffix);
@@ -86,6 +91,7 @@ fn put_back(left: &[PathBuf; 2]) {
 /// The tables of a film that is being written. Their file is removed when it is dropped.
 pub(super) struct TablesFile {
     path: PathBuf,
+    new: PathBuf,
     since: Option<Stopwatch>,
 }
 
@@ -94,7 +100,7 @@ impl TablesFile {
     pub(super) fn new(film: &Path) -> Self {
         let path = tables_path(film);
         let _ = fs::remove_file(&path);
-        Self { path, since: None }
+        Self { path, new: new_tables_path(film), since: None }
     }
 
     /// Whether they were not written for a while.
@@ -111,10 +117,9 @@ impl TablesFile {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(crc32fast::hash(&body).to_le_bytes());
         bytes.extend(body);
-        let new = self.path.with_extension("tables-new");
-        let written = fs::write(&new, &bytes).and_then(|()| fs::rename(&new, &self.path));
+        let written = fs::write(&self.new, &bytes).and_then(|()| fs::rename(&self.new, &self.path));
         if written.is_err() {
-            let _ = fs::remove_file(&new);
+            let _ = fs::remove_file(&self.new);
         }
         written
     }
@@ -167,7 +172,7 @@ pub fn keep_unfinished_film(film: &Path) -> Result<Option<(PathBuf, FilmInfo)>, 
     let info = read_film(&partial)?;
     let kept = free_name(film);
     fs::rename(&partial, &kept).map_err(failed)?;
-    let _ = fs::remove_file(tables_path(film));
+    remove_tables(film);
     Ok(Some((kept, info)))
 }
 
@@ -187,8 +192,23 @@ pub(crate) fn discard(film: &Path) -> io::Result<()> {
         let _lock = claim(&partial)?;
         fs::remove_file(&partial)?;
     }
-    for path in [before_path(&partial), tables_path(film), before_path(&tables_path(film))] {
+    for path in [before_path(&partial), before_path(&tables_path(film))] {
         let _ = fs::remove_file(path);
     }
+    remove_tables(film);
     Ok(())
+}
+
+/// Removes the tables beside a film that got its name before its program was killed.
+pub(crate) fn tidy(film: &Path) {
+    // Without images the tables are of no use, and belong to no recording that runs.
+    if !is_left(film) {
+        remove_tables(film);
+    }
+}
+
+fn remove_tables(film: &Path) {
+    for path in [tables_path(film), new_tables_path(film)] {
+        let _ = fs::remove_file(path);
+    }
 }

@@ -1,7 +1,7 @@
 //! The journal of an unfinished sequence: its settings and its complete frames.
 //!
 //! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest without
-//! frames, then one line per frame as soon as the frame has its final name.
+//! frames, then one line per frame, just before the frame gets its final name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -43,10 +43,14 @@ impl Journal {
 
     /// What an earlier recording left in the folder: its journal or, if it ended regularly, its manifest.
     pub fn earlier(&mut self, folder: &Path) -> Option<Manifest> {
+        self.recorded().or_else(|| read_manifest(folder).ok())
+    }
+
+    /// What the journal itself says.
+    pub fn recorded(&mut self) -> Option<Manifest> {
         let mut text = Vec::new();
         let read = self.file.rewind().and_then(|()| (&self.file).take(MAX_BYTES).read_to_end(&mut text));
-        let recorded = read.ok().and_then(|_| parse(&text));
-        recorded.or_else(|| read_manifest(folder).ok())
+        read.ok().and_then(|_| parse(&text))
     }
 
     /// Starts a new journal with the frames that are kept.
@@ -66,7 +70,7 @@ impl Journal {
         self.file.sync_all()
     }
 
-    /// Adds a frame that has its final name.
+    /// Adds a frame that is about to get its final name.
     ///
     /// # Errors
     /// As [`Journal::begin`].

@@ -5,9 +5,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::journal::{JOURNAL_NAME, Journal, whole_frames};
+use super::sound_file::{SOUND_NAME, remove_own};
+use super::{SequenceFormat, frame_name};
 use crate::RecordError;
-use crate::manifest::{MANIFEST_NAME, Manifest};
-use crate::partial::{PartialFile, open_file};
+use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
+use crate::partial::{PartialFile, open_file, partial_path};
 
 /// Writes the manifest of a folder.
 pub(super) fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), RecordError> {
@@ -35,16 +37,18 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
         return Ok(0);
     }
     let mut journal = Journal::claim(folder)?;
-    let Some(there) = journal.earlier(folder) else {
-        journal.remove();
-        return Ok(0);
-    };
-    let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
-    let count = frames.len() as u64;
-    if count > 0 {
-        write_manifest(folder, &Manifest { frames, complete: false, ..there })?;
+    let mut count = 0;
+    // A recording that has not begun its journal has changed nothing: the manifest of the one before it stays.
+    if let Some(there) = journal.recorded() {
+        let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
+        count = frames.len() as u64;
+        if count > 0 && finished(folder, &frames).is_none() {
+            write_manifest(folder, &Manifest { frames, complete: false, ..there })?;
+        }
     }
+    remove_partial_files(folder);
     journal.remove();
+    remove_if_empty(folder);
     Ok(count)
 }
 
@@ -57,15 +61,49 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
         return Ok(());
     }
     let mut journal = Journal::claim(folder).map_err(|error| io::Error::other(error.to_string()))?;
-    let there = journal.earlier(folder);
-    for frame in whole_frames(folder, there.map(|there| there.frames).unwrap_or_default()).into_values() {
-        // Names come from a file: only those in the folder itself are removed.
-        if Path::new(&frame.file).components().count() == 1 {
-            fs::remove_file(folder.join(&frame.file))?;
+    if let Some(there) = journal.recorded() {
+        let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
+        if let Some(whole) = finished(folder, &frames) {
+            fs::remove_file(folder.join(MANIFEST_NAME))?;
+            whole.sound.iter().for_each(|sound| remove_own(folder, sound));
+        }
+        for frame in frames {
+            // Names come from a file: only those in the folder itself are removed.
+            if Path::new(&frame.file).components().count() == 1 {
+                fs::remove_file(folder.join(&frame.file))?;
+            }
         }
     }
+    remove_partial_files(folder);
     journal.remove();
-    // An empty folder was made by the recording.
-    let _ = fs::remove_dir(folder);
+    remove_if_empty(folder);
     Ok(())
+}
+
+/// The manifest, if it already lists these images as a whole sequence: the recording was killed before it could remove its journal.
+fn finished(folder: &Path, frames: &[ManifestFrame]) -> Option<Manifest> {
+    read_manifest(folder).ok().filter(|manifest| manifest.complete && manifest.frames == frames)
+}
+
+/// Removes the files of a recording that had no final name yet. The caller has locked the folder, so nobody writes them.
+fn remove_partial_files(folder: &Path) {
+    let is_ours = |name: &str| {
+        let number = name.strip_prefix("frame_").and_then(|rest| rest.split('.').next()?.parse::<u64>().ok());
+        let is_frame = |number| SequenceFormat::ALL.iter().any(|&format| frame_name(number, format) == name);
+        name == MANIFEST_NAME || name == SOUND_NAME || number.is_some_and(is_frame)
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        // That of the manifest has another name than the journal, which is `manifest.partial`.
+        let target = path.with_extension("");
+        let is_partial = partial_path(&target) == path;
+        if is_partial && target.file_name().and_then(|name| name.to_str()).is_some_and(is_ours) {
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// An empty folder was made by the recording.
+fn remove_if_empty(folder: &Path) {
+    let _ = fs::remove_dir(folder);
 }

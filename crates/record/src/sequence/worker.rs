@@ -82,25 +82,25 @@ impl Worker {
             .map_err(std::io::Error::other)
     }
 
-    /// Writes an encoded frame under its final name and adds it to the journal.
+    /// Writes an encoded frame, adds it to the journal and gives it its final name.
     fn write(&self, number: u64, coded: std::io::Result<()>, file: &[u8]) {
         let name = frame_name(number, self.format);
         let path = self.folder.join(&name);
+        let crc32 = format!("{:08x}", crc32fast::hash(file));
+        let frame = ManifestFrame { number, file: name, bytes: file.len() as u64, crc32 };
         let write = || {
             coded?;
             let mut partial = PartialFile::create(&path, &*self.opener)?;
             partial.write_all(file)?;
+            // Before it has its name: then every image that a killed program leaves is in the journal. Entries without one are ignored.
+            if let Some(journal) = &mut lock(&self.shared).journal {
+                journal.add(&frame)?;
+            }
             partial.commit(false)
         };
         let written = write();
         let mut shared = lock(&self.shared);
-        let crc32 = format!("{:08x}", crc32fast::hash(file));
-        let frame = ManifestFrame { number, file: name, bytes: file.len() as u64, crc32 };
-        let noted = written.and_then(|()| match &mut shared.journal {
-            Some(journal) => journal.add(&frame),
-            None => Ok(()),
-        });
-        match noted {
+        match written {
             Ok(()) => drop(shared.frames.insert(number, frame)),
             Err(error) => {
                 let error = RecordError::io(&path, format!("write frame {number}"), error);
