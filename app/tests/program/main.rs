@@ -5,6 +5,7 @@ mod clusters;
 mod compare;
 mod films;
 mod info;
+mod kills;
 mod methods;
 mod portraits;
 mod presets;
