@@ -1,4 +1,4 @@
-//! Tells the program its version with the commit and its date, where the source is a checkout.
+//! Tells the program its version with the commit and its date, where the source is a checkout, and gives it its icon on Windows.
 
 use std::path::Path;
 use std::process::Command;
@@ -17,7 +17,31 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     let version = commit.map_or_else(|| version.clone(), |commit| format!("{version} ({commit})"));
     println!("cargo::rustc-env=LOVELOCK_VERSION={version}");
+    embed_icon();
 }
+
+/// Puts the icon into the program for Windows, with its name and version. Untried: nobody has built it there yet.
+#[cfg(windows)]
+fn embed_icon() {
+    let folder = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
+    let icon = format!("{folder}/../packaging/windows/lovelock.ico");
+    println!("cargo::rerun-if-changed={icon}");
+    if std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("windows") {
+        return;
+    }
+    let embedded = winresource::WindowsResource::new()
+        .set("ProductName", "Lovelock")
+        .set("FileDescription", "Lovelock")
+        .set_icon(&icon)
+        .compile_for("lovelock");
+    if let Err(error) = embedded {
+        // The program works without it.
+        println!("cargo::warning={icon}: could not be put into the program: {error}");
+    }
+}
+
+#[cfg(not(windows))]
+fn embed_icon() {}
 
 /// Whether the checkout is that of this program, and not one that an archive of it was unpacked in.
 fn is_own() -> bool {

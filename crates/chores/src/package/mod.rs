@@ -3,6 +3,7 @@
 //! What is installed besides the program is listed in `app/Cargo.toml`, where cargo-deb and cargo-generate-rpm read it.
 
 mod archive;
+mod icon;
 mod manifest;
 mod trial;
 
@@ -22,6 +23,9 @@ pub(crate) struct Arguments {
     /// Also install the package into a bare Debian, open the window there and record a film (as root)
     #[arg(long = "try")]
     tries: bool,
+    /// Only write the icon for Windows, packaging/windows/lovelock.ico, from the images in packaging/icons
+    #[arg(long, conflicts_with = "tries")]
+    icon: bool,
 }
 
 /// A program that makes packages, with the version that is known to work.
@@ -35,6 +39,9 @@ const RPM: Packager = Packager { name: "cargo-generate-rpm", version: "0.21.1" }
 
 /// Makes the packages and prints their paths.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.icon {
+        return icon::write();
+    }
     system::prepare()?;
     if arguments.tries {
         system::prepare_trial()?;
