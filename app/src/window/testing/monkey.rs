@@ -1,10 +1,12 @@
 //! The whole window under random input.
 
+use std::path::Path;
 use std::process::Command as Process;
 
 use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
 use lovelock_base::random::SplitMix64;
 use lovelock_project::Project;
+use lovelock_project::project::load_project;
 
 use super::whole::{CTRL, Whole, go, of, playing_window, project, wait};
 use crate::window::Window;
@@ -16,6 +18,8 @@ const CHILD: &str = "LOVELOCK_TEST_MONKEY";
 /// Inputs, and those before the memory is measured for the first time: every page and tool has been used by then.
 const INPUTS: usize = 3000;
 const WARM_UP: usize = 1000;
+/// The file of the project: in a script that the fonts of the program lack, with a space.
+const NAME: &str = "踊り 三つ編み.lovelock";
 /// The factor by which memory may grow after that.
 const GROWTH: f64 = 1.1;
 
@@ -99,7 +103,7 @@ fn act(harness: &mut Whole, random: &mut SplitMix64) {
         }
     }
     harness.run_steps(2);
-    // Nothing is written, and the window stays.
+    // Nothing but the project is written, and the window stays.
     with(harness, |window| {
         window.files.dialog = None;
         window.files.quitting = false;
@@ -107,8 +111,8 @@ fn act(harness: &mut Whole, random: &mut SplitMix64) {
     });
 }
 
-/// Brings the window back to the same project with nothing open, and returns the resident memory, bytes.
-fn rest(harness: &mut Whole, small: &Project) -> u64 {
+/// Brings the window back to the same project with nothing open, saved in a file and opened again, and returns the resident memory, bytes.
+fn rest(harness: &mut Whole, small: &Project, path: &Path) -> u64 {
     harness.set_size(vec2(1200.0, 900.0));
     for _ in 0..4 {
         harness.key_press(Key::Escape);
@@ -121,6 +125,8 @@ fn rest(harness: &mut Whole, small: &Project) -> u64 {
         window.layout.page = Page::Image;
         window.tools.active = crate::window::pointer_tool::PointerTool::Camera;
         window.replace_document(small.clone(), None);
+        window.save_to(path).expect("the project is saved");
+        window.open_project(path).expect("the project opens");
         window.session.set_playing(false);
     });
     go(harness);
@@ -140,19 +146,24 @@ fn drive(inputs: usize, seed: u64) {
     // Pages of the manual show signs and names for which this system may have no font.
     harness.ctx.set_missing_glyph_policy(egui::MissingGlyphPolicy::Tofu);
     let small = (*project(&harness)).clone();
+    let path = std::env::current_dir().expect("the home folder").join(NAME);
+    with(&mut harness, |window| window.save_to(&path)).expect("the project is saved");
     let mut first = 0;
     for input in 0..inputs {
         act(&mut harness, &mut random);
         if input + 1 == WARM_UP {
-            first = rest(&mut harness, &small);
+            first = rest(&mut harness, &small, &path);
             println!("after {WARM_UP} inputs: {} MiB", first >> 20);
         }
     }
-    let last = rest(&mut harness, &small);
+    let last = rest(&mut harness, &small, &path);
     println!("after {inputs} inputs: {} MiB", last >> 20);
     if first > 0 {
         assert!((last as f64) < first as f64 * GROWTH, "memory grew from {first} to {last} bytes");
     }
+    assert_eq!(of(&harness).document.path(), Some(path.as_path()));
+    let (saved, problems) = load_project(&path).expect("a project");
+    assert!(problems.is_empty() && saved == small && *project(&harness) == small, "{problems:?}");
     // It answers.
     assert!(!of(&harness).session.playing);
     harness.key_press(Key::Space);
