@@ -81,7 +81,7 @@ pub struct ShadowReport {
     /// 0 if the method has no limit.
     pub needed_bytes: u64,
     /// Records of the map that cannot be read as the method is defined, and are read in a simpler way: moments of which no distribution
-    /// can be computed. On the GPU they are known when the frame has been read, and those of soft lights are of one sample.
+    /// can be computed. On the GPU they are known when the frame has been read; those of soft lights are of one sample, and those of a light that hair surrounds of one side.
     pub fallbacks: u64,
 }
 

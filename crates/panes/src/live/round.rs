@@ -9,7 +9,7 @@ use lovelock_groom::Strands;
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{
-    Camera, DeviceImages, FrameInput, FrameStats, HairPose, Image, Light, MapValue, RayStructure,
+    Camera, DeviceImages, Finished, FrameInput, FrameStats, HairPose, Image, Light, MapValue, RayStructure,
     RenderError, ValueRenderer, light_frame,
 };
 use lovelock_session::render_thread::Adapter;
@@ -205,15 +205,16 @@ impl Rounds {
         Ok(())
     }
 
-    /// Waits until the device has finished the image of a pane. Returns its time, milliseconds, and whether it must be rendered again;
-    /// `None` if it was finished before.
-    pub(super) fn finish(&mut self, index: usize) -> Option<(f64, bool)> {
+    /// Waits until the device has finished the image of a pane. Returns what it tells, with whether any of its images must be rendered
+    /// again; `None` if it was finished before.
+    pub(super) fn finish(&mut self, index: usize) -> Option<Finished> {
         let renderer = self.renderers.last(index)?;
-        let mut found: Option<(f64, bool)> = None;
+        let mut found: Option<Finished> = None;
         while renderer.in_flight() > 0 {
             match renderer.finished() {
                 Ok(Some(done)) => {
-                    found = Some((done.ms, done.again || found.is_some_and(|(_, again)| again)));
+                    let again = done.again || found.is_some_and(|found| found.again);
+                    found = Some(Finished { again, ..done });
                 }
                 Ok(None) => renderer.wait_for_oldest(PATIENCE),
                 // The next image of the pane reports the error.

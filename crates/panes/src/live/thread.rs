@@ -127,12 +127,13 @@ impl Worker {
         let mut again = false;
         for &index in &request.panes {
             let Some(slot) = self.outputs.panes.get(index) else { continue };
-            let (Some((ms, short)), Some(pane)) = (self.rounds.finish(index), slot.latest()) else {
+            let (Some(done), Some(pane)) = (self.rounds.finish(index), slot.latest()) else {
                 continue;
             };
-            again |= short;
+            again |= done.again;
             let mut pane = LivePane::clone(&pane);
-            pane.times = pane.times.with_whole(ms);
+            pane.times = pane.times.with_whole(done.ms);
+            pane.shadow_fallbacks = done.shadow_fallbacks;
             slot.put(Arc::new(pane));
         }
         again

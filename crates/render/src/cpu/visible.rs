@@ -2,7 +2,7 @@
 //!
 //! Most points of dense hair show in no pixel, because other hair or the body is in front of them, and light is what a point costs most. So
 //! points are placed without light. Each tile weighs its segments from near to far (`hair::weigh`), and the light of their points is computed
-//! for those of which a pixel takes something, once for all tiles. Weights are exact, and what is left out is a fraction of a step of 8 bits.
+//! for those of which a pixel takes something, once for all tiles. Weights are exact, and what is left out is a fraction of a step of 8 bits of the brightest light.
 //!
 //! Where light is computed at every second point of fine strands, a point between two others that shows takes the light of the points
 //! that decide its own, also of those that do not show. Otherwise its light would depend on which points other tiles have needed before.

@@ -124,6 +124,21 @@ fn images_stay_on_the_device_and_nothing_waits_or_is_created() {
 }
 
 #[test]
+fn moments_without_a_distribution_are_told_with_the_finished_image() {
+    let Some(mut rig) = Rig::new() else { return };
+    let mut scene = lit(Transparency::WeightedAverage, ShadowMethod::Moments);
+    scene.shadow.moments.resolution = 64;
+    rig.image(&scene);
+    assert_eq!(rig.finish().expect("it was in flight").shadow_fallbacks, 0, "control");
+    scene.shadow.moments.bias = 0.0;
+    rig.image(&scene);
+    let told = rig.finish().expect("it was in flight").shadow_fallbacks;
+    assert!(told > 0);
+    // A picture in memory waits for the count.
+    assert_eq!(rig.picture(&scene).1.shadow_fallbacks, told);
+}
+
+#[test]
 fn clusters_follow_guides_without_further_traffic() {
     let Some(mut rig) = Rig::new() else { return };
     for shadow in [LocalShadow::Map, LocalShadow::Directional] {

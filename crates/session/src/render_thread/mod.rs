@@ -92,6 +92,7 @@ impl RenderThread {
             picture: Picture::default(),
             cost: None,
             transmittance: 1.0,
+            fallbacks: 0,
             refused: None,
             lost: None,
             failed: 0,
@@ -183,6 +184,8 @@ struct Worker {
     cost: Option<([u32; 2], f64)>,
     /// The mean transmittance that was measured last.
     transmittance: f32,
+    /// Records of the shadow maps of the last finished image that were read in a simpler way.
+    fallbacks: u64,
     /// The project with which the window's device was lost too often.
     refused: Option<Arc<Project>>,
     /// The window's device that was lost last.
@@ -313,6 +316,7 @@ impl Worker {
                     self.failed = 0;
                     self.cost = Some((done.size, done.ms));
                     self.transmittance = done.mean_transmittance.unwrap_or(self.transmittance);
+                    self.fallbacks = done.shadow_fallbacks;
                     again |= done.again;
                 }
                 Err(error) => {
@@ -475,6 +479,7 @@ impl Worker {
             let ms = self.cost.map_or(0.0, |(_, ms)| ms);
             stats.draw_ms = (ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
             stats.mean_transmittance = self.transmittance;
+            stats.shadow_fallbacks = self.fallbacks;
         } else {
             self.cost = Some((*size, stats.interpolate_ms + stats.shadow_ms + stats.draw_ms));
         }

@@ -20,7 +20,8 @@ use crate::cpu::tile::{BLOCK_LANES, UNSEEN};
 /// stay in the cache: 72 bytes each.
 const ENOUGH: usize = 1024;
 
-/// Light is added to pixels that let through more than this before: a sixteenth of what a closed block may let through. A block stays open
+/// Light is added to pixels that let through more than this before: a sixteenth of what a closed block may let through, so that at most
+/// 1/16,384 of the brightest light behind is left out. A block stays open
 /// for its most transparent pixel, at the outline of hair to the end, while others of its pixels are as good as opaque.
 const LEAST: f32 = UNSEEN / 16.0;
 

@@ -31,6 +31,8 @@ pub struct Finished {
     pub again: bool,
     /// Mean transmittance of the first light over the strands' points, if it was measured.
     pub mean_transmittance: Option<f32>,
+    /// Records of its shadow maps that were read in a simpler way; see [`FrameStats::shadow_fallbacks`].
+    pub shadow_fallbacks: u64,
 }
 
 /// A frame that the device may not have finished.
@@ -162,12 +164,14 @@ impl GpuRenderer {
             None => done.since.ms(),
         };
         self.flights.ended = Some(Stopwatch::start());
-        let mut finished = Finished { size: done.size, ms, again: false, mean_transmittance: None };
+        let mut finished =
+            Finished { size: done.size, ms, again: false, mean_transmittance: None, shadow_fallbacks: 0 };
         if let Some(report) = done.report {
             let (heads, sum) = read_report(&report)?;
             finished.mean_transmittance =
                 report.measured.then(|| (sum / (255.0 * f64::from(report.points.max(1)))) as f32);
             finished.again = self.settle(&report.lists, &heads)?;
+            finished.shadow_fallbacks = self.shadow.fallbacks();
             self.flights.spare.push(report.buffer);
         }
         Ok(Some(finished))

@@ -90,6 +90,25 @@ impl DepthMoments {
         }
     }
 
+    /// Whether a distribution has the means of a record.
+    #[inline(never)]
+    fn is_solvable(&self, record: &[u32]) -> bool {
+        match (self.settings.kind, self.settings.count) {
+            (MomentKind::Power, 4) => {
+                System::<2, false>::new(&self.means::<4>(record), self.bias).is_solvable()
+            }
+            (MomentKind::Power, 6) => {
+                System::<3, false>::new(&self.means::<6>(record), self.bias).is_solvable()
+            }
+            (MomentKind::Power, _) => {
+                System::<4, false>::new(&self.means::<8>(record), self.bias).is_solvable()
+            }
+            (_, 4) => System::<2, true>::new(&self.means::<4>(record), self.bias).is_solvable(),
+            (_, 6) => System::<3, true>::new(&self.means::<6>(record), self.bias).is_solvable(),
+            _ => System::<4, true>::new(&self.means::<8>(record), self.bias).is_solvable(),
+        }
+    }
+
     #[inline(always)]
     fn share_before(&self, record: &[u32], z: f32) -> Option<f32> {
         if self.settings.count == 4 && self.settings.kind == MomentKind::Power {
@@ -115,7 +134,8 @@ impl TexelMethod for DepthMoments {
         let settings = settings.moments.clamped();
         let of_kind = PUBLISHED_BIAS[usize::from(settings.kind == MomentKind::Trigonometric)];
         let published = of_kind[usize::from(settings.bits == 32)][settings.count as usize / 2 - 2];
-        Self { settings, bias: published * settings.bias }
+        // More than everything is not even hair.
+        Self { settings, bias: (published * settings.bias).min(1.0) }
     }
 
     fn resolution(&self) -> u32 {
@@ -171,7 +191,7 @@ impl TexelMethod for DepthMoments {
 
     /// All hair in one place is a step, for which no system is solved.
     fn falls_back(&self, record: &[u32]) -> bool {
-        record[0] != record[1] && self.share_before(record, 0.0).is_none()
+        record[0] != record[1] && !self.is_solvable(record)
     }
 
     fn pieces(
@@ -268,28 +288,28 @@ mod tests {
 
     /// The depth range of the map leaves room before and behind the hair, in which moments of 16 bits are at their worst.
     #[test]
-    fn one_strand_and_one_opaque_card_in_16_bits_keep_their_order() {
-        for (kind, count, all) in [(MomentKind::Power, 4, 1e-3), (MomentKind::Power, 4, 1e4)]
-            .into_iter()
-            .chain(every_kind().map(|(kind, count, _)| (kind, count, 0.15)))
-        {
+    fn one_strand_and_one_opaque_card_keep_their_order() {
+        let alls = |bits: u32| if bits == 16 { &[1e-3, 0.15, 16.0, 1e4][..] } else { &[0.15] };
+        let mut worst = 0.0_f32;
+        for (kind, count, bits) in every_kind() {
             let method = method(|s| {
-                (s.kind, s.count, s.bits, s.depth_range) = (kind, count, 16, DepthRange::Map);
+                (s.kind, s.count, s.bits, s.depth_range) = (kind, count, bits, DepthRange::Map);
             });
-            for place in [0.1, 0.5, 0.9] {
+            for (&all, place) in alls(bits).iter().flat_map(|all| [0.1, 0.35, 0.5, 0.9].map(|at| (all, at))) {
+                let case = format!("{count} {kind:?} of {bits} bits, {all} at {place}");
                 let record = filled(&method, &[(place, all)]);
-                assert!(!method.falls_back(&record), "{all} at {place}");
+                assert!(!method.falls_back(&record), "{case}");
                 let before: Vec<_> = (0..=20)
                     .map(|i| method.depth_before(&[], &record, place - 0.1 + 0.01 * i as f32))
                     .collect();
-                assert!(
-                    before.iter().all(|depth| (0.0..=all).contains(depth)),
-                    "{all} at {place}: {before:?}"
-                );
+                assert!(before.iter().all(|depth| (0.0..=all).contains(depth)), "{case}: {before:?}");
                 // The bias that 16 bits need blurs the step: a tenth of the range before it and behind it little of it is wrong.
-                assert!(before[0] < 0.05 * all && before[20] > 0.95 * all, "{all} at {place}: {before:?}");
+                let wrong = (before[0] / all).max(1.0 - before[20] / all);
+                assert!(wrong < 0.05, "{case}: {before:?}");
+                worst = worst.max(wrong);
             }
         }
+        println!("largest share on the wrong side {worst}");
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! The functions of depth whose means a record holds, and the moments that follow from them. Twin of means.wgsl.
 //!
 //! All functions lie between −1 and 1, so that their means keep their precision in integers. For power moments they are the Chebyshev
-//! polynomials T₁(z) … T₂ₘ(z): their means determine the means of z … z²ᵐ, and an error in them grows in none of these. For
+//! polynomials T₁(z) … T₂ₘ(z): their means determine the means of z … z²ᵐ, and an error in them makes no larger one in these. For
 //! trigonometric moments they are cos kθ and sin kθ up to k = m, where θ is an angle proportional to z that leaves out a tenth of half
 //! a turn, so that the ends do not meet (the wrapping zone of Münstermann and others 2018).
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
+// Indices as in the shader.
+#![allow(clippy::needless_range_loop)]
 
 use crate::methods::texels::turn::{turn, turn_on};
 
@@ -19,7 +21,7 @@ const MOST: f32 = 65_535.0;
 pub(super) const MOST_MEANS: usize = 8;
 
 /// Entries of a Hankel matrix, by the sum of row and column; its first 2m + 1 are used.
-pub(super) type Hankel = [f32; 2 * MOST_MEANS / 2 + 1];
+pub(super) type Hankel = [f32; MOST_MEANS + 1];
 
 /// The share of even hair is mixed in with these power moments, which lie far from the border of what moments can be (Münstermann and
 /// others 2018), for m = 2, 3 and 4.
@@ -48,7 +50,7 @@ pub(super) fn each_function(is_trigonometric: bool, count: usize, z: f32, mut pu
     }
 }
 
-/// Half of the angle of `z`: its sine and cosine. The ratio of both is the coordinate in which trigonometric moments are power moments.
+/// Sine and cosine of half of the angle of `z`.
 #[inline(always)]
 pub(super) fn half_turn(z: f32) -> [f32; 2] {
     let [cosine, sine] = turn(z * (0.5 * LAST_TURN));
@@ -61,61 +63,72 @@ pub(super) const WRAPPING: f32 = 0.156_434_46;
 /// The means of z⁰ … z²ᴹ, with a share `bias` of even hair.
 #[inline(always)]
 pub(super) fn power_moments<const M: usize>(means: &[f32; MOST_MEANS], bias: f32) -> Hankel {
-    // Means of zʲ times Tₖ; z Tₖ is the mean of the polynomials before and behind.
-    let mut row = [1.0; MOST_MEANS + 1];
-    row[1..].copy_from_slice(means);
-    let mut moments = [1.0; MOST_MEANS + 1];
-    for j in 1..=2 * M {
-        let mut before = row[1];
-        for k in 0..=2 * M - j {
-            let value = 0.5 * (row[k + 1] + before);
-            before = row[k];
-            row[k] = value;
-        }
-        moments[j] = row[0] + (EVEN[M - 2][j] - row[0]) * bias;
+    let [t1, t2, t3, t4, t5, t6, t7, t8] = *means;
+    let mut moments = [0.0; MOST_MEANS + 1];
+    moments[..5].copy_from_slice(&[
+        1.0,
+        t1,
+        0.5 + 0.5 * t2,
+        0.75 * t1 + 0.25 * t3,
+        0.375 + 0.5 * t2 + 0.125 * t4,
+    ]);
+    if M > 2 {
+        moments[5] = (10.0 * t1 + 5.0 * t3 + t5) * (1.0 / 16.0);
+        moments[6] = (10.0 + 15.0 * t2 + 6.0 * t4 + t6) * (1.0 / 32.0);
+    }
+    if M > 3 {
+        moments[7] = (35.0 * t1 + 21.0 * t3 + 7.0 * t5 + t7) * (1.0 / 64.0);
+        moments[8] = (35.0 + 56.0 * t2 + 28.0 * t4 + 8.0 * t6 + t8) * (1.0 / 128.0);
+    }
+    for k in 1..=2 * M {
+        moments[k] += (EVEN[M - 2][k] - moments[k]) * bias;
     }
     moments
 }
 
-/// The means of sinᵏ cos²ᴹ⁻ᵏ of half of the angle, with a share `bias` of hair that is even on the circle.
-///
-/// They are power moments of the tangent, of a distribution in which hair counts by cos²ᴹ.
+/// The mean products of the functions of [`half_waves`], row after row up to the diagonal, with a share `bias` of hair that is even on the
+/// circle.
 #[inline(always)]
-pub(super) fn turned_moments<const M: usize>(means: &[f32; MOST_MEANS], bias: f32) -> Hankel {
+pub(super) fn products<const M: usize>(means: &[f32; MOST_MEANS], bias: f32) -> [[f32; 5]; 5] {
     let rest = 1.0 - bias;
-    // Means of cos kθ and sin kθ times the square of the cosine of half of the angle to the power j, the first of which are `even`
-    // and, times sine and cosine of half of it, `odd`.
-    let (mut cosines, mut sines) = ([0.0; 6], [0.0; 6]);
-    cosines[0] = 1.0;
+    let (mut cosines, mut sines) = ([1.0; 5], [0.0; 5]);
     for k in 0..M {
         (cosines[k + 1], sines[k + 1]) = (means[2 * k] * rest, means[2 * k + 1] * rest);
     }
-    let (mut even, mut odd) = ([1.0; 5], [0.0; 5]);
-    for j in 0..M {
-        odd[j] = 0.5 * sines[1];
-        let mut before = [cosines[1], 0.0];
-        for k in 0..M - j {
-            let value = [
-                0.5 * cosines[k] + 0.25 * (cosines[k + 1] + before[0]),
-                0.5 * sines[k] + 0.25 * (sines[k + 1] + before[1]),
-            ];
-            before = [cosines[k], sines[k]];
-            // The sine of 0 stays 0.
-            (cosines[k], sines[k]) = (value[0], if k == 0 { 0.0 } else { value[1] });
-        }
-        even[j + 1] = cosines[0];
-    }
-    // sin² = 1 − cos².
-    let mut moments = [0.0; MOST_MEANS + 1];
-    for j in 0..M {
-        (moments[2 * j], moments[2 * j + 1]) = (even[M - j], odd[M - 1 - j]);
-        for i in 0..M - j {
-            even[i] -= even[i + 1];
-            odd[i] -= odd[i + 1];
+    let mut products = [[0.0; 5]; 5];
+    for row in 0..=M {
+        for column in 0..=row {
+            // Half of the difference and of the sum of both frequencies, as multiples of θ: those of a column are not below.
+            let (difference, sum) = (row / 2 - column / 2, M - row / 2 - column / 2);
+            products[row][column] = 0.5
+                * match (row % 2, column % 2) {
+                    (0, 0) => cosines[sum] + cosines[difference],
+                    (1, 1) => cosines[difference] - cosines[sum],
+                    (0, _) => sines[sum] + sines[difference],
+                    _ => sines[sum] - sines[difference],
+                };
         }
     }
-    moments[2 * M] = even[0];
-    moments
+    products
+}
+
+/// Cosine and sine of M, M − 2, … times half of an angle, of which `c` and `s` are cosine and sine; the last is 1 if M is even. The square
+/// of these functions integrates to the same over the circle, so that systems of their products are as good as they can be.
+#[inline(always)]
+pub(super) fn half_waves<const M: usize>(s: f32, c: f32) -> [f32; 5] {
+    let one = [c, s];
+    let two = turn_on(one, one);
+    match M {
+        2 => [two[0], two[1], 1.0, 0.0, 0.0],
+        3 => {
+            let three = turn_on(two, one);
+            [three[0], three[1], c, s, 0.0]
+        }
+        _ => {
+            let four = turn_on(two, two);
+            [four[0], four[1], two[0], two[1], 1.0]
+        }
+    }
 }
 
 /// A mean as an integer of 16 bits.
@@ -142,48 +155,44 @@ mod tests {
         sums
     }
 
-    fn hankel(is_trigonometric: bool, m: usize, means: &[f32; MOST_MEANS]) -> Hankel {
-        match (is_trigonometric, m) {
-            (false, 2) => power_moments::<2>(means, 0.0),
-            (false, 3) => power_moments::<3>(means, 0.0),
-            (false, _) => power_moments::<4>(means, 0.0),
-            (true, 2) => turned_moments::<2>(means, 0.0),
-            (true, 3) => turned_moments::<3>(means, 0.0),
-            (true, _) => turned_moments::<4>(means, 0.0),
+    /// The largest difference of the entries of both systems from their definition, of means as they are and in 16 bits.
+    fn worst<const M: usize>(worst: &mut [f32; 2], hair: &[(f32, f32)]) {
+        let mean = |value: &dyn Fn(f64) -> f64| {
+            hair.iter().map(|(z, weight)| f64::from(*weight) * value(f64::from(*z))).sum::<f64>() as f32
+        };
+        let (powers, waves) = (means(false, 2 * M, hair), means(true, 2 * M, hair));
+        for (worst, is_short) in worst.iter_mut().zip([false, true]) {
+            let stored = |mean: f32| if is_short { from_short(to_short(mean)) } else { mean };
+            let moments = power_moments::<M>(&powers.map(stored), 0.0);
+            for k in 0..=2 * M {
+                *worst = worst.max((moments[k] - mean(&|z| z.powi(k as i32))).abs());
+            }
+            let found = products::<M>(&waves.map(stored), 0.0);
+            let wave = |k: usize, z: f64| {
+                let half = z * 0.45 * std::f64::consts::PI;
+                f64::from(half_waves::<M>(half.sin() as f32, half.cos() as f32)[k])
+            };
+            for row in 0..=M {
+                for column in 0..=row {
+                    let expected = mean(&|z| wave(row, z) * wave(column, z));
+                    *worst = worst.max((found[row][column] - expected).abs());
+                }
+            }
         }
     }
 
     #[test]
     fn moments_are_those_of_their_definition_also_in_16_bits() {
-        let mut worst = [0.0_f32; 2];
-        for (is_trigonometric, m) in [false, true].into_iter().flat_map(|kind| [2, 3, 4].map(|m| (kind, m))) {
-            for i in -20_i16..=20 {
-                let hair = [(f32::from(i) * 0.05, 0.3), (0.9 - f32::from(i) * 0.005, 0.7)];
-                let means = means(is_trigonometric, 2 * m, &hair);
-                let short = means.map(|mean| from_short(to_short(mean)));
-                let found = [means, short].map(|means| hankel(is_trigonometric, m, &means));
-                for k in 0..=2 * m {
-                    let expected: f64 = hair
-                        .iter()
-                        .map(|(z, weight)| {
-                            let half = f64::from(*z) * 0.45 * std::f64::consts::PI;
-                            let value = if is_trigonometric {
-                                half.sin().powi(k as i32) * half.cos().powi((2 * m - k) as i32)
-                            } else {
-                                f64::from(*z).powi(k as i32)
-                            };
-                            f64::from(*weight) * value
-                        })
-                        .sum();
-                    for (worst, found) in worst.iter_mut().zip(&found) {
-                        *worst = worst.max((f64::from(found[k]) - expected).abs() as f32);
-                    }
-                }
-            }
+        let mut largest = [0.0_f32; 2];
+        for i in -20_i16..=20 {
+            let hair = [(f32::from(i) * 0.05, 0.3), (0.9 - f32::from(i) * 0.005, 0.7)];
+            worst::<2>(&mut largest, &hair);
+            worst::<3>(&mut largest, &hair);
+            worst::<4>(&mut largest, &hair);
         }
-        println!("largest error {worst:?}");
-        // Half a step of 16 bits is 1.5e-5; errors of several means may add up.
-        assert!(worst[0] < 1e-6 && worst[1] < 4e-5 && worst[1] > 1e-6, "{worst:?}");
+        println!("largest error {largest:?}");
+        // Half a step of 16 bits is 1.5e-5; errors of two means may add up.
+        assert!(largest[0] < 1e-6 && largest[1] < 2e-5 && largest[1] > 1e-6, "{largest:?}");
     }
 
     #[test]

@@ -120,8 +120,9 @@ impl Running {
     /// Whether a loop of the method was cut off since the last call, and another version is there to try.
     fn settle(&mut self) -> Result<bool, GpuShadowError> {
         let Some(list) = self.maps.list(0) else { return Ok(false) };
-        let mut head = [0_u32; 2];
-        read_buffer(&self.gpu, list.buffer, &mut head)?;
+        let mut words = vec![0_u32; list.at as usize / 4 + 2];
+        read_buffer(&self.gpu, list.buffer, &mut words)?;
+        let head = [words[words.len() - 2], words[words.len() - 1]];
         self.maps.settle(&self.gpu, &[head])
     }
 

@@ -37,59 +37,62 @@ fn half_turn(z: f32) -> vec2f {
 
 // The means of the powers of z, with a share of even hair.
 fn power_moments(means: array<f32, 8>) -> array<f32, 9> {
-    var row: array<f32, 9>;
-    row[0] = 1.0;
-    for (var k = 0u; k < 2u * ORDER; k++) {
-        row[k + 1u] = means[k];
-    }
+    let t = means;
     var moments: array<f32, 9>;
     moments[0] = 1.0;
-    for (var j = 1u; j <= 2u * ORDER; j++) {
-        var before = row[1];
-        for (var k = 0u; k <= 2u * ORDER - j; k++) {
-            let value = 0.5 * (row[k + 1u] + before);
-            before = row[k];
-            row[k] = value;
-        }
-        moments[j] = row[0] + (even_moment(j) - row[0]) * texels.bias;
+    moments[1] = t[0];
+    moments[2] = 0.5 + 0.5 * t[1];
+    moments[3] = 0.75 * t[0] + 0.25 * t[2];
+    moments[4] = 0.375 + 0.5 * t[1] + 0.125 * t[3];
+    moments[5] = (10.0 * t[0] + 5.0 * t[2] + t[4]) * (1.0 / 16.0);
+    moments[6] = (10.0 + 15.0 * t[1] + 6.0 * t[3] + t[5]) * (1.0 / 32.0);
+    moments[7] = (35.0 * t[0] + 21.0 * t[2] + 7.0 * t[4] + t[6]) * (1.0 / 64.0);
+    moments[8] = (35.0 + 56.0 * t[1] + 28.0 * t[3] + 8.0 * t[5] + t[7]) * (1.0 / 128.0);
+    for (var k = 1u; k <= 2u * ORDER; k++) {
+        moments[k] += (even_moment(k) - moments[k]) * texels.bias;
     }
     return moments;
 }
 
-// The means of powers of sine and cosine of half of the angle, with a share of hair that is even on the circle.
-fn turned_moments(means: array<f32, 8>) -> array<f32, 9> {
+// The mean products of the functions of `half_waves`, five numbers a row, with a share of hair that is even on the circle.
+fn products_of(means: array<f32, 8>) -> array<f32, 25> {
     let rest = 1.0 - texels.bias;
-    var cosines: array<f32, 6>;
-    var sines: array<f32, 6>;
+    var cosines: array<f32, 5>;
+    var sines: array<f32, 5>;
     cosines[0] = 1.0;
     for (var k = 0u; k < ORDER; k++) {
         cosines[k + 1u] = means[2u * k] * rest;
         sines[k + 1u] = means[2u * k + 1u] * rest;
     }
-    var even: array<f32, 5>;
-    var odd: array<f32, 5>;
-    even[0] = 1.0;
-    for (var j = 0u; j < ORDER; j++) {
-        odd[j] = 0.5 * sines[1];
-        var before = vec2f(cosines[1], 0.0);
-        for (var k = 0u; k < ORDER - j; k++) {
-            let cosine = 0.5 * cosines[k] + 0.25 * (cosines[k + 1u] + before.x);
-            let sine = 0.5 * sines[k] + 0.25 * (sines[k + 1u] + before.y);
-            before = vec2f(cosines[k], sines[k]);
-            cosines[k] = cosine;
-            sines[k] = select(sine, 0.0, k == 0u);
-        }
-        even[j + 1u] = cosines[0];
-    }
-    var moments: array<f32, 9>;
-    for (var j = 0u; j < ORDER; j++) {
-        moments[2u * j] = even[ORDER - j];
-        moments[2u * j + 1u] = odd[ORDER - 1u - j];
-        for (var i = 0u; i < ORDER - j; i++) {
-            even[i] -= even[i + 1u];
-            odd[i] -= odd[i + 1u];
+    var products: array<f32, 25>;
+    for (var row = 0u; row <= ORDER; row++) {
+        for (var column = 0u; column <= row; column++) {
+            let difference = row / 2u - column / 2u;
+            let sum = ORDER - row / 2u - column / 2u;
+            var entry: f32;
+            switch 2u * (row & 1u) + (column & 1u) {
+                case 0u: { entry = cosines[sum] + cosines[difference]; }
+                case 3u: { entry = cosines[difference] - cosines[sum]; }
+                case 1u: { entry = sines[sum] + sines[difference]; }
+                default: { entry = sines[sum] - sines[difference]; }
+            }
+            products[5u * row + column] = 0.5 * entry;
         }
     }
-    moments[2u * ORDER] = even[0];
-    return moments;
+    return products;
+}
+
+// Cosine and sine of ORDER, ORDER − 2, … times half of an angle with this sine and cosine; the last is 1 if ORDER is even.
+fn half_waves(place: vec2f) -> array<f32, 5> {
+    let one = place.yx;
+    let two = turn_on(one, one);
+    if (ORDER == 2u) {
+        return array(two.x, two.y, 1.0, 0.0, 0.0);
+    }
+    if (ORDER == 3u) {
+        let three = turn_on(two, one);
+        return array(three.x, three.y, one.x, one.y, 0.0);
+    }
+    let four = turn_on(two, two);
+    return array(four.x, four.y, two.x, two.y, 1.0);
 }

@@ -1,4 +1,4 @@
-//! Moments on the GPU: range and weight of each texel; sums of powers in one pass, as integers; then the record.
+//! Moments on the GPU: range and weight of each texel; sums of the functions of means.wgsl in one pass, as integers; then the record.
 //!
 //! A fragment adds its share of the weight of all hair, in steps of 2⁻²⁹, so that sums are exact in any order and never overflow.
 

@@ -3,7 +3,7 @@
 // The least pivot with which the system counts as solvable.
 const LEAST_PIVOT: f32 = 1e-12;
 
-// The Cholesky factors of a Hankel matrix with ORDER + 1 rows.
+// The Cholesky factors of the matrix of a record with ORDER + 1 rows.
 struct System {
     // Below the diagonal, row after row, five numbers each.
     l: array<f32, 25>,
@@ -13,24 +13,28 @@ struct System {
 }
 
 fn system_of(means: array<f32, 8>) -> System {
-    var moments: array<f32, 9>;
-    if (TURNED) {
-        moments = turned_moments(means);
-    } else {
-        moments = power_moments(means);
-    }
     var system: System;
     system.is_solvable = true;
+    if (TURNED) {
+        system.l = products_of(means);
+    } else {
+        let moments = power_moments(means);
+        for (var row = 0u; row <= ORDER; row++) {
+            for (var column = 0u; column <= row; column++) {
+                system.l[5u * row + column] = moments[row + column];
+            }
+        }
+    }
     for (var row = 0u; row <= ORDER; row++) {
         // Until the end of the row, L times D.
         for (var column = 0u; column < row; column++) {
-            var entry = moments[row + column];
+            var entry = system.l[5u * row + column];
             for (var k = 0u; k < column; k++) {
                 entry -= system.l[5u * row + k] * system.l[5u * column + k];
             }
             system.l[5u * row + column] = entry;
         }
-        var pivot = moments[2u * row];
+        var pivot = system.l[6u * row];
         for (var k = 0u; k < row; k++) {
             let entry = system.l[5u * row + k] * system.inverse[k];
             pivot -= entry * system.l[5u * row + k];
@@ -92,15 +96,12 @@ fn share_before(system: ptr<function, System>, z: f32) -> f32 {
 // L⁻¹ v of a depth.
 fn reduced_of(system: ptr<function, System>, place: vec2f) -> array<f32, 5> {
     var entries: array<f32, 5>;
-    entries[0] = 1.0;
-    for (var k = 1u; k <= ORDER; k++) {
-        entries[k] = entries[k - 1u] * place.x;
-    }
     if (TURNED) {
-        var power = place.y;
-        for (var up = 1u; up <= ORDER; up++) {
-            entries[ORDER - up] *= power;
-            power *= place.y;
+        entries = half_waves(place);
+    } else {
+        entries[0] = 1.0;
+        for (var k = 1u; k <= ORDER; k++) {
+            entries[k] = entries[k - 1u] * place.x;
         }
     }
     for (var row = 1u; row <= ORDER; row++) {
@@ -135,26 +136,30 @@ fn shifted(k: array<f32, 5>, z: f32, own: f32) -> array<f32, 5> {
 }
 
 fn rotated(k: array<f32, 5>, place: vec2f, own: f32) -> array<f32, 5> {
-    var sum: array<f32, 5>;
-    var power: array<f32, 5>;
-    sum[0] = k[ORDER];
-    power[0] = 1.0;
-    for (var degree = 1u; degree <= ORDER; degree++) {
-        for (var up = 1u; up <= degree; up++) {
-            let at = degree - up;
-            sum[at + 1u] = sum[at + 1u] * place.x + sum[at] * place.y;
-            power[at + 1u] = power[at + 1u] * place.y - power[at] * place.x;
-        }
-        sum[0] *= place.x;
-        power[0] *= place.y;
-        for (var at = 0u; at <= degree; at++) {
-            sum[at] += k[ORDER - degree] * power[at];
-        }
+    let by = half_waves(place);
+    var w = k;
+    for (var at = 0u; at < ORDER; at += 2u) {
+        w[at] = k[at] * by[at] + k[at + 1u] * by[at + 1u];
+        w[at + 1u] = k[at + 1u] * by[at] - k[at] * by[at + 1u];
+    }
+    var a: array<f32, 5>;
+    if (ORDER == 2u) {
+        a = array(w[0] + w[2], 2.0 * w[1], w[2] - w[0], 0.0, 0.0);
+    } else if (ORDER == 3u) {
+        a = array(w[0] + w[2], 3.0 * w[1] + w[3], w[2] - 3.0 * w[0], w[3] - w[1], 0.0);
+    } else {
+        a = array(
+            w[0] + w[2] + w[4],
+            4.0 * w[1] + 2.0 * w[3],
+            2.0 * w[4] - 6.0 * w[0],
+            2.0 * w[3] - 4.0 * w[1],
+            w[0] - w[2] + w[4],
+        );
     }
     for (var at = 0u; at <= ORDER; at++) {
-        sum[at] *= own;
+        a[at] *= own;
     }
-    return sum;
+    return a;
 }
 
 // How much hair of a depth counts as before another one.

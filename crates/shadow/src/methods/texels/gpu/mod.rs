@@ -58,8 +58,8 @@ pub(crate) const FALLBACKS: ShaderPart = wgsl!("methods/texels/gpu/", "fallbacks
 /// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
 pub(crate) const RANGE_WORDS: u64 = 4;
 
-/// Words of the head that comes back with a frame; see [`GpuList`].
-const HEAD_WORDS: u64 = 2;
+/// Words of the head that comes back with a frame, as those of a list; see [`GpuList`].
+const HEAD_WORDS: u64 = 4;
 
 /// The most layers of deep opacity maps.
 const MAX_LAYERS: usize = 16;
@@ -416,6 +416,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             cells_total: texels,
             cell_size: frame.texel_size,
             needed_bytes,
+            // Until this build's count comes back.
+            fallbacks: map.report.fallbacks,
             ..ShadowReport::default()
         };
         gpu.upload(&map.uniform, 0, &[uniform]);
