@@ -206,8 +206,13 @@ impl Drop for LoadThread {
 impl LoadState {
     fn run(&self, deliver: &dyn Fn(Loaded)) {
         let mut loaders = Loaders::default();
+        // A pool of its own, as that of the simulation: in the common one each layer would wait for the tiles of an image.
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("load {i}")).build().ok();
         while let Some((project, access)) = self.next() {
-            let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loaders, &project, &access)));
+            let loaded = catch_unwind(AssertUnwindSafe(|| match &threads {
+                Some(threads) => threads.install(|| self.load(&mut loaders, &project, &access)),
+                None => self.load(&mut loaders, &project, &access),
+            }));
             self.layers.set(loaders.scene.layer_bytes());
             let replaced = {
                 let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -326,10 +331,14 @@ impl LoadState {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicUsize;
     use std::sync::mpsc::sync_channel;
+    use std::time::Duration;
 
     use lovelock_project::files::FileRef;
     use lovelock_project::project::{BodySource, HairSource, MotionSource};
+    use lovelock_style::Layer;
+    use lovelock_style::operations::Curl;
     use lovelock_testkit::wait::wait_for;
 
     use super::*;
@@ -362,6 +371,57 @@ mod tests {
         wait_for("its end", || (!loader.is_busy()).then_some(()));
         loader.arrived();
         assert_eq!(loader.progress(), None);
+    }
+
+    /// Keeps the workers that images have in common busy until it is dropped.
+    struct BusyWorkers(Arc<AtomicBool>);
+
+    impl BusyWorkers {
+        fn new() -> Self {
+            let (busy, free) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
+            let held = Self(Arc::clone(&free));
+            let workers = rayon::current_num_threads();
+            for _ in 0..workers {
+                let (busy, free) = (Arc::clone(&busy), Arc::clone(&free));
+                rayon::spawn(move || {
+                    busy.fetch_add(1, Ordering::Relaxed);
+                    while !free.load(Ordering::Relaxed) {
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                });
+            }
+            wait_for("busy workers", || (busy.load(Ordering::Relaxed) == workers).then_some(()));
+            held
+        }
+    }
+
+    impl Drop for BusyWorkers {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+
+    #[test]
+    fn a_layer_does_not_wait_for_what_draws() {
+        let (outbox, _events) = Outbox::new(Arc::new(|| ()));
+        let (to, results) = sync_channel(16);
+        let loader = LoadThread::start(outbox, move |loaded| drop(to.send(loaded))).expect("a thread");
+        let mut project = small_project();
+        project.hair.stack.push(Layer::of(Curl::default()));
+        loader.request(Arc::new(project.clone()), Access::new());
+        let first = wait_for("a scene", || results.try_recv().ok());
+        project.hair.stack.layers[0].weight = 0.3;
+        let busy = BusyWorkers::new();
+        // Control: other work of the common pool waits.
+        let done = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&done);
+        rayon::spawn(move || told.store(true, Ordering::Relaxed));
+        loader.request(Arc::new(project), Access::new());
+        let second = wait_for("the changed layer", || results.try_recv().ok());
+        assert!(!done.load(Ordering::Relaxed), "the workers were busy all the time");
+        drop(busy);
+        assert!(!Arc::ptr_eq(&first.scene().style, &second.scene().style));
+        wait_for("the workers", || done.load(Ordering::Relaxed).then_some(()));
     }
 
     #[test]
