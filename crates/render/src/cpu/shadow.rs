@@ -1,5 +1,7 @@
 //! The shadow method of one frame on the CPU: one map per light, looked up once per strand point and once per vertex of the body.
 
+mod casters;
+
 use glam::Vec3;
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
@@ -9,6 +11,7 @@ use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
+use self::casters::{Casters, step_of};
 use super::kept::Unchanged;
 use crate::shadow_look::{PIECE, ShadowLook, has_soft_skin, pack};
 use crate::skin::Neighbours;
@@ -38,6 +41,8 @@ pub(crate) struct ShadowStage {
     pub kept: Vec<PassTime>,
     /// The time to look up and pack what all lights share, milliseconds.
     packed_ms: f64,
+    /// The strands that cast shadows, where those are not all.
+    casters: Casters,
     vertices: [Vec<f32>; 3],
     /// The places at which strands are looked up.
     asked: [Vec<f32>; 3],
@@ -57,6 +62,8 @@ struct LightShadow {
     /// Transmittance at the strands' points and at the body's vertices.
     at_points: Vec<f32>,
     at_vertices: Vec<f32>,
+    /// One of how many strands is in its map.
+    step: usize,
     /// What the next run keeps.
     keeps: Keeps,
     /// The time of each of [`PASSES`] when it was last run, milliseconds.
@@ -83,23 +90,18 @@ impl Keeps {
 
 impl LightShadow {
     /// Builds the map, one of `maps` that share the limit of memory.
-    fn build(
-        &mut self,
-        light: &Light,
-        maps: u32,
-        look: &ShadowLook,
-        strands: &Strands,
-    ) -> Result<(), ShadowError> {
+    fn build(&mut self, light: &Light, frame: &LightRun) -> Result<(), ShadowError> {
+        let look = frame.look;
         // Transported instead of recomputed, so that the map does not roll while the light is dragged.
         self.base = self.base.transported(light.direction);
         self.frame = placed_frame(self.base, light, look.anchor());
         let from = ShadowInput {
-            strands,
-            strand_width: look.strand_width,
+            strands: frame.casters,
+            strand_width: look.strand_width * frame.each_for,
             extinction_scale: look.extinction_scale,
             light: self.frame,
             anchor: look.anchor(),
-            maps,
+            maps: frame.maps,
             projected: None,
         };
         self.shadow.build(&from, &look.settings)
@@ -116,7 +118,8 @@ impl LightShadow {
         let keeps = self.keeps;
         let watch = Stopwatch::start();
         if !keeps.map {
-            self.build(light, frame.maps, frame.look, frame.stored)?;
+            self.build(light, frame)?;
+            self.step = frame.step;
         }
         let built_ms = watch.ms();
         let points = frame.points.filter(|_| !keeps.points);
@@ -150,7 +153,10 @@ impl LightShadow {
 struct LightRun<'a> {
     maps: u32,
     look: &'a ShadowLook,
-    stored: &'a Strands,
+    /// The strands that cast shadows, one of how many that is, and the number of strands that each stands for.
+    casters: &'a Strands,
+    step: usize,
+    each_for: f32,
     /// Where strands are looked up, unless they are looked up at places of their own.
     points: Option<[&'a [f32]; 3]>,
     vertices: &'a [Vec<f32>; 3],
@@ -174,10 +180,12 @@ impl ShadowStage {
             + self.lights.iter().map(of_light).sum::<u64>()
             + [&self.at_points, &self.at_vertices, &self.softer].into_iter().map(list_bytes).sum::<u64>()
             + self.vertices.iter().chain(&self.asked).map(list_bytes).sum::<u64>()
+            + self.casters.strands.bytes()
     }
 
     /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices, as far as that is not
-    /// `unchanged`; `same_points` tells whether the drawn points are those of the last frame. Fine strands, each of so many points, are
+    /// `unchanged`. In a draft, not all strands of much hair are in the maps; finer maps that are known serve it too.
+    /// `same_points` tells whether the drawn points are those of the last frame. Fine strands, each of so many points, are
     /// looked up at places that are apart: see [`moved_apart`].
     ///
     /// A thread builds one map while others look up finished ones: lights wait for each other only at the end.
@@ -205,8 +213,9 @@ impl ShadowStage {
         if let Some(known) = input.known {
             known.check(lights.len(), drawn.points(), positions.len())?;
         }
+        let step = step_of(stored, input.is_draft && input.known.is_none());
         for (k, light) in self.lights.iter_mut().enumerate() {
-            let map = was_whole && unchanged.strands && unchanged.lights[k];
+            let map = was_whole && unchanged.strands && unchanged.lights[k] && light.step <= step;
             light.keeps = Keeps { map, points: map && same_points, vertices: map && unchanged.surface };
         }
         while self.lights.len() < lights.len() {
@@ -217,6 +226,7 @@ impl ShadowStage {
                 shadow: cpu_shadow(method),
                 at_points: Vec::new(),
                 at_vertices: Vec::new(),
+                step,
                 keeps: Keeps::default(),
                 made_ms: [0.0; 3],
             });
@@ -231,15 +241,19 @@ impl ShadowStage {
         let look = ShadowLook::of(input);
         let places = [&drawn.x[..], &drawn.y[..], &drawn.z[..]];
         let apart = points.filter(|_| look.reach > 0.0 && input.known.is_none());
+        let stage = Stopwatch::start();
+        let is_thinned = step > 1 && self.lights.iter().any(|light| !light.keeps.map);
+        let each_for = if is_thinned { self.casters.follow(stored, step) } else { 1.0 };
         let frame = LightRun {
             maps: lights.len() as u32,
             look: &look,
-            stored,
+            casters: if is_thinned { &self.casters.strands } else { stored },
+            step,
+            each_for,
             points: apart.is_none().then_some(places),
             vertices: &self.vertices,
             known: input.known,
         };
-        let stage = Stopwatch::start();
         self.lights
             .par_iter_mut()
             .zip(&mut self.columns)

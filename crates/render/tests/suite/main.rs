@@ -10,6 +10,7 @@ mod cluster_agreement;
 mod cluster_lights;
 mod clusters;
 mod colours;
+mod drafts;
 mod false_colors;
 mod fibre;
 mod fine;
