@@ -1,9 +1,11 @@
 //! The CPU renderer.
 
+mod depth;
 mod inspect;
 mod options;
 mod outputs;
 mod plain;
+mod tiles;
 
 use std::sync::Arc;
 
@@ -13,31 +15,27 @@ use lovelock_base::simd::Width;
 use lovelock_gpu::PassTime;
 use lovelock_groom::{HairShading, Strands};
 use lovelock_picture::check_size;
-use rayon::prelude::*;
 
-use super::backdrop::{Ground, ground_simd};
-use super::body_depth::{self, Casters, DepthMap, Holes};
+use super::backdrop::Ground;
+use super::body_depth::{self, DepthMap};
 use super::carried::CarriedStage;
 use super::drawn::DrawnStrands;
 use super::false_colors::paint_values;
-use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
+use super::finish::{PixelsIn, TILE_BYTES};
 use super::interrupt::{Interrupt, check};
 use super::kept::{KeptInputs, Unchanged};
-use super::layers::{LayerTiles, finish_light};
-use super::placed::{PlacedScene, TileScratch, copy_rows, posed_body, surface_of};
+use super::layers::LayerTiles;
+use super::placed::{PlacedScene, TileScratch, copy_rows};
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
-use super::surface::materials::Cutouts;
-use super::tile::{Grid, SurfacePlanes, TILE};
+use super::tile::{Grid, SurfacePlanes};
 use super::tone_map::encode;
 use super::view::{FibreView, ShadingView, View};
-use super::visible::LateInput;
 use crate::backdrop::{Backdrop, LaidBackdrop};
 use crate::clusters::{of_casters, without_strands};
 use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::frame::INTERPOLATE;
-use crate::light_view::{bounding_sphere, light_views};
 use crate::scene_light::SceneLight;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{
@@ -381,64 +379,6 @@ impl CpuRenderer {
         Ok(self.stats(shadow_ms, &watch, (passes, kept)))
     }
 
-    /// The light of all tiles, linear, for layers.
-    fn draw_light(
-        &self,
-        (view, late): (&View, Option<&LateInput>),
-        grid: &Grid,
-        input: &FrameInput,
-        over_background: bool,
-        light: &mut [[f32; 4]],
-    ) {
-        light.par_chunks_mut(TILE * TILE).enumerate().for_each_init(
-            || self.scratch.take(),
-            |lease, (tile, out)| {
-                let ground = ground_simd(self.placed.width, view, grid.origin(tile));
-                let scratch = lease.get();
-                self.draw_seen((view, late), grid, input, tile, scratch);
-                let seen = scratch.seen(grid.origin(tile), ground.as_ref(), self.behind.as_deref());
-                finish_light(view, &seen, over_background, out);
-            },
-        );
-    }
-
-    /// Draws all tiles. Those that show only the background are copied from `plain` if it has them, and to it otherwise.
-    ///
-    /// # Errors
-    /// The picture must end.
-    fn draw_tiles(
-        &self,
-        (view, late): (&View, Option<&LateInput>),
-        grid: &Grid,
-        input: &FrameInput,
-        tiles: &mut [u8],
-        plain: &mut PlainTiles,
-    ) -> Result<(), RenderError> {
-        tiles
-            .par_chunks_mut(TILE_BYTES)
-            .zip(plain.bytes.par_chunks_mut(TILE_BYTES))
-            .zip(&mut plain.known)
-            .enumerate()
-            .try_for_each_init(
-                || self.scratch.take(),
-                |lease, (tile, ((out, plain), known))| {
-                    check(self.interrupt.as_ref())?;
-                    let ground = ground_simd(self.placed.width, view, grid.origin(tile));
-                    let is_plain = ground.is_none() && self.placed.is_empty(tile);
-                    if is_plain && *known {
-                        out.copy_from_slice(plain);
-                        return Ok(());
-                    }
-                    self.draw_tile((view, late), grid, input, (tile, ground.as_ref()), lease.get(), out);
-                    if is_plain {
-                        plain.copy_from_slice(out);
-                        *known = true;
-                    }
-                    Ok(())
-                },
-            )
-    }
-
     fn stats(
         &self,
         shadow_ms: f64,
@@ -458,89 +398,6 @@ impl CpuRenderer {
             mean_transmittance: self.shadow.mean,
             clusters: self.placed.clusters.hair().map(|hair| ClusterStats::of(&hair)),
             ..FrameStats::default()
-        }
-    }
-
-    /// Draws the depth maps of the body for all lights, as far as they are not unchanged.
-    fn draw_depth(&mut self, input: &FrameInput, unchanged: Unchanged) -> Vec<LightMaps> {
-        let (vertices, triangles) = surface_of(input);
-        self.placed.surface.follow_materials(input.body.map(|(body, _)| body), &input.picture.body_look);
-        let closed = self.placed.is_closed(input);
-        let cutouts = self.placed.surface.materials.as_ref().zip(input.body);
-        let cutouts = cutouts.map(|(materials, (body, _))| Cutouts { materials, body });
-        let holed = cutouts.as_ref().filter(|cutouts| cutouts.any());
-        let holes = holed.map(|cutouts| cutouts as &dyn Holes);
-        let sphere = bounding_sphere(vertices);
-        let lights: Vec<_> = Light::enabled(input.lights).collect();
-        self.depth.resize_with(lights.len(), Vec::new);
-        // Light passes through holes to faces that look away from it.
-        let (width, closed) = (self.placed.width, closed && holes.is_none());
-        let (shadow, before) = (&self.shadow, &self.maps);
-        lights
-            .par_iter()
-            .zip(&mut self.depth)
-            .enumerate()
-            .map(|(k, (light, depth))| {
-                if unchanged.surface
-                    && unchanged.lights[k]
-                    && let Some(views) = before.get(k)
-                {
-                    return *views;
-                }
-                let views = light_views(light, &shadow.frame(k), sphere, DEPTH_TEXELS);
-                depth.resize_with(views.body_views().len(), DepthMap::default);
-                depth.par_iter_mut().zip(views.body_views()).for_each(|(depth, from_world)| {
-                    if views.standing.is_standing() {
-                        // From within a closed body, triangles that face away are nearest.
-                        let casters = Casters { vertices, triangles, closed: false, holes };
-                        depth.draw_perspective(width, *from_world, &casters);
-                    } else {
-                        depth.draw(width, *from_world, &Casters { vertices, triangles, closed, holes });
-                    }
-                });
-                views
-            })
-            .collect()
-    }
-
-    fn draw_tile(
-        &self,
-        (view, late): (&View, Option<&LateInput>),
-        grid: &Grid,
-        input: &FrameInput,
-        (tile, ground): (usize, Option<&Ground>),
-        scratch: &mut Scratch,
-        out: &mut [u8],
-    ) {
-        self.draw_seen((view, late), grid, input, tile, scratch);
-        let seen = scratch.seen(grid.origin(tile), ground, self.behind.as_deref());
-        finish_pixels_simd(self.placed.width, view, &seen, out);
-    }
-
-    /// Draws the body and the hair of a tile.
-    fn draw_seen(
-        &self,
-        (view, late): (&View, Option<&LateInput>),
-        grid: &Grid,
-        input: &FrameInput,
-        tile: usize,
-        scratch: &mut Scratch,
-    ) {
-        let (placed, origin) = (&self.placed, grid.origin(tile));
-        placed.draw_tile((view, late), grid, input, tile, &mut scratch.tile);
-        scratch.surface.clear();
-        if let Some(body) = posed_body(input)
-            && !placed.surface.bins.of(tile).is_empty()
-        {
-            scratch.light.shade_tile(
-                placed.width,
-                view,
-                origin,
-                (&placed.surface, body),
-                (&scratch.tile.samples, &scratch.tile.hair),
-                placed.is_exact,
-                &mut scratch.surface,
-            );
         }
     }
 }
