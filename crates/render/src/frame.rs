@@ -151,6 +151,9 @@ pub struct FrameStats {
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
+    /// The share of the tiles that were drawn, if the picture shows only what has moved, over the one before and with its shadows; `None` of
+    /// a whole picture.
+    pub redrawn: Option<f32>,
     /// The clusters that were drawn; `None` if there are only strands.
     pub clusters: Option<ClusterStats>,
     /// What the frame moved between memory and the graphics device; nothing on the CPU.

@@ -150,6 +150,13 @@ impl Renderer {
         }
     }
 
+    /// Sets whether the following pictures may show only what has moved; see [`CpuRenderer::set_hurrying`]. The GPU draws all of each.
+    pub fn set_hurrying(&mut self, hurries: bool) {
+        if self.gpu.is_none() {
+            self.cpu.get_or_insert_default().set_hurrying(hurries);
+        }
+    }
+
     /// Sets what ends the following pictures early; see [`CpuRenderer::set_interrupt`]. The GPU ends none.
     pub fn set_interrupt(&mut self, interrupt: Option<Interrupt>) {
         if self.gpu.is_none() {

@@ -10,6 +10,8 @@ use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, col
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StrandDetails {
     style: Option<Arc<Hairstyle>>,
+    /// Rises when words, colours or segments change: other hairstyles may have the same.
+    pub version: u64,
     /// The number of fine strands; 0 for the stored ones.
     fine: usize,
     /// See [`pack_detail`].
@@ -32,11 +34,10 @@ impl StrandDetails {
             return false;
         }
         self.fine = 0;
+        let before = self.take_lists();
         let mut segments = Vec::with_capacity(style.strands.segments());
-        self.words.clear();
         self.words.resize(style.strands.points(), 0);
         let locks = lock_numbers(&style.strands);
-        self.colour_of.clear();
         if !style.strands.colours.is_empty() {
             let ends = style.strands.first_point.windows(2).enumerate();
             self.colour_of.extend(ends.flat_map(|(s, ends)| (ends[0]..ends[1]).map(move |_| s as u32)));
@@ -54,7 +55,7 @@ impl StrandDetails {
                 );
             }
         }
-        (self.style, self.segments) = (Some(Arc::clone(style)), Arc::new(segments));
+        self.finish(style, before, segments);
         true
     }
 
@@ -65,17 +66,15 @@ impl StrandDetails {
         if same_style && !list_changed && self.fine == count {
             return false;
         }
+        let before = self.take_lists();
         let set = &style.strands;
         let points = fine.points_per_strand;
         let last = points.saturating_sub(1).max(1);
         let of_strand = |i: usize| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32;
         let mut segments = Vec::with_capacity(count * points.saturating_sub(1));
         segments.extend((0..count).flat_map(of_strand));
-        self.segments = Arc::new(segments);
-        self.words.clear();
         self.words.reserve(count * points);
         let locks = lock_numbers(&style.strands);
-        self.colour_of.clear();
         if !set.colours.is_empty() {
             self.colour_of
                 .extend(fine.strands.iter().enumerate().map(|(i, strand)| colour_parent(i, strand)));
@@ -95,8 +94,28 @@ impl StrandDetails {
                 self.words.push(pack_detail(taper, along, shade, (k == 0, k == last), lock));
             }
         }
-        (self.style, self.fine) = (Some(Arc::clone(style)), count);
+        self.fine = count;
+        self.finish(style, before, segments);
         true
+    }
+
+    /// Takes the words and the colours of points, which are made anew.
+    fn take_lists(&mut self) -> [Vec<u32>; 2] {
+        [&mut self.words, &mut self.colour_of].map(std::mem::take)
+    }
+
+    /// Takes the style and the segments of the lists that were made anew, and compares all with what was `before`.
+    fn finish(&mut self, style: &Arc<Hairstyle>, before: [Vec<u32>; 2], segments: Vec<u32>) {
+        let [words, colour_of] = &before;
+        let colours = self.style.as_ref().map(|style| &style.strands.colours);
+        let same_colours = colours.is_some_and(|colours| *colours == style.strands.colours);
+        let same_segments = *self.segments == segments;
+        if !same_segments {
+            self.segments = Arc::new(segments);
+        }
+        let same = same_segments && same_colours && *words == self.words && *colour_of == self.colour_of;
+        self.version += u64::from(!same);
+        self.style = Some(Arc::clone(style));
     }
 
     /// The colours of strands; `None` if all have the colour of the look.
@@ -195,6 +214,16 @@ mod tests {
         println!("{share} white, {mixed} of the children of white strands are not");
         assert!((share - 0.3).abs() < 0.03, "{share}");
         assert!(mixed > 0.15 && mixed < 0.4, "{mixed}");
+        // The same strands and colours are told from others.
+        let version = details.version;
+        let again = Arc::new((*style).clone());
+        assert!(details.follow_fine(&again, &fine, false) && details.version == version);
+        let mut other = (*style).clone();
+        other.strands.taper.iter_mut().for_each(|taper| *taper *= 0.5);
+        assert!(details.follow_fine(&Arc::new(other), &fine, false) && details.version == version + 1);
+        let mut other = (*style).clone();
+        other.strands.colours = StrandColours::default();
+        assert!(details.follow_fine(&Arc::new(other), &fine, false) && details.version == version + 2);
         // Stored strands have their own.
         details.follow(&style);
         let colours = details.colours().expect("colours");

@@ -2,6 +2,7 @@
 
 mod depth;
 mod inspect;
+mod moved;
 mod options;
 mod outputs;
 mod plain;
@@ -41,6 +42,7 @@ use crate::uniform::{FrameUniform, LightMaps};
 use crate::{
     ClusterStats, ColorScale, FrameInput, FrameStats, HairPose, Layers, Light, Picture, RenderError,
 };
+use moved::{Moved, Shown};
 use plain::PlainTiles;
 
 /// Texels along each edge of the body's depth maps.
@@ -55,6 +57,11 @@ pub struct CpuRenderer {
     light: Option<Box<SceneLight>>,
     kept: KeptInputs,
     keeps: bool,
+    /// Whether images may show only what has moved.
+    hurries: bool,
+    /// What the finished tiles show, with the points of the placed hair; `None` if that is no whole image.
+    shown: Option<Shown>,
+    moved: Moved,
     interrupt: Option<Interrupt>,
     maps: Vec<LightMaps>,
     shadow: ShadowStage,
@@ -124,6 +131,9 @@ impl Default for CpuRenderer {
             light: None,
             kept: KeptInputs::default(),
             keeps: true,
+            hurries: false,
+            shown: None,
+            moved: Moved::default(),
             interrupt: None,
             maps: Vec::new(),
             shadow: ShadowStage::default(),
@@ -159,6 +169,7 @@ impl CpuRenderer {
             + list_bytes(&self.plain.bytes)
             + self.backdrop.bytes()
             + self.layers.bytes()
+            + self.moved.bytes()
             + self.scratch.bytes(scratch)
     }
 
@@ -173,7 +184,7 @@ impl CpuRenderer {
         input: &FrameInput,
         width: u32,
         height: u32,
-        target: Target,
+        mut target: Target,
     ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
         check(self.interrupt.as_ref())?;
@@ -212,15 +223,37 @@ impl CpuRenderer {
             }
         }
         let mut light = self.light.take().unwrap_or_default();
-        let watch = Stopwatch::start();
-        light.follow(input);
-        let ambient_ms = watch.ms();
         let hair = Hair { stored: strands, drawn: &drawn, same_points, share: 1.0 - share };
-        let mut stats = self.draw(input, (&hair, &light), unchanged, width, height, target);
+        let size = [width, height];
+        let shows = self.will_show(input, &hair, size, &target);
+        let shown = self.shown.take().filter(|_| unchanged.depth());
+        let is_over = shown.zip(shows.as_ref()).is_some_and(|(shown, shows)| shown.is_same(shows));
+        let mut is_hurried = is_over && self.hurries && !unchanged.strands;
+        let mut ambient_ms = None;
+        let mut stats = loop {
+            if !is_hurried {
+                let watch = Stopwatch::start();
+                light.follow(input);
+                ambient_ms = Some(watch.ms());
+            }
+            match self.draw(input, (&hair, &light), unchanged, size, &mut target, is_hurried).transpose() {
+                Some(stats) => break stats,
+                // Only an image in a hurry comes to nothing.
+                None => is_hurried = false,
+            }
+        };
+        self.shown = match &stats {
+            Ok(_) => shows,
+            // Some tiles are those of the same hair in other light.
+            Err(RenderError::Interrupted) if is_over && same_points => shows,
+            Err(_) => None,
+        };
         (self.strands, self.drawn, self.light) = (made, drawn, Some(light));
         if let Ok(stats) = &mut stats {
-            stats.draw_ms += ambient_ms;
-            stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms: ambient_ms });
+            if let Some(ms) = ambient_ms {
+                stats.draw_ms += ms;
+                stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms });
+            }
             if unchanged.strands {
                 stats.kept.push(PassTime { name: INTERPOLATE.to_owned(), ms: kept_ms });
             }
@@ -232,27 +265,35 @@ impl CpuRenderer {
         stats.map(|stats| FrameStats { interpolate_ms, ..stats })
     }
 
+    /// Draws the image, or in a hurry the tiles in which strands have moved. Returns `None` if those are too many to be worth it.
     fn draw(
         &mut self,
         input: &FrameInput,
         (hair, light): (&Hair, &SceneLight),
         unchanged: Unchanged,
-        width: u32,
-        height: u32,
-        target: Target,
-    ) -> Result<FrameStats, RenderError> {
-        let interrupt = self.interrupt.clone();
+        [width, height]: [u32; 2],
+        target: &mut Target,
+        is_hurried: bool,
+    ) -> Result<Option<FrameStats>, RenderError> {
+        // A few tiles are finished sooner than others could be begun.
+        let interrupt = self.interrupt.clone().filter(|_| !is_hurried);
         // Asked after the shadow maps and the body's depth alone, so that an image that is given up leaves them to the next one.
         let go_on = || check(interrupt.as_ref());
         let watch = Stopwatch::start();
         let strands = hair.drawn.strands(hair.stored);
         let asked = (strands, hair.drawn.portion().map(|(_, points)| points));
-        self.shadow.run(input, hair.stored, asked, (unchanged, hair.same_points))?;
-        let shadow_ms = watch.ms();
+        let (mut passes, mut kept) = (Vec::new(), Vec::new());
+        let mut shadow_ms = 0.0;
+        if is_hurried {
+            self.shadow.fall_behind();
+            std::mem::swap(&mut self.placed.points, &mut self.moved.before);
+        } else {
+            self.shadow.run(input, hair.stored, asked, (unchanged, hair.same_points))?;
+            (passes, kept) = (self.shadow.passes.clone(), self.shadow.kept.clone());
+            shadow_ms = watch.ms();
+        }
 
         let watch = Stopwatch::start();
-        let mut passes = self.shadow.passes.clone();
-        let mut kept = self.shadow.kept.clone();
         let mut passed = |name: &str, part: &Stopwatch| {
             passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
         };
@@ -312,6 +353,17 @@ impl CpuRenderer {
         go_on()?;
 
         let grid = Grid::new(width, height);
+        let mut redrawn = None;
+        if is_hurried {
+            let part = Stopwatch::start();
+            let is_found = self.moved.find(&self.placed.points, self.placed.segments(), &grid);
+            let (tiles, filled) = (self.moved.count(), self.filled_tiles(&grid));
+            if !is_found || 2 * tiles > filled {
+                return Ok(None);
+            }
+            redrawn = Some(tiles as f32 / (grid.columns * grid.rows) as f32);
+            passed("draw/moved", &part);
+        }
         if let Some(ribs) = self.placed.clusters.ribs().cloned() {
             let part = Stopwatch::start();
             let of_ribs = FrameInput { style: &ribs, ..*input };
@@ -327,9 +379,10 @@ impl CpuRenderer {
         go_on()?;
 
         let (picture, colors) = match target {
-            Target::Picture(picture) => (picture, None),
-            Target::FalseColors(picture, of_strands, scale) => (picture, Some((of_strands, scale))),
+            Target::Picture(picture) => (&mut **picture, None),
+            Target::FalseColors(picture, of_strands, scale) => (&mut **picture, Some((*of_strands, *scale))),
             Target::Layers(layers, over_background, with_values) => {
+                let (over_background, with_values) = (*over_background, *with_values);
                 let part = Stopwatch::start();
                 let mut held = std::mem::take(&mut self.layers);
                 held.fit(&grid);
@@ -339,7 +392,7 @@ impl CpuRenderer {
                     layers.behind = self.behind.clone().filter(|_| over_background);
                     self.layers = held;
                     passed("draw/layers", &part);
-                    return Ok(self.stats(shadow_ms, &watch, (passes, kept)));
+                    return Ok(Some(self.stats(shadow_ms, &watch, (passes, kept))));
                 }
                 if hair.share <= 0.0 {
                     // Depth and transmittance of clusters are those of the strands that cast their shadow.
@@ -354,7 +407,7 @@ impl CpuRenderer {
                 layers.behind = self.behind.clone().filter(|_| over_background);
                 self.layers = held;
                 passed("draw/layers", &part);
-                return Ok(self.stats(shadow_ms, &watch, (passes, kept)));
+                return Ok(Some(self.stats(shadow_ms, &watch, (passes, kept))));
             }
         };
         let part = Stopwatch::start();
@@ -362,7 +415,8 @@ impl CpuRenderer {
         tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         self.plain.follow(&uniform, &grid, self.behind.as_ref().map_or(0, |behind| behind.number));
         let mut plain = std::mem::take(&mut self.plain);
-        let drawn = self.draw_tiles(lit, &grid, input, &mut tiles, &mut plain);
+        let only = is_hurried.then(|| self.moved.tiles());
+        let drawn = self.draw_tiles(lit, &grid, input, &mut tiles, &mut plain, only);
         self.plain = plain;
         if drawn.is_err() {
             self.tiles = tiles;
@@ -376,7 +430,7 @@ impl CpuRenderer {
         copy_rows(&tiles, 4, &grid, &mut picture.rgba);
         self.tiles = tiles;
         passed("draw/tiles", &part);
-        Ok(self.stats(shadow_ms, &watch, (passes, kept)))
+        Ok(Some(FrameStats { redrawn, ..self.stats(shadow_ms, &watch, (passes, kept)) }))
     }
 
     fn stats(

@@ -52,6 +52,8 @@ pub(crate) struct ShadowStage {
     is_softened: bool,
     /// Whether the last run was completed.
     is_whole: bool,
+    /// Whether hair has moved since the last run.
+    is_behind: bool,
 }
 
 struct LightShadow {
@@ -199,7 +201,7 @@ impl ShadowStage {
         (drawn, points): (&Strands, Option<usize>),
         (unchanged, same_points): (Unchanged, bool),
     ) -> Result<(), RenderError> {
-        let was_whole = std::mem::take(&mut self.is_whole);
+        let was_whole = std::mem::take(&mut self.is_whole) & !std::mem::take(&mut self.is_behind);
         self.passes.clear();
         self.kept.clear();
         let lights: Vec<Light> = Light::enabled(input.lights).collect();
@@ -271,6 +273,11 @@ impl ShadowStage {
         self.fallbacks = reports().map(|report| report.fallbacks).sum();
         self.is_whole = true;
         Ok(())
+    }
+
+    /// Takes notice that hair moves without a run: the next one keeps nothing.
+    pub fn fall_behind(&mut self) {
+        self.is_behind = true;
     }
 
     /// Looks up points apart, and packs the transmittances of all lights. Returns whether anything changed.

@@ -44,6 +44,13 @@ impl CpuRenderer {
         self.keeps = keeps;
     }
 
+    /// Sets whether the following pictures may show only what has moved, which is not so at first. Then, where nothing but hair has moved since
+    /// the last picture, and in less than half of its tiles, only those are drawn over it. Their shadows are those of the last picture. The
+    /// statistics of such a picture tell its share: see [`FrameStats::redrawn`](crate::FrameStats::redrawn).
+    pub fn set_hurrying(&mut self, hurries: bool) {
+        self.hurries = hurries;
+    }
+
     /// Sets what ends the following pictures early, with [`RenderError::Interrupted`](crate::RenderError::Interrupted); `None` at first.
     pub fn set_interrupt(&mut self, interrupt: Option<Interrupt>) {
         self.interrupt = interrupt;

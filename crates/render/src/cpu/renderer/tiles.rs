@@ -1,5 +1,7 @@
 //! The tiles of an image.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 
 use super::plain::PlainTiles;
@@ -36,10 +38,10 @@ impl CpuRenderer {
         );
     }
 
-    /// Draws all tiles. Those that show only the background are copied from `plain` if it has them, and to it otherwise.
+    /// Draws all tiles, or those of `only`. Those that show only the background are copied from `plain` if it has them, and to it otherwise.
     ///
     /// # Errors
-    /// The picture must end.
+    /// The picture must end, which is asked if all tiles are drawn.
     pub(super) fn draw_tiles(
         &self,
         (view, late): (&View, Option<&LateInput>),
@@ -47,6 +49,7 @@ impl CpuRenderer {
         input: &FrameInput,
         tiles: &mut [u8],
         plain: &mut PlainTiles,
+        only: Option<&[AtomicBool]>,
     ) -> Result<(), RenderError> {
         tiles
             .par_chunks_mut(TILE_BYTES)
@@ -56,7 +59,11 @@ impl CpuRenderer {
             .try_for_each_init(
                 || self.scratch.take(),
                 |lease, (tile, ((out, plain), known))| {
-                    check(self.interrupt.as_ref())?;
+                    match only {
+                        Some(only) if !only[tile].load(Ordering::Relaxed) => return Ok(()),
+                        Some(_) => {}
+                        None => check(self.interrupt.as_ref())?,
+                    }
                     let ground = ground_simd(self.placed.width, view, grid.origin(tile));
                     let is_plain = ground.is_none() && self.placed.is_empty(tile);
                     if is_plain && *known {
